@@ -1,4 +1,4 @@
-//! `Actuated`: inputs that the caller supplies. `Powered`: what changes the energy, by name.
+//! `Actuated`: inputs that the caller supplies. `Powered`: rates of change of the energy, by cause.
 
 use proc_macro2::TokenStream;
 use quote::quote;

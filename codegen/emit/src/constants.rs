@@ -1,4 +1,4 @@
-//! Tables as constant expressions. One that differs little from another is written as what differs from that.
+//! Tables as constant expressions. A table that differs little from another is written as its differences.
 
 use dalembert_numbers::description::{
     Assumption, ConstraintInfo, CoordinateInfo, Description, Documentation, ModeInfo,
@@ -25,7 +25,7 @@ pub(super) trait Record: Constant {
     /// The path of the type.
     fn path() -> TokenStream;
 
-    /// The fields, and whether each has the same value in another.
+    /// The fields: name, tokens, and true if `other` has the same value.
     fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)>;
 
     /// Fields that differ from those of another, which stands in the constant `base`.
@@ -116,7 +116,7 @@ macro_rules! records {
             }
 
             fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)> {
-                // NOTE: a field that is added is asked for here.
+                // NOTE: a new field does not compile until it is added here.
                 let Self { $($field),* } = self;
                 vec![$((
                     stringify!($field),

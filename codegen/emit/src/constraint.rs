@@ -1,4 +1,4 @@
-//! What only a form with constraints has.
+//! Methods of forms with constraints.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -57,7 +57,7 @@ pub(super) fn emit_velocities() -> TokenStream {
     }
 }
 
-/// What a form with constraints answers where others accept every state.
+/// Methods of a form with constraints, in place of the defaults that accept every state.
 pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
     let Some(functions) = &context.form.program.constrained else {
         return TokenStream::new();

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::{Context, kernels};
 
-/// `impl Declared`, and what the form has.
+/// `impl Declared`, and the traits for the parts of the form.
 pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
     let (type_name, kernels) = (&context.names.type_name, kernels::type_name(context));
     let places = &context.names.parameters;
@@ -61,7 +61,7 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// What the form has besides a motion.
+/// Traits for the parts of the form besides its motion.
 fn emit_parts(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let program = context.form.program;

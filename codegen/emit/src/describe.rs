@@ -1,4 +1,4 @@
-//! `Documented` and `Scene`: what the model says of itself, and the effects it comes with.
+//! `Documented` and `Scene`: the self-description of a model, and its effects.
 
 use dalembert_numbers::description::Documentation;
 use proc_macro2::{Ident, Span, TokenStream};
@@ -63,7 +63,7 @@ pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>)
     }
 }
 
-/// The tables of a form; where those of another stand, as what differs.
+/// The tables of a form, as differences from those of `base` where there is one.
 fn emit_tables(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream {
     let tables = context.form.tables();
     match base {
@@ -75,7 +75,7 @@ fn emit_tables(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream
     }
 }
 
-/// The self-description of a form; where that of another stands, as what differs.
+/// The self-description of a form, as differences from that of `base` where there is one.
 fn emit_documentation(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream {
     let documentation = context.form.documentation();
     match base {

@@ -15,7 +15,7 @@ use dalembert_expr::{Function as Elementary, Rational};
 /// Operations that one statement may hold.
 const LONGEST_EXPRESSION: usize = 8;
 
-/// How tightly an expression binds.
+/// Precedence of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Binding {
     Sum,
@@ -24,7 +24,7 @@ pub(super) enum Binding {
     Atom,
 }
 
-/// An expression with its binding and the operations it holds.
+/// An expression with its precedence and the number of its operations.
 #[derive(Clone)]
 struct Piece {
     tokens: TokenStream,
@@ -40,7 +40,7 @@ pub(super) struct Body {
     pub outputs: Vec<TokenStream>,
 }
 
-/// Which inputs the function uses, for binding them.
+/// True if the function reads a wanted input.
 pub(super) fn uses(function: &Function, wanted: impl Fn(Input) -> bool) -> bool {
     function
         .ops
@@ -79,7 +79,7 @@ impl<'a> Writer<'a> {
     fn new(function: &'a Function, names: &'a Names) -> Self {
         let mut uses = vec![0; function.ops.len()];
         for op in &function.ops {
-            // What a guard reads becomes a local, since a guard reads it twice.
+            // A guard reads its operands twice, so they become locals.
             let weight = if matches!(op, Op::Guard(_)) { 2 } else { 1 };
             op.operands()
                 .iter()
@@ -126,8 +126,7 @@ impl<'a> Writer<'a> {
         self.pieces.push(piece);
     }
 
-    /// Whether the operation is the sine or cosine of an argument whose cosine or sine is needed too; both are
-    /// bound at the first of them.
+    /// True if the operation is the sine or cosine of an argument whose cosine or sine is needed too; both are bound at the first of them.
     fn was_paired(&mut self, index: usize) -> bool {
         if let Some(local) = self.paired[index].take() {
             self.pieces.push(atom(quote!(#local)));
@@ -235,8 +234,7 @@ impl<'a> Writer<'a> {
         self.statements.extend(statement);
     }
 
-    /// The tokens of a value. Those that nothing else reads are moved: copies of copies are what takes the time where a
-    /// function is long.
+    /// The tokens of a value. Values that nothing else reads are moved: copies of copies take most of the time where a function is long.
     fn tokens_of(&mut self, value: Value) -> TokenStream {
         let tokens = &mut self.pieces[value.index()].tokens;
         match self.uses[value.index()] {
@@ -292,7 +290,7 @@ impl<'a> Writer<'a> {
             }
             Op::Add(a, b) => self.binary(*a, *b, quote!(+), Binding::Sum),
             Op::Sub(a, b) => self.binary(*a, *b, quote!(-), Binding::Sum),
-            // An interval's square is never negative, which its product with itself does not know.
+            // The square of an interval is never negative. Its product with itself may be.
             Op::Mul(a, b) if a == b => self.call("square", &[*a]),
             Op::Mul(a, b) => self.binary(*a, *b, quote!(*), Binding::Product),
             Op::Div(a, b) => self.binary(*a, *b, quote!(/), Binding::Product),
@@ -358,8 +356,8 @@ fn atom(tokens: TokenStream) -> Piece {
     }
 }
 
-/// A number. A value too large for `f64` was refused when the model was checked; were one to come this far, it
-/// would be written as the infinity it rounds to.
+/// A number. The check of the model refuses values too large for `f64`; one that came this far would be written as the
+/// infinity it rounds to.
 fn literal(number: f64) -> Piece {
     if !number.is_finite() {
         return atom(quote!(::core::f64::INFINITY));

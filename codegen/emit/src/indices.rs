@@ -9,7 +9,7 @@ use dalembert_codegen::model::{Model, Name, Surface};
 /// A declared name with its doc comment.
 pub(super) type Entry<'a> = (&'a Name, &'a [String]);
 
-/// The module, with a module inside for each kind of names that there are, and the types of the scenes.
+/// The module, with one inside for each kind of declared names, and the types of the scenes.
 pub(super) fn emit_indices(context: &Context<'_>, scenes: &[Vec<Context<'_>>]) -> TokenStream {
     let model = context.form.model;
     let lists = emit_lists(model);
@@ -112,7 +112,7 @@ fn emit_constant(first: usize, entries: &[Entry<'_>]) -> TokenStream {
     }
 }
 
-/// What was written of the members, each text once; the name where nothing was.
+/// Documentation of the members, each text once; the name where none was written.
 fn documentation(indices: &[usize], entries: &[Entry<'_>]) -> TokenStream {
     let mut texts: Vec<&[String]> = Vec::new();
     for index in indices {

@@ -1,7 +1,7 @@
 //! `Kernels`: every function of a program, once, over `L: Numbers`.
 //!
-//! The functions of one form are the methods of a type without fields. A form has a base, whose functions it takes where they are the
-//! same: the global form that of its model or scene, a scene the model. Any other function that is the same as one written before
+//! The functions of one form are the methods of a type without fields. A form shares equal functions with its base: the
+//! global form with that of its model or scene, a scene with the model. Any other function that equals one written before
 //! calls that one.
 
 use std::collections::{BTreeMap, HashMap};
@@ -38,7 +38,7 @@ struct Key {
     velocity: Option<Rc<Key>>,
 }
 
-/// Where a function was written.
+/// Place at which a function was written.
 #[derive(Clone, PartialEq)]
 struct Place {
     type_name: Ident,
@@ -117,20 +117,20 @@ pub(super) fn emit_kernels(
     items
 }
 
-/// The methods of a form with so many surfaces that are not those of its base, still without statements.
+/// The methods of a form with this number of surfaces that differ from those of its base, still without statements.
 fn differing(
-    kernels: &[Own<'_>],
+    kernels: &[KernelFunction<'_>],
     inherited: &HashMap<Kernel, Rc<Key>>,
     surfaces: usize,
 ) -> BTreeMap<Ident, Method> {
-    let own = kernels.iter();
-    let own: HashMap<Kernel, &Rc<Key>> = own.map(|own| (own.kernel, &own.key)).collect();
-    // NOTE: a function of a surface that the base has and this form has not is that of another surface.
+    let keys = kernels.iter();
+    let keys: HashMap<Kernel, &Rc<Key>> = keys.map(|added| (added.kernel, &added.key)).collect();
+    // NOTE: where the base has a function of a surface and this form has none, the function belongs to another surface.
     let missing = inherited.keys().filter(|kernel| {
         let (_, surface) = name(**kernel);
-        surface.is_some_and(|surface| surface < surfaces) && !own.contains_key(kernel)
+        surface.is_some_and(|surface| surface < surfaces) && !keys.contains_key(kernel)
     });
-    let changed = own.iter();
+    let changed = keys.iter();
     let changed = changed.filter(|(kernel, key)| inherited.get(kernel) != Some(key));
     let changed = changed.map(|(kernel, _)| kernel);
     let methods = missing.chain(changed).map(|kernel| {
@@ -152,9 +152,9 @@ struct Method {
     operations: usize,
     takes_parameters: bool,
     documentation: TokenStream,
-    /// The statements of one that is told no surface.
+    /// Statements without a surface argument.
     plain: TokenStream,
-    /// The statements of one that is told a surface, each with its surfaces.
+    /// Statements that depend on a surface argument, with the surfaces they belong to.
     arms: Vec<(Vec<usize>, TokenStream)>,
 }
 
@@ -163,27 +163,27 @@ impl Method {
     fn add(
         &mut self,
         context: &Context<'_>,
-        own: &Own<'_>,
+        added: &KernelFunction<'_>,
         velocity: Option<&Rc<Key>>,
         written: &mut Written,
     ) {
         let here = Place {
             type_name: type_name(context),
-            method: own.method.clone(),
-            surface: own.surface,
+            method: added.method.clone(),
+            surface: added.surface,
         };
-        let place = written.places.entry(own.key.clone());
+        let place = written.places.entry(added.key.clone());
         let place = place.or_insert_with(|| here.clone()).clone();
-        self.operations += own.function.ops.len();
+        self.operations += added.function.ops.len();
         let body = if place == here {
-            self.takes_parameters |= takes_parameters(own.function);
+            self.takes_parameters |= takes_parameters(added.function);
             let velocity = velocity.and_then(|key| written.places.get(key));
-            emit_statements(context, (own.kernel, own.function), velocity)
+            emit_statements(context, (added.kernel, added.function), velocity)
         } else {
             place.call(&here.type_name, &quote!(values))
         };
-        let Some(surface) = own.surface else {
-            self.documentation = documentation(context, own.kernel, own.function);
+        let Some(surface) = added.surface else {
+            self.documentation = documentation(context, added.kernel, added.function);
             self.plain = body;
             return;
         };
@@ -225,7 +225,9 @@ impl Method {
 
     fn emit_choice(&self) -> TokenStream {
         let arms = self.arms.iter().map(|(surfaces, body)| {
-            let surfaces = surfaces.iter().map(|own| Literal::usize_unsuffixed(*own));
+            let surfaces = surfaces
+                .iter()
+                .map(|surface| Literal::usize_unsuffixed(*surface));
             quote!(#(#surfaces)|* => { #body })
         });
         quote! {
@@ -238,7 +240,7 @@ impl Method {
 }
 
 /// A function of a form.
-struct Own<'a> {
+struct KernelFunction<'a> {
     kernel: Kernel,
     function: &'a Function,
     method: Ident,
@@ -247,12 +249,12 @@ struct Own<'a> {
 }
 
 /// Every function of a form that is emitted, that of velocities first.
-fn kernels<'a>(context: &'a Context<'_>) -> Vec<Own<'a>> {
-    let mut kernels: Vec<Own<'a>> = Vec::new();
+fn kernels<'a>(context: &'a Context<'_>) -> Vec<KernelFunction<'a>> {
+    let mut kernels: Vec<KernelFunction<'a>> = Vec::new();
     for (kernel, function) in context.form.kernels() {
         let (method, surface) = name(kernel);
-        let velocity = kernels.first().map(|own| own.key.clone());
-        kernels.push(Own {
+        let velocity = kernels.first().map(|first| first.key.clone());
+        kernels.push(KernelFunction {
             kernel,
             function,
             method,
@@ -290,7 +292,7 @@ fn key(
     }
 }
 
-/// Whether velocities are to be computed from the state first.
+/// True if velocities must first be computed from the state.
 fn takes_velocities(kernel: Kernel, function: &Function) -> bool {
     kernel.second() != Second::Velocities
         && uses(function, |input| matches!(input, Input::Velocity(_)))
@@ -336,7 +338,7 @@ fn bind_time(function: &Function) -> TokenStream {
     }
 }
 
-/// The locals of what stands in the first place, and velocities where they are to be computed from it.
+/// Locals for the numbers in the first place, and velocities where they are computed from them.
 fn bind_first(
     context: &Context<'_>,
     (kernel, function): (Kernel, &Function),
@@ -364,7 +366,7 @@ fn bind_first(
     }
 }
 
-/// The locals of what stands in the second place.
+/// Locals for the numbers in the second place.
 fn bind_second(context: &Context<'_>, kernel: Kernel, function: &Function) -> TokenStream {
     match kernel.second() {
         Second::Nothing => TokenStream::new(),
@@ -386,7 +388,7 @@ fn bind_second(context: &Context<'_>, kernel: Kernel, function: &Function) -> To
 fn locals(names: &[Ident], function: &Function, input: fn(usize) -> Input) -> Vec<Option<Ident>> {
     let names = names.iter().enumerate();
     names
-        .map(|(i, name)| uses(function, |own| own == input(i)).then(|| name.clone()))
+        .map(|(i, name)| uses(function, |used| used == input(i)).then(|| name.clone()))
         .collect()
 }
 
@@ -420,7 +422,7 @@ fn name(kernel: Kernel) -> (Ident, Option<usize>) {
     (Ident::new(&snake, Span::call_site()), surface)
 }
 
-/// The formula of a kernel and what it costs.
+/// The formula of a kernel and its cost.
 fn documentation(context: &Context<'_>, kernel: Kernel, function: &Function) -> TokenStream {
     match formula(context, kernel) {
         Some(formula) => doc::formula(formula, &function.cost),

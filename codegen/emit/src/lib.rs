@@ -1,4 +1,4 @@
-//! The last stage, emit: the programs of a model as Rust. One file per emitted item; no decision of mathematics is taken here.
+//! The last stage, emit: the programs of a model as Rust. One file per emitted item. Every mathematical decision was taken before.
 //!
 //! Generated code names only public items of `::dalembert`, `::dalembert::__private` and `::core`.
 
@@ -70,7 +70,7 @@ fn expand_declaration(declaration: Declaration) -> Result<TokenStream, Diagnosti
     }
 }
 
-/// What every emitter reads.
+/// Input of every emitter.
 struct Context<'a> {
     form: FormOf<'a>,
     names: Names,
@@ -85,9 +85,9 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
         .scenes
         .iter()
         .zip(&compiled.scenes)
-        .map(|(scene, own)| contexts_of_scene(model, scene, own))
+        .map(|(scene, compiled)| contexts_of_scene(model, scene, compiled))
         .collect();
-    let own = [
+    let declarations = [
         parameters::emit_parameters(&contexts[0]),
         indices::emit_indices(&contexts[0], &scenes),
     ];
@@ -99,7 +99,7 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
         items.extend(forms(scene, &contexts, &mut written));
     }
     quote! {
-        #(#own)*
+        #(#declarations)*
         #allowances
         const _: () = {
             #shadows
@@ -123,7 +123,7 @@ fn forms(
     items.collect()
 }
 
-/// What is emitted of a model or a scene: its own form, then the global one if that is another.
+/// Contexts of a model or a scene: that of its own form, then that of the global form where the two differ.
 fn contexts<'a>(
     compiled: &'a Compiled,
     scenes: &'a [Scene],
@@ -142,7 +142,7 @@ fn contexts<'a>(
     forms.map(context).collect()
 }
 
-/// As [`contexts`], of a scene.
+/// Contexts of a scene, see [`contexts`].
 fn contexts_of_scene<'a>(
     model: &'a Model,
     scene: &'a Scene,
@@ -153,7 +153,7 @@ fn contexts_of_scene<'a>(
     })
 }
 
-/// What is implemented for a type of the model.
+/// Implementations for a type of the model.
 fn implementations(
     context: &Context<'_>,
     base: Option<&Context<'_>>,

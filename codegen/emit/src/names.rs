@@ -18,7 +18,7 @@ pub(super) struct Names {
     /// The type that functions are made for: the model's or a scene's, or that of its global form.
     pub type_name: TokenStream,
     /// The type of the model or the scene itself.
-    pub own: TokenStream,
+    pub model_type: TokenStream,
     /// The type of its global form, where that is another.
     pub global: TokenStream,
     /// The type that has the parameters, if it is another: a scene holds it, a global form holds a model or a scene.
@@ -100,7 +100,7 @@ pub(super) fn global_name(type_name: &str) -> Ident {
 }
 
 impl Names {
-    /// Those of the model's own type.
+    /// Identifiers for the model's own type.
     pub fn of(model: &Model, frame: Option<&Frame>) -> Self {
         let mut taken = arguments();
         let mut locals = |prefix: &str, suffix: &str| -> Vec<Ident> {
@@ -117,16 +117,16 @@ impl Names {
             (locals("", ""), locals("p_", ""), locals("", "_dot"));
         let quasi = frame.iter().flat_map(|frame| &frame.quasi);
         let quasi = quasi
-            .map(|own| match own.coordinate {
+            .map(|velocity| match velocity.coordinate {
                 Some(i) => velocities[i].clone(),
-                None => Ident::new(&claim(&mut taken, &own.name), Span::call_site()),
+                None => Ident::new(&claim(&mut taken, &velocity.name), Span::call_site()),
             })
             .collect();
         let type_name = Ident::new(&model.name, Span::call_site());
         let global = global_name(&model.name);
         Self {
             type_name: quote!(#type_name),
-            own: quote!(#type_name),
+            model_type: quote!(#type_name),
             global: quote!(#global),
             held: None,
             coordinates,
@@ -137,22 +137,22 @@ impl Names {
         }
     }
 
-    /// Those of a scene of the model, whose type stands in the module of indices and holds the model.
+    /// Identifiers for a scene of the model. The type of the scene is in the module of indices and holds the model.
     pub fn of_scene(self, model: &Model, scene: &Scene) -> Self {
         let module = Ident::new(&model.snake_name, Span::call_site());
         let type_name = Ident::new(&scene.type_name, Span::call_site());
         let global = global_name(&scene.type_name);
         Self {
             type_name: quote!(#module::#type_name),
-            held: Some(self.own),
-            own: quote!(#module::#type_name),
+            held: Some(self.model_type),
+            model_type: quote!(#module::#type_name),
             global: quote!(#module::#global),
             parameters: places(model, &quote!(self.0)),
             ..self
         }
     }
 
-    /// Those of the type of the global form, which holds the model or the scene.
+    /// Identifiers for the type of the global form, which holds the model or the scene.
     pub fn of_global(&self, model: &Model) -> Self {
         let holder = match self.held {
             None => quote!(self.0),
@@ -160,7 +160,7 @@ impl Names {
         };
         Self {
             type_name: self.global.clone(),
-            held: Some(self.own.clone()),
+            held: Some(self.model_type.clone()),
             parameters: places(model, &holder),
             ..self.clone()
         }
@@ -184,9 +184,8 @@ fn arguments() -> BTreeSet<String> {
     ARGUMENTS.iter().map(|name| (*name).to_string()).collect()
 }
 
-/// Functions that hide constants of the surroundings. Rust takes a pattern that is the name of a constant in scope for
-/// that constant, and after `use disk::coordinate::phi` there is one for each index that a caller has imported; a
-/// function of the same name gives way to a local.
+/// Functions that hide constants of the surroundings. In a pattern, Rust reads the name of a constant in scope as that
+/// constant, and `use disk::coordinate::phi` imports one for an index. A function of the same name gives way to a local.
 pub(super) fn emit_shadows<'m>(models: impl Iterator<Item = &'m Model>) -> TokenStream {
     let names_of = |model: &'m Model| {
         (model.coordinates.iter().map(|item| &item.name))
@@ -244,7 +243,7 @@ pub(super) fn claim(taken: &mut BTreeSet<String>, wished: &str) -> String {
     name
 }
 
-/// Whether Rust would not take the name as a local.
+/// True if Rust refuses the name as a local.
 fn is_keyword(name: &str) -> bool {
     name == "_" || dalembert_codegen::spec::is_rust_keyword(name)
 }

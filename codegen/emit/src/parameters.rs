@@ -11,7 +11,7 @@ use dalembert_codegen::tables::default_value;
 /// The struct, and `Default` when every parameter has one.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let model = context.form.model;
-    let type_name = &context.names.own;
+    let type_name = &context.names.model_type;
     let visibility: TokenStream = model.visibility.parse().unwrap_or_default();
     let documentation = doc::lines(&documentation(context));
     let fields = emit_fields(model);
@@ -45,22 +45,23 @@ pub(super) fn emit_global(
     if context.form.program.form != Form::Reduced {
         return TokenStream::new();
     }
-    let own = Ident::new(type_name, Span::call_site());
+    let model_type = Ident::new(type_name, Span::call_site());
     let global = names::global_name(type_name);
-    let title =
-        format!(" [`{own}`] in its global form, off the constraints too, with the state `(q, p)`.");
+    let title = format!(
+        " [`{model_type}`] in its global form, off the constraints too, with the state `(q, p)`."
+    );
     let held = format!(" The {noun} with its parameters.");
     quote! {
         #[doc = #title]
         #[derive(Debug, Clone, Copy, PartialEq)]
         #visibility struct #global(
             #[doc = #held]
-            pub #own,
+            pub #model_type,
         );
     }
 }
 
-/// What the documentation of the type of a model or a scene says.
+/// Documentation of the type of a model or a scene.
 pub(super) fn documentation(context: &Context<'_>) -> Vec<String> {
     let model = context.form.model;
     let mut lines = model.documentation.clone();
@@ -131,7 +132,7 @@ pub(super) fn default_fields(model: &Model) -> TokenStream {
     quote!(#(#fields,)*)
 }
 
-/// Whether every parameter has a default.
+/// True if every parameter has a default.
 pub(super) fn have_defaults(model: &Model) -> bool {
     let mut parameters = model.parameters.iter();
     parameters.all(|parameter| parameter.default.is_some())
@@ -142,7 +143,7 @@ fn emit_default(context: &Context<'_>) -> TokenStream {
     if !have_defaults(model) {
         return TokenStream::new();
     }
-    let type_name = &context.names.own;
+    let type_name = &context.names.model_type;
     let value = with_defaults(model);
     let (attributes, allowances) = (super::attributes(), super::allowances());
     quote! {

@@ -6,7 +6,7 @@ use quote::quote;
 use super::{Context, doc, indices, parameters};
 use dalembert_codegen::model::{Model, Scene};
 
-/// The types of all scenes with what stands beside each of them; `contexts` are those of the scenes, in order.
+/// The types of all scenes, each with the items beside it; `contexts` are those of the scenes, in order.
 pub(super) fn emit_types(model: &Model, contexts: &[Vec<Context<'_>>]) -> Vec<TokenStream> {
     let scenes = model.scenes.iter().zip(contexts);
     scenes

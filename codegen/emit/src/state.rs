@@ -1,4 +1,4 @@
-//! What a state consists of, and the locals that its numbers are bound to.
+//! Components of a state, and the locals that they are bound to.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -8,7 +8,7 @@ use super::function::uses;
 use dalembert_codegen::program::{Form, Function, Input};
 
 impl Context<'_> {
-    /// `let [x, _, p_x, p_y] = *state;` with what the function uses.
+    /// `let [x, _, p_x, p_y] = *state;` with the components that the function uses.
     pub(super) fn bind_row(&self, function: &Function) -> TokenStream {
         let patterns = self.state_patterns(function);
         if !patterns.iter().any(|(_, any)| *any) {
@@ -35,7 +35,7 @@ impl Context<'_> {
     }
 }
 
-/// A pattern of locals, `_` where nothing is used; and whether anything is.
+/// A pattern of locals, `_` where nothing is used. True if anything is used.
 fn pattern(locals: &[Ident], used: impl Fn(usize) -> bool) -> (TokenStream, bool) {
     let mut any = false;
     let parts = locals.iter().enumerate().map(|(i, local)| match used(i) {

@@ -1,4 +1,4 @@
-//! What variations take of a form besides its kernels, where they are asked for.
+//! Items of a form that variations need besides its kernels.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -6,7 +6,7 @@ use quote::quote;
 use super::Context;
 use dalembert_codegen::program::Form;
 
-/// What variations take of a form, where they are asked for. A type that holds a reduced model in its global form has none.
+/// Items of a form that variations need, where they are asked for. A type that holds a reduced model in its global form has none.
 pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
     if !context.form.varies() {
         return TokenStream::new();
@@ -36,7 +36,7 @@ pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// `show_variational`, of what is.
+/// `show_variational`, where variations are asked for.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     if !context.form.varies() {
         return TokenStream::new();
@@ -51,7 +51,7 @@ pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// Constraints that a state may be off.
+/// Number of constraints that a state may violate.
 fn off_constraints(context: &Context<'_>) -> usize {
     match (context.form.program.form, &context.form.program.constrained) {
         (Form::Global, Some(_)) => context.form.model.constraints.len(),

@@ -41,26 +41,26 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// That of the model, for the type that holds it: the volume depends on the configuration alone.
+/// The volume of the model, for the type that holds it: the volume depends on the configuration alone.
 fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
-    let (type_name, model) = (&context.names.type_name, &context.names.own);
+    let (type_name, model) = (&context.names.type_name, &context.names.model_type);
     let attributes = super::attributes();
-    let own = quote!(<#model as ::dalembert::InvariantVolume>);
+    let delegate = quote!(<#model as ::dalembert::InvariantVolume>);
     quote! {
         #attributes
         impl ::dalembert::InvariantVolume for #type_name {
-            const INDEPENDENT: &'static [usize] = #own::INDEPENDENT;
-            const IS_SINGLE_VALUED: bool = #own::IS_SINGLE_VALUED;
-            const IS_INTEGRAL: bool = #own::IS_INTEGRAL;
+            const INDEPENDENT: &'static [usize] = #delegate::INDEPENDENT;
+            const IS_SINGLE_VALUED: bool = #delegate::IS_SINGLE_VALUED;
+            const IS_INTEGRAL: bool = #delegate::IS_INTEGRAL;
 
             #[inline]
             fn log_density(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
-                #own::log_density(&self.0, t, q)
+                #delegate::log_density(&self.0, t, q)
             }
 
             #[inline]
             fn log_volume(&self, t: f64, q: &Self::Vector) -> ::core::result::Result<f64, ::dalembert::Fault> {
-                #own::log_volume(&self.0, t, q)
+                #delegate::log_volume(&self.0, t, q)
             }
         }
     }

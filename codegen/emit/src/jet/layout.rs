@@ -1,8 +1,8 @@
-//! Where coefficients are kept over the orders, and which sums over products of them are taken.
+//! Storage of coefficients over the orders, and the sums over their products that are computed side by side.
 //!
-//! A sum over `a_j b_(k-j)` with `0 < j < k` takes no coefficient of order `k`: all such sums of an order can be taken at its
-//! beginning, whatever depends on what. So they are taken side by side. Row `k` of the room holds coefficient `k` of
-//! all factors, those of neighbouring sums next to each other.
+//! A sum over `a_j b_(k-j)` with `0 < j < k` needs no coefficient of order `k`: all such sums of an order can be computed
+//! at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the room holds coefficient `k`
+//! of all factors; those of neighbouring sums lie next to each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,15 +12,15 @@ use quote::quote;
 use dalembert_codegen::program::Value;
 use dalembert_codegen::program::jet::History;
 
-/// Sums taken side by side: what one vector register holds, or two, or four.
+/// Sums computed side by side: they fill one, two or four vector registers.
 const SIDE_BY_SIDE: usize = 8;
 
-/// A sum over all products of coefficients of two series that add up to an order, but those with order 0.
+/// A sum over all products of coefficients of two series whose orders add up to one order, without those of order 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sum {
-    /// Half of that of a series with itself.
+    /// Half of the sum over a series with itself.
     Half(Value),
-    /// That of two series.
+    /// The sum over two series.
     Middle(History, History),
 }
 
@@ -40,10 +40,10 @@ pub(super) struct Layout {
 /// Sums taken together, as the sums of their kind from `first` on.
 struct Block {
     first: usize,
-    /// Where the coefficients of its factors lie in a row, and how many places each factor has.
+    /// Place of the coefficients of the first factor in a row, and number of places of each factor.
     place: usize,
     width: usize,
-    /// What the sums have for each factor.
+    /// Histories in the sums, by factor.
     factors: Vec<Vec<History>>,
 }
 
@@ -52,7 +52,7 @@ impl Block {
         self.factors[0].len()
     }
 
-    /// Where the coefficients of each factor lie in a row, and the local with the newest of them.
+    /// Places of the coefficients of each factor in a row, and the local with the newest of them.
     fn places(&self) -> impl Iterator<Item = (Literal, Ident)> + '_ {
         (0..self.factors.len()).map(|i| {
             let place = self.place + i * self.width;
@@ -73,15 +73,14 @@ impl Layout {
         Literal::usize_unsuffixed(*self.alone.entry(history).or_insert(place))
     }
 
-    /// The only product of a value that grows steadily with coefficients of another: no memory is on its way from order to
-    /// order.
+    /// The only product of a value that grows steadily with coefficients of another, as two locals: it needs no memory from order to order.
     pub(super) fn product_with_steady(&mut self, steady: Value, other: Value) -> [Ident; 2] {
         self.steady.insert(steady);
         self.multiplied.insert(other);
         [local("slope", steady), local("last", other)]
     }
 
-    /// Whether a value grows steadily and multiplies another.
+    /// True if a value grows steadily and multiplies another.
     pub(super) fn is_steady(&self, value: Value) -> bool {
         self.steady.contains(&value)
     }
@@ -151,7 +150,7 @@ impl Layout {
         statements.collect()
     }
 
-    /// Statements that keep coefficient `k` of what the next orders take; `coefficient` gives it.
+    /// Statements that keep coefficient `k` for the sums of the next orders; `coefficient` gives it.
     pub(super) fn keep_factors(&self, coefficient: impl Fn(History) -> TokenStream) -> TokenStream {
         let lasts = self.multiplied.iter().map(|&value| {
             let (last, next) = (local("last", value), coefficient(History::plain(value)));
@@ -186,12 +185,12 @@ impl Layout {
         for factors in [vec![halves.collect()], vec![left, right]] {
             let count = factors.first().map_or(0, Vec::len);
             for first in (0..count).step_by(SIDE_BY_SIDE) {
-                let own = SIDE_BY_SIDE.min(count - first);
-                let part = |all: &Vec<History>| all[first..][..own].to_vec();
+                let together = SIDE_BY_SIDE.min(count - first);
+                let part = |all: &Vec<History>| all[first..][..together].to_vec();
                 let block = Block {
                     first,
                     place,
-                    width: own.next_power_of_two(),
+                    width: together.next_power_of_two(),
                     factors: factors.iter().map(part).collect(),
                 };
                 place = block.end();

@@ -90,7 +90,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
 struct Expansion {
     /// Order 0.
     begin: TokenStream,
-    /// How many numbers are known of it.
+    /// Number of values known at order 0.
     known: usize,
     /// The orders above.
     advance: TokenStream,
@@ -100,7 +100,8 @@ struct Expansion {
 
 impl Expansion {
     fn of(jet: &Jet, context: &Context<'_>) -> Self {
-        // What is kept is known once the orders are written, and how it is kept shows in what is written.
+        // The kept coefficients are known once the orders are written, and the orders depend on their storage: the orders
+        // of a small expansion are written twice.
         let mut writer = Writer::of(jet, context);
         let mut orders = writer.orders();
         if !writer.is_large() {

@@ -17,7 +17,7 @@ impl Writer<'_> {
         self.written(&term).0
     }
 
-    /// A term, and how tightly it binds.
+    /// A term with its precedence.
     fn written(&mut self, term: &Term) -> (TokenStream, Binding) {
         let tokens = match term {
             Term::Zero => quote!(L::ZERO),

@@ -1,4 +1,4 @@
-//! What is written of an expansion: order 0, and order `k` of all that varies.
+//! Statements of an expansion: order 0, and order `k` of all values that vary.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +16,7 @@ pub(super) struct Writer<'a> {
     pub(super) jet: &'a Jet,
     /// Number of components of the state.
     components: usize,
-    /// How often coefficient `k` of each value is read.
+    /// Reads of coefficient `k`, by value.
     uses: Vec<usize>,
     pub(super) room: Room,
     /// Values whose order 0 is read, and those whose reciprocal is.
@@ -77,7 +77,7 @@ impl<'a> Writer<'a> {
         matches!(self.room, Room::Histories(_))
     }
 
-    /// Order `k` of every value that varies, and of the results; and what is kept of it once the results are taken.
+    /// Order `k` of every value that varies, and of the results; then the statements that keep coefficients for later orders.
     pub(super) fn orders(&mut self) -> (TokenStream, Vec<TokenStream>, TokenStream) {
         let varying: Vec<Value> = self.jet.varying().collect();
         let components = self.bind_components(&varying);
@@ -185,7 +185,7 @@ impl<'a> Writer<'a> {
     /// Order 0 of a value.
     pub(super) fn first(&mut self, value: Value) -> TokenStream {
         match &self.jet.function.ops[value.index()] {
-            Op::Number(own) => rational(own),
+            Op::Number(number) => rational(number),
             Op::Pi => pi(),
             Op::Input(Input::Parameter(k)) => {
                 let place = Literal::usize_unsuffixed(*k);
@@ -216,7 +216,7 @@ impl<'a> Writer<'a> {
         parenthesised(self.expression(value))
     }
 
-    /// Whether coefficient `k` of a value is a statement of its own.
+    /// True if coefficient `k` of a value has a statement of its own.
     fn is_bound(&self, value: Value) -> bool {
         self.uses[value.index()] > 1 || self.jet.is_kept(value)
     }
@@ -270,7 +270,7 @@ impl<'a> Writer<'a> {
         statements
     }
 
-    /// Whether order 0 of a value is kept with those above it.
+    /// True if order 0 of a value is kept with those above it.
     fn keeps_first(&self, value: Value) -> bool {
         let history = History::plain(value);
         match &self.room {
@@ -282,7 +282,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Where order `k` of a history is kept, unless it was put there at once or is kept with others.
+    /// Place of order `k` of a history, unless it was put there at once or is kept with others.
     fn place(&self, history: History) -> Option<TokenStream> {
         match &self.room {
             Room::Rows(layout) => layout.coefficient(history, &quote!(k)),

@@ -9,7 +9,7 @@ use crate::{attributes, parameters};
 
 /// `impl Documented`, and `impl Emitted` with all that is constant of the whole.
 pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
+    let type_name = whole.type_name();
     let attributes = attributes();
     let documentation = one::with_shared_parameters(&whole.known.documentation());
     let first = types::first_mode(whole);
@@ -20,7 +20,7 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
     let (tables, forms) = (whole::emit_tables(whole), whole::emit_forms(whole));
     quote! {
         #attributes
-        impl ::dalembert::kernels::Documented for #own {
+        impl ::dalembert::kernels::Documented for #type_name {
             type Geometry = [f64; 0];
             type Global = Self;
 
@@ -47,7 +47,7 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
         }
 
         #attributes
-        impl ::dalembert::declaration::Emitted for #own {
+        impl ::dalembert::declaration::Emitted for #type_name {
             const TABLES: ::dalembert::kernels::Tables = #tables;
             const DOCUMENTATION: ::dalembert::kernels::Documentation = #documentation;
             const FORMS: &'static [&'static ::dalembert::erased::Form] = #forms;
@@ -59,7 +59,7 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
 
 /// `impl Scene`: impacts and transitions of the whole, and projection in the modes that need it.
 pub(super) fn emit_scene(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
+    let type_name = whole.type_name();
     let attributes = attributes();
     let drifts = whole.known.tables().drifts;
     let projection = drifts.then(|| {
@@ -80,7 +80,7 @@ pub(super) fn emit_scene(whole: &Whole<'_>) -> TokenStream {
     let (effects, values): (Vec<_>, Vec<_>) = impacts.into_iter().chain(projection).unzip();
     quote! {
         #attributes
-        impl ::dalembert::Scene for #own {
+        impl ::dalembert::Scene for #type_name {
             type Effects = (#(#effects,)*);
 
             fn effects(&self) -> Self::Effects { (#(#values,)*) }

@@ -16,12 +16,12 @@ use dalembert_codegen::CompiledModes;
 use dalembert_codegen::model::{ModeGraph, Model};
 use dalembert_codegen::tables;
 
-/// What every emitter of the whole reads.
+/// Input of every emitter of the whole.
 struct Whole<'a> {
     graph: &'a ModeGraph,
     /// Its tables.
     known: tables::Whole<'a>,
-    /// Of each mode what is emitted: its own form, then the global one if that is another.
+    /// Contexts of each mode: that of its own form, then that of the global form where the two differ.
     contexts: Vec<Vec<Context<'a>>>,
 }
 
@@ -33,17 +33,17 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
         .modes
         .iter()
         .zip(modes)
-        .map(|(mode, own)| contexts_of_scene(model, &mode.scene, own));
+        .map(|(mode, compiled)| contexts_of_scene(model, &mode.scene, compiled));
     let contexts: Vec<Vec<Context<'_>>> = contexts.collect();
     let whole = Whole {
         graph,
         known: tables::Whole {
             graph,
-            forms: contexts.iter().map(|own| forms_of(own)).collect(),
+            forms: contexts.iter().map(|contexts| forms_of(contexts)).collect(),
         },
         contexts,
     };
-    let own = [types::emit_struct(&whole), types::emit_module(&whole)];
+    let declarations = [types::emit_struct(&whole), types::emit_module(&whole)];
     let shadows = names::emit_shadows(graph.modes.iter().map(|mode| &mode.model));
     let allowances = allowances();
     let mut written = Written::default();
@@ -59,7 +59,7 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
         describe::emit_scene(&whole),
     ];
     quote! {
-        #(#own)*
+        #(#declarations)*
         #allowances
         const _: () = {
             #shadows
@@ -74,7 +74,7 @@ fn forms_of<'a>(contexts: &[Context<'a>]) -> Vec<tables::FormOf<'a>> {
 }
 
 impl Whole<'_> {
-    /// The model that the first mode is: names and parameters of the whole are its own.
+    /// The model of the first mode. Names and parameters of the whole are those of this model.
     fn model(&self) -> &Model {
         &self.graph.modes[0].model
     }
@@ -86,11 +86,13 @@ impl Whole<'_> {
 
     /// The types of the modes, in order.
     fn types(&self) -> Vec<&TokenStream> {
-        self.own().map(|context| &context.names.type_name).collect()
+        self.mode_contexts()
+            .map(|context| &context.names.type_name)
+            .collect()
     }
 
     /// The contexts of the modes' own forms, in order.
-    fn own(&self) -> impl Iterator<Item = &Context<'_>> {
+    fn mode_contexts(&self) -> impl Iterator<Item = &Context<'_>> {
         self.contexts.iter().map(|contexts| &contexts[0])
     }
 }

@@ -1,4 +1,4 @@
-//! Families of modes and transitions: what they are written out to.
+//! Families of modes and transitions, and their members.
 
 use dalembert_codegen::compile_modes;
 use dalembert_codegen::spec::{Declaration, Modes};
@@ -112,7 +112,7 @@ fn entries_of_one_member_add_up() {
     let names: Vec<&str> = declared
         .modes
         .iter()
-        .map(|own| own.name.text.as_str())
+        .map(|mode| mode.name.text.as_str())
         .collect();
     assert_eq!(names, ["leg1", "leg2", "leg3", "flight"]);
     same(family, WRITTEN_OUT);

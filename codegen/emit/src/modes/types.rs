@@ -55,7 +55,7 @@ fn documentation(whole: &Whole<'_>) -> Vec<String> {
     lines.push(" Modes, each with the order of its state; the state of the whole is that of the present mode, zeros, and the \
                 number of the mode:".to_owned());
     lines.push(String::new());
-    for (mode, context) in whole.graph.modes.iter().zip(whole.own()) {
+    for (mode, context) in whole.graph.modes.iter().zip(whole.mode_contexts()) {
         lines.push(format!(
             " * `{}`: `{}`",
             mode.scene.name,
@@ -92,7 +92,7 @@ pub(super) fn emit_module(whole: &Whole<'_>) -> TokenStream {
             name,
             plural,
             list.iter()
-                .map(|own| (&own.name, own.documentation.as_slice())),
+                .map(|entry| (&entry.name, entry.documentation.as_slice())),
         )
     });
     let variants = emit_variants(whole);
@@ -126,7 +126,7 @@ fn emit_variants(whole: &Whole<'_>) -> TokenStream {
 /// `pub struct Rough(pub super::Ball);` and the module of its indices.
 fn emit_mode(whole: &Whole<'_>, mode: &model::Mode, context: &crate::Context<'_>) -> TokenStream {
     let holder = whole.type_name();
-    let own = &mode.model;
+    let model = &mode.model;
     let type_name = Ident::new(&mode.scene.type_name, Span::call_site());
     let module = Ident::new(&mode.scene.name, Span::call_site());
     let title = format!(
@@ -142,7 +142,7 @@ fn emit_mode(whole: &Whole<'_>, mode: &model::Mode, context: &crate::Context<'_>
     let documentation = doc::lines(&lines);
     let visibility = inner_visibility(&whole.model().visibility);
     let global = parameters::emit_global(context, &mode.scene.type_name, "mode", &visibility);
-    let lists = crate::indices::emit_lists(own);
+    let lists = crate::indices::emit_lists(model);
     let title = format!(
         " Indices of the names of the mode `{}`, in its own order.",
         mode.scene.name

@@ -1,4 +1,4 @@
-//! `Declared` of the whole, its tables and series: lengths of vectors, and where each mode finds its own among what the model has.
+//! `Declared` of the whole, its tables and series: lengths of vectors, and the place of each mode's quantities among those of the model.
 
 use dalembert_numbers::tables::Dimensions;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -9,9 +9,9 @@ use crate::constants::{Constant, Record};
 use crate::describe::emitted;
 use crate::{attributes, constraint, kernels};
 
-/// `impl Declared`, and what the model has.
+/// `impl Declared`, and the traits for the parts of the model.
 pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
+    let type_name = whole.type_name();
     let attributes = attributes();
     let Dimensions {
         state,
@@ -42,7 +42,7 @@ pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
     let parts = parts.iter().filter(|(has, _)| *has).map(|(_, part)| part);
     quote! {
         #attributes
-        impl ::dalembert::kernels::Declared for #own {
+        impl ::dalembert::kernels::Declared for #type_name {
             type State = ::dalembert::__private::SVector<f64, #state>;
             type Vector = ::dalembert::__private::SVector<f64, #coordinates>;
             type Impulse = ::dalembert::__private::SVector<f64, #motion>;
@@ -86,11 +86,11 @@ pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
             #hooks
         }
 
-        #(impl ::dalembert::kernels::#parts for #own {})*
+        #(impl ::dalembert::kernels::#parts for #type_name {})*
     }
 }
 
-/// What modes with constraints answer where others accept every state.
+/// Methods of modes with constraints, in place of the defaults that accept every state.
 fn emit_hooks(whole: &Whole<'_>) -> TokenStream {
     let drop = whole.known.tables().can_lose_rank.then(|| {
         let types = emit_list(whole);
@@ -104,12 +104,16 @@ fn emit_hooks(whole: &Whole<'_>) -> TokenStream {
             }
         }
     });
-    let constrained: Vec<_> = (whole.own())
+    let constrained: Vec<_> = (whole.mode_contexts())
         .filter_map(|mode| mode.form.program.constrained.as_ref())
         .collect();
-    let positions = constrained.iter().any(|own| own.level_scales.is_some());
+    let positions = constrained
+        .iter()
+        .any(|functions| functions.level_scales.is_some());
     let positions = positions.then(constraint::emit_positions);
-    let nearest = whole.own().any(|mode| mode.form.model.is_nonlinear());
+    let nearest = whole
+        .mode_contexts()
+        .any(|mode| mode.form.model.is_nonlinear());
     let nearest = nearest.then(constraint::emit_nearest);
     let velocities = (!constrained.is_empty()).then(constraint::emit_velocities);
     quote!(#drop #positions #nearest #velocities)
@@ -156,14 +160,14 @@ pub(super) fn emit_forms(whole: &Whole<'_>) -> TokenStream {
 
 /// `From` the whole for each mode.
 pub(super) fn emit_conversions(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
+    let type_name = whole.type_name();
     let attributes = attributes();
     let modes = whole.types().into_iter().map(|mode| {
         quote! {
             #attributes
-            impl ::core::convert::From<#own> for #mode {
+            impl ::core::convert::From<#type_name> for #mode {
                 #[inline(always)]
-                fn from(model: #own) -> Self { Self(model) }
+                fn from(model: #type_name) -> Self { Self(model) }
             }
         }
     });
@@ -172,7 +176,7 @@ pub(super) fn emit_conversions(whole: &Whole<'_>) -> TokenStream {
 
 /// `impl TaylorField`
 pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
+    let type_name = whole.type_name();
     let attributes = attributes();
     let types = whole.types();
     let list = emit_list(whole);
@@ -191,7 +195,7 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
         ]);
 
         #attributes
-        impl ::dalembert::TaylorField for #own {
+        impl ::dalembert::TaylorField for #type_name {
             type Parameters<#numbers> = [L; #parameters];
             type Row<#numbers> = [L; #state];
             type Gaps<#numbers> = [L; #gaps];
@@ -237,9 +241,9 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
     }
 }
 
-/// What variations take of the whole.
+/// Items of the whole that variations need.
 pub(super) fn emit_variations(whole: &Whole<'_>) -> TokenStream {
-    let own = whole.type_name();
+    let type_name = whole.type_name();
     let attributes = attributes();
     let Dimensions {
         state,
@@ -251,7 +255,7 @@ pub(super) fn emit_variations(whole: &Whole<'_>) -> TokenStream {
     let numbers = quote!(L: ::dalembert::numbers::Numbers);
     quote! {
         #attributes
-        impl ::dalembert::kernels::HasVariations for #own {
+        impl ::dalembert::kernels::HasVariations for #type_name {
             type Clearances<#numbers> = [L; #surfaces];
             type Collision<#numbers> = [L; #collision];
             type Deviations<#numbers> = [L; #deviations];
@@ -265,7 +269,7 @@ pub(super) fn emit_variations(whole: &Whole<'_>) -> TokenStream {
     }
 }
 
-/// What chooses the mode of a number in the field `mode`; a number past the end changes nothing.
+/// Sets the mode to the one with the number in `mode`; a number past the end changes nothing.
 pub(super) fn emit_choice(whole: &Whole<'_>) -> TokenStream {
     let module = Ident::new(&whole.model().snake_name, Span::call_site());
     let arms = whole.graph.modes.iter().enumerate().map(|(index, mode)| {
