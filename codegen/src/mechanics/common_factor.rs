@@ -2,14 +2,14 @@
 
 use dalembert_expr::{ExprId, Node, Pool, Rational};
 
-/// A sum as the product of what its terms have in common and the rest.
+/// A sum as the product of the common factor of its terms and the rest.
 pub(super) fn factored(pool: &mut Pool, sum: ExprId) -> ExprId {
     let (constant, terms) = pool.linear_form(sum);
     if !constant.is_zero() || terms.len() < 2 {
         return sum;
     }
-    let own: Vec<ExprId> = terms.iter().map(|(_, term)| *term).collect();
-    let (common, rest) = without_common_factor(pool, &own);
+    let expressions: Vec<ExprId> = terms.iter().map(|(_, term)| *term).collect();
+    let (common, rest) = without_common_factor(pool, &expressions);
     let coefficients = terms.into_iter().map(|(coefficient, _)| coefficient);
     let rest: Vec<(Rational, ExprId)> = coefficients.zip(rest).collect();
     let rest = pool.combine(&rest);
@@ -23,10 +23,10 @@ pub(super) fn without_common_factor(pool: &mut Pool, vector: &[ExprId]) -> (Expr
         .iter()
         .filter(|&&entry| !pool.is_syntactic_zero(entry))
     {
-        let (_, own) = factors(pool, entry);
+        let (_, powers) = factors(pool, entry);
         common = Some(match common {
-            None => whole_powers(own),
-            Some(known) => shared(&known, &own),
+            None => whole_powers(powers),
+            Some(known) => shared(&known, &powers),
         });
     }
     let common = common.unwrap_or_default();
@@ -37,7 +37,7 @@ pub(super) fn without_common_factor(pool: &mut Pool, vector: &[ExprId]) -> (Expr
     (pool.power_product(&common), rest)
 }
 
-/// The entries without what all that are not zero have as a factor and what is never zero, a number up to sign included.
+/// The entries without factors that all nonzero entries have in common and that are never zero, a number up to sign included.
 pub(super) fn without_regular_factor(pool: &mut Pool, vector: &[ExprId]) -> Vec<ExprId> {
     let (common, entries) = without_common_factor(pool, vector);
     let singular = match pool.node(common) {
@@ -90,11 +90,11 @@ fn whole_powers(mut factors: Factors) -> Factors {
     factors
 }
 
-fn shared(known: &Factors, own: &Factors) -> Factors {
+fn shared(known: &Factors, entry: &Factors) -> Factors {
     let in_both = known.iter().filter_map(|(base, exponent)| {
         let has_it =
             |(other, exponent): &&(ExprId, Rational)| other == base && exponent.is_positive();
-        let (_, other) = own.iter().find(has_it)?;
+        let (_, other) = entry.iter().find(has_it)?;
         Some((*base, exponent.clone().min(other.clone())))
     });
     whole_powers(in_both.collect())
@@ -105,15 +105,15 @@ fn divided(pool: &mut Pool, entry: ExprId, common: &Factors) -> ExprId {
     if pool.is_syntactic_zero(entry) {
         return entry;
     }
-    let (coefficient, mut own) = factors(pool, entry);
+    let (coefficient, mut powers) = factors(pool, entry);
     for (base, exponent) in common {
         let has_it = |(other, left): &&mut (ExprId, Rational)| other == base && left.is_positive();
-        if let Some((_, left)) = own.iter_mut().find(has_it) {
+        if let Some((_, left)) = powers.iter_mut().find(has_it) {
             *left = left.clone() - exponent.clone();
         }
     }
-    own.retain(|(_, exponent)| !exponent.is_zero());
-    let rest = pool.power_product(&own);
+    powers.retain(|(_, exponent)| !exponent.is_zero());
+    let rest = pool.power_product(&powers);
     pool.scale(&coefficient, rest)
 }
 
@@ -147,7 +147,7 @@ mod tests {
         }
         // `x` may be 0: a vector without it would not vanish there.
         let regular = without_regular_factor(&mut pool, &vector);
-        let texts: Vec<String> = regular.iter().map(|&own| pool.text(own)).collect();
+        let texts: Vec<String> = regular.iter().map(|&entry| pool.text(entry)).collect();
         assert_eq!(texts, ["r*x^2", "0", "x*y"]);
         // Numbers are entries like any others.
         let (minus, half) = (pool.int(-1), pool.scale(&Rational::HALF, y));

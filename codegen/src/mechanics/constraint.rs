@@ -23,7 +23,7 @@ pub struct ConstraintForm {
     pub scale: ExprId,
     /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`.
     pub curvature: ExprId,
-    /// `eta_j` and `curvature` without a number that all components have in common: what moves does not depend on it.
+    /// `eta_j` and `curvature` without the number that all components have in common; the motion does not depend on it.
     pub primitive: (Vec<ExprId>, ExprId),
     /// `d_k eta_j`, index `[j, k]`.
     pub form_gradient: Vec<Entry<2>>,
@@ -158,7 +158,7 @@ pub(super) fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
         Node::Product(factors) => {
             let mut bounds = Vec::with_capacity(factors.len());
             for (base, exponent) in factors.iter() {
-                // A small denominator is what it is: only numerators may be counted by their bound.
+                // Only numerators may be replaced by their bounds: a denominator may be small.
                 let bound = if exponent.is_positive() {
                     amplitude(pool, *base)
                 } else {

@@ -12,7 +12,7 @@
 use super::{Coordinates, Entry, MetricDerivatives, gradient};
 use crate::model::Model;
 
-/// What theta and the divergence need beyond the constraint forms themselves.
+/// Derivatives that theta and the divergence need besides those of the constraint forms.
 #[derive(Debug)]
 pub struct DensityTerms {
     /// Derivatives of the metric; empty without constraints.

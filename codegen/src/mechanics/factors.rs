@@ -1,12 +1,12 @@
 //! Rows of the factors `g = L D L^T` that are no larger than the rows of `g` they come from.
 //!
-//! A body whose centre of mass is not its origin has a metric of which the elimination takes away again what was put in:
-//! `I + m a^2` becomes `I`. Numbers would do the same to rounding. What grows is left to numbers, so that nothing is
-//! inverted at the price of its size.
+//! Where the centre of mass of a body is not its origin, elimination takes away a term that the metric adds: `I + m a^2`
+//! becomes `I`. The expressions formed here cancel exactly, numbers only up to rounding. Rows that would grow are left to
+//! numbers.
 
 use dalembert_expr::{ExprId, Pool};
 
-/// Coordinates beyond which nothing is looked for.
+/// Number of coordinates beyond which no rows are sought.
 const COORDINATES: usize = 8;
 
 /// A row of the factors.
@@ -65,9 +65,9 @@ fn eliminated(pool: &mut Pool, row: &[ExprId], known: &[Option<FactorRow>]) -> O
     let pivot = pool.sum(&pivot);
     let pivot = pool.simplify(pivot);
     let size = |id: ExprId| pool.reachable(&[id]).len();
-    let no_larger = |own: ExprId, of: ExprId| size(own) <= size(of);
+    let no_larger = |entry: ExprId, of: ExprId| size(entry) <= size(of);
     let pairs = below.iter().zip(coupled);
-    let is_small = pairs.into_iter().all(|(&own, &of)| no_larger(own, of));
+    let is_small = pairs.into_iter().all(|(&entry, &of)| no_larger(entry, of));
     (is_small && no_larger(pivot, diagonal)).then_some(FactorRow { below, pivot })
 }
 
@@ -95,7 +95,7 @@ mod tests {
         };
         let pool = &body.model.pool;
         assert_eq!(pool.text(row.pivot), "I");
-        let below: Vec<String> = row.below.iter().map(|&own| pool.text(own)).collect();
+        let below: Vec<String> = row.below.iter().map(|&entry| pool.text(entry)).collect();
         assert_eq!(below, ["-a*sin(theta)", "a*cos(theta)"]);
     }
 

@@ -12,7 +12,7 @@ pub struct FieldTerms {
     pub force: Vec<ExprId>,
     /// `d/dt` of `dL/dqdot^k` at fixed velocity: `gdot qdot + Adot`.
     pub drift: Vec<ExprId>,
-    /// Where force and drift were shown to be the same.
+    /// True for coordinates where force and drift were shown to be the same.
     pub cancels: Vec<bool>,
     /// `d_t L`, where named forces ask for it; else zero.
     pub by_time: ExprId,
@@ -54,7 +54,7 @@ pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> Fiel
     terms
 }
 
-/// Whether two expressions that are finite everywhere are the same.
+/// True if two expressions that are finite everywhere are the same.
 fn cancel(pool: &mut Pool, a: ExprId, b: ExprId) -> bool {
     if !pool.is_finite(a) || !pool.is_finite(b) || pool.reachable(&[a, b]).len() > PARTS {
         return false;
@@ -92,7 +92,7 @@ fn expanded(model: &mut Model, coordinates: &Coordinates) -> ExprId {
     let qdot: Vec<ExprId> = coordinates
         .qdot
         .iter()
-        .map(|&own| model.pool.variable(own))
+        .map(|&symbol| model.pool.variable(symbol))
         .collect();
     let pool = &mut model.pool;
     let mut terms = vec![(Rational::MINUS_ONE, model.lagrangian.potential)];

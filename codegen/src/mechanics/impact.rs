@@ -1,7 +1,7 @@
 //! Differentials of the impact surfaces: `dh`, `d_t h` and the gap rate `dh(qdot) + d_t h`.
 //!
-//! Every law but `reset` is an impulse along `pi_D^* dh`. What it does to the state is the same for every multiple of
-//! `dh`, so that of a wall that stands still the direction alone matters: its *ray*, without factors that are never zero.
+//! Every law but `reset` is an impulse along `pi_D^* dh`. Its effect on the state is the same for every multiple of `dh`.
+//! Of a wall that stands still, only the direction matters: its *ray*, without factors that are never zero.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -38,15 +38,15 @@ pub struct SurfaceForm {
     pub rate: ExprId,
     /// `dh(qdot) + d_t h`.
     pub gap_rate: ExprId,
-    /// The rate of `gap_rate` at fixed velocity: what `d^2h/dt^2` is besides `dh(qddot)`.
+    /// The rate of `gap_rate` at fixed velocity: `d^2h/dt^2` without `dh(qddot)`.
     pub curvature: ExprId,
-    /// The functions whose signs say where the surface counts, see [`Surface::margins`](crate::model::Surface::margins).
+    /// Functions whose signs decide where the surface counts, see [`Surface::margins`](crate::model::Surface::margins).
     pub margins: Vec<ExprId>,
     /// The constraints that hold in the moment of an impact only.
     pub instantaneous: Vec<InstantaneousForm>,
-    /// Of a wall that stands still, `dh` without what is never zero in all its entries.
+    /// For a wall that stands still, `dh` without common factors that are never zero.
     pub ray: Option<Vec<ExprId>>,
-    /// The same of `X^T dh`, where it can be written out.
+    /// The ray of `X^T dh`, where it can be written out.
     pub ray_on_d: Option<Vec<ExprId>>,
 }
 
@@ -70,7 +70,7 @@ pub(super) fn derive_surfaces(
                 ray: stands.then(|| ray(&mut model.pool, &form)),
                 ray_on_d: on_d
                     .filter(|_| stands)
-                    .map(|own| ray(&mut model.pool, &own)),
+                    .map(|covector| ray(&mut model.pool, &covector)),
                 gap,
                 form,
                 rate,
@@ -90,12 +90,12 @@ fn derive_instantaneous(
 ) -> Vec<InstantaneousForm> {
     let motion = coordinates.motion(model);
     let declared = model.surfaces[s].instantaneous.clone();
-    let derive = |own: Constraint| {
-        let residual = derive_residual(model, coordinates, &own.form, own.affine);
+    let derive = |constraint: Constraint| {
+        let residual = derive_residual(model, coordinates, &constraint.form, constraint.affine);
         InstantaneousForm {
             curvature: model.pool.derivative_along(residual, &motion),
-            form: own.form,
-            affine: own.affine,
+            form: constraint.form,
+            affine: constraint.affine,
             residual,
         }
     };
@@ -119,7 +119,7 @@ fn restricted(pool: &mut Pool, frame: &Frame, form: &[ExprId]) -> Option<Vec<Exp
     (pool.reachable(&entries).len() <= PARTS).then_some(entries)
 }
 
-/// A covector without what is never zero in all its entries.
+/// A covector without common factors that are never zero.
 fn ray(pool: &mut Pool, covector: &[ExprId]) -> Vec<ExprId> {
     let entries: Vec<ExprId> = covector
         .iter()

@@ -12,7 +12,7 @@ pub struct MetricDerivatives {
     pub by_time: Vec<Entry<2>>,
 }
 
-/// Differentiates the metric. Without constraints nobody asks for it, so nothing is done.
+/// Differentiates the metric. Does nothing without constraints, where no function needs the derivatives.
 pub(super) fn derive_metric(model: &mut Model, coordinates: &Coordinates) -> MetricDerivatives {
     let mut derivatives = MetricDerivatives::default();
     if model.constraints.is_empty() {

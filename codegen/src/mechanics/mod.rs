@@ -9,8 +9,9 @@
 //! curvature_a = (d_i eta^a_j) qdot^i qdot^j + (d_i eta^a_0) qdot^i + (d_t eta^a_j) qdot^j + d_t eta^a_0
 //! ```
 //!
-//! Only derivatives are taken here. `g^{-1}` and `m_ab` are never formed: the program stage factorises (see
-//! [`crate::program::linear`]), but for what is known of the factors before ([`factors`], [`frame::Invariant`]). Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
+//! Only derivatives are taken here. `g^{-1}` and `m_ab` are never formed. The program stage factorises (see
+//! [`crate::program::linear`]), except for factors that are known as expressions ([`factors`], [`frame::Invariant`]).
+//! Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
 
 mod common_factor;
 pub mod constraint;
@@ -44,15 +45,15 @@ pub struct Derivation {
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
     pub constraints: Vec<ConstraintForm>,
-    /// Whether their forms are linear in the velocities and not known to be independent at every state.
+    /// True if their forms are linear in the velocities and not known to be independent at every state.
     pub can_lose_rank: bool,
-    /// Whether the rates may have features that are narrow beside what a step passes.
+    /// True if the rates may have features that are narrow compared with the length of a step.
     pub can_be_narrow: bool,
     /// Impact surfaces with their differentials.
     pub surfaces: Vec<SurfaceForm>,
-    /// What the density form and the divergence need.
+    /// Derivatives for the density form and the divergence.
     pub density: DensityTerms,
-    /// The motion reduced to D, or why it is left in its global form.
+    /// The motion reduced to D, or the reason why it is left in its global form.
     pub frame: Result<Frame, Unreduced>,
 }
 

@@ -1,10 +1,10 @@
-//! Whether the rates may have features that are narrow beside what a step passes: bumps, needles and walls of functions that are
-//! flat elsewhere. Sums, products, sines and cosines of what changes steadily change steadily themselves; exponentials, quotients and
-//! powers need not.
+//! Detection of rates with narrow features, which a step may pass over: bumps, needles and walls of functions that are
+//! flat elsewhere. Sums, products, sines and cosines of steadily changing quantities change steadily themselves.
+//! Exponentials, quotients and powers need not.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
-/// True unless the expressions consist of polynomials, sines and cosines of what varies.
+/// True unless the expressions consist of polynomials, sines and cosines of the varying symbols.
 pub(super) fn can_be_narrow(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -> bool {
     let varies = |id: ExprId| pool.depends_on_any(id, varying);
     let is_narrow = |id: &ExprId| match pool.node(*id) {

@@ -1,18 +1,17 @@
-//! Whether the constraint forms can become dependent somewhere.
+//! Proofs that the constraint forms are independent at every state.
 //!
-//! What is sought is a proof that they cannot, by steps each of which keeps "independent at every state" as it is: a form
-//! with columns of its own that never vanish together is left out; a form with an entry that is never zero is eliminated
-//! from the others. Of what is left the squares of all minors are added up: the forms are independent where the sum is
-//! positive (Cauchy and Binet).
+//! Each step of a proof keeps the property "independent at every state". A form with columns of its own that never vanish
+//! together is left out; a form with an entry that is never zero is eliminated from the others. The squares of all minors
+//! of the remaining forms are added up: the forms are independent where the sum is positive (Cauchy and Binet).
 //!
-//! A form that is the differential of a function may vanish where no motion comes: see [`keeps_off`].
+//! A form that is the differential of a function may vanish at states that no motion reaches: see [`keeps_off`].
 
 use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
 
 use super::ConstraintForm;
 use super::constraint::{never_zero, regular_minor};
 
-/// Forms of which every minor is looked at.
+/// Largest number of forms whose minors are all tested.
 const MINORS: usize = 3;
 
 /// Entries beyond which no form is eliminated from others, and no minor is made.
@@ -25,16 +24,17 @@ struct Row {
     level: Option<ExprId>,
 }
 
-/// Whether it is proved that no motion that begins where the forms are independent reaches a state where they are not.
-/// The pool is left as it is.
+/// True if it is proved that no motion from a state with independent forms reaches a state with dependent ones. The pool is left as it is.
 pub(super) fn is_constant(pool: &Pool, q: &[SymbolId], constraints: &[ConstraintForm]) -> bool {
     if regular_minor(pool, constraints).is_some() {
         return true;
     }
     let mut pool = pool.clone();
-    let rows = constraints.iter().map(|own| Row {
-        entries: own.form.clone(),
-        level: own.level.or_else(|| quadratic_level(&mut pool, q, own)),
+    let rows = constraints.iter().map(|constraint| Row {
+        entries: constraint.form.clone(),
+        level: constraint
+            .level
+            .or_else(|| quadratic_level(&mut pool, q, constraint)),
     });
     let mut rows: Vec<Row> = rows.collect();
     while !rows.is_empty() {
@@ -50,7 +50,7 @@ pub(super) fn is_constant(pool: &Pool, q: &[SymbolId], constraints: &[Constraint
     true
 }
 
-/// Whether the entries of a form in columns that no other has never vanish together, or not along a motion.
+/// True if the entries of a form in columns that no other form has never vanish together, or not along a motion.
 fn stands_alone(pool: &mut Pool, q: &[SymbolId], rows: &[Row], a: usize) -> bool {
     let is_alone = |j: &usize| {
         let mut rows = rows.iter().enumerate();
@@ -58,8 +58,8 @@ fn stands_alone(pool: &mut Pool, q: &[SymbolId], rows: &[Row], a: usize) -> bool
     };
     let columns = (0..rows[a].entries.len()).filter(is_alone);
     let columns: Vec<usize> = columns.collect();
-    let own: Vec<ExprId> = columns.iter().map(|&j| rows[a].entries[j]).collect();
-    if never_vanish_together(pool, &own) {
+    let entries: Vec<ExprId> = columns.iter().map(|&j| rows[a].entries[j]).collect();
+    if never_vanish_together(pool, &entries) {
         return true;
     }
     // Without elimination the columns are the coordinates.
@@ -70,19 +70,19 @@ fn stands_alone(pool: &mut Pool, q: &[SymbolId], rows: &[Row], a: usize) -> bool
 }
 
 /// The function `sum_j q^j eta_j / 2`, if the form is its differential.
-fn quadratic_level(pool: &mut Pool, q: &[SymbolId], own: &ConstraintForm) -> Option<ExprId> {
-    if !pool.is_syntactic_zero(own.affine) {
+fn quadratic_level(pool: &mut Pool, q: &[SymbolId], constraint: &ConstraintForm) -> Option<ExprId> {
+    if !pool.is_syntactic_zero(constraint.affine) {
         return None;
     }
     let mut terms = Vec::new();
-    for (&symbol, &entry) in q.iter().zip(&own.form) {
+    for (&symbol, &entry) in q.iter().zip(&constraint.form) {
         let place = pool.variable(symbol);
         let term = pool.mul(place, entry);
         terms.push(pool.scale(&Rational::HALF, term));
     }
     let sum = pool.sum(&terms);
     let level = pool.multiply_out(sum);
-    let is_level = q.iter().zip(&own.form).all(|(&symbol, &entry)| {
+    let is_level = q.iter().zip(&constraint.form).all(|(&symbol, &entry)| {
         let slope = pool.diff(level, symbol);
         let difference = pool.sub(slope, entry);
         let difference = pool.multiply_out(difference);
@@ -91,9 +91,9 @@ fn quadratic_level(pool: &mut Pool, q: &[SymbolId], own: &ConstraintForm) -> Opt
     is_level.then_some(level)
 }
 
-/// Whether the derivatives of a function by these coordinates vanish together at no state of a motion that keeps the
-/// function, unless they do at all of them. So it is if the function is `c + sum_j c_j l_j^2` with `c_j > 0`, or all negative,
-/// and a derivative in proportion to each `l_j`: where they vanish it is `c`, and where it is `c` they vanish.
+/// True if the derivatives of a function by these coordinates vanish together at no state of a motion that keeps the
+/// function, unless they vanish at all of its states. This holds for `c + sum_j c_j l_j^2` with `c_j > 0`, or all
+/// negative, and a derivative in proportion to each `l_j`: the derivatives vanish exactly where the function is `c`.
 fn keeps_off(pool: &mut Pool, along: &[SymbolId], level: ExprId) -> bool {
     let (_, terms) = pool.linear_form(level);
     let varying = pool.combine(&terms);
@@ -117,9 +117,12 @@ fn keeps_off(pool: &mut Pool, along: &[SymbolId], level: ExprId) -> bool {
     is_definite && !signs.is_empty() && pool.is_syntactic_zero(rest)
 }
 
-/// Whether the sum of the squares is positive.
+/// True if the sum of the squares is positive.
 fn never_vanish_together(pool: &mut Pool, entries: &[ExprId]) -> bool {
-    let squares: Vec<ExprId> = entries.iter().map(|&own| pool.mul(own, own)).collect();
+    let squares: Vec<ExprId> = entries
+        .iter()
+        .map(|&entry| pool.mul(entry, entry))
+        .collect();
     let sum = pool.sum(&squares);
     let simple = pool.simplify(sum);
     never_zero(pool, sum) || never_zero(pool, simple)
@@ -132,17 +135,17 @@ fn pivot(pool: &Pool, rows: &[Row]) -> Option<(usize, usize)> {
     places.find(|&(a, j)| never_zero(pool, rows[a].entries[j]))
 }
 
-/// Takes a form out of the others, and leaves it and the column of its pivot out.
+/// Eliminates a form from the others, then removes it and the column of its pivot.
 fn eliminate(pool: &mut Pool, rows: &mut Vec<Row>, (a, column): (usize, usize)) {
-    let own = rows.remove(a).entries;
+    let pivot_row = rows.remove(a).entries;
     for Row {
         entries: row,
         level,
     } in rows.iter_mut()
     {
         *level = None;
-        let factor = pool.div(row[column], own[column]);
-        for (entry, &taken) in row.iter_mut().zip(&own) {
+        let factor = pool.div(row[column], pivot_row[column]);
+        for (entry, &taken) in row.iter_mut().zip(&pivot_row) {
             let product = pool.mul(factor, taken);
             let rest = pool.sub(*entry, product);
             *entry = pool.simplify(rest);
@@ -151,7 +154,7 @@ fn eliminate(pool: &mut Pool, rows: &mut Vec<Row>, (a, column): (usize, usize)) 
     }
 }
 
-/// Whether the minors of the forms never vanish together.
+/// True if the minors of the forms never vanish together.
 fn has_a_minor(pool: &mut Pool, rows: &[Row]) -> bool {
     let columns = rows.first().map_or(0, |row| row.entries.len());
     let mut minors = Vec::new();
@@ -201,7 +204,7 @@ fn determinant(pool: &mut Pool, rows: &[Row], columns: &[usize]) -> ExprId {
 mod tests {
     use crate::compile;
 
-    /// Whether the rank of these constraints is known to be constant.
+    /// True if the rank of these constraints is known to be constant.
     fn is_constant(constraints: &str) -> bool {
         let source = format!(
             "pub Model {{

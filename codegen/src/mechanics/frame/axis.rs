@@ -1,7 +1,7 @@
 //! Rows or columns of a block that are orthogonal to each other.
 //!
-//! With `c = f d` for each column, `f` what its entries have as a common factor, `c . r / (c . c)` is
-//! `d . r / (f d . d)`: the block is singular where a factor is 0, and nowhere else, and nothing is divided by its square.
+//! With `c = f d` for each column, `f` the common factor of its entries, `c . r / (c . c)` is `d . r / (f d . d)`: the
+//! block is singular where a factor is 0, and nowhere else, and nothing is divided by the square of a factor.
 
 use dalembert_expr::{ExprId, Pool, Verdict};
 
@@ -12,13 +12,13 @@ use crate::mechanics::constraint::amplitude;
 /// A row or a column of a block, `factor * entries`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
-    /// What all entries have as a factor.
+    /// Common factor of all entries.
     pub factor: ExprId,
-    /// The entries without it.
+    /// The entries without `factor`.
     pub entries: Vec<ExprId>,
     /// Their squared norm, never zero.
     pub squared: ExprId,
-    /// What `|factor|` is at most, sines and cosines counted as 1, where it may vanish.
+    /// Bound of `|factor|` where the factor may vanish, with sines and cosines counted as 1.
     pub bound: Option<ExprId>,
 }
 

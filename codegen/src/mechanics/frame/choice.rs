@@ -11,11 +11,11 @@ use super::{Chosen, Unreduced};
 use crate::mechanics::ConstraintForm;
 use crate::model::Model;
 
-/// What a constraint takes away from the free velocities.
+/// Velocities that a constraint makes dependent.
 enum Dependent {
     /// This velocity follows from the others.
     One(usize),
-    /// Of these two, the one along the constraint is left.
+    /// The velocity along the constraint is left of these two.
     Pair(usize, usize),
 }
 
@@ -45,13 +45,13 @@ fn removable(
     let alone = |pool: &Pool, a: usize| -> Vec<usize> {
         let holds = |b: usize, j: usize| !pool.is_syntactic_zero(constraints[b].form[j]);
         let columns = 0..constraints[a].form.len();
-        let own = columns.filter(|&j| holds(a, j) && rows.iter().all(|&b| b == a || !holds(b, j)));
-        own.collect()
+        let lone = columns.filter(|&j| holds(a, j) && rows.iter().all(|&b| b == a || !holds(b, j)));
+        lone.collect()
     };
     for &a in rows {
         let columns = alone(pool, a);
         let is_regular = |&&j: &&usize| pool.sign(constraints[a].form[j]).is_nonzero();
-        // A number is better than a parameter, and a parameter than a function: what it is divided by is exact.
+        // A number is a better divisor than a parameter, and a parameter than a function: the divisor is then exact.
         let regular = columns.iter().filter(is_regular);
         if let Some(&j) = regular.min_by_key(|&&j| complexity(pool, constraints[a].form[j])) {
             return Some((a, Dependent::One(j)));

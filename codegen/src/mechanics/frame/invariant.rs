@@ -1,10 +1,10 @@
-//! What in the frame does not depend on the configuration.
+//! Expressions of the frame that do not depend on the configuration.
 //!
-//! On groups and the like the velocities along some coordinates, the metric on D and the forces of inertia are functions of
-//! the quasi-velocities and parameters alone, as for balls and disks that roll on a plane; on a plane that turns, of the
-//! place on it too. Solved for in the frame they would be sums that cancel, to rounding and with lost digits near the
-//! poles of Euler angles. Where a zero test proves that an expression is the one with some coordinates at a single value,
-//! that one is emitted.
+//! On groups and similar spaces, the velocities along some coordinates, the metric on D and the forces of inertia are
+//! functions of the quasi-velocities and parameters alone, as for balls and disks that roll on a plane; on a plane that
+//! turns, of the place on it too. Solved for in the frame they are sums that cancel only up to rounding, and lose digits
+//! near the poles of Euler angles. Where a zero test proves that an expression stays the same with some coordinates at a
+//! single value, the expression at that value is emitted.
 
 use dalembert_expr::{Assumption, ExprId, Pool, Rational, Sign, SymbolId, Verdict};
 
@@ -13,8 +13,8 @@ use crate::mechanics::common_factor::factored;
 use crate::mechanics::{ConstraintForm, Coordinates, FieldTerms};
 use crate::model::{Model, Topology};
 
-/// Expressions in which no coordinate occurs that does not matter; `None` where all that occur matter, or were not shown
-/// not to.
+/// Expressions without the coordinates on which they do not depend. `None` where an expression depends on all coordinates
+/// that occur in it, or was not shown to be independent of one.
 #[derive(Debug)]
 pub struct Invariant {
     /// The symbols of the quasi-velocities.
@@ -37,19 +37,19 @@ pub struct Invariant {
     pub doubled_kinetic: Option<ExprId>,
 }
 
-/// Coordinates beyond which nothing is looked for: the expressions are written out.
+/// Number of coordinates beyond which nothing is sought: the expressions are written out.
 const COORDINATES: usize = 8;
 
 /// Distinct parts beyond which an expression is not tested.
 const PARTS: usize = 4000;
 
-/// What is not zero at a real point by more than this part of its terms is not zero.
+/// A value at a real point that exceeds this part of its size before cancellation is not zero.
 const CLEAR: f64 = 1e-9;
 
-/// Points at which an expression is looked at before a zero test.
+/// Number of points at which an expression is evaluated before a zero test.
 const SAMPLES: u32 = 3;
 
-/// Looks for what does not depend on the configuration. `None` where the frame is not solved by formulas.
+/// Looks for expressions that do not depend on the configuration. `None` where the frame is not solved by formulas.
 pub(super) fn invariant(
     model: &mut Model,
     coordinates: &Coordinates,
@@ -62,7 +62,11 @@ pub(super) fn invariant(
     }
     let u: Vec<SymbolId> = quasi
         .iter()
-        .map(|own| model.pool.symbol(&own.name, &own.name, Assumption::None))
+        .map(|velocity| {
+            model
+                .pool
+                .symbol(&velocity.name, &velocity.name, Assumption::None)
+        })
         .collect();
     let mut search = Search {
         base: base(model),
@@ -279,8 +283,8 @@ impl<'a> Search<'a> {
         pool.sum(&terms)
     }
 
-    /// The expression with the coordinates that do not matter at the base configuration; `None` where all that occur
-    /// matter, or were not shown not to.
+    /// The expression with the coordinates on which it does not depend at the base configuration. `None` where it depends
+    /// on all that occur, or was not shown to be independent of one.
     fn fixed(&mut self, expression: ExprId) -> Option<ExprId> {
         let pool = &self.model.pool;
         let occurs = |(symbol, _): &&(SymbolId, ExprId)| pool.depends_on(expression, *symbol);
@@ -305,7 +309,7 @@ impl<'a> Search<'a> {
         vanishes.then_some(fixed)
     }
 
-    /// Whether the expression is about 0 at some points, which tells most of those that are not at little cost.
+    /// True if the expression is about 0 at some points. This excludes most expressions other than 0 at little cost.
     fn may_vanish(&self, expression: ExprId) -> bool {
         (0..SAMPLES).all(|sample| {
             let (value, size) = self.at(expression, |symbol| self.sample(symbol, sample));
@@ -313,7 +317,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether the expression is about the same at some points where one coordinate has two values.
+    /// True if the expression is about the same at some points where one coordinate has two values.
     fn may_be_idle(&self, expression: ExprId, coordinate: SymbolId) -> bool {
         (0..SAMPLES).all(|sample| {
             let moved = |symbol| match symbol == coordinate {
@@ -335,8 +339,12 @@ impl<'a> Search<'a> {
     fn sample(&self, symbol: SymbolId, sample: u32) -> f64 {
         let number = symbol.index() as f64 + 17.0 * f64::from(sample);
         let share = (0.618_033_988_749_895 * number).fract();
-        let coordinate = self.model.coordinates.iter().find(|own| own.q == symbol);
-        match coordinate.map(|own| own.topology) {
+        let coordinate = self
+            .model
+            .coordinates
+            .iter()
+            .find(|coordinate| coordinate.q == symbol);
+        match coordinate.map(|coordinate| coordinate.topology) {
             Some(Topology::Interval { low, high }) => {
                 let ends = self.model.pool.eval(&[low, high], &|_| f64::NAN);
                 ends[0] + (0.1 + 0.8 * share) * (ends[1] - ends[0])

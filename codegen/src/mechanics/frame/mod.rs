@@ -1,4 +1,4 @@
-//! The motion reduced to D: quasi-velocities, and how velocities follow from them.
+//! The motion reduced to D: quasi-velocities, and the solve for velocities from them.
 //!
 //! One-forms `alpha^i` that complete the constraint forms to a coframe give quasi-velocities `u^i = alpha^i(qdot)`,
 //! N - M of them, and with `X_i` dual to both
@@ -9,9 +9,9 @@
 //! a = Xdot u + Xdot_0:  alpha(a) = -alphadot(qdot),  eta(a) = -curvature
 //! ```
 //!
-//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form holds whatever that
-//! one does: affine constraints, time, forces, velocity-linear terms. The system of `alpha` and `eta` is never inverted
-//! symbolically: [`plan`] says in which order it can be solved.
+//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form covers the same systems:
+//! affine constraints, time, forces, velocity-linear terms. The system of `alpha` and `eta` is never inverted
+//! symbolically: [`plan`] gives the order in which it is solved.
 
 mod axis;
 mod choice;
@@ -35,9 +35,9 @@ pub struct Frame {
     pub quasi: Vec<QuasiVelocity>,
     /// The blocks of the coframe, in the order in which they are solved.
     pub blocks: Vec<Block>,
-    /// What unit quasi-velocities make of each velocity at most, a function of the parameters; 1 where that is not one.
+    /// Bound of each velocity at unit quasi-velocities, a function of the parameters; 1 where the bound is not one.
     pub position_units: Vec<ExprId>,
-    /// What does not depend on the configuration.
+    /// Expressions that do not depend on the configuration.
     pub invariant: Option<Invariant>,
 }
 
@@ -50,13 +50,13 @@ pub struct QuasiVelocity {
     pub coordinate: Option<usize>,
     /// `alpha_j`, N entries.
     pub form: Vec<ExprId>,
-    /// The Euclidean norm of `alpha`: what a unit of velocity makes of the quasi-velocity.
+    /// The Euclidean norm of `alpha`: the largest quasi-velocity of a unit velocity.
     pub norm: ExprId,
     /// `alphadot(qdot) = (d_i alpha_j) qdot^i qdot^j + (d_t alpha_j) qdot^j`
     pub curvature: ExprId,
 }
 
-/// Why the motion is left in its global form.
+/// Reason why the motion is left in its global form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Unreduced {
     /// There are no constraints and no frame was declared.
@@ -76,7 +76,7 @@ pub(super) fn derive_frame(
 ) -> Result<Frame, Unreduced> {
     let declared_ones = model.constraints.iter().enumerate();
     let nonlinear: Vec<usize> = declared_ones
-        .filter(|(_, own)| own.nonlinear.is_some())
+        .filter(|(_, constraint)| constraint.nonlinear.is_some())
         .map(|(a, _)| a)
         .collect();
     if !nonlinear.is_empty() {

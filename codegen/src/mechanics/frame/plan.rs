@@ -19,19 +19,19 @@ pub enum Row {
     Constraint(usize),
 }
 
-/// As many rows as columns, solved together once the columns of earlier blocks are known.
+/// A block with as many rows as columns, solved together once the columns of earlier blocks are known.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Block {
     /// The rows.
     pub rows: Vec<Row>,
     /// The coordinates whose velocities they give.
     pub columns: Vec<usize>,
-    /// How.
+    /// Method of solution.
     pub solve: Solve,
 }
 
 impl Block {
-    /// Whether it can be solved everywhere.
+    /// True if it can be solved everywhere.
     pub(super) fn is_regular(&self) -> bool {
         match &self.solve {
             Solve::Entry => true,
@@ -43,16 +43,16 @@ impl Block {
     }
 }
 
-/// How a block is solved.
+/// Method by which a block is solved.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Solve {
-    /// By a division: one row, one column, an entry that is never zero.
+    /// Division: one row, one column, an entry that is never zero.
     Entry,
-    /// The rows are orthogonal. Guarded where a factor may vanish.
+    /// Products: the rows are orthogonal. Guarded where a factor may vanish.
     Rows(Vec<Axis>),
-    /// The columns are orthogonal. Guarded where a factor may vanish.
+    /// Products: the columns are orthogonal. Guarded where a factor may vanish.
     Columns(Vec<Axis>),
-    /// By orthogonalisation, guarded.
+    /// Orthogonalisation, guarded.
     General,
 }
 
@@ -99,8 +99,10 @@ impl<'a> Matrix<'a> {
         let quasi = quasi.iter().enumerate();
         let constraints = constraints.iter().enumerate();
         let rows: Vec<(Row, &[ExprId])> = quasi
-            .map(|(i, own)| (Row::Quasi(i), own.form.as_slice()))
-            .chain(constraints.map(|(a, own)| (Row::Constraint(a), own.form.as_slice())))
+            .map(|(i, velocity)| (Row::Quasi(i), velocity.form.as_slice()))
+            .chain(
+                constraints.map(|(a, constraint)| (Row::Constraint(a), constraint.form.as_slice())),
+            )
             .collect();
         Self {
             free_rows: (0..rows.len()).collect(),
@@ -140,8 +142,8 @@ impl<'a> Matrix<'a> {
     }
 
     fn take_entry(&mut self, (row, column): (usize, usize)) -> Option<Block> {
-        self.free_rows.retain(|&own| own != row);
-        self.free_columns.retain(|&own| own != column);
+        self.free_rows.retain(|&free| free != row);
+        self.free_columns.retain(|&free| free != column);
         Some(Block {
             rows: vec![self.rows[row].0],
             columns: vec![column],
@@ -149,7 +151,7 @@ impl<'a> Matrix<'a> {
         })
     }
 
-    /// Takes away the rows and columns that hang together with the first row left.
+    /// Takes away the rows and columns that are connected with the first row left.
     fn component(&mut self, pool: &Pool) -> Option<(Vec<usize>, Vec<usize>)> {
         let mut rows = vec![*self.free_rows.first()?];
         let mut columns: Vec<usize> = Vec::new();
@@ -164,8 +166,8 @@ impl<'a> Matrix<'a> {
                 break;
             }
         }
-        // A component that is not square belongs to a coframe that is singular everywhere, which was refused; to be
-        // solved at all it takes whatever is left.
+        // A component that is not square belongs to a coframe that is singular everywhere, which was refused. It takes all
+        // that is left, so that it can be solved at all.
         if rows.is_empty() || rows.len() != columns.len() {
             (rows, columns) = (self.free_rows.clone(), self.free_columns.clone());
         }

@@ -1,4 +1,4 @@
-//! What unit quasi-velocities make of each velocity at most: the natural unit of the position that it moves.
+//! Bounds of the velocities at unit quasi-velocities: the natural units of the positions that they move.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -67,12 +67,12 @@ fn entry(
     let is_parametric = !model
         .coordinates
         .iter()
-        .any(|own| model.pool.depends_on(bound, own.q))
+        .any(|coordinate| model.pool.depends_on(bound, coordinate.q))
         && !model.pool.depends_on(bound, model.time);
     (is_parametric && model.pool.sign(bound).is_nonzero()).then_some(bound)
 }
 
-/// `|e|` where no sine or cosine can make it smaller than it looks.
+/// `|e|`, where `e` is known to vanish nowhere.
 fn magnitude(pool: &mut Pool, e: ExprId) -> Option<ExprId> {
     let size = pool.call(dalembert_expr::Function::Abs, e);
     pool.sign(e).is_nonzero().then_some(size)
