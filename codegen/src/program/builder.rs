@@ -34,7 +34,7 @@ impl Builder {
         self.ops.len()
     }
 
-    /// Whether there is no operation yet.
+    /// True if there is no operation yet.
     pub fn is_empty(&self) -> bool {
         self.ops.is_empty()
     }
@@ -83,7 +83,7 @@ impl Builder {
         }
     }
 
-    /// Whether a value is the structural zero.
+    /// True if a value is the structural zero.
     pub fn is_zero(&self, value: Value) -> bool {
         self.as_number(value).is_some_and(Rational::is_zero)
     }
@@ -258,19 +258,19 @@ impl Builder {
         }
     }
 
-    /// Adds an operation of a finished function, whose values became these; its value.
+    /// Adds an operation of a finished function, whose values became these. Returns the value.
     pub fn replay_one(&mut self, op: &Op, values: &[Value]) -> Value {
         self.push(op.clone().with_operands(|value| values[value.index()]))
     }
 
-    /// Adds the operations of a finished function, as they are but for those that are there already; its results.
+    /// Adds the operations of a finished function, except those that exist already. Returns its results.
     pub fn replay(&mut self, function: &Function) -> Vec<Value> {
         let mut values: Vec<Value> = Vec::with_capacity(function.ops.len());
         for (op, name) in function.ops.iter().zip(&function.names) {
             let value = self.replay_one(op, &values);
-            let own = &mut self.names[value.index()];
-            if own.is_none() {
-                own.clone_from(name);
+            let existing = &mut self.names[value.index()];
+            if existing.is_none() {
+                existing.clone_from(name);
             }
             values.push(value);
         }
@@ -289,7 +289,7 @@ impl Builder {
         }
     }
 
-    /// The finished function: what the outputs and guards do not need is dropped.
+    /// The finished function, without operations that the outputs and guards do not need.
     pub fn finish(self, outputs: Vec<Value>) -> Function {
         let (ops, names, outputs) = schedule::prune(self.ops, self.names, outputs);
         let cost = Cost::of(&ops);

@@ -1,4 +1,4 @@
-//! The coframe of D as operations: velocities from what its forms give, block after block in the order of
+//! The coframe of D as operations: velocities from the values of its forms, block after block in the order of
 //! [`crate::mechanics::frame::plan`].
 
 use dalembert_expr::{ExprId, Function as Elementary, Sign};
@@ -9,11 +9,11 @@ use super::linear::{Ldlt, Orthogonal};
 use super::{Guard, Value};
 use crate::mechanics::frame::{Axis, Block, Row, Solve};
 
-/// What a solve for velocities is to give.
+/// Velocities that a solve must give, and those already known.
 pub(super) struct Asked<'e> {
     /// The velocities that are asked for.
     pub velocities: Vec<bool>,
-    /// What is known of them otherwise.
+    /// Expressions of velocities that are known without the solve.
     pub known: &'e [Option<ExprId>],
 }
 
@@ -22,15 +22,15 @@ impl Asked<'_> {
         self.known.get(column).copied().flatten()
     }
 
-    /// Whether a velocity is needed that nothing else tells.
+    /// True if a velocity is needed and only the solve gives it.
     fn is_solved(&self, needed: &[bool], column: usize) -> bool {
         needed[column] && self.known(column).is_none()
     }
 }
 
 impl<'a> Kernel<'a> {
-    /// The velocities `x` with `alpha^i(x)` and `eta^a(x)` as given. Those that are not asked for are 0 unless another one
-    /// follows from them.
+    /// The velocities `x` with `alpha^i(x)` and `eta^a(x)` as given. Velocities that are not asked for are 0, unless a
+    /// requested one follows from them.
     pub(super) fn solve_frame(
         &mut self,
         asked: &Asked<'_>,
@@ -68,7 +68,7 @@ impl<'a> Kernel<'a> {
         x
     }
 
-    /// The velocities that are asked for and those that they follow from.
+    /// The velocities that are asked for, and those that they follow from.
     fn needed(&self, blocks: &[Block], asked: &Asked<'_>) -> Vec<bool> {
         let mut needed = asked.velocities.clone();
         for block in blocks.iter().rev() {
@@ -87,7 +87,7 @@ impl<'a> Kernel<'a> {
         needed
     }
 
-    /// What is left of a right-hand side without the columns known so far; those that are not are 0.
+    /// A right-hand side without the columns known so far; unknown columns count as 0.
     fn without_known(&mut self, row: Row, wanted: Value, known: &[Value]) -> Value {
         let form = self.coframe_row(row);
         let mut rest = wanted;

@@ -68,7 +68,7 @@ impl<'a> Kernel<'a> {
         result
     }
 
-    /// What is left of a column `L^{-1} b` without its components along the constraint columns.
+    /// A column `L^{-1} b` without its components along the constraint columns.
     pub fn without_constraints(&mut self, column: Vec<Value>) -> Vec<Value> {
         match self.constraints() {
             0 => column,

@@ -14,7 +14,7 @@ use super::{Input, Op, Value};
 /// A term of a sum: coefficient and factors with their exponents.
 type Term = (Rational, Vec<(ExprId, Rational)>);
 
-/// What is done to the value of the remaining terms of a sum.
+/// Operation on the value of the remaining terms of a sum.
 enum Pending {
     Times(Value),
     Plus(Value),
@@ -25,7 +25,7 @@ enum Pending {
 pub struct Expressions<'a> {
     pool: &'a Pool,
     values: HashMap<ExprId, Value, WordHash>,
-    /// Those with a value that depend on anything but parameters and numbers.
+    /// Lowered expressions that depend on anything but parameters and numbers.
     moving: HashSet<ExprId, WordHash>,
     bindings: HashMap<SymbolId, Value, WordHash>,
 }
@@ -41,7 +41,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Says what a symbol's value is.
+    /// Binds a symbol to its value.
     pub fn bind(&mut self, symbol: SymbolId, value: Value) {
         self.bindings.insert(symbol, value);
     }
@@ -183,7 +183,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Parameters are multiplied, and divided, first: what depends on them alone is then shared between products.
+    /// Parameters are multiplied, and divided, first: products then share the factors that depend on parameters alone.
     fn lower_product(&self, builder: &mut Builder, factors: &[(ExprId, Rational)]) -> Value {
         let mut ordered: Vec<&(ExprId, Rational)> = factors.iter().collect();
         let is_symbol = |base| matches!(self.pool.node(base), Node::Symbol(_));
@@ -222,7 +222,7 @@ impl<'a> Expressions<'a> {
         builder.div(numerator, denominator)
     }
 
-    /// Whether an expression whose operands are lowered depends on anything but parameters and numbers.
+    /// True if an expression whose operands are lowered depends on anything but parameters and numbers.
     fn is_moving(&self, builder: &Builder, id: ExprId) -> bool {
         let node = self.pool.node(id);
         if let Node::Symbol(symbol) = node {
@@ -250,8 +250,8 @@ pub fn positive_power(builder: &mut Builder, base: Value, exponent: &Rational) -
     }
 }
 
-/// Factors of a sum up to which shared ones are sought: the search takes the square of it, and what is longer fills a
-/// good part of a function anyway.
+/// Factors of a sum up to which shared ones are sought. The search takes the square of this number, and a longer sum fills
+/// a good part of a function anyway.
 const SEARCHED: usize = 1 << 13;
 
 /// The base that occurs with a positive integer exponent in the most terms, at least two.
@@ -270,7 +270,7 @@ fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
         *counts.entry(base).or_default() += 1;
     }
     let best = shareable().map(|base| counts[&base]).max()?;
-    // The first of those that are met as often: the order of the terms decides, never that of the map.
+    // The first of the most frequent: the order of the terms decides, never that of the map.
     shareable().find(|base| best > 1 && counts[base] == best)
 }
 

@@ -1,4 +1,4 @@
-//! What several functions of a model share, computed at most once per function: velocity, factorisations,
+//! Quantities that several functions of a model share, computed at most once per function: velocity, factorisations,
 //! multipliers.
 
 use dalembert_expr::{ExprId, Sign, SymbolId};
@@ -11,7 +11,7 @@ use super::{Form, Function, Guard, Input, Value};
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
-/// What the second half of a function's arguments is.
+/// Arguments of a function besides time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arguments {
     /// `(t, q)`
@@ -54,11 +54,11 @@ pub struct Kernel<'a> {
     pub(super) builder: Builder,
     expressions: Expressions<'a>,
     arguments: Arguments,
-    /// Whether constraint forms are taken without common numbers, so that multipliers are not those of the declaration.
+    /// True if constraint forms are taken without common numbers. Multipliers are then not those of the declaration.
     pub(super) primitive: bool,
-    /// Whether functions end where the instantaneous constraints of a surface depend on each other.
+    /// True if functions end with a fault where the instantaneous constraints of a surface depend on each other.
     pub(super) guards_surfaces: bool,
-    /// Whether velocities are taken from what is written out, rather than solved for one after the other.
+    /// True if velocities come from written-out expressions, rather than from one solve after the other.
     pub(super) written: bool,
     ldlt: Option<Ldlt>,
     pub(super) constraint_factors: Option<ConstraintFactors>,
@@ -105,7 +105,7 @@ impl<'a> Kernel<'a> {
         kernel
     }
 
-    /// The same for a function in which multipliers do not show.
+    /// The same for a function whose results hold no multipliers.
     #[must_use]
     pub fn without_multipliers(self) -> Self {
         Self {
@@ -114,7 +114,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// The same for a function that says of surfaces what there is to be said: NaN where an impulse does not exist.
+    /// The same for a function that evaluates surfaces: it gives NaN where an impulse does not exist.
     #[must_use]
     pub fn without_surface_guards(self) -> Self {
         Self {
@@ -137,7 +137,7 @@ impl<'a> Kernel<'a> {
         self.expressions.bind(symbol, value);
     }
 
-    /// Says what a symbol's value is.
+    /// Binds a symbol to its value.
     pub fn bind_value(&mut self, symbol: SymbolId, value: Value) {
         self.expressions.bind(symbol, value);
     }
@@ -165,10 +165,10 @@ impl<'a> Kernel<'a> {
         self.derivation.constraints.len()
     }
 
-    /// Whether some constraint has an affine part.
+    /// True if some constraint has an affine part.
     pub fn has_affine_constraints(&self) -> bool {
         let mut constraints = self.derivation.constraints.iter();
-        constraints.any(|own| !self.model.pool.is_syntactic_zero(own.affine))
+        constraints.any(|constraint| !self.model.pool.is_syntactic_zero(constraint.affine))
     }
 
     /// The value of an expression of time, positions, velocities and parameters.

@@ -1,14 +1,14 @@
-//! The functions of a program by the names that the runtime knows them by.
+//! The functions of a program by their names in the runtime.
 
 use dalembert_numbers::Kernel;
 
 use super::{Constrained, Form, Function, Impacting, Program};
 
 impl Program {
-    /// Every function with its name, but for the power series. Functions of mechanics that a first-order system has none of are
+    /// Every function with its name, except the power series. Functions of mechanics that do not exist for a first-order system are
     /// left out.
     pub fn kernels(&self) -> Vec<(Kernel, &Function)> {
-        // Velocities come first: other functions take them.
+        // Velocities come first: other functions read them.
         let mut kernels = vec![
             (Kernel::Velocity, &self.velocity),
             (Kernel::Rate, &self.rate),
@@ -58,7 +58,7 @@ impl Program {
         kernels.extend(
             self.powers
                 .as_ref()
-                .map(|own| (Kernel::Powers, &own.function)),
+                .map(|powers| (Kernel::Powers, &powers.function)),
         );
         kernels
     }
@@ -78,7 +78,7 @@ impl Constrained {
         kernels.extend(
             self.level_scales
                 .as_ref()
-                .map(|own| (Kernel::LevelScales, own)),
+                .map(|scales| (Kernel::LevelScales, scales)),
         );
         if let Some(back) = &self.return_to_constraints {
             kernels.push((Kernel::Nearest, &back.nearest));

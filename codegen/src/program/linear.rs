@@ -25,7 +25,7 @@ pub struct Ldlt {
 }
 
 impl Ldlt {
-    /// Factorises; `metric[i][j]` for `j <= i`. `positive[i]`: whether `metric[i][i]` is known to be positive.
+    /// Factorises; `metric[i][j]` for `j <= i`. `positive[i]` is true if `metric[i][i]` is known to be positive.
     pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
         Self::factor_guarded(builder, metric, &[], |builder, i, value| {
             if !(positive[i] && value == metric[i][i]) {
@@ -34,7 +34,7 @@ impl Ldlt {
         })
     }
 
-    /// Factorises but for the rows that are known; `guard` is told each pivot before it is divided by.
+    /// Factorises, except for the rows that are known; `guard` receives each pivot before any division by it.
     pub fn factor_guarded(
         builder: &mut Builder,
         metric: &[Vec<Value>],
@@ -67,7 +67,7 @@ impl Ldlt {
         let mut sums: Vec<(Value, Value)> = Vec::new();
         for (&component, &pivot) in y.iter().zip(&self.pivots) {
             let square = builder.mul(component, component);
-            match sums.iter_mut().find(|(own, _)| *own == pivot) {
+            match sums.iter_mut().find(|(known, _)| *known == pivot) {
                 Some((_, sum)) => *sum = builder.add(*sum, square),
                 None => sums.push((pivot, square)),
             }
@@ -200,7 +200,7 @@ pub struct Orthogonal {
 
 impl Orthogonal {
     /// Orthogonalises columns. `guard` makes the guard of a column, if there is to be one, from its number and its squared
-    /// norms, after and before the earlier columns were projected out; there is nothing before the first.
+    /// norms: after the earlier columns were projected out, and before. The first column has no norm before.
     pub fn factor<G: Into<Option<Guard>>>(
         builder: &mut Builder,
         ldlt: &Ldlt,
@@ -228,7 +228,7 @@ impl Orthogonal {
         factors
     }
 
-    /// Removes from `y` its components along the columns, one after the other: the components, and what is left.
+    /// Removes from `y` its components along the columns, one after the other. Returns the components and the rest.
     pub fn reduce(
         &self,
         builder: &mut Builder,

@@ -10,10 +10,10 @@ use crate::model::Model;
 /// The programs of a model.
 #[derive(Debug)]
 pub struct Lowered {
-    /// In the form in which it is run: reduced to D where a frame was found or declared, first-order where a field was
+    /// The form in which the model is run: reduced to D where a frame was found or declared, first-order where a field was
     /// declared, else global.
     pub main: Program,
-    /// In global form, where `main` is reduced.
+    /// The global form, where `main` is reduced.
     pub global: Option<Program>,
 }
 
@@ -60,7 +60,7 @@ fn lower_form(
     let component = |input: Input| input.component(model.coordinates.len());
     let components = degree::of_components(&rate, component);
     let impacting = impact::impacting(model, derivation, form);
-    // Gaps that are not analytic have no series that would tell where they vanish.
+    // Gaps that are not analytic have no series from which to find their zeros.
     let gaps = impacting.iter().map(|functions| &functions.gaps);
     let gaps = gaps.filter(|gaps| Jet::of(&[gaps], &components, component).is_analytic());
     let functions: Vec<&Function> = core::iter::once(&rate).chain(gaps).collect();

@@ -12,15 +12,15 @@ use super::builder::Builder;
 use super::linear::{Ldlt, Orthogonal};
 use super::{Guard, Value};
 
-/// Constraints below which orthogonalisation is always taken: what it costs more is small.
+/// Number of constraints below which orthogonalisation is always used: its extra cost is small.
 const LEAST: usize = 8;
 
-/// How the system of the constraint forms is solved.
+/// Method of solution of the system of the constraint forms.
 #[derive(Debug)]
 pub enum ConstraintFactors {
-    /// By orthogonal columns.
+    /// Orthogonal columns.
     Orthogonal(Orthogonal),
-    /// By the factors of `m^{ab}`.
+    /// The factors of `m^{ab}`.
     Sparse(SparseMass),
 }
 
@@ -36,8 +36,8 @@ pub struct SparseMass {
 }
 
 impl ConstraintFactors {
-    /// Factorises the columns `C_a = L^{-1} eta^a`, whose constraints are numbered `which`; `independent`: whether
-    /// their forms are known to be.
+    /// Factorises the columns `C_a = L^{-1} eta^a`, whose constraints are numbered `which`. `independent` is true if their
+    /// forms are known to be independent.
     pub fn factor(
         builder: &mut Builder,
         metric: &Ldlt,
@@ -59,16 +59,16 @@ impl ConstraintFactors {
     /// Numbers whose product is `det m^{ab}`.
     pub fn squares(&self) -> &[Value] {
         match self {
-            Self::Orthogonal(own) => &own.squares,
-            Self::Sparse(own) => &own.factors.pivots,
+            Self::Orthogonal(orthogonal) => &orthogonal.squares,
+            Self::Sparse(sparse) => &sparse.factors.pivots,
         }
     }
 
-    /// What is left of `y` without its components along the columns.
+    /// The part of `y` that is left without its components along the columns.
     pub fn project(&self, builder: &mut Builder, metric: &Ldlt, y: Vec<Value>) -> Vec<Value> {
         match self {
-            Self::Orthogonal(own) => own.reduce(builder, metric, y).1,
-            Self::Sparse(own) => own.project(builder, metric, y),
+            Self::Orthogonal(orthogonal) => orthogonal.reduce(builder, metric, y).1,
+            Self::Sparse(sparse) => sparse.project(builder, metric, y),
         }
     }
 
@@ -81,16 +81,19 @@ impl ConstraintFactors {
         s: &[Value],
     ) -> Vec<Value> {
         match self {
-            Self::Orthogonal(own) => own.solve(builder, metric, y, s),
-            Self::Sparse(own) => {
-                let products = own.products(builder, metric, &y);
+            Self::Orthogonal(orthogonal) => orthogonal.solve(builder, metric, y, s),
+            Self::Sparse(sparse) => {
+                let products = sparse.products(builder, metric, &y);
                 let sums: Vec<Value> = products
                     .iter()
                     .zip(s)
                     .map(|(&product, &s)| builder.add(product, s))
                     .collect();
-                let solution = own.solve(builder, &sums);
-                solution.into_iter().map(|own| builder.neg(own)).collect()
+                let solution = sparse.solve(builder, &sums);
+                solution
+                    .into_iter()
+                    .map(|component| builder.neg(component))
+                    .collect()
             }
         }
     }
@@ -98,8 +101,8 @@ impl ConstraintFactors {
     /// `m_ab`
     pub fn inverse_mass(&self, builder: &mut Builder) -> Vec<Vec<Value>> {
         match self {
-            Self::Orthogonal(own) => own.inverse_mass(builder),
-            Self::Sparse(own) => own.inverse(builder),
+            Self::Orthogonal(orthogonal) => orthogonal.inverse_mass(builder),
+            Self::Sparse(sparse) => sparse.inverse(builder),
         }
     }
 }
@@ -178,7 +181,7 @@ impl SparseMass {
                 self.solve(builder, &unit)
             })
             .collect();
-        // Of the two roundings of an entry one is taken, so that the matrix is symmetric.
+        // Of the two roundings of an entry one is used, so that the matrix is symmetric.
         for a in 0..m {
             for b in 0..a {
                 rows[b][a] = rows[a][b];
@@ -188,31 +191,35 @@ impl SparseMass {
     }
 }
 
-/// The order of elimination, if the factors of `m` take less than half of what orthogonal columns take.
+/// The order of elimination, if the factors of `m` need less than half of the operations of orthogonal columns.
 fn sparse_order(builder: &Builder, columns: &[Vec<Value>]) -> Option<Vec<usize>> {
     if columns.len() < LEAST {
         return None;
     }
     let patterns: Vec<Vec<bool>> = columns
         .iter()
-        .map(|column| column.iter().map(|&own| !builder.is_zero(own)).collect())
+        .map(|column| {
+            column
+                .iter()
+                .map(|&entry| !builder.is_zero(entry))
+                .collect()
+        })
         .collect();
     let (order, sparse) = minimum_degree(&patterns);
     (2 * sparse < orthogonal_work(&patterns)).then_some(order)
 }
 
-/// How many components two columns have in common.
+/// Number of components that two columns have in common.
 fn common(a: &[bool], b: &[bool]) -> usize {
     a.iter().zip(b).filter(|(a, b)| **a && **b).count()
 }
 
-/// How many components a column has.
+/// Number of components of a column.
 fn entries(column: &[bool]) -> usize {
     common(column, column)
 }
 
-/// Products that the modified Gram-Schmidt method makes of columns with these components and of one right-hand side that
-/// has all of them.
+/// Products of the modified Gram-Schmidt method for columns with these components, and for one right-hand side with all components.
 fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
     let mut filled: Vec<Vec<bool>> = Vec::new();
     let mut work = 0;
@@ -223,8 +230,8 @@ fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
             let shared = common(earlier, &pattern);
             if shared > 0 {
                 work += 2 * shared + entries(earlier);
-                for (own, &other) in pattern.iter_mut().zip(earlier) {
-                    *own |= other;
+                for (filled, &other) in pattern.iter_mut().zip(earlier) {
+                    *filled |= other;
                 }
             }
         }
@@ -236,22 +243,25 @@ fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
 }
 
 /// The order in which the constraint with fewest neighbours comes next, and the products of the factorisation of `m` in
-/// it and of one solve, those of the entries of `m` among them.
+/// this order and of one solve, with those of the entries of `m`.
 fn minimum_degree(patterns: &[Vec<bool>]) -> (Vec<usize>, usize) {
     let m = patterns.len();
     let mut meets: Vec<Vec<bool>> = patterns
         .iter()
-        .map(|own| {
+        .map(|pattern| {
             patterns
                 .iter()
-                .map(|other| common(own, other) > 0)
+                .map(|other| common(pattern, other) > 0)
                 .collect()
         })
         .collect();
     let mut work = 0;
-    for (a, own) in patterns.iter().enumerate() {
-        let products: usize = patterns[..=a].iter().map(|other| common(own, other)).sum();
-        work += 2 * (products + entries(own));
+    for (a, pattern) in patterns.iter().enumerate() {
+        let products: usize = patterns[..=a]
+            .iter()
+            .map(|other| common(pattern, other))
+            .sum();
+        work += 2 * (products + entries(pattern));
     }
     let mut left: Vec<usize> = (0..m).collect();
     let mut order = Vec::with_capacity(m);
@@ -280,7 +290,7 @@ mod tests {
 
     /// Columns with ones at these components.
     fn patterns(size: usize, columns: &[&[usize]]) -> Vec<Vec<bool>> {
-        let column = |own: &&[usize]| (0..size).map(|i| own.contains(&i)).collect();
+        let column = |ones: &&[usize]| (0..size).map(|i| ones.contains(&i)).collect();
         columns.iter().map(column).collect()
     }
 

@@ -2,8 +2,8 @@
 //!
 //! A [`Function`] is a list of operations in an order that can be executed; every operand was defined before
 //! it is used. Linear algebra has already become operations here (see [`linear`]), with guards where a pivot
-//! must be positive. Nothing downstream decides anything: `dalembert-emit` writes down what stands here, and
-//! [`interpret`] executes it without a compiler.
+//! must be positive. No later stage decides anything: `dalembert-emit` writes the operations down, and
+//! [`interpret`] executes them without a compiler.
 
 pub mod builder;
 pub mod coframe;
@@ -42,7 +42,7 @@ impl Value {
     }
 }
 
-/// Where an argument of a function comes from. Indices follow the order of declaration.
+/// Source of an argument of a function. Indices follow the order of declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Input {
     /// Time.
@@ -177,7 +177,7 @@ impl Guard {
 }
 
 impl Input {
-    /// Which component of the state `(q, p)` or `(q, u)` of `n` coordinates the input is.
+    /// The component of the state `(q, p)` or `(q, u)` of `n` coordinates that the input is.
     pub fn component(self, n: usize) -> Option<usize> {
         match self {
             Self::Coordinate(i) => Some(i),
@@ -209,7 +209,7 @@ impl Op {
         }
     }
 
-    /// Whether the operation is a mere name for something known without work.
+    /// True if the operation only names a quantity that is known without work.
     pub fn is_leaf(&self) -> bool {
         matches!(self, Self::Input(_) | Self::Number(_) | Self::Pi)
     }
@@ -220,7 +220,7 @@ impl Op {
 pub struct Function {
     /// The operations, in order.
     pub ops: Vec<Op>,
-    /// Names for values that mean something, by value.
+    /// Names of values with a meaning, by value.
     pub names: Vec<Option<String>>,
     /// The results.
     pub outputs: Vec<Value>,
@@ -229,13 +229,13 @@ pub struct Function {
 }
 
 impl Function {
-    /// Whether the function can end with a fault.
+    /// True if the function can end with a fault.
     pub fn is_fallible(&self) -> bool {
         self.ops.iter().any(|op| matches!(op, Op::Guard(_)))
     }
 }
 
-/// What the state of a motion consists of.
+/// Components of the state of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Positions and momenta, `(q, p)` on T*Q: N + N numbers.
@@ -246,16 +246,16 @@ pub enum Form {
     FirstOrder,
 }
 
-/// Every function of a model in one form. What is absent was not declared. `s` stands for the state: `(q, p)`,
-/// `(q, u)` or `q`. Of a first-order system functions of momenta and impulses are those of no mechanics, or empty, and are
-/// not emitted.
+/// Every function of a model in one form. Functions of features that were not declared are absent. `s` stands for the
+/// state: `(q, p)`, `(q, u)` or `q`. For a first-order system, functions of momenta and impulses have no mechanical
+/// meaning, or are empty, and are not emitted.
 #[derive(Debug)]
 pub struct Program {
     /// The form.
     pub form: Form,
     /// `(t, s) -> (qdot, pdot)`, `(qdot, udot)` or `qdot`
     pub rate: Function,
-    /// Whether the rate may have features that are narrow beside what a step passes.
+    /// True if the rate may have features that are narrow compared with the length of a step.
     pub can_be_narrow: bool,
     /// Taylor coefficients along the motion, of the rate and, where they are analytic, of the gaps.
     pub jet: jet::Jet,
@@ -271,8 +271,8 @@ pub struct Program {
     pub force: Function,
     /// In reduced form.
     pub reduced: Option<Reduced>,
-    /// What is derived at a state, by name: in global form, which holds off the constraints too, everything; in reduced
-    /// form what concerns the frame.
+    /// Derived quantities at a state, by name: all of them in global form, which also holds off the constraints; in
+    /// reduced form those of the frame.
     pub geometry: recipes::Geometry,
     /// With constraints.
     pub constrained: Option<Constrained>,
@@ -297,13 +297,13 @@ pub struct Program {
 }
 
 impl Program {
-    /// Operations that one function may have. An N-link chain reaches it near N = 40; a compiler takes minutes over
-    /// what is longer.
+    /// Largest number of operations of one function. An N-link chain reaches it near N = 40. A compiler takes minutes over
+    /// longer functions.
     pub const OPERATIONS: usize = 50_000;
 
     /// Every function.
     pub fn functions(&self) -> Vec<&Function> {
-        // NOTE: every field is named, so that a function that is added is not forgotten here.
+        // NOTE: every field is named, so that a new function is not forgotten here.
         let Self {
             form: _,
             rate,
@@ -337,7 +337,7 @@ impl Program {
         functions.extend(constrained.iter().flat_map(Constrained::functions));
         functions.extend(impacting.iter().flat_map(Impacting::functions));
         functions.extend(volume.iter().flat_map(InvariantVolume::functions));
-        functions.extend(powers.iter().map(|own| &own.function));
+        functions.extend(powers.iter().map(|powers| &powers.function));
         functions
     }
 
@@ -379,7 +379,7 @@ impl Reduced {
 /// Functions of a system with constraints.
 #[derive(Debug)]
 pub struct Constrained {
-    /// Whether the forms may become dependent somewhere.
+    /// True if the forms may become dependent somewhere.
     pub can_lose_rank: bool,
     /// `(t, s) -> lambda`
     pub multipliers: Function,
@@ -387,7 +387,7 @@ pub struct Constrained {
     pub residuals: Function,
     /// `(t, q) -> eta` row after row, then `eta_0`.
     pub forms: Function,
-    /// In global form, what brings a state to D.
+    /// Functions that bring a state in global form to D.
     pub return_to_constraints: Option<Return>,
     /// `(t, q) -> f`, one per integrable constraint.
     pub levels: Function,
@@ -423,7 +423,7 @@ impl Constrained {
     }
 }
 
-/// How a state in global form that is off the constraints is brought back to them.
+/// Functions that bring a state in global form back to the constraints.
 #[derive(Debug)]
 pub struct Return {
     /// `(t, q, qdot) -> p` of the nearest allowed velocity.
@@ -447,7 +447,7 @@ pub struct Powers {
     pub function: Function,
 }
 
-/// What the motion does to the volume `mu_C`.
+/// Effect of the motion on the volume `mu_C`.
 #[derive(Debug)]
 pub struct Density {
     /// The divergence with respect to `mu_C`: `(t, s) -> div`.
@@ -470,11 +470,11 @@ pub struct InvariantVolume {
     pub log_density: Function,
     /// `(t, q) -> G + ln det g - ln |det A_dep|`, but for an integral.
     pub log_volume: Function,
-    /// What is integrated from a configuration on to give the rest of `G`, if it has no closed form.
+    /// Reference configuration and gradient of the rest of `G`, which is integrated along a path if it has no closed form.
     pub gradient: Option<(Vec<f64>, Function)>,
     /// The velocities that are coordinates of the volume besides the positions, in order.
     pub independent: Vec<usize>,
-    /// Whether `G` is a function on Q, not only of unwrapped angles.
+    /// True if `G` is a function on Q, not only of unwrapped angles.
     pub is_single_valued: bool,
 }
 
@@ -501,9 +501,9 @@ pub struct Impacting {
     pub gap_alone: Vec<Function>,
     /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
-    /// `(t, s, w) -> d^2h_s/dt^2` where the motion's part of the state changes at the rates `w`
+    /// `(t, s, w) -> d^2h_s/dt^2` for the rates `w` of the motion's part of the state
     pub gap_accelerations: Function,
-    /// `(t, s, w) ->` what an impulse `w` changes the gap rates by
+    /// `(t, s, w) ->` the changes of the gap rates by an impulse `w`
     pub gap_responses: Function,
     /// Per surface `(t, q) -> conditions`; `None` where there are none.
     pub conditions: Vec<Option<Function>>,
@@ -520,8 +520,7 @@ pub struct Impacting {
     pub entries: Vec<Option<Function>>,
     /// Per surface with instantaneous constraints: `(t, s) ->` the impulse after which they hold.
     pub focuses: Vec<Option<Function>>,
-    /// Per surface with instantaneous constraints: `(t, s, w) ->` what must be added to the rates `w` for them to go on
-    /// holding.
+    /// Per surface with instantaneous constraints: `(t, s, w) ->` the addition to the rates `w` that keeps the constraints.
     pub traces: Vec<Option<Function>>,
 }
 

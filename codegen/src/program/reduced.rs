@@ -48,7 +48,7 @@ impl<'a> Kernel<'a> {
         })
     }
 
-    /// Says what the symbols of the quasi-velocities are.
+    /// Binds the symbols of the quasi-velocities.
     fn bind_quasi(&mut self, u: &[Value]) {
         let symbols = self.invariant().map_or(&[][..], |invariant| &invariant.u);
         for (&symbol, &value) in symbols.iter().zip(u) {
@@ -63,7 +63,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// What does not depend on the configuration.
+    /// Expressions that do not depend on the configuration.
     fn invariant(&self) -> Option<&'a Invariant> {
         self.frame()?.invariant.as_ref()
     }
@@ -174,7 +174,7 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
-    /// The entries of `G_D` that are known in simpler terms, the lower triangle.
+    /// The entries of `G_D` that are known as simpler expressions, the lower triangle.
     pub(super) fn known_metric(&self) -> Option<&'a Vec<Vec<Option<ExprId>>>> {
         self.invariant().map(|invariant| &invariant.metric)
     }
@@ -209,8 +209,8 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Whether the metric is diagonal with entries known to be positive: then so are the entries on the diagonal of
-    /// `G_D`, as no `X_i` vanishes.
+    /// True if the metric is diagonal with entries known to be positive. The diagonal entries of `G_D` are then positive
+    /// too, as no `X_i` vanishes.
     fn metric_is_positive(&self) -> bool {
         let (pool, metric) = (&self.model.pool, &self.model.lagrangian.metric);
         metric.iter().enumerate().all(|(i, row)| {
@@ -219,9 +219,11 @@ impl<'a> Kernel<'a> {
         })
     }
 
-    /// Whether an entry on the diagonal of `G_D` does not depend on the configuration and is known to be positive.
+    /// True if an entry on the diagonal of `G_D` does not depend on the configuration and is known to be positive.
     fn is_positive_entry(&self, i: usize) -> bool {
-        let fixed = self.invariant().and_then(|own| own.metric[i][i]);
+        let fixed = self
+            .invariant()
+            .and_then(|invariant| invariant.metric[i][i]);
         fixed.is_some_and(|fixed| self.model.pool.sign(fixed) == Sign::Positive)
     }
 
@@ -235,9 +237,13 @@ impl<'a> Kernel<'a> {
         let Some(frame) = self.frame() else {
             return Vec::new();
         };
-        let quasi: Vec<ExprId> = frame.quasi.iter().map(|own| own.curvature).collect();
+        let quasi: Vec<ExprId> = frame
+            .quasi
+            .iter()
+            .map(|velocity| velocity.curvature)
+            .collect();
         let constraints = self.derivation.constraints.iter();
-        let constraints: Vec<ExprId> = constraints.map(|own| own.curvature).collect();
+        let constraints: Vec<ExprId> = constraints.map(|constraint| constraint.curvature).collect();
         let (quasi, constraints) = (self.values(&quasi), self.values(&constraints));
         let asked = self.all_velocities(&[]);
         self.solve_frame(&asked, |builder, row| match row {
@@ -312,7 +318,7 @@ impl<'a> Kernel<'a> {
         right
     }
 
-    /// `g(qdot, qdot)`, where it is known in simpler terms.
+    /// `g(qdot, qdot)`, where it is known as a simpler expression.
     pub fn known_doubled_kinetic(&mut self) -> Option<Value> {
         let known = self.invariant()?.doubled_kinetic?;
         let u = self.quasi_inputs();

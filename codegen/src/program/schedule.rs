@@ -1,7 +1,7 @@
-//! Order and dead code: keeps what outputs and guards need, in the order it was built.
+//! Order and dead code: keeps the operations that outputs and guards need, in the order of construction.
 //!
-//! The order of construction is kept because it follows the derivation (position, velocity, factors, solve),
-//! which reads well, and because operands come first in it by construction.
+//! The order of construction is kept because it follows the derivation (position, velocity, factors, solve), which reads
+//! well, and because operands come first in it.
 
 use super::{Guard, Op, Value};
 

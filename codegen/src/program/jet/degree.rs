@@ -1,11 +1,11 @@
-//! After which order a series ends by structure.
+//! Orders after which series end by structure.
 
 use super::super::{Function, Input, Op};
 
-/// Longest series worth telling from an endless one.
+/// Longest series that is distinguished from an endless one.
 const LONGEST: u32 = 4;
 
-/// The order after which all coefficients vanish, whatever the numbers are.
+/// The order after which all coefficients vanish, for all values of the numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Degree {
     /// At most this one.
@@ -15,7 +15,7 @@ pub enum Degree {
 }
 
 impl Degree {
-    /// A degree that is not too long to matter.
+    /// A degree, or endless if it is too long to be of use.
     fn limited(degree: u32) -> Self {
         match degree {
             0..=LONGEST => Self::AtMost(degree),

@@ -1,6 +1,6 @@
-//! Constant factors, taken out of products and multiplied with each other before anything that varies: `x (c y)` is
-//! `c (x y)` where `x y` is taken anyway, which spares a sum in every order, and `a (b x)` is `(a b) x`, for which a
-//! coefficient waits less.
+//! Constant factors, taken out of products and multiplied with each other before anything that varies. `x (c y)` is
+//! `c (x y)` where `x y` is computed anyway: that spares a sum in every order. `a (b x)` is `(a b) x`: its coefficients
+//! are known earlier.
 
 use std::collections::HashSet;
 
@@ -43,13 +43,13 @@ pub(super) fn take_out(
     builder.finish(outputs)
 }
 
-/// What is known of a function's values.
+/// Properties of a function's values.
 struct Known<'a> {
     function: &'a Function,
     degrees: Vec<Degree>,
-    /// How often a value is an operand or a result.
+    /// Number of times a value is an operand or a result.
     uses: Vec<usize>,
-    /// All products that are taken, the operand that comes first in front.
+    /// All products that are computed, the operand that comes first in front.
     products: HashSet<[Value; 2]>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// A product as constant factors and a rest that are to be multiplied each for itself first, where that is shorter.
+    /// A product as constant factors and a rest, each to be multiplied for itself first, where that is shorter.
     fn split(&self, value: Value) -> Option<[Vec<Value>; 2]> {
         let Op::Mul(a, b) = self.function.ops[value.index()] else {
             return None;
@@ -89,7 +89,7 @@ impl<'a> Known<'a> {
         (!factors.is_empty() && is_taken).then(|| [factors, vec![a, b]])
     }
 
-    /// The constant factors of a value and what they multiply, as long as `may` allows to take a value apart.
+    /// The constant factors of a value and the rest. `may` selects the values to take apart.
     fn peel(&self, mut value: Value, may: impl Fn(Value) -> bool) -> (Vec<Value>, Value) {
         let mut factors = Vec::new();
         while may(value)

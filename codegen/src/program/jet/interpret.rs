@@ -22,8 +22,8 @@ pub fn along(
     Ok(series.results(&jet.function))
 }
 
-/// Coefficients `0..=order` of the components of the motion from `state`, in time `unit * s`, and of what the jet has
-/// besides their rates: the gaps.
+/// Coefficients `0..=order` of the components of the motion from `state`, in time `unit * s`, and of the other results of
+/// the jet: the gaps.
 ///
 /// # Errors
 /// The guard that does not hold at `state`.

@@ -1,14 +1,14 @@
 //! Taylor coefficients in time of every value of a function, order after order.
 //!
 //! Along a motion every value `v` is a power series `v_0 + v_1 s + v_2 s^2 + ..` in time `s`. A [`Jet`] is a function
-//! together with what gives coefficient `k` of each of its values from the coefficients that are known then
-//! ([`Recurrence`]). Sums go through term by term and products are Cauchy products; everything else follows from a
-//! differential equation with products or quotients only, as `c' = -a' s`, `s' = a' c` for cosine and sine. What such
-//! an equation needs besides the value itself, the other one of sine and cosine or `1 + a^2` for the arc tangent, is a
-//! companion: one more operation of the function.
+//! together with a rule ([`Recurrence`]) for coefficient `k` of each of its values from the coefficients that are known by
+//! then. Sums go through term by term and products are Cauchy products; everything else follows from a differential
+//! equation with products or quotients only, as `c' = -a' s`, `s' = a' c` for cosine and sine. A value that such an
+//! equation needs besides the value itself is a companion: one more operation of the function. Examples are the other one
+//! of sine and cosine, and `1 + a^2` for the arc tangent.
 //!
-//! Values whose series end by structure are found ([`degree`]): a product with one of them has as many terms as that
-//! series, a constant has no recurrence at all.
+//! Values whose series end by structure are found ([`degree`]): a product with one of them has as many terms as its
+//! series, and a constant has no recurrence at all.
 //!
 //! References: R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank and A. Walther, *Evaluating
 //! Derivatives* (2008), section 13.2, tables 13.1 and 13.2.
@@ -24,7 +24,7 @@ use super::builder::Builder;
 use super::{Function, Input, Op, Value};
 use degree::Degree;
 
-/// How coefficient `k >= 1` of a value follows from lower ones of all values, and those of order `k` of its operands.
+/// Rule for coefficient `k >= 1` of a value, from lower ones of all values and those of order `k` of its operands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recurrence {
     /// It vanishes.
@@ -33,7 +33,7 @@ pub enum Recurrence {
     Time,
     /// This component of the state.
     Component(usize),
-    /// That of another value.
+    /// The coefficient of another value.
     Same(Value),
     /// `-a`
     Neg(Value),
@@ -61,7 +61,7 @@ pub enum Recurrence {
         of: Value,
         /// `b`
         by: Value,
-        /// Whether `c' = -a' b`.
+        /// True if `c' = -a' b`.
         negative: bool,
     },
     /// `c' = a' / b`, negative where `negative`.
@@ -70,7 +70,7 @@ pub enum Recurrence {
         of: Value,
         /// `b`
         by: Value,
-        /// Whether `c' = -a' / b`.
+        /// True if `c' = -a' / b`.
         negative: bool,
     },
     /// The angle of `(x, y)`: `r c' = x y' - y x'`.
@@ -89,14 +89,14 @@ pub enum Recurrence {
 /// Coefficients of a value that are kept over all orders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct History {
-    /// Whose.
+    /// The value.
     pub value: Value,
-    /// Whether coefficient `k` is kept `k` times: those of the derivative, shifted by one.
+    /// True if coefficient `k` is kept `k` times: the coefficients of the derivative, shifted by one.
     pub weighted: bool,
 }
 
 impl History {
-    /// Of coefficients as they are.
+    /// History of the coefficients as they are.
     pub fn plain(value: Value) -> Self {
         Self {
             value,
@@ -104,7 +104,7 @@ impl History {
         }
     }
 
-    /// Of coefficients times their order.
+    /// History of the coefficients times their order.
     pub fn weighted(value: Value) -> Self {
         Self {
             value,
@@ -118,19 +118,19 @@ impl History {
 pub struct Jet {
     /// Order 0: the operations of the functions it was made from, then the companions. The same results.
     pub function: Function,
-    /// By value.
+    /// Recurrences, by value.
     pub recurrences: Vec<Recurrence>,
-    /// By value: after which order its series ends.
+    /// Orders after which the series end, by value.
     pub degrees: Vec<Degree>,
-    /// By value: whether a result takes its coefficients above order 0.
+    /// True for values whose coefficients above order 0 a result needs, by value.
     pub needed: Vec<bool>,
-    /// What is kept over the orders.
+    /// Coefficients that are kept over the orders.
     pub histories: Vec<History>,
 }
 
 impl Jet {
     /// The jet of functions, whose results follow each other, along motions whose components have these degrees.
-    /// `component` says which component of the state an input is.
+    /// `component` gives the component of the state that an input is.
     pub fn of(
         functions: &[&Function],
         components: &[Degree],
@@ -141,7 +141,7 @@ impl Jet {
         let mut builder = Builder::new();
         let outputs = builder.replay(&function);
         let (mut recurrences, mut degrees) = (Vec::new(), Vec::new());
-        // Companions are added behind, and come up in turn.
+        // Companions are added at the end and have their turn later.
         while recurrences.len() < builder.len() {
             let value = Value::new(recurrences.len());
             let op = builder.op(value).clone();
@@ -164,21 +164,21 @@ impl Jet {
         }
     }
 
-    /// Whether the results are analytic wherever they exist: a series then says what they do up to its radius.
+    /// True if the results are analytic wherever they exist: a series then describes them up to its radius.
     pub fn is_analytic(&self) -> bool {
         let absolute =
             |value: Value| matches!(self.recurrences[value.index()], Recurrence::Absolute(_));
         !self.varying().any(absolute)
     }
 
-    /// Whether any coefficients of a value are kept.
+    /// True if any coefficients of a value are kept.
     pub fn is_kept(&self, value: Value) -> bool {
         let histories = [History::plain(value), History::weighted(value)];
         let known = |history| self.histories.binary_search(history).is_ok();
         histories.iter().any(known)
     }
 
-    /// How often coefficient `k` of each value is read for those of others and for results.
+    /// Number of times coefficient `k` of each value is read for other values and for results.
     pub fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.recurrences.len()];
         let operands = self
@@ -211,10 +211,10 @@ impl Jet {
     pub fn degree(&self, components: usize) -> Degree {
         let degrees = self.function.outputs.iter().enumerate();
         let degrees = degrees.map(|(i, output)| {
-            let own = self.degrees[output.index()];
-            match (i < components, own) {
+            let degree = self.degrees[output.index()];
+            match (i < components, degree) {
                 (true, Degree::AtMost(degree)) => Degree::AtMost(degree + 1),
-                _ => own,
+                _ => degree,
             }
         });
         degrees.max().unwrap_or(Degree::AtMost(0))
@@ -236,7 +236,7 @@ fn together(functions: &[&Function]) -> Function {
     builder.finish_whole(outputs)
 }
 
-/// The recurrence of an operation that is not constant. Asks for companions where it takes them.
+/// The recurrence of an operation that is not constant. Adds the companions that it needs.
 fn recurrence(
     builder: &mut Builder,
     value: Value,
@@ -319,7 +319,7 @@ fn one_minus_square(builder: &mut Builder, a: Value) -> Value {
 }
 
 impl Recurrence {
-    /// The values whose coefficients above order 0 it takes.
+    /// The values whose coefficients above order 0 the recurrence reads.
     fn operands(&self) -> Vec<Value> {
         match *self {
             Self::Constant | Self::Time | Self::Component(_) => Vec::new(),
@@ -342,7 +342,7 @@ impl Recurrence {
         }
     }
 
-    /// What must be kept over the orders for coefficients of `value`.
+    /// Histories that the coefficients of `value` need.
     fn histories(&self, value: Value) -> Vec<History> {
         let (plain, weighted) = (History::plain, History::weighted);
         match *self {
@@ -366,7 +366,7 @@ impl Recurrence {
     }
 }
 
-/// Values whose coefficients above order 0 the results take, companions included.
+/// Values whose coefficients above order 0 the results need, companions included.
 fn needed(outputs: &[Value], recurrences: &[Recurrence]) -> Vec<bool> {
     let mut needed = vec![false; recurrences.len()];
     let mut open = outputs.to_vec();

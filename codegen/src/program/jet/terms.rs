@@ -1,6 +1,6 @@
 //! Coefficient `k` of one value from those it follows from, as an expression.
 //!
-//! The range of a sum, and the factor of a product that comes into it last, are decided here, once for everything that computes series.
+//! The range of a sum, and the last factor to enter a product, are decided here, once for all code that computes series.
 
 use dalembert_expr::Rational;
 
@@ -8,8 +8,9 @@ use super::degree::Degree;
 use super::{History, Jet, Recurrence};
 use crate::program::Value;
 
-/// Series kept up to which values of order `k` are locals and sums are taken side by side. What is larger calls one
-/// shared sum and goes through memory: a compiler spends stack on every local of a function that is as long.
+/// Largest number of kept series for which values of order `k` are locals and sums are computed side by side. A larger
+/// expansion calls one shared sum and goes through memory: a compiler spends stack on every local of a function of that
+/// length.
 const LARGE: usize = 128;
 
 /// An expression of coefficients, at order `k`.
@@ -54,7 +55,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// Shows the term, and every term that it consists of.
+    /// Shows the term and all its subterms.
     pub fn walk(&self, see: &mut impl FnMut(&Self)) {
         see(self);
         match self {
@@ -97,7 +98,7 @@ fn signed(negative: bool, a: Term) -> Term {
 }
 
 impl Jet {
-    /// True where so many coefficients are kept that they go through memory.
+    /// True if the number of kept coefficients is so large that they go through memory.
     pub fn is_large(&self) -> bool {
         self.histories.len() > LARGE
     }
@@ -154,7 +155,7 @@ impl Jet {
 
     /// `sum a_j b_(k-j)` for `j` in `0..=k`.
     fn product(&self, a: Value, b: Value) -> Term {
-        // The value that is known last comes into the sum last.
+        // The value that is known last enters the sum last.
         let (a, b) = match (self.degree_of(a), a.index()) > (self.degree_of(b), b.index()) {
             true => (b, a),
             false => (a, b),
@@ -168,7 +169,7 @@ impl Jet {
         mul_add(first, next, self.upper_sum(a, b))
     }
 
-    /// True if coefficient `k` of a value is known when order `k` begins, before the sums over lower orders are.
+    /// True if coefficient `k` of a value is known when order `k` begins, before the sums over lower orders.
     fn is_early(&self, value: Value) -> bool {
         matches!(
             self.recurrences[value.index()],
@@ -193,7 +194,7 @@ impl Jet {
             .unwrap_or_else(|| mul_add(Term::Next(a), Term::First(b), Term::Middle(rising, other)))
     }
 
-    /// `a_k b_0`, all that is left of a sum where one of the two is constant.
+    /// `a_k b_0`, the only term of a sum where one of the two is constant.
     fn product_with_constant(&self, a: Value, b: Value) -> Option<Term> {
         let is_constant = |value: Value| self.recurrences[value.index()] == Recurrence::Constant;
         match (is_constant(a), is_constant(b)) {
@@ -232,7 +233,7 @@ impl Jet {
     fn short(&self, a: History, b: History) -> Option<Term> {
         match self.degree_of(a.value) {
             Degree::Endless => None,
-            // NOTE: the only coefficient above order 0 is that of order 1, which is the same times its order.
+            // NOTE: the only coefficient above order 0 is that of order 1, which equals its product with the order.
             Degree::AtMost(1) if !self.is_large() => Some(Term::Steady(a.value, b.value)),
             Degree::AtMost(degree) => Some(Term::Short(a, b, degree as usize)),
         }

@@ -3,8 +3,8 @@
 //!
 //! With `z` any multiple of `X^T dh` and `d = G_D^{-1} z` the blow of a wall that stands still is
 //! `-share (z . u)/(z . d) d` for the laws whose share is a number; without constraints `z` is a multiple of `dh` and
-//! the direction. Where the metric is a multiple of the identity along `z`, it does not matter at all. The other laws,
-//! and surfaces without a frame, take the blow from all of the [contact](super::impact).
+//! the direction. Where the metric is a multiple of the identity along `z`, the metric does not matter at all. The other
+//! laws, and surfaces without a frame, compute the blow from the whole [contact](super::impact).
 
 use dalembert_expr::{ExprId, Rational, Sign};
 
@@ -14,8 +14,7 @@ use crate::model::{Law, Model};
 use crate::program::kernel::Kernel;
 use crate::program::{Form, Function, Guard, Value};
 
-/// `(t, s) -> size, share, direction`; `None` for a reset. Of the ways there are the one that takes the fewest
-/// operations.
+/// `(t, s) -> size, share, direction`; `None` for a reset. Of several formulas, the one with the fewest operations is used.
 pub(super) fn blow(
     model: &Model,
     derivation: &Derivation,
@@ -47,12 +46,12 @@ fn finished(mut kernel: Kernel<'_>, form: Form, s: usize, blow: Blow) -> Functio
 struct Blow {
     size: Value,
     share: Value,
-    /// What must be positive for the surface to be regular.
+    /// Quantity that is positive where the surface is regular.
     squared: Value,
     direction: Vec<Value>,
 }
 
-/// What a law takes of the gap rate, where that is known before.
+/// Share of the gap rate that a law takes, where that is known before the impact.
 fn constant_share(kernel: &mut Kernel<'_>, law: Law) -> Option<Value> {
     match law {
         Law::Elastic => Some(kernel.builder.integer(2)),
@@ -65,8 +64,7 @@ fn constant_share(kernel: &mut Kernel<'_>, law: Law) -> Option<Value> {
     }
 }
 
-/// Whether a law is stated of the momentum along the projected gradient, not of the gap rate: off the constraints they
-/// differ.
+/// True if a law is stated for the momentum along the projected gradient, not for the gap rate. The two differ off the constraints.
 fn takes_momentum(law: Law) -> bool {
     matches!(law, Law::Elastic | Law::Restitution(_))
 }
@@ -78,7 +76,7 @@ fn along_ray(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
         return None;
     }
     let share = constant_share(kernel, law)?;
-    // The quotients of `dh`, which are met again in its ray.
+    // The quotients of `dh`, which occur again in its ray.
     kernel.values(&surface.form);
     let (rate, squared, direction) = match (form, kernel.constraints()) {
         (Form::Global, 0) => free(kernel, surface.ray.as_deref()?),
@@ -128,7 +126,7 @@ fn on_momenta(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Val
     let momenta = kernel.lowered_velocity();
     let rate = kernel.dot(&velocity, &momenta);
     let mut direction = kernel.lower_vector(&velocity);
-    // `X^T (g X d) = z`: along a field that is one of a coordinate the component is known.
+    // `X^T (g X d) = z`: along a field that is the field of a coordinate, the component is known.
     for (field, &z) in kernel.frame_fields().iter().zip(&z) {
         if let Some(coordinate) = kernel.only_unit(field) {
             direction[coordinate] = z;
@@ -137,7 +135,7 @@ fn on_momenta(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Val
     (rate, squared, direction)
 }
 
-/// `z`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two without a weight that they have in common.
+/// `z`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two without a common weight.
 fn raised(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Vec<Value>, Value, Vec<Value>) {
     let known = kernel.known_metric();
     let entry = |i: usize, j: usize| known.and_then(|metric| metric[i.max(j)][i.min(j)]);
@@ -159,7 +157,7 @@ fn raised_fully(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Vec<Value>, Value, 
     (z, squared, direction)
 }
 
-/// As the contact has it.
+/// The blow from the values of the contact.
 fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let law = kernel.model.surfaces[s].law;
     let ContactValues { scalars, direction } = match form {
@@ -184,7 +182,7 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let taken = builder.mul(share, of);
     let negative = builder.neg(taken);
     let size = builder.div(negative, constrained);
-    // With affine constraints the momentum along the projected gradient is another thing than the gap rate.
+    // With affine constraints the momentum along the projected gradient differs from the gap rate.
     let share = match of == gap_rate || !kernel.is_affine_at(s) {
         true => share,
         false => kernel.builder.div(taken, gap_rate),
@@ -198,7 +196,7 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
 }
 
 impl Kernel<'_> {
-    /// Whether the coordinates along which `z` has components are of one weight in a metric, and meet no others.
+    /// True if the coordinates along which `z` has components have the same weight in a metric, and are coupled to no others.
     fn is_round(&self, z: &[ExprId], entry: impl Fn(usize, usize) -> Option<ExprId>) -> bool {
         let pool = &self.model.pool;
         let met = |i: &usize| !pool.is_syntactic_zero(z[*i]);

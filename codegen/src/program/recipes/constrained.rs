@@ -66,7 +66,7 @@ fn forms(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// The `mu` of `m mu = -(eta(qdot) + eta_0)`: what is missing on the way to the nearest momenta on D*.
+/// The `mu` of `m mu = -(eta(qdot) + eta_0)`: the multipliers that lead to the nearest momenta on D*.
 fn shift(kernel: &mut Kernel<'_>, kinetic: &[Value]) -> Vec<Value> {
     let affine: Vec<_> = kernel
         .derivation
@@ -114,8 +114,8 @@ fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Func
 /// The momenta with the velocities of dependent coordinates taken from the others, where a minor that is regular
 /// everywhere gives them; the nearest momenta otherwise.
 ///
-/// What integration got right, the independent velocities, is not touched: an orthogonal projection would spread
-/// the error of the dependent ones over them, and with it over the energy.
+/// The independent velocities, which integration got right, are not touched: an orthogonal projection would spread the
+/// error of the dependent ones over them, and with it over the energy.
 fn restore(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
     let pairs = kernel.regular_minor().filter(|_| !model.is_nonlinear());
@@ -165,13 +165,19 @@ fn level_scales(model: &Model, derivation: &Derivation) -> Option<Function> {
     let mut levelled = derivation
         .constraints
         .iter()
-        .filter(|own| own.level.is_some());
-    levelled.clone().find_map(|own| own.level_scale)?;
+        .filter(|constraint| constraint.level.is_some());
+    levelled
+        .clone()
+        .find_map(|constraint| constraint.level_scale)?;
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let zero = kernel.builder.zero();
     let outputs = levelled
         .by_ref()
-        .map(|own| own.level_scale.map_or(zero, |scale| kernel.value(scale)))
+        .map(|constraint| {
+            constraint
+                .level_scale
+                .map_or(zero, |scale| kernel.value(scale))
+        })
         .collect();
     Some(kernel.finish(outputs))
 }

@@ -1,4 +1,4 @@
-//! Functions that were declared as such: outputs, view, initial condition.
+//! Functions of declared expressions: outputs, view, initial condition.
 
 use dalembert_expr::ExprId;
 

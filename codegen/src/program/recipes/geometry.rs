@@ -67,8 +67,8 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     };
     report_motion(&mut kernel, &mut results);
     report_constraints(&mut kernel, &mut results);
-    // An integral is no straight-line code; it is reported by itself.
-    if let Some(found) = found.filter(|own| own.integral.is_none()) {
+    // An integral is not straight-line code; it is reported by itself.
+    if let Some(found) = found.filter(|volume| volume.integral.is_none()) {
         let density = volume::log_density(&mut kernel, found);
         results.scalar("log_density", density);
     }
@@ -79,7 +79,7 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     }
 }
 
-/// `(t, q)` to the rates of a first-order system, and what surfaces do.
+/// `(t, q)` to the rates of a first-order system, and the quantities of its surfaces.
 pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let mut results = Results {
@@ -91,7 +91,8 @@ pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry 
     for s in 0..derivation.surfaces.len() {
         let name = &model.surfaces[s].name.display;
         let surface = &derivation.surfaces[s];
-        let [gap, rate] = [surface.gap, surface.gap_rate].map(|own| kernel.value(own));
+        let [gap, rate] =
+            [surface.gap, surface.gap_rate].map(|expression| kernel.value(expression));
         results.scalar(format!("impacts.{name}.gap"), gap);
         results.scalar(format!("impacts.{name}.gap_rate"), rate);
         report_reset(&mut kernel, &mut results, s);
@@ -102,7 +103,7 @@ pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry 
     }
 }
 
-/// `(t, q, u)` to what is derived on D.
+/// `(t, q, u)` to the quantities derived on D.
 pub fn reduced_geometry(model: &Model, derivation: &Derivation) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Quasi);
     let mut results = Results {

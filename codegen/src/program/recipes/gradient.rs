@@ -8,26 +8,26 @@ use crate::program::kernel::{Arguments, Kernel};
 use crate::program::linear::{Ldlt, Orthogonal};
 use crate::program::{Function, Guard, Value};
 
-/// `(t, q) -> beta`, N components: `beta(Z_b) = c_b` for vectors that span, which are orthogonalised, as no choice of
+/// `(t, q) -> beta`, N components: `beta(Z_b) = c_b` for vectors that span. They are orthogonalised, as no choice of
 /// pivots is good everywhere.
 pub fn gradient(model: &Model, derivation: &Derivation, integral: &Integral) -> Function {
-    let own = &integral.gradient;
+    let system = &integral.gradient;
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
-    let steps = carry_out(&mut kernel, &own.trace);
-    let vectors: Vec<Vec<Value>> = own
+    let steps = carry_out(&mut kernel, &system.trace);
+    let vectors: Vec<Vec<Value>> = system
         .vectors
         .iter()
         .map(|vector| vector.iter().map(|step| steps[step.index()]).collect())
         .collect();
     let builder = &mut kernel.builder;
-    let shifts: Vec<Value> = own
+    let shifts: Vec<Value> = system
         .demands
         .iter()
         .map(|step| builder.neg(steps[step.index()]))
         .collect();
     let n = vectors.len();
     let flat = Ldlt::identity(builder, n);
-    // A guard that fails names the first constraint: where the vectors are dependent, the forms are or their frame fails.
+    // A guard that fails names the first constraint: the vectors are dependent where the forms are, or where their frame fails.
     let guard = |_, squared, reference| Guard::Constraint {
         constraint: 0,
         squared,

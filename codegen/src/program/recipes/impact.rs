@@ -1,6 +1,6 @@
 //! Functions of the surfaces: gaps, gap rates, conditions, contacts.
 //!
-//! With `y = L^{-1} dh` and `y'` what is left of it after the constraint columns are projected out,
+//! With `y = L^{-1} dh` and `y'` the rest of `y` after the constraint columns are projected out,
 //! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`: sums of squares, so nothing
 //! cancels when the surface is almost tangent to the constraints. On D, with `z = L_D^{-1} X^T dh` in the factors of
 //! `G_D`, `dh(pi_D grad h) = <z, z>`, and the impulse changes the quasi-velocities along `G_D^{-1} X^T dh`. The gap rate
@@ -76,7 +76,7 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
     })
 }
 
-/// The state that another mode is entered with, where it is declared.
+/// The state in which another mode is entered, where it is declared.
 fn entry(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option<Function> {
     let map = model.surfaces[s].transition.as_ref()?.map.as_ref()?;
     let mut kernel = Kernel::new(model, derivation, form.state());
@@ -96,7 +96,7 @@ fn reset(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option
 pub(super) fn reset_values(kernel: &mut Kernel<'_>, s: usize) -> Option<[Vec<Value>; 2]> {
     let model = kernel.model;
     let reset = model.surfaces[s].reset.as_ref()?;
-    let symbols = model.coordinates.iter().map(|own| own.q);
+    let symbols = model.coordinates.iter().map(|coordinate| coordinate.q);
     let before: Vec<Value> = symbols.map(|symbol| kernel.symbol(symbol)).collect();
     let velocities = kernel.velocity();
     let mut after = |values: &[Option<ExprId>], before: Vec<Value>| -> Vec<Value> {
@@ -142,7 +142,7 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
     kernel.finish(outputs)
 }
 
-/// `qddot` where the motion's part of the state changes at these rates.
+/// `qddot` for these rates of the motion's part of the state.
 pub(super) fn acceleration(kernel: &mut Kernel<'_>, form: Form, motion: &[Value]) -> Vec<Value> {
     match form {
         Form::Global => {
@@ -217,7 +217,7 @@ fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Func
     kernel.finish([contact.scalars.to_vec(), contact.direction].concat())
 }
 
-/// What a contact consists of.
+/// Values of a contact.
 pub(super) struct ContactValues {
     /// In the order of [`SCALARS`].
     pub scalars: [Value; 5],

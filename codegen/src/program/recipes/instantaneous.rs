@@ -3,7 +3,7 @@
 //! With `C_b = L^{-1} psi^b` without its components along the constraint columns, or `L_D^{-1} X^T psi^b` on D, the
 //! impulse `x = C nu` of least norm with `<C_b, x> = r_b` changes `psi^b(qdot)` by `r_b` and keeps every constraint. Such
 //! an impulse brings the state to `D' = ker(eta, psi)`, and such a force keeps it there. Within `D'` a law acts as it does
-//! within D: along what is left of `dh` without its components along `C`.
+//! within D: along `dh` without its components along `C`.
 
 use dalembert_expr::ExprId;
 
@@ -29,15 +29,17 @@ pub(super) fn focus(
 
 /// The impulse of [`focus`].
 pub(super) fn focus_values(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Vec<Value>> {
-    let own = constraints(kernel, s)?;
+    let instantaneous = constraints(kernel, s)?;
     kernel.velocity();
-    let residuals: Vec<ExprId> = own.iter().map(|own| own.residual).collect();
+    let residuals: Vec<ExprId> = instantaneous
+        .iter()
+        .map(|constraint| constraint.residual)
+        .collect();
     let residuals = kernel.values(&residuals);
     Some(against(kernel, form, s, &residuals))
 }
 
-/// `(t, s, w) ->` what must be added to the rates `w` for the instantaneous constraints to go on holding; `None` without
-/// any.
+/// `(t, s, w) ->` the addition to the rates `w` that keeps the instantaneous constraints of a surface; `None` without any.
 pub(super) fn trace(
     model: &Model,
     derivation: &Derivation,
@@ -45,15 +47,15 @@ pub(super) fn trace(
     s: usize,
 ) -> Option<Function> {
     let mut kernel = Kernel::new(model, derivation, form.state());
-    let own = constraints(&kernel, s)?;
+    let instantaneous = constraints(&kernel, s)?;
     let motion = motion_rates(&mut kernel, form);
     let acceleration = acceleration(&mut kernel, form, &motion);
-    let rates: Vec<Value> = own
+    let rates: Vec<Value> = instantaneous
         .iter()
-        .map(|own| {
-            let form = kernel.values(&own.form);
+        .map(|constraint| {
+            let form = kernel.values(&constraint.form);
             let along = kernel.dot(&form, &acceleration);
-            let curvature = kernel.value(own.curvature);
+            let curvature = kernel.value(constraint.curvature);
             kernel.builder.add(along, curvature)
         })
         .collect();
@@ -61,13 +63,13 @@ pub(super) fn trace(
     Some(kernel.finish(force))
 }
 
-/// Those of a surface, if it has any.
+/// The instantaneous constraints of a surface, if it has any.
 fn constraints<'d>(kernel: &Kernel<'d>, s: usize) -> Option<&'d [InstantaneousForm]> {
-    let own = &kernel.derivation.surfaces[s].instantaneous;
-    (!own.is_empty()).then_some(own)
+    let instantaneous = &kernel.derivation.surfaces[s].instantaneous;
+    (!instantaneous.is_empty()).then_some(instantaneous)
 }
 
-/// The impulse within the constraints that takes these rates of the instantaneous ones.
+/// The impulse within the constraints that removes these rates of the instantaneous ones.
 fn against(kernel: &mut Kernel<'_>, form: Form, s: usize, rates: &[Value]) -> Vec<Value> {
     let factors = kernel.factor_instantaneous(form, s);
     let wanted: Vec<Value> = rates.iter().map(|&rate| kernel.builder.neg(rate)).collect();
@@ -83,8 +85,7 @@ fn against(kernel: &mut Kernel<'_>, form: Form, s: usize, rates: &[Value]) -> Ve
 }
 
 impl Kernel<'_> {
-    /// What is left of a column `L^{-1} b`, or `L_D^{-1} X^T b`, without its components along the instantaneous
-    /// constraints of a surface.
+    /// A column `L^{-1} b`, or `L_D^{-1} X^T b`, without its components along the instantaneous constraints of a surface.
     pub(super) fn within_instantaneous(
         &mut self,
         form: Form,
@@ -100,11 +101,12 @@ impl Kernel<'_> {
         })
     }
 
-    /// Whether constraints, or instantaneous ones of a surface, have an affine part.
+    /// True if constraints, or instantaneous ones of a surface, have an affine part.
     pub(super) fn is_affine_at(&self, s: usize) -> bool {
-        let mut own = self.derivation.surfaces[s].instantaneous.iter();
+        let mut instantaneous = self.derivation.surfaces[s].instantaneous.iter();
         let pool = &self.model.pool;
-        self.has_affine_constraints() || own.any(|own| !pool.is_syntactic_zero(own.affine))
+        self.has_affine_constraints()
+            || instantaneous.any(|constraint| !pool.is_syntactic_zero(constraint.affine))
     }
 
     /// The columns `C_b`, orthogonalised.
@@ -112,8 +114,8 @@ impl Kernel<'_> {
         let derivation = self.derivation;
         let mut columns = Vec::new();
         let mut references = Vec::new();
-        for own in &derivation.surfaces[s].instantaneous {
-            let psi = self.values(&own.form);
+        for constraint in &derivation.surfaces[s].instantaneous {
+            let psi = self.values(&constraint.form);
             let free = self.forward(&psi);
             references.push(self.with_ldlt(|builder, ldlt| ldlt.inner(builder, &free, &free)));
             columns.push(match form {

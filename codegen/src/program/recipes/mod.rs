@@ -1,4 +1,4 @@
-//! What each emitted function consists of. One recipe per function; shared pieces come from the kernel.
+//! Composition of each emitted function. One recipe per function; shared quantities come from the kernel.
 
 pub mod blow;
 pub mod constrained;

@@ -99,16 +99,16 @@ pub fn force(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// Operations up to which a function repeats what the one for the velocities does rather than calling it.
+/// Operations up to which a function repeats the computation of the velocities rather than calling their function.
 const REPEATED: usize = 100;
 
-/// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`: of the ways to it the one that takes the
-/// fewest operations. Often `G_D` depends on less than the velocities do.
+/// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`, by the formula with the fewest
+/// operations. Often `G_D` depends on less than the velocities do.
 pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, form.state_with_velocity());
     let energy = energy_value(&mut kernel);
     let whole = kernel.finish(vec![energy]);
-    let own = |way: fn(&mut Kernel<'_>) -> Option<Value>| {
+    let by_formula = |way: fn(&mut Kernel<'_>) -> Option<Value>| {
         let mut kernel = Kernel::new(model, derivation, form.state());
         let doubled = way(&mut kernel)?;
         let energy = total_energy(&mut kernel, doubled);
@@ -116,19 +116,26 @@ pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
     };
     let (called, others) = match form {
         Form::Global => {
-            let short = own(from_momenta).filter(|own| own.cost.total() < REPEATED);
+            let short =
+                by_formula(from_momenta).filter(|function| function.cost.total() < REPEATED);
             let called = velocity(model, derivation, form).cost.total();
             (called, [short, None])
         }
         Form::FirstOrder => (0, [None, None]),
-        Form::Reduced => (0, [own(|kernel| kernel.known_doubled_kinetic()), own(on_d)]),
+        Form::Reduced => (
+            0,
+            [
+                by_formula(|kernel| kernel.known_doubled_kinetic()),
+                by_formula(on_d),
+            ],
+        ),
     };
     let fewest = others
         .into_iter()
         .flatten()
-        .min_by_key(|own| own.cost.total());
+        .min_by_key(|function| function.cost.total());
     match fewest {
-        Some(own) if own.cost.total() < whole.cost.total() + called => own,
+        Some(function) if function.cost.total() < whole.cost.total() + called => function,
         _ => whole,
     }
 }
@@ -162,7 +169,7 @@ fn on_d(kernel: &mut Kernel<'_>) -> Option<Value> {
     Some(doubled)
 }
 
-/// Half of this plus the potential energy. A half that the potential energy has too is taken once.
+/// Half of `doubled` plus the potential energy. A factor of one half that both have is applied once.
 fn total_energy(kernel: &mut Kernel<'_>, doubled: Value) -> Value {
     let potential = kernel.value(kernel.model.lagrangian.potential);
     let half = kernel.builder.number(Rational::HALF);

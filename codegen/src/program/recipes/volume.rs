@@ -1,7 +1,7 @@
 //! Functions of the invariant volume `exp(G) mu_C = exp(G) det g / |det A_dep| dq dv_ind`.
 //!
-//! Logarithms of determinants are sums of logarithms of what a factorisation leaves on its diagonal: `ln det g` of the
-//! pivots of `L D L^T`, `ln det m^{ab}` of the squared norms of the orthogonalised constraint columns.
+//! Logarithms of determinants are sums of logarithms of the diagonal of a factorisation: `ln det g` of the pivots of
+//! `L D L^T`, `ln det m^{ab}` of the squared norms of the orthogonalised constraint columns.
 
 use dalembert_expr::{ExprId, Function as Elementary, Rational};
 
@@ -27,10 +27,12 @@ pub fn invariant_volume(
     InvariantVolume {
         log_density,
         log_volume: kernel.finish(vec![total]),
-        gradient: volume
-            .integral
-            .as_ref()
-            .map(|own| (own.reference.clone(), gradient(model, derivation, own))),
+        gradient: volume.integral.as_ref().map(|integral| {
+            (
+                integral.reference.clone(),
+                gradient(model, derivation, integral),
+            )
+        }),
         independent: (0..model.coordinates.len())
             .filter(|i| !volume.dependent.contains(i))
             .collect(),
@@ -105,9 +107,9 @@ fn sum_of_logarithms(kernel: &mut Kernel<'_>, factors: &[Value]) -> Value {
 
 /// `ln |det A|` of the columns of the constraint forms that belong to these velocities.
 ///
-/// An entry that is the only one of its row or column is a factor of the determinant. What is left without such
-/// entries is orthogonalised: no choice of pivots is good at every state, and the product of the norms is the absolute
-/// value of the determinant.
+/// An entry that is the only one of its row or column is a factor of the determinant. The rest without such entries is
+/// orthogonalised: no choice of pivots is good at every state, and the product of the norms is the absolute value of the
+/// determinant.
 fn log_minor(kernel: &mut Kernel<'_>, columns: &[usize]) -> Value {
     let mut rows: Vec<usize> = (0..kernel.constraints()).collect();
     let mut columns = columns.to_vec();
@@ -159,7 +161,7 @@ fn log_entry(kernel: &mut Kernel<'_>, a: usize, j: usize) -> Value {
     log_magnitude(kernel, entry)
 }
 
-/// Squared norms of the rows after each was freed of its components along the earlier ones.
+/// Squared norms of the rows, each without its components along the earlier ones.
 fn squared_norms(kernel: &mut Kernel<'_>, rows: &[usize], columns: &[usize]) -> Vec<Value> {
     let entries = rows
         .iter()
