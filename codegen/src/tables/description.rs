@@ -1,4 +1,4 @@
-//! What a model says of itself.
+//! Self-description of a model.
 
 use dalembert_expr::ExprId;
 use dalembert_numbers::description::{
@@ -13,7 +13,7 @@ use crate::program::recipes::geometry;
 use crate::spec::WHOLE;
 
 impl FormOf<'_> {
-    /// What it says of itself.
+    /// The self-description.
     pub fn documentation(&self) -> Documentation {
         let model = self.model;
         let quantities = self.program.geometry.groups.iter();
@@ -89,7 +89,7 @@ pub fn text_of(documentation: &[String]) -> String {
     lines.join("\n")
 }
 
-/// Which values were declared.
+/// True for the values that were declared.
 fn marks(values: &[Option<ExprId>]) -> &'static [bool] {
     table(values.iter().map(Option::is_some))
 }
@@ -138,7 +138,7 @@ fn constraints(model: &Model) -> impl Iterator<Item = ConstraintInfo> {
     })
 }
 
-/// What is said of a constraint, with the index of its level.
+/// Description of a constraint, with the index of its level.
 pub(super) fn constraint(
     model: &Model,
     declared: &Constraint,
@@ -158,7 +158,7 @@ pub(super) fn surface(model: &Model, index: usize) -> SurfaceInfo {
     }
 }
 
-/// What is said of the view; `places` are those of the coordinates.
+/// Description of the view; `places` are those of the coordinates.
 pub(super) fn view(model: &Model, places: &[usize]) -> Option<ViewInfo> {
     let view = model.view.as_ref()?;
     Some(ViewInfo {

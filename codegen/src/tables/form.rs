@@ -85,25 +85,25 @@ impl FormOf<'_> {
             )
         });
         let counts = several.map(|(_, function)| function.outputs.len());
-        // NOTE: blows and contacts are asked for where there are none too.
+        // NOTE: callers ask for blows and contacts even where there are none.
         let least = 5 + self.motion_dimension();
         counts.max().unwrap_or(0).max(least)
     }
 
-    /// Whether states drift off constraints that they are to be brought back to. A state reduced to D has nothing to be
-    /// brought back to but the positions of integrable constraints.
+    /// True if states drift off constraints and runs bring them back. A state reduced to D can only drift off the
+    /// positions of integrable constraints.
     pub fn drifts(&self) -> bool {
         let is_constrained = self.program.constrained.is_some();
         let drifts = is_constrained && (self.program.form == Form::Global || self.levels() > 0);
         drifts && self.model.extras.projection
     }
 
-    /// Whether its runs can be varied.
+    /// True if its runs can be varied.
     pub fn varies(&self) -> bool {
         self.model.extras.variations && !self.is_wrapped()
     }
 
-    /// What expansions of the motion take.
+    /// Work of expansions of the motion.
     pub fn work(&self) -> Work {
         let jet = &self.program.jet;
         let values = jet.function.cost.multiplications_alike();
@@ -129,7 +129,7 @@ impl FormOf<'_> {
         })
     }
 
-    /// Whether nothing but a Lagrangian without time moves a system with surfaces: its energy is kept between impacts.
+    /// True if nothing but a Lagrangian without time moves a system with surfaces: its energy is kept between impacts.
     fn conserves_energy(&self) -> bool {
         let model = self.model;
         let lagrangian = model.lagrangian.whole;
@@ -142,7 +142,7 @@ impl FormOf<'_> {
         self.program.impacting.is_some() && is_free && is_steady
     }
 
-    /// Which constraint each level belongs to, where some are declared to be 0.
+    /// The constraint of each level, where some are declared to be 0.
     fn declared_levels(&self) -> impl Iterator<Item = Level> {
         let functions = self.program.constrained.as_ref();
         let are_declared = functions.is_some_and(|constraints| constraints.level_scales.is_some());
@@ -176,7 +176,7 @@ impl FormOf<'_> {
     }
 }
 
-/// Whether a kernel belongs to impulses and discrete principles, which constraints that are not linear define none of.
+/// True if a kernel belongs to impulses and discrete principles. Constraints that are not linear in the velocities define none.
 fn is_of_impulses(kernel: Kernel) -> bool {
     matches!(
         kernel,
@@ -204,7 +204,7 @@ fn conditions(declared: &[model::Condition]) -> &'static [Condition] {
     }))
 }
 
-/// The coordinates that a function takes, by bits; all from the last bit on share it.
+/// The coordinates that a function reads, by bits; all from the last bit on share it.
 fn coordinates_of(function: &Function) -> u64 {
     let taken = function.ops.iter().filter_map(|op| match op {
         Op::Input(Input::Coordinate(i)) => Some(1_u64 << i.min(&63)),

@@ -1,13 +1,13 @@
-//! What is known of a form besides its functions, as data of the types that the runtime reads.
+//! Data of a form besides its functions, in the types that the runtime reads.
 //!
 //! | file | job |
 //! |---|---|
 //! | `form.rs` | sizes, conditions and laws of a form |
-//! | `description.rs` | what a model says of itself |
-//! | `modes.rs` | both of a model with modes, and where each mode finds its own |
+//! | `description.rs` | self-description of a model |
+//! | `modes.rs` | both for a model with modes, and the place of each mode's quantities among those of the model |
 //!
-//! `emit` writes it down as constants; what runs a declaration without a compiler takes it as it is.
-// NOTE: the runtime's tables borrow for ever, as constants do. What is made here lives as long as the program that made it.
+//! `emit` writes the data down as constants; an interpreter of declarations uses them directly.
+// NOTE: the runtime's tables hold `'static` borrows, as constants do. Tables made here live as long as the program that made them.
 
 mod description;
 mod form;
@@ -25,7 +25,7 @@ pub use modes::Whole;
 /// One form of a model, of a scene or of a mode.
 #[derive(Debug, Clone, Copy)]
 pub struct FormOf<'a> {
-    /// What is used: the whole model, or what a scene leaves of it.
+    /// The model in use: the whole one, or its restriction to a scene.
     pub model: &'a Model,
     /// The scenes of the whole model.
     pub scenes: &'a [Scene],
@@ -56,7 +56,7 @@ impl<'a> FormOf<'a> {
             .collect()
     }
 
-    /// Whether it is the global form of a model or a scene whose own is reduced.
+    /// True for the global form of a model or a scene whose own form is reduced.
     pub fn is_wrapped(&self) -> bool {
         self.frame.is_some() && self.program.form == Form::Global
     }

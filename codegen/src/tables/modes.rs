@@ -1,4 +1,4 @@
-//! What is known of a model with modes: lengths of vectors, and where each mode finds its own among what the model has.
+//! Data of a model with modes: lengths of vectors, and the place of each mode's quantities among those of the model.
 
 use dalembert_numbers::description::{Description, Documentation, ModeInfo};
 use dalembert_numbers::tables::{Dimensions, Form, Mode, Passage, Tables, Transition, Work};
@@ -10,14 +10,14 @@ use crate::spec::WHOLE;
 /// A model with modes.
 #[derive(Debug)]
 pub struct Whole<'a> {
-    /// What was declared.
+    /// The declaration.
     pub graph: &'a ModeGraph,
-    /// Of each mode its own form, then the global one if that is another.
+    /// Forms of each mode: its own, then the global one where the two differ.
     pub forms: Vec<Vec<FormOf<'a>>>,
 }
 
 impl<'a> Whole<'a> {
-    /// The model that the first mode is: names and parameters of the whole are its own.
+    /// The model of the first mode. Names and parameters of the whole are those of this model.
     pub fn model(&self) -> &Model {
         &self.graph.modes[0].model
     }
@@ -62,7 +62,7 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// What expansions of the motion take: the most of any mode.
+    /// Work of expansions of the motion: the largest of any mode.
     pub fn work(&self) -> Option<Work> {
         self.modes().map(FormOf::work).reduce(Work::most)
     }
@@ -114,7 +114,7 @@ impl<'a> Whole<'a> {
         })
     }
 
-    /// What the whole says of itself.
+    /// Self-description of the whole.
     pub fn documentation(&self) -> Documentation {
         Documentation {
             description: self.description(),
@@ -163,7 +163,7 @@ impl<'a> Whole<'a> {
     }
 }
 
-/// Where each surface of a mode leads.
+/// The transition of each surface of a mode.
 fn transitions(graph: &ModeGraph, mode: &model::Mode) -> Vec<Option<Transition>> {
     let opposites: Vec<[usize; 2]> = graph.opposites().collect();
     let surfaces = mode.model.surfaces.iter().zip(&mode.places.surfaces);
