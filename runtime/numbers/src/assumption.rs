@@ -1,8 +1,8 @@
-//! What a declaration demands of a parameter.
+//! Conditions on parameters.
 
 use core::fmt;
 
-/// What a declaration demands of a parameter. Checked when a state is made.
+/// Condition that a declaration imposes on a parameter. Checked when a state is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Assumption {
     /// Any finite number.
@@ -23,7 +23,7 @@ pub enum Assumption {
 }
 
 impl Assumption {
-    /// Whether `value` is finite and satisfies the assumption.
+    /// True if `value` is finite and satisfies the assumption.
     pub fn holds(&self, value: f64) -> bool {
         value.is_finite()
             && match *self {

@@ -1,7 +1,7 @@
-//! Numbers along straight lines through a box: intervals of their values, their rates and the rates of those.
+//! Numbers along straight lines through a box: intervals of their values, of their rates and of the rates of those.
 //!
-//! With every coordinate in its interval of the box, and its rate in an interval, `f(x)` encloses values, rates and bends of `f` along
-//! every such line. So it bounds first and second derivatives in all directions at once.
+//! With every coordinate in its interval of the box, and its rate in an interval, `f(x)` encloses values, rates and bends
+//! of `f` along every such line. It therefore bounds first and second derivatives in all directions at once.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -162,7 +162,7 @@ impl Numbers for Bent {
         Self::steady(Interval::gathered(of_lane))
     }
 
-    /// A number inside. Nothing that is to hold for the whole box may be asked of it.
+    /// A number inside. It says nothing about the rest of the box.
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
     }
@@ -204,7 +204,7 @@ impl Numbers for Bent {
         }
     }
 
-    /// Where the sign changes there is a kink.
+    /// A change of the sign makes a kink.
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
             (false, _) => self,

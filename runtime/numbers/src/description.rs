@@ -1,4 +1,4 @@
-//! What a model says of itself: names, documentation, parameters, and where to look at it.
+//! Self-description of a model: names, documentation, parameters, and the view.
 
 pub use crate::assumption::Assumption;
 use crate::kernel::Shape;
@@ -24,7 +24,7 @@ pub enum Topology {
 pub struct CoordinateInfo {
     /// Name as the command line writes it: `x`, `theta.3`.
     pub name: &'static str,
-    /// Where it runs.
+    /// The set of its values.
     pub topology: Topology,
 }
 
@@ -33,7 +33,7 @@ pub struct CoordinateInfo {
 pub struct ParameterInfo {
     /// Name as the command line writes it: `m`, `m.3`.
     pub name: &'static str,
-    /// What its values must satisfy.
+    /// Condition on its values.
     pub assumption: Assumption,
     /// The declared default.
     pub default: Option<f64>,
@@ -44,7 +44,7 @@ pub struct ParameterInfo {
 pub struct ConstraintInfo {
     /// Declared name.
     pub name: &'static str,
-    /// Whether it has an affine part `eta_0`.
+    /// True if it has an affine part `eta_0`.
     pub affine: bool,
     /// Index among the position-level values when the constraint is integrable with a known function.
     pub level: Option<usize>,
@@ -68,18 +68,18 @@ pub struct SurfaceInfo {
     pub law: &'static str,
 }
 
-/// The declared `view`: what a picture of the model shows.
+/// The declared `view`: the content of a picture of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewInfo {
     /// The two expressions of `path`, as written.
     pub labels: [&'static str; 2],
     /// Indices of the coordinates that span the plane, when `path` is a pair of coordinates.
     pub plane: Option<[usize; 2]>,
-    /// Whether a `region` was declared.
+    /// True if a `region` was declared.
     pub region: bool,
 }
 
-/// Everything static that is known of a model. Orders are orders of declaration throughout.
+/// Static description of a model. All lists are in the order of declaration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Description {
     /// The type's name, `RollingDisk`.
@@ -90,34 +90,33 @@ pub struct Description {
     pub documentation: &'static str,
     /// The declaration, as given to the macro.
     pub source: &'static str,
-    /// Whether a `field` was declared in place of a Lagrangian: the state is the position, and there are no momenta and
-    /// no energy.
+    /// True if a `field` was declared in place of a Lagrangian: the state is the position, and there are no momenta and no energy.
     pub is_first_order: bool,
     /// The coordinates.
     pub coordinates: &'static [CoordinateInfo],
-    /// The parameters; a family takes one entry per member.
+    /// The parameters; a family has one entry per member.
     pub parameters: &'static [ParameterInfo],
     /// The constraints.
     pub constraints: &'static [ConstraintInfo],
     /// The named forces.
     pub forces: &'static [&'static str],
-    /// The quasi-velocities of the form reduced to D; a coordinate's velocity goes by the coordinate's name with
-    /// `_dot`. None where the equations are solved in the global form.
+    /// The quasi-velocities of the form reduced to D. The velocity of a coordinate has the coordinate's name with `_dot`.
+    /// Empty where the equations are solved in the global form.
     pub quasi_velocities: &'static [&'static str],
     /// The impact surfaces.
     pub surfaces: &'static [SurfaceInfo],
     /// The declared outputs.
     pub outputs: &'static [&'static str],
-    /// The scenes; `all`, the model itself, comes first. Of a model with modes each mode by itself is one for `derive` and
-    /// `check`; a visitor of scenes is not shown them.
+    /// The scenes; `all`, the model itself, comes first. For a model with modes, each mode by itself is a scene of
+    /// `derive` and `check`; a visitor of scenes does not see it.
     pub scenes: &'static [&'static str],
-    /// The modes; none of a model in one piece.
+    /// The modes; empty for a model without modes.
     pub modes: &'static [ModeInfo],
     /// The view, if declared.
     pub view: Option<ViewInfo>,
 }
 
-/// A quantity that [`Kernel::Geometry`](crate::Kernel::Geometry) gives: its name, and how its numbers are arranged.
+/// A quantity that [`Kernel::Geometry`](crate::Kernel::Geometry) gives: its name, and the arrangement of its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     /// The name, as `eval` prints it.
@@ -133,9 +132,9 @@ pub struct Documentation {
     pub description: Description,
     /// The inputs; their values are the parameters after those of the description.
     pub inputs: &'static [&'static str],
-    /// Of each coordinate, whether its position was declared.
+    /// True for coordinates whose position was declared, in order.
     pub placed: &'static [bool],
-    /// Of each coordinate, whether its velocity was declared.
+    /// True for coordinates whose velocity was declared, in order.
     pub named: &'static [bool],
     /// The quantities of [`Kernel::Geometry`](crate::Kernel::Geometry), in order.
     pub geometry: &'static [Quantity],

@@ -1,8 +1,9 @@
-//! Closed intervals of doubles that contain every value of what they stand for.
+//! Closed intervals of doubles that contain every value of the quantity they enclose.
 //!
-//! Sums, products, quotients and square roots of doubles are correctly rounded, so that one unit in the last place outwards
-//! encloses them. Elementary functions are those of `libm` on every machine, whose error is below two units in the last place;
-//! they are widened by four units. Endpoints may be infinite, and are never NaN: what may have no value is [`Interval::WHOLE`].
+//! Sums, products, quotients and square roots of doubles are correctly rounded, so that one unit in the last place
+//! outwards encloses them. Elementary functions are those of `libm` on every machine, whose error is below two units in
+//! the last place; they are widened by four units. Endpoints may be infinite, and are never NaN: a quantity that may have
+//! no value is [`Interval::WHOLE`].
 //!
 //! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapters 2 and 5.
 
@@ -15,7 +16,7 @@ use crate::numbers::Numbers;
 /// Unit in the last place of 1: at least the unit in the last place of any number, as a part of it.
 const ULP: f64 = f64::EPSILON;
 
-/// Parts of an elementary function's value that it is widened by: at least four units in the last place.
+/// Relative widening of an elementary function's value: at least four units in the last place.
 const CALL: f64 = 4.0 * ULP;
 
 /// Arguments of sine and cosine beyond this size have the range `[-1, 1]`.
@@ -31,7 +32,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// All real numbers, and of what may have no value.
+    /// All real numbers; also the enclosure of a quantity that may have no value.
     pub const WHOLE: Self = Self {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
@@ -102,7 +103,7 @@ impl Interval {
         self.hi - self.lo
     }
 
-    /// A number inside, in the middle up to rounding; 0 of what has no ends.
+    /// A number inside, in the middle up to rounding; 0 for an interval without ends.
     #[inline(always)]
     pub fn middle(self) -> f64 {
         let middle = 0.5 * self.lo + 0.5 * self.hi;
@@ -138,7 +139,7 @@ impl Interval {
         Self::new(self.lo.clamp(lo, hi), self.hi.clamp(lo, hi))
     }
 
-    /// True of what may have no value, and of all real numbers.
+    /// True for [`Interval::WHOLE`]: all real numbers, or perhaps no value.
     #[inline(always)]
     pub fn is_whole(self) -> bool {
         self.lo == f64::NEG_INFINITY && self.hi == f64::INFINITY
@@ -187,7 +188,7 @@ impl Interval {
     }
 }
 
-/// The interval between two numbers, each moved outwards by this part of itself.
+/// The interval between two numbers, each moved outwards by `part` of itself.
 ///
 /// It is enough for sums: where a sum of doubles underflows it is exact.
 #[inline(always)]
@@ -200,7 +201,7 @@ fn outwards(lo: f64, hi: f64, part: f64) -> Interval {
     }
 }
 
-/// The same, and by the smallest normal number, which is more than what a product loses where it underflows.
+/// As [`outwards`], and by the smallest normal number: more than the loss of a product that underflows.
 #[inline(always)]
 fn widest(lo: f64, hi: f64, part: f64) -> Interval {
     let (lo, hi) = (
@@ -256,7 +257,7 @@ impl Mul for Interval {
         let is_finite = (ends[0] + ends[1] + ends[2] + ends[3]).abs() < f64::INFINITY;
         match is_finite {
             true => {
-                // Products of numbers that are not negative are not negative, whatever rounding says.
+                // Products of numbers that are not negative are not negative, in spite of rounding.
                 let product = widest(lo, hi, ULP);
                 match self.lo >= 0.0 && other.lo >= 0.0 {
                     true => Self::new(product.lo.max(0.0), product.hi),
@@ -268,8 +269,8 @@ impl Mul for Interval {
     }
 }
 
-/// A product with an end that is not finite. An infinite end stands for all large numbers, so that 0 times it is 0; but of what may
-/// have no value nothing is known.
+/// A product with an end that is not finite. An infinite end stands for all large numbers, so that 0 times it is 0.
+/// Nothing is known of a product with a quantity that may have no value.
 #[cold]
 fn far_product(a: Interval, b: Interval) -> Interval {
     if a.is_whole() || b.is_whole() {
@@ -344,7 +345,7 @@ impl Numbers for Interval {
         Self::of(of_lane(0))
     }
 
-    /// A number inside. Nothing that is to hold for the whole interval may be asked of it.
+    /// A number inside. It says nothing about the rest of the interval.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.middle()
@@ -406,7 +407,7 @@ impl Numbers for Interval {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
-    /// Anything where the sign changes: series of what has a kink there do not exist.
+    /// Anything where the sign changes: no series exists across a kink.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.lo < 0.0, sign.hi < 0.0) {
@@ -538,10 +539,10 @@ impl Numbers for Interval {
 }
 
 impl Interval {
-    /// The power with an exponent that is less by 1: what the derivative of a power takes.
+    /// The power with an exponent that is less by 1, which the derivative of a power needs.
     #[inline]
     pub(crate) fn powf_below(self, exponent: f64) -> Self {
-        // The exponent is rounded: the power changes by no more than its logarithm says, less than `746 u`.
+        // The exponent is rounded: the power changes by at most its logarithm times that, less than `746 u`.
         const SLACK: f64 = 1e-12;
         let power = self.powf(exponent - 1.0);
         power * Self::new(1.0 - SLACK, 1.0 + SLACK)
@@ -563,11 +564,11 @@ pub(crate) mod tests {
         pub(crate) rated: fn(Rated) -> Rated,
         pub(crate) model: fn(TaylorModel) -> TaylorModel,
         pub(crate) bent: fn(Bent) -> Bent,
-        /// Where it has values.
+        /// Ends of the domain.
         domain: [f64; 2],
     }
 
-    /// Two places that a path leads between.
+    /// Two ends of a path.
     pub(crate) struct Sample {
         pub(crate) from: f64,
         pub(crate) to: f64,
@@ -604,7 +605,7 @@ pub(crate) mod tests {
         };
     }
 
-    /// A constant of whatever kind its neighbour is.
+    /// A constant as a number of the same type as its neighbour.
     fn like<L: Numbers>(_: L, number: f64) -> L {
         L::of(number)
     }

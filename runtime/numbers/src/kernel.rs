@@ -1,7 +1,7 @@
-//! The functions that a generator derives of a model, by name: what generator and runtime agree on.
+//! The functions that a generator derives from a model, by name: the agreement of generator and runtime.
 
-/// A function of a model in one form of its equations. Its values are numbers one after the other; what it reads is a time, numbers
-/// in a first place and numbers in a second one ([`Kernel::first`], [`Kernel::second`]), and the parameters.
+/// A function of a model in one form of its equations. Its values are numbers one after the other. It reads a time,
+/// numbers in a first place, numbers in a second place ([`Kernel::first`], [`Kernel::second`]), and the parameters.
 ///
 /// `n` is the number of coordinates, `m` that of constraints, `k` that of momenta or quasi-velocities in a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -14,11 +14,11 @@ pub enum Kernel {
     Velocity,
     /// The momenta of a state that does not hold them: n.
     Momentum,
-    /// Momenta or quasi-velocities of velocities: k.
+    /// Momenta or quasi-velocities for given velocities: k.
     Motion,
-    /// Those of the allowed velocities that are nearest to velocities, in the metric: k.
+    /// Momenta or quasi-velocities of the allowed velocities nearest to given ones, in the metric: k.
     Nearest,
-    /// The quasi-velocities of the allowed momenta that are nearest to momenta: k.
+    /// The quasi-velocities of the allowed momenta nearest to given ones: k.
     NearestMomenta,
     /// Kinetic and potential energy.
     Energy,
@@ -34,13 +34,13 @@ pub enum Kernel {
     Restore,
     /// The values of integrable constraints.
     Levels,
-    /// The sizes of those whose value is declared.
+    /// The sizes of the levels whose value is declared.
     LevelScales,
-    /// The change of positions that takes an excess of levels: n.
+    /// The change of positions that removes an excess of levels: n.
     LevelCorrection,
     /// The force of the constraints for multipliers: n.
     ReactionForce,
-    /// The allowed velocities for momenta, then the multipliers that make them so: n + m.
+    /// The allowed velocities for momenta, then the multipliers that correct them: n + m.
     ConstrainedVelocity,
     /// All gaps.
     Gaps,
@@ -48,9 +48,9 @@ pub enum Kernel {
     Gap(usize),
     /// The rates of all gaps.
     GapRates,
-    /// Their second rates, where the motion changes at given rates.
+    /// The second rates of all gaps, for given rates of the motion.
     GapAccelerations,
-    /// What an impulse changes the rates of all gaps by.
+    /// Changes of the rates of all gaps by an impulse.
     GapResponses,
     /// The margins of the conditions of a surface: its own, then those of others that it depends on.
     Conditions(usize),
@@ -58,7 +58,7 @@ pub enum Kernel {
     Coefficient(usize),
     /// The blow by the law of a surface: size, share, direction.
     Blow(usize),
-    /// What an impact on a surface needs: gap rate, constrained rate, rate of the surface, constrained and free compliance, direction.
+    /// Quantities of an impact on a surface: gap rate, constrained rate, rate of the surface, constrained and free compliance, direction.
     Contact(usize),
     /// Positions and velocities after the reset of a surface: 2 n.
     Reset(usize),
@@ -66,19 +66,19 @@ pub enum Kernel {
     Entry(usize),
     /// The impulse after which the instantaneous constraints of a surface hold: k.
     Focus(usize),
-    /// What is to be added to rates of the motion for them to go on holding: k.
+    /// Addition to rates of the motion that keeps the instantaneous constraints of a surface: k.
     Trace(usize),
     /// The divergence of the motion.
     Divergence,
     /// The density form: n.
     DensityForm,
-    /// The logarithm of an invariant density, but for an integral.
+    /// The logarithm of an invariant density, without the part given as an integral.
     LogDensity,
-    /// The logarithm of the density of the invariant volume, but for an integral.
+    /// The logarithm of the density of the invariant volume, without the part given as an integral.
     LogVolume,
-    /// The gradient of what is integrated: n.
+    /// The gradient of the function that is integrated: n.
     DensityGradient,
-    /// What changes the energy, by cause.
+    /// Powers that change the energy, by cause.
     Powers,
     /// The declared outputs.
     Outputs,
@@ -90,7 +90,7 @@ pub enum Kernel {
     Initial,
     /// The declared time.
     Until,
-    /// All that is derived at a state.
+    /// All quantities derived at a state.
     Geometry,
 }
 
@@ -99,14 +99,14 @@ pub enum Kernel {
 pub enum Shape {
     /// One number.
     Scalar,
-    /// So many numbers.
+    /// This count of numbers.
     Vector(usize),
     /// Rows and columns; row after row.
     Matrix(usize, usize),
 }
 
 impl Shape {
-    /// How many numbers there are.
+    /// Number of numbers.
     pub const fn count(self) -> usize {
         match self {
             Self::Scalar => 1,
@@ -116,7 +116,7 @@ impl Shape {
     }
 }
 
-/// What a kernel reads in its first place.
+/// Numbers that a kernel reads in its first place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum First {
     /// Nothing.
@@ -127,7 +127,7 @@ pub enum First {
     State,
 }
 
-/// What a kernel reads in its second place.
+/// Numbers that a kernel reads in its second place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Second {
     /// Nothing.
@@ -145,7 +145,7 @@ pub enum Second {
 }
 
 impl Kernel {
-    /// What it reads in its first place.
+    /// The numbers in its first place.
     pub const fn first(self) -> First {
         match self {
             Self::Scale
@@ -172,7 +172,7 @@ impl Kernel {
         }
     }
 
-    /// What it reads in its second place.
+    /// The numbers in its second place.
     pub const fn second(self) -> Second {
         match self {
             Self::Motion | Self::Nearest | Self::Force | Self::Residuals | Self::Forms => {

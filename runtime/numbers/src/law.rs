@@ -1,4 +1,4 @@
-//! Impact laws: how large the impulse along `pi_D^* dh` is, or what the state is reset to.
+//! Impact laws: the size of the impulse along `pi_D^* dh`, or the reset of the state.
 //!
 //! Every law but `reset` is `p+ = p + eps pi_D^* dh`, a choice of `eps`. With `G` the gap rate
 //! `dh(qdot) + d_t h`, `rho = dh(pi_D grad h) / dh(grad h)`:
@@ -33,20 +33,20 @@ pub enum Law {
     ImpactPlastic,
     /// The gap rate is multiplied by `1 - rho`.
     TotallyPlastic,
-    /// The declared map of positions and velocities. The surface has no
-    /// side that is not allowed: where the map leaves the gap falling, it is crossed.
+    /// The declared map of positions and velocities. No side of the surface is forbidden: where the map leaves the gap
+    /// falling, the surface is crossed.
     Reset,
-    /// The surface leads to another mode: the state becomes one of that. Not to be chosen.
+    /// The surface leads to another mode: the state becomes a state of that mode. Cannot be chosen.
     Transition,
 }
 
 impl Law {
-    /// Whether it is a map of the state and not an impulse.
+    /// True if it is a map of the state and not an impulse.
     pub const fn is_map(&self) -> bool {
         matches!(self, Self::Reset | Self::Transition)
     }
 
-    /// The laws by the names the language and the command line use, with whether they take a coefficient.
+    /// The laws by their names in the language and on the command line; true for those with a coefficient.
     pub const NAMES: [(&'static str, bool); 7] = [
         ("elastic", false),
         ("restitution", true),
@@ -71,8 +71,7 @@ impl Law {
         }
     }
 
-    /// What the law takes from the gap rate, with `e` for its coefficient and the numbers of a contact in its order;
-    /// NaN for [`Law::Reset`].
+    /// Change of the gap rate by the law, with `e` for its coefficient and the numbers of a contact in their order; NaN for [`Law::Reset`].
     #[inline(always)]
     pub fn taken<L: Numbers>(self, e: L, scalars: &[L; 5]) -> L {
         let [gap_rate, constrained_rate, surface_rate, constrained, free] = *scalars;
@@ -143,7 +142,7 @@ impl fmt::Display for Law {
 mod tests {
     use super::*;
 
-    /// Every law in order. A law that is new does not compile here without its place.
+    /// Every law in order. A new law does not compile here without its place.
     fn following(law: Law) -> Option<Law> {
         match law {
             Law::Elastic => Some(Law::Restitution(0.25)),

@@ -1,4 +1,5 @@
-//! Generator and runtime meet here: numbers that generated kernels compute in, names of kernels, and tables of what is known of a model.
+//! Numbers, names and tables that generator and runtime share: the numbers of generated kernels, the names of kernels, and
+//! the tables of a model.
 //!
 //! | file | job |
 //! |---|---|
@@ -9,10 +10,10 @@
 //! | `smooth.rs` | functions with their derivatives, for numbers that carry derivatives |
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
 //! | `bent.rs` | intervals of values, rates and bends along lines through a box |
-//! | `taylor_model.rs` | cubics along a stretch of motion, and how far from them values and rates may be |
-//! | `tables.rs` | what is known of a form of a model besides its functions |
-//! | `description.rs` | what a model says of itself |
-//! | `law.rs`, `assumption.rs` | laws of impacts, demands on parameters |
+//! | `taylor_model.rs` | cubics along a stretch of motion, with bounds of the distance of values and rates from them |
+//! | `tables.rs` | data of a form of a model besides its functions |
+//! | `description.rs` | self-description of a model |
+//! | `law.rs`, `assumption.rs` | laws of impacts, conditions on parameters |
 //! | `kernel.rs` | the functions of a model by name, on which generator and runtime agree |
 //! | `extended/` | sums of a few doubles: arithmetic, elementary functions, decimal text |
 

@@ -2,9 +2,8 @@
 //! Rust otherwise.
 //!
 //! Everything else in this crate is addition, multiplication, division and square root, which are correctly rounded by
-//! definition, in the order in which they are written: Rust never contracts them, and [`mul_add`] does
-//! so only without `strict`. So with `strict` a run has the same
-//! bits on every machine.
+//! definition, in the order in which they are written. Rust never contracts them, and [`mul_add`] does so only without
+//! `strict`. With `strict` a run therefore has the same bits on every machine.
 
 macro_rules! elementary {
     ($($name:ident($($argument:ident),+) = $platform:ident, $rust:ident, $rounded:ident;)*) => {$(
@@ -52,7 +51,7 @@ pub fn sqrt(x: f64) -> f64 {
     }
 }
 
-/// `a b + c`, rounded once where the machine does that at once and nobody asked for the same bits everywhere.
+/// `a b + c`. Rounded once where the processor does so in one instruction and `strict` is off.
 #[inline(always)]
 pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]

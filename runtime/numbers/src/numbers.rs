@@ -1,7 +1,7 @@
-//! One number, or several side by side: what Taylor series are computed in.
+//! Numbers in which Taylor series are computed: one number, or several side by side.
 //!
-//! Generated series are written once, over [`Numbers`]. With `f64` they are those of one motion. With several lanes they
-//! are those of as many motions at once; every lane has the bits that `f64` has, whatever the others hold.
+//! Generated series are written once, over [`Numbers`]. With `f64` they are the series of one motion. With several lanes
+//! they are the series of as many motions at once; every lane has the bits that `f64` has, independent of the others.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -58,8 +58,8 @@ pub trait Numbers:
     /// The same number in every lane.
     fn of(number: f64) -> Self;
 
-    /// The constant that is the sum of these numbers, each the nearest to what those before it leave: the first alone
-    /// unless numbers have more than double precision.
+    /// The constant that is the sum of these numbers, each the nearest to the remainder after those before it. Numbers of
+    /// double precision use the first alone.
     #[inline(always)]
     fn constant(parts: [f64; 4]) -> Self {
         Self::of(parts[0])
@@ -77,7 +77,7 @@ pub trait Numbers:
     /// The number of a lane.
     fn lane(&self, lane: usize) -> f64;
 
-    /// Whether the number is below 0, if that is the same in all lanes and certain.
+    /// True if the number is below 0, false if it is not; `None` unless that is the same in all lanes and certain.
     fn is_below_zero(&self) -> Option<bool>;
 
     /// `self b + c`, rounded as [`math::mul_add`] does.
@@ -102,7 +102,7 @@ pub trait Numbers:
         (self.sin(), self.cos())
     }
 
-    /// The square: of an interval it is never negative, which `self * self` does not know.
+    /// The square. The square of an interval is never negative; `self * self` may be.
     #[must_use]
     #[inline(always)]
     fn square(self) -> Self {
@@ -174,8 +174,8 @@ pub trait Numbers:
     fn asinh(self) -> Self;
 }
 
-/// Hands the functions of one number to a macro, by the names that they have in [`Numbers`]. Kinds of numbers that make all of them by one
-/// rule take them from here.
+/// Hands the functions of one number to a macro, by their names in [`Numbers`]. Kinds of numbers that define all of them
+/// by one rule use this macro.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! functions_of_one_number {
@@ -184,8 +184,8 @@ macro_rules! functions_of_one_number {
     };
 }
 
-/// The functions of [`Numbers`] that take every lane by itself, for numbers whose lanes are doubles.
-// NOTE: no defaults of the trait: a kind of number that forgot one would compute it in the doubles of its lanes, in silence.
+/// The functions of [`Numbers`] applied to every lane by itself, for numbers whose lanes are doubles.
+// NOTE: these are no defaults of the trait: a kind of number without one of them would silently compute it in the doubles of its lanes.
 macro_rules! functions_of_lanes {
     () => {
         #[inline(always)]
@@ -222,7 +222,7 @@ macro_rules! functions_of_lanes {
 }
 pub(crate) use functions_of_lanes;
 
-/// Whether a number is below 0; `None` of NaN.
+/// True if a number is below 0; `None` for NaN.
 #[inline(always)]
 pub fn sign_of(number: f64) -> Option<bool> {
     number.partial_cmp(&0.0).map(core::cmp::Ordering::is_lt)

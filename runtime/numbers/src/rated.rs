@@ -1,8 +1,8 @@
 //! Numbers along a stretch of motion: the interval of their values, and that of their rates.
 //!
-//! For a function `f` over numbers and a path `x(s)`, `f(x)` encloses the values of `f(x(s))` on the stretch and its rates, where it
-//! has one; where it has a kink, the slopes of all its chords. So its values differ along the stretch by no more than the
-//! rates say, and with rates of one sign it has one root at most.
+//! For a function `f` over numbers and a path `x(s)`, `f(x)` encloses the values of `f(x(s))` on the stretch, and its
+//! rates where it has one; where it has a kink, the slopes of all its chords. Its values therefore change along the
+//! stretch by no more than the rates allow, and with rates of one sign it has at most one root.
 //!
 //! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 6 (centred forms).
 
@@ -33,7 +33,7 @@ impl Rated {
     /// The value of a function, where its derivative lies in an interval.
     #[inline(always)]
     fn chain(self, value: Interval, derivative: Interval) -> Self {
-        // What does not change has the rate 0, however steep the function is.
+        // A constant has the rate 0, however steep the function is.
         let rate = match self.rate == Interval::ZERO {
             true => Interval::ZERO,
             false => self.rate * derivative,
@@ -130,7 +130,7 @@ impl Numbers for Rated {
         Self::steady(Interval::gathered(of_lane))
     }
 
-    /// A number inside. Nothing that is to hold for the whole stretch may be asked of it.
+    /// A number inside. It says nothing about the rest of the stretch.
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
@@ -170,7 +170,7 @@ impl Numbers for Rated {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself; of others the values jump where the sign changes, and so the rates are anything.
+    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are unbounded.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
@@ -227,7 +227,7 @@ mod tests {
     use super::*;
     use crate::interval::tests::{FUNCTIONS, Sample};
 
-    /// Values and chords of every function on stretches of paths lie in what the function says of the stretch.
+    /// Values and chords of every function on stretches of paths lie in the intervals of the function.
     #[test]
     fn values_and_slopes_of_chords_lie_in_their_intervals() {
         for function in FUNCTIONS {

@@ -4,13 +4,13 @@
 use crate::interval::Interval;
 use crate::numbers::Numbers;
 
-/// A number that functions are differentiated at: a double, or an interval that holds all arguments.
+/// A number at which functions are differentiated: a double, or an interval that holds all arguments.
 pub trait Smooth: Numbers {
     /// `1 / x`
     #[must_use]
     fn reciprocal(self) -> Self;
 
-    /// The part of an interval that is possible; a double as it is.
+    /// The part of an interval between two ends; a double as it is.
     #[must_use]
     fn within(self, lo: f64, hi: f64) -> Self;
 }
@@ -39,7 +39,7 @@ impl Smooth for Interval {
     }
 }
 
-/// Functions that give the value, the first derivative, and the second where it is asked for.
+/// Functions that give the value, the first derivative, and the second on request.
 macro_rules! smooth {
     ($($(#[$doc:meta])* $name:ident($x:ident) $body:block)*) => {$(
         $(#[$doc])*
@@ -132,7 +132,7 @@ fn twice<S: Numbers>(x: S) -> S {
     x + x
 }
 
-/// The functions of one number of a type that carries a derivative: its `value` and `chain(value, first)` make all of them.
+/// The functions of one number for a type with one derivative, from its `value` and `chain(value, first)`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! functions_by_first_derivatives {
@@ -145,7 +145,7 @@ macro_rules! functions_by_first_derivatives {
     )+};
 }
 
-/// The same of a type that carries two: `chain(value, first, second)`.
+/// The same for a type with two derivatives: `chain(value, first, second)`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! functions_by_derivatives {

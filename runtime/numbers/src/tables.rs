@@ -1,9 +1,9 @@
-//! What is known of a form of a model besides its kernels.
+//! Data of a form of a model besides its kernels.
 
 use crate::description::{Documentation, ParameterInfo};
 use crate::law::Law;
 
-/// What a state consists of.
+/// Components of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Positions and momenta.
@@ -14,20 +14,20 @@ pub enum Form {
     FirstOrder,
 }
 
-/// Numbers of things.
+/// Counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimensions {
-    /// Components of a state; those of a model with modes are one more than those of the longest mode.
+    /// Components of a state; one more than those of the longest mode for a model with modes.
     pub state: usize,
-    /// Coordinates, of whatever mode.
+    /// Coordinates, of all modes together.
     pub coordinates: usize,
-    /// Momenta or quasi-velocities in a state, of the mode that has most.
+    /// Momenta or quasi-velocities in a state, of the mode with the most.
     pub motion: usize,
-    /// Constraints, of the mode that has most.
+    /// Constraints, of the mode with the most.
     pub constraints: usize,
-    /// Integrable constraints whose function is known, of the mode that has most.
+    /// Integrable constraints whose function is known, of the mode with the most.
     pub levels: usize,
-    /// Surfaces, of whatever mode.
+    /// Surfaces, of all modes together.
     pub surfaces: usize,
     /// Parameters.
     pub parameters: usize,
@@ -45,11 +45,11 @@ pub struct Chart {
 /// A condition of a surface: its margin is positive, or not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
-    /// Whether a margin of 0 is enough.
+    /// True if a margin of 0 satisfies it.
     pub is_closed: bool,
 }
 
-/// How a surface goes with others of the same gap. A list of conditions holds where all of them hold.
+/// Relation of a surface to others of the same gap. A list of conditions holds where all of them hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
     /// It counts by its own conditions.
@@ -69,24 +69,24 @@ pub struct Surface {
     pub coefficient: Option<&'static str>,
     /// Its conditions.
     pub conditions: &'static [Condition],
-    /// Those of others of the same gap, list after list.
+    /// Conditions of the other surfaces of the same gap, list after list.
     pub others: &'static [&'static [Condition]],
-    /// How both decide whether it counts.
+    /// Rule by which both decide if the surface counts.
     pub beside: Beside,
-    /// The coordinates that the gap takes, by bits; all from the last bit on share it.
+    /// The coordinates that the gap depends on, by bits; all from the last bit on share it.
     pub takes: u64,
 }
 
-/// What a level belongs to.
+/// Constraint of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Level {
     /// Index of the constraint.
     pub constraint: usize,
-    /// Whether the constraint is an equation of positions, so that the level of every state is 0.
+    /// True if the constraint is an equation of positions, so that the level of every state is 0.
     pub is_zero: bool,
 }
 
-/// The rule by which a transition makes the state of the mode that it leads to.
+/// The rule by which a transition makes the state of the mode that it enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Passage {
     /// The state is declared.
@@ -99,29 +99,29 @@ pub enum Passage {
     Refracted,
 }
 
-/// A surface that leads to another mode.
+/// A transition of a surface to another mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
     /// The mode that is entered.
     pub enters: usize,
-    /// How it is entered.
+    /// Rule of the entry.
     pub passage: Passage,
-    /// Whether the surface counts from both sides: the opposite of its gap belongs to another transition of the same mode.
+    /// True if the surface counts from both sides: the opposite of its gap belongs to another transition of the same mode.
     pub has_no_side: bool,
     /// The surface of the model that leads back at once, between first-order modes.
     pub opposite: Option<usize>,
 }
 
-/// A mode of a model: its own tables, and the places of what it has among what the model has.
+/// A mode of a model: its own tables, and the places of its quantities among those of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
-    /// What is known of the mode by itself.
+    /// Tables of the mode by itself.
     pub tables: &'static Tables,
-    /// What it says of itself.
+    /// Its self-description.
     pub documentation: &'static Documentation,
     /// The place of its kernels among those of the model.
     pub kernels: usize,
-    /// That of the kernels of its global form, which may be the same.
+    /// The place of the kernels of its global form, which may be the same.
     pub global: usize,
     /// Coordinates.
     pub coordinates: &'static [usize],
@@ -131,56 +131,56 @@ pub struct Mode {
     pub surfaces: &'static [usize],
     /// Outputs.
     pub outputs: &'static [usize],
-    /// Of each of its surfaces, where it leads.
+    /// The transition of each of its surfaces, where it leads to another mode.
     pub transitions: &'static [Option<Transition>],
 }
 
-/// What is known of a form.
+/// Data of a form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tables {
-    /// What a state consists of.
+    /// Components of a state.
     pub form: Form,
-    /// Numbers of things.
+    /// Counts.
     pub dimensions: Dimensions,
     /// The parameters, without inputs.
     pub parameters: &'static [ParameterInfo],
     /// Coordinates that must stay in an interval.
     pub charts: &'static [Chart],
-    /// Whether smooth motion is known to keep the energy.
+    /// True if smooth motion is known to keep the energy.
     pub conserves_energy: bool,
-    /// Whether rates may have narrow features.
+    /// True if rates may have narrow features.
     pub can_be_narrow: bool,
-    /// Whether constraint forms may become dependent.
+    /// True if constraint forms may become dependent.
     pub can_lose_rank: bool,
-    /// Whether states drift off constraints that runs bring them back to.
+    /// True if states drift off constraints to which runs bring them back.
     pub drifts: bool,
-    /// Whether constraints are linear or affine in the velocities.
+    /// True if constraints are linear or affine in the velocities.
     pub is_linear: bool,
-    /// Whether its runs can be varied.
+    /// True if its runs can be varied.
     pub varies: bool,
     /// The levels, where some are declared.
     pub levels: &'static [Level],
     /// The surfaces.
     pub surfaces: &'static [Surface],
-    /// The configuration from which on the density of the invariant volume is integrated, if it has no closed form.
+    /// The configuration from which the density of the invariant volume is integrated, if it has no closed form.
     pub density_reference: Option<&'static [f64]>,
     /// The modes, of a model that has some.
     pub modes: &'static [Mode],
 }
 
-/// What the expansions of a system take, in multiplications.
+/// Work of the expansions of a system, in multiplications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Work {
-    /// Values at one moment: of a rate, and of gaps where there are surfaces.
+    /// Work of values at one moment: of a rate, and of gaps where there are surfaces.
     pub values: u32,
-    /// Sums over products of coefficients: each takes a multiplication for every pair of coefficients.
+    /// Number of sums over products of coefficients. Each needs a multiplication for every pair of coefficients.
     pub sums: u32,
-    /// The order after which the series of motion and gaps end, if they do whatever the numbers are.
+    /// The order after which the series of motion and gaps end, if they end for all numbers.
     pub degree: Option<u32>,
 }
 
 impl Work {
-    /// The greater of each, of what expansions of two modes take.
+    /// Maximum of the work of two modes, field by field.
     #[must_use]
     pub fn most(self, other: Self) -> Self {
         let degrees = self.degree.zip(other.degree);

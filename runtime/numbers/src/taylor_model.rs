@@ -1,9 +1,9 @@
-//! Functions along a stretch of motion: a cubic, and how far from it they may be.
+//! Functions along a stretch of motion: a cubic, and bounds of the distance from it.
 //!
-//! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)` whose cubic is `p`
-//! and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a function `f` over numbers and a path `x(s)`,
-//! `f(x)` holds `f(x(s))`. On stretches that are half as long errors are a sixteenth: one model tells where a flight has its fall,
-//! which takes a dozen intervals.
+//! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)`
+//! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a function
+//! `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. On a stretch of half the length the error is a sixteenth:
+//! one model locates the fall of a flight, where a dozen intervals are needed otherwise.
 //!
 //! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International Journal of Pure and
 //! Applied Mathematics 6 (2003).
@@ -15,7 +15,7 @@ use crate::math;
 use crate::numbers::Numbers;
 use crate::rated::Rated;
 
-/// Rounding of a few operations, in parts of the sum of absolute values that goes into them.
+/// Rounding of a few operations, relative to the sum of the absolute values of the operands.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The same with elementary functions, which err by less than four units in the last place.
@@ -32,17 +32,17 @@ pub struct TaylorModel {
     pub error: f64,
     /// The largest change of the remainder, by the change of `s`.
     pub slope: f64,
-    /// True if no value is negative, whatever the remainder says.
+    /// True if no value is negative, even where the remainder allows it.
     pub is_nonnegative: bool,
 }
 
-/// `f(c)`, `f'(c)`, `f''(c)/2`, `f'''(c)/6`, and what `|f''''|/24` is at most.
+/// `f(c)`, `f'(c)`, `f''(c)/2`, `f'''(c)/6`, and a bound of `|f''''|/24`.
 struct Expansion {
     terms: [f64; 4],
     fourth: f64,
 }
 
-/// The change of a model from its middle, with its powers: what series about the middle are summed from.
+/// The change of a model from its middle, with its powers: the input of series about the middle.
 struct Change {
     first: [f64; 3],
     square: [f64; 5],
@@ -65,7 +65,7 @@ impl Change {
             spread,
             steepness,
             radius,
-            error: own,
+            error: inherited,
             slope,
         } = *self;
         let [value, f, g, h] = terms;
@@ -86,12 +86,12 @@ impl Change {
         .map(f64::abs);
         let [f, g, h] = [f.abs(), g.abs(), h.abs()];
         let cubed = radius * radius * radius;
-        let mut error =
-            fourth * radius * cubed + own * (f + g * (spread + radius) + 3.0 * h * radius * radius);
+        let mut error = fourth * radius * cubed
+            + inherited * (f + g * (spread + radius) + 3.0 * h * radius * radius);
         let mut steep = 4.0 * fourth * cubed * (steepness + slope)
             + f * slope
-            + 2.0 * g * (radius * slope + own * steepness)
-            + 3.0 * h * radius * (radius * slope + 2.0 * own * steepness);
+            + 2.0 * g * (radius * slope + inherited * steepness)
+            + 3.0 * h * radius * (radius * slope + 2.0 * inherited * steepness);
         for (k, tail) in tails.into_iter().enumerate() {
             error += tail;
             steep += (k + 4) as f64 * tail;
@@ -116,7 +116,7 @@ impl TaylorModel {
         is_nonnegative: false,
     };
 
-    /// A function that does not leave its cubic.
+    /// A function that equals its cubic.
     pub const fn exact(powers: [f64; 4]) -> Self {
         Self {
             powers,
@@ -176,14 +176,14 @@ impl TaylorModel {
         self.powers[1].abs() + 2.0 * self.powers[2].abs() + 3.0 * self.powers[3].abs()
     }
 
-    /// True of what does not change along the stretch, whether or not its value is known.
+    /// True for a quantity that does not change along the stretch, known or not.
     #[inline(always)]
     fn is_steady(&self) -> bool {
         let [_, first, second, third] = self.powers;
         first == 0.0 && second == 0.0 && third == 0.0 && self.slope == 0.0
     }
 
-    // NOTE: rounding of the constant term is the same all along the stretch, and so none of the slope.
+    // NOTE: rounding of the constant term is the same all along the stretch, and does not contribute to the slope.
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
         let sum = Self {
@@ -200,7 +200,7 @@ impl TaylorModel {
         }
     }
 
-    /// The product with what does not change.
+    /// The product with a constant.
     #[inline(always)]
     fn scaled(self, factor: Self) -> Self {
         let (number, doubt) = (factor.powers[0], factor.error);
@@ -222,7 +222,7 @@ impl TaylorModel {
         }
     }
 
-    /// One over what does not change.
+    /// The inverse of a constant.
     #[inline(always)]
     fn inverted(self) -> Self {
         let (number, doubt) = (self.powers[0], self.error);
@@ -248,7 +248,7 @@ impl TaylorModel {
         }
     }
 
-    /// The product of two that change, or the square of one.
+    /// The product of two varying quantities, or the square of one.
     #[inline(always)]
     fn times(self, other: Self, is_square: bool) -> Self {
         let ([a, b], [d, e]) = ([self.powers, other.powers], [self.error, other.error]);
@@ -256,18 +256,18 @@ impl TaylorModel {
         let fifth = a[2] * b[3] + a[3] * b[2];
         let sixth = a[3] * b[3];
         let [fourth, fifth, sixth] = [fourth.abs(), fifth.abs(), sixth.abs()];
-        let [size, own] = [self, other].map(|model| model.powers[0].abs() + model.spread());
+        let [size, other_size] = [self, other].map(|model| model.powers[0].abs() + model.spread());
         let products = d * e;
         // The square of a remainder is not negative: half of it is its middle.
         let lift = match is_square {
             true => 0.5 * products,
             false => 0.0,
         };
-        // Sizes of the products that are none of the constant term.
-        let changing = self.spread() * own + self.powers[0].abs() * other.spread();
-        let error = (products - lift) + (d * own + e * size) + (fourth + fifth + sixth);
+        // Sizes of the products that do not belong to the constant term.
+        let changing = self.spread() * other_size + self.powers[0].abs() * other.spread();
+        let error = (products - lift) + (d * other_size + e * size) + (fourth + fifth + sixth);
         let slope = (self.steepness() * e + other.steepness() * d)
-            + (size * other.slope + own * self.slope)
+            + (size * other.slope + other_size * self.slope)
             + (d * other.slope + e * self.slope)
             + (4.0 * fourth + 5.0 * fifth + 6.0 * sixth);
         Self {
@@ -277,7 +277,8 @@ impl TaylorModel {
                 a[0] * b[2] + a[1] * b[1] + a[2] * b[0],
                 (a[0] * b[3] + a[3] * b[0]) + (a[1] * b[2] + a[2] * b[1]),
             ],
-            error: error * (1.0 + ROUNDING) + (ROUNDING * (size * own + lift) + f64::MIN_POSITIVE),
+            error: error * (1.0 + ROUNDING)
+                + (ROUNDING * (size * other_size + lift) + f64::MIN_POSITIVE),
             slope: slope * (1.0 + ROUNDING) + (3.0 * ROUNDING * changing + f64::MIN_POSITIVE),
             is_nonnegative: is_square || (self.is_nonnegative && other.is_nonnegative),
         }
@@ -314,7 +315,7 @@ impl TaylorModel {
         }
     }
 
-    /// The model that intervals of all values and rates, and of the value in the middle, give: a line, or a number where that is closer.
+    /// The model from intervals of all values and rates, and of the value in the middle: a line, or a number where that is closer.
     fn of_rated(found: Rated, middle: Interval) -> Self {
         let (rate, value) = (found.rate.middle(), found.value.middle());
         let steady = Self {
@@ -341,7 +342,7 @@ impl TaylorModel {
         Self::of_rated(rated(self.rated()), interval(middle))
     }
 
-    /// A function by its series, or by intervals where they say more.
+    /// A function by its series, or by intervals where they are closer.
     fn function(
         self,
         expansion: impl FnOnce(f64, f64) -> Expansion,
@@ -455,7 +456,7 @@ impl Div for TaylorModel {
     }
 }
 
-/// The distance of the middle from what a function may not be given, if there is any.
+/// The distance of the middle from the forbidden arguments of a function, if there is any.
 #[inline(always)]
 fn least(middle: f64, radius: f64) -> Option<f64> {
     let least = (middle - radius) * (1.0 - ROUNDING);
@@ -486,7 +487,7 @@ impl Numbers for TaylorModel {
         Self::steady(Interval::gathered(of_lane))
     }
 
-    /// A number inside. Nothing that is to hold for the whole stretch may be asked of it.
+    /// A number inside. It says nothing about the rest of the stretch.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.powers[0]
@@ -550,7 +551,7 @@ impl Numbers for TaylorModel {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself; of others the values jump where the sign changes, and so the rates are anything.
+    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are unbounded.
     fn turned(self, sign: Self) -> Self {
         let range = sign.range();
         match (range.lo < 0.0, range.hi < 0.0) {
@@ -831,7 +832,7 @@ mod tests {
     use super::*;
     use crate::interval::tests::{FUNCTIONS, Sample};
 
-    /// Paths from one place to another: a line, and one that bends by a part of the way.
+    /// Paths between two places: a line, and one that bends by a part of the way.
     fn paths(from: f64, to: f64) -> [TaylorModel; 2] {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let exact = |powers: [f64; 4]| TaylorModel {

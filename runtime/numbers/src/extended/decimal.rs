@@ -1,4 +1,4 @@
-//! Extended numbers from decimal text, and as such.
+//! Extended numbers from decimal text and as decimal text.
 
 use core::f64::consts;
 use core::fmt;
@@ -8,15 +8,15 @@ use super::functions::Wide;
 use super::number::Extended;
 use crate::math;
 
-/// Digits of a number of so many parts, 16 for each less those that sums lose.
+/// Decimal digits of a number with this count of parts: 16 for each, less those that sums lose.
 const fn digits(parts: usize) -> usize {
     (159 * parts - 10) / 10
 }
 
-/// Digits that a number in 6 parts holds exactly, whatever they are.
+/// Digits that a number in 6 parts holds exactly in every case.
 const EXACT: u32 = 95;
 
-/// Exponents that text may have.
+/// Largest exponent of a text, up to sign.
 const EXPONENTS: i32 = 400;
 
 /// A text that is not a decimal number such as `-12`, `0.1` or `1.25e-7`, or has an exponent beyond 400.

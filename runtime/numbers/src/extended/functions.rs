@@ -1,14 +1,14 @@
-//! Elementary functions in 6 parts: more than any number that they are rounded to has.
+//! Elementary functions in 6 parts: more than any number has to which they are rounded.
 //!
-//! Exponentials and sines are sums of their series after the argument has been reduced, their inverses follow by Newton's
-//! method or its like of third order. What is infinite or no number, and where a function jumps, is that of `f64`.
+//! Exponentials and sines are sums of their series after the argument has been reduced. Their inverses follow by Newton's
+//! method or a similar one of third order. Infinite values, NaN and jumps are those of `f64`.
 
 use core::f64::consts;
 
 use super::number::Extended;
 use crate::math;
 
-/// What functions are computed in.
+/// Numbers in which functions are computed.
 pub(super) type Wide = Extended<6>;
 
 /// Half of the circle constant.
@@ -193,7 +193,7 @@ pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
     if b.is_nan() || a.is_nan() {
         return Wide::plain(f64::NAN);
     }
-    let is_regular = |own: f64| own != 0.0 && own.is_finite();
+    let is_regular = |number: f64| number != 0.0 && number.is_finite();
     if !(is_regular(b) && is_regular(a)) {
         // The angle is a multiple of an eighth of the circle.
         let eighths = rounded(math::atan2(b, a) * (2.0 * consts::FRAC_2_PI));
@@ -209,7 +209,7 @@ pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
     let mut angle = Wide::plain(math::atan2(b, a));
     for _ in 0..STEPS {
         let (s, c) = sin_cos(angle);
-        // The sine of what is missing.
+        // The sine of the missing angle.
         angle = angle + (sine * c - cosine * s);
     }
     angle
@@ -231,14 +231,14 @@ fn cosine_of_asin(x: Wide) -> Wide {
     ((ONE - x) * (ONE + x)).root()
 }
 
-/// `e^x / 2`, which may be in the range where `e^x` is not, and its inverse over 4.
+/// `e^x / 2`, which may be in the range where `e^x` is not, and a quarter of its inverse.
 fn halves(x: Wide) -> [Wide; 2] {
     let root = exp(x.scaled(0.5));
     let half = root.scaled(0.5) * root;
     [half, Wide::plain(0.25) / half]
 }
 
-/// A function that changes its sign with that of the argument, from what it is for positive ones.
+/// An odd function, from its values at positive arguments.
 fn odd(x: Wide, function: impl Fn(Wide) -> Wide) -> Wide {
     match x.is_negative() {
         true => -function(-x),
@@ -275,7 +275,7 @@ pub(super) fn tanh(x: Wide) -> Wide {
 }
 
 pub(super) fn asinh(x: Wide) -> Wide {
-    /// Squares of larger numbers may be infinite, and 1 is nothing beside them.
+    /// Size of arguments whose squares may be infinite; 1 is negligible beside the squares.
     const LARGE: f64 = 1e150;
     odd(x, |x| match x.nearest() {
         leading if leading < SMALL => small_asinh(x),

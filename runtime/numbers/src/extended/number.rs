@@ -9,18 +9,18 @@ use super::sums::Sum;
 use crate::math;
 use crate::numbers::Numbers;
 
-/// The most parts that an [`Extended`] may have: constants of generated code are known to so many.
+/// The most parts that an [`Extended`] may have. Constants of generated code have this many parts.
 pub const MOST_PARTS: usize = 4;
 
 /// A number that is the sum of `PARTS` doubles: about 53 bits, or 16 digits, for each of them, in the range of doubles.
 ///
-/// `PARTS` is 1 to [`MOST_PARTS`]; other numbers of parts do not compile. With 1 part arithmetic is that of `f64`, with the
+/// `PARTS` is 1 to [`MOST_PARTS`]; other counts do not compile. With 1 part the arithmetic is that of `f64`, with the
 /// elementary functions rounded from more digits.
 ///
-/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`; differences, of the larger
-/// operand, one double below that. Elementary functions are taken in 6 parts and rounded. Digits below `1e-308` do not
-/// exist: numbers below `1e-308 / 2^(-53 (PARTS - 1))` have fewer. Sines, cosines and tangents of angles beyond `2^50` are NaN. What is
-/// infinite or no number in `f64` is so here.
+/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`. The errors of differences
+/// are relative to the larger operand, and one double less precise. Elementary functions are computed in 6 parts and
+/// rounded. Digits below `1e-308` do not exist: numbers below `1e-308 / 2^(-53 (PARTS - 1))` have fewer. Sines, cosines
+/// and tangents of angles beyond `2^50` are NaN. Results that are infinite or NaN in `f64` are so here.
 ///
 /// ```
 /// use dalembert_numbers::Extended;
@@ -33,12 +33,12 @@ pub const MOST_PARTS: usize = 4;
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct Extended<const PARTS: usize> {
-    /// Each is the sum of itself and those behind it, rounded.
+    /// Each part is the rounded sum of itself and the parts behind it.
     parts: [f64; PARTS],
 }
 
 impl<const PARTS: usize> Extended<PARTS> {
-    /// Half of what a rounding changes of 1: `2^(-53 PARTS)`.
+    /// Largest relative change of a number near 1 by rounding: `2^(-53 PARTS)`.
     pub const ROUNDING: f64 = {
         let bits = 53 * PARTS as u64;
         f64::from_bits((1023 - bits) << 52)
@@ -53,7 +53,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         Self::summed(parts[0], sum)
     }
 
-    /// The numbers that it is the sum of: each the nearest double to what is left behind those before it.
+    /// The summands of the number: each is the nearest double to the rest behind those before it.
     pub const fn parts(&self) -> [f64; PARTS] {
         self.parts
     }
@@ -63,7 +63,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         self.parts[0]
     }
 
-    /// The sum whose leading part is about `leading`: that alone where it is not finite.
+    /// The sum, whose leading part is about `leading`; `leading` alone where it is not finite.
     #[inline(always)]
     fn summed(leading: f64, sum: Sum<PARTS>) -> Self {
         if !leading.is_finite() {
@@ -147,7 +147,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         self.parts[0] < 0.0
     }
 
-    /// A function that is taken in more parts, rounded to these.
+    /// A function computed in more parts, rounded to these.
     fn by(self, function: impl FnOnce(Wide) -> Wide) -> Self {
         function(self.converted()).converted()
     }
@@ -247,7 +247,7 @@ impl<const PARTS: usize> Neg for Extended<PARTS> {
     }
 }
 
-/// The functions of one number, each taken in more parts.
+/// The functions of one number, each computed in more parts.
 macro_rules! functions_in_more_parts {
     ($($name:ident)+) => {$(
         fn $name(self) -> Self {

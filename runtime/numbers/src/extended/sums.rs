@@ -1,4 +1,4 @@
-//! Sums and products of doubles without error, and what is left of them in so many parts.
+//! Sums and products of doubles without error, and their roundings to a number of parts.
 //!
 //! References: D. E. Knuth, *The Art of Computer Programming* 2 (1997), 4.2.2, theorem B; T. J. Dekker, *A Floating-Point
 //! Technique for Extending the Available Precision*, Numerische Mathematik 18 (1971); D. M. Priest, *Algorithms for
@@ -29,11 +29,11 @@ fn two_product(a: f64, b: f64) -> [f64; 2] {
     }
 }
 
-/// What the rounded product of two numbers lacks, by halves of 26 bits (Veltkamp, Dekker).
+/// Rounding error of the product of two numbers, by halves of 26 bits (Veltkamp, Dekker).
 #[cfg(not(all(target_feature = "fma", feature = "std")))]
 #[inline(always)]
 fn product_error(a: f64, b: f64, product: f64) -> f64 {
-    /// Where halves would leave the range: `2^996`, and `2^-968` for the least digits of the product.
+    /// Bounds beyond which halves leave the range: `2^996`, and `2^-968` for the least digits of the product.
     const HUGE: f64 = f64::from_bits((1023 + 996) << 52);
     const TINY: f64 = f64::from_bits((1023 - 968) << 52);
     let is_inside = a.abs() < HUGE && b.abs() < HUGE && product.abs() > TINY;
@@ -49,7 +49,7 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
     ((a * b - product) + a * d + c * b) + c * d
 }
 
-/// A sum on its way, to `PARTS` parts and what is left over.
+/// A sum under construction: `PARTS` parts and a rest.
 pub(super) struct Sum<const PARTS: usize> {
     levels: [f64; LEVELS],
 }
@@ -65,7 +65,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         Self { levels }
     }
 
-    /// Adds a number that is so many parts smaller than the sum.
+    /// Adds a number that is smaller than the sum by this count of parts.
     #[inline(always)]
     pub(super) fn add(&mut self, mut number: f64, level: usize) {
         for level in &mut self.levels[level..PARTS] {
@@ -74,7 +74,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         self.levels[PARTS] += number;
     }
 
-    /// Adds the product of two numbers that are so many parts smaller than theirs.
+    /// Adds the product of two numbers that are smaller than theirs by this count of parts.
     #[inline(always)]
     pub(super) fn add_product(&mut self, a: f64, b: f64, level: usize) {
         if level < PARTS {
@@ -86,7 +86,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         }
     }
 
-    /// The sum in parts that do not overlap: each is what is left of the sum behind those before it, rounded.
+    /// The sum in parts that do not overlap: each is the rounded rest of the sum behind those before it.
     #[inline(always)]
     pub(super) fn parts(self) -> [f64; PARTS] {
         let mut levels = self.levels;
