@@ -1,5 +1,5 @@
-//! Substitute for `native` on processors without machine code: nothing is compiled, and the machines of `machine.rs` and `series.rs` run
-//! everything.
+//! Substitute for `native` on processors without machine code. Nothing is compiled, and the interpreters of `machine.rs`
+//! and `series.rs` run everything.
 
 use core::convert::Infallible;
 
@@ -10,7 +10,7 @@ use dalembert::kernels::At;
 use crate::machine::Code;
 use crate::series::Series;
 
-/// A function as machine code, of which there is none.
+/// A function as machine code, which does not exist here.
 #[derive(Debug)]
 pub(crate) struct Native(Infallible);
 
@@ -20,7 +20,7 @@ impl Native {
     }
 }
 
-/// A power series as machine code, of which there is none.
+/// A power series as machine code, which does not exist here.
 #[derive(Debug)]
 pub(crate) struct NativeSeries(Infallible);
 

@@ -1,5 +1,5 @@
-//! Forms: tables, and closures over what executes programs.
-// NOTE: what is made here lives as long as the program: a system borrows its form for ever.
+//! Forms: tables, and closures over the executors of programs.
+// NOTE: forms made here live as long as the program: a system borrows its form for ever.
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ pub(crate) fn of_model(compiled: &codegen::Compiled, scenes: &[Scene]) -> &'stat
     forms(&FormOf::all(compiled, scenes), may_be_narrow)[0]
 }
 
-/// The forms of a model, a scene or a mode: its own, which knows the global one, then that, if it is another.
+/// The forms of a model, a scene or a mode: its own, which refers to the global one, then the global one where the two differ.
 fn forms(known: &[FormOf<'_>], may_be_narrow: bool) -> Vec<&'static Form> {
     let (first, others) = known.split_first().expect("a model has a form");
     let others: Vec<&'static Form> = others
@@ -78,7 +78,7 @@ pub(crate) fn of_modes(compiled: &CompiledModes) -> &'static Form {
     })
 }
 
-/// A form, with rates over intervals if they `may_be_narrow`. What varies has all that certified motion takes.
+/// A form, with rates over intervals if they `may_be_narrow`. A form that can be varied has all that certified motion needs.
 fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Option<&'static Form>) -> &'static Form {
     let series: &'static Series = leak(Series::of(
         &known.program.jet,
@@ -234,7 +234,7 @@ impl Functions {
     }
 }
 
-/// The functions of a kind of all surfaces as one.
+/// The functions of one kind for all surfaces, as one.
 fn by_surface<L: Numbers, C: Send + Sync>(
     functions: &BTreeMap<Kernel, &'static C>,
     of: fn(usize) -> Kernel,

@@ -1,4 +1,4 @@
-//! A function over any kind of number, by a machine with registers.
+//! Evaluation of a function over any kind of number, by a register machine.
 
 use dalembert::__private::lanes as guards;
 use dalembert::Fault;
@@ -10,18 +10,18 @@ use dalembert_expr::{Function as Elementary, Rational};
 use dalembert_numbers::Kernel;
 use dalembert_numbers::kernel::Second;
 
-/// A function as instructions. Registers are used again where their values are no longer read.
+/// A function as instructions. Registers are reused once their values are no longer read.
 #[derive(Debug)]
 pub(crate) struct Code {
-    /// What is done, and the register that takes the value.
+    /// The instructions, each with the register of its value.
     pub(crate) instructions: Vec<(Instruction, usize)>,
     pub(crate) outputs: Vec<usize>,
     pub(crate) registers: usize,
-    /// What gives the velocities, where they follow from the state, and their number.
+    /// The code of the velocities and their number, where they follow from the state.
     pub(crate) velocity: Option<(&'static Code, usize)>,
 }
 
-/// Where an argument stands.
+/// Place of an argument.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Place {
     Time,
@@ -144,7 +144,7 @@ impl Code {
                 }
             }
             let target = registers.take();
-            // A value that nothing reads is computed where it may fail, and forgotten.
+            // An instruction whose value nothing reads is executed because it may fail; its value is dropped.
             if last[index] == 0 {
                 registers.give_back(target);
             }
@@ -216,7 +216,7 @@ impl Registers {
     }
 }
 
-/// So many numbers, on the stack where they are few.
+/// Room for a count of numbers, on the stack where they are few.
 pub(crate) fn with_room<L: Numbers, T>(count: usize, then: impl FnOnce(&mut [L]) -> T) -> T {
     match count {
         // NOTE: numbers of some kinds are long, and all of them are written once.

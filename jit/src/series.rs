@@ -1,4 +1,4 @@
-//! Power series over any kind of number, by the terms of their coefficients.
+//! Power series over any kind of number, evaluated by the terms of their coefficients.
 
 use std::collections::BTreeMap;
 
@@ -19,9 +19,9 @@ use crate::machine::{Code, Constant};
 pub(crate) struct Series {
     /// Order 0.
     pub(crate) begin: &'static Code,
-    /// Where order 0 of each value comes from.
+    /// Sources of order 0, by value.
     pub(crate) firsts: Vec<First>,
-    /// What varies, in an order in which it can be computed.
+    /// Values that vary, in an order in which they can be computed.
     pub(crate) steps: Vec<(Value, Step)>,
     /// The values of the results.
     pub(crate) outputs: Vec<Value>,
@@ -29,11 +29,11 @@ pub(crate) struct Series {
     /// The kept coefficients.
     pub(crate) histories: BTreeMap<History, usize>,
     pub(crate) is_large: bool,
-    /// How many numbers are known at the beginning.
+    /// Count of numbers that are known at the beginning.
     known: usize,
 }
 
-/// Where order 0 of a value comes from.
+/// Source of order 0 of a value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum First {
     /// Nothing reads it.
@@ -43,14 +43,14 @@ pub(crate) enum First {
     Parameter(usize),
 }
 
-/// What gives coefficient `k` of a value.
+/// Source of coefficient `k` of a value.
 #[derive(Debug)]
 pub(crate) enum Step {
     Component(usize),
     Term(Term),
 }
 
-/// Coefficients on their way.
+/// Coefficients under construction.
 struct Course<'a, L> {
     series: &'a Series,
     unit: L,
@@ -116,12 +116,12 @@ impl Series {
         }
     }
 
-    /// How many numbers are known at the beginning.
+    /// Count of numbers that are known at the beginning.
     pub(crate) fn known(&self) -> usize {
         self.known
     }
 
-    /// Writes what the series begins with.
+    /// Writes the numbers that the series begins with.
     pub(crate) fn begin<L: Numbers>(
         &self,
         parameters: &[L],
@@ -138,7 +138,7 @@ impl Series {
         self.begin.run(at, firsts)
     }
 
-    /// Hands on the coefficients, order after order.
+    /// Computes the coefficients, order after order.
     pub(crate) fn advance<L: Numbers>(
         &self,
         [parameters, state, firsts]: [&[L]; 3],
@@ -221,7 +221,7 @@ impl<'a, L: Numbers> Course<'a, L> {
         }
     }
 
-    /// Computes order `k` of everything; that of the components is known.
+    /// Computes order `k` of everything; the order `k` of the components is known.
     fn advance(&mut self, k: usize, components: &[L]) {
         self.k = k;
         for (value, step) in &self.series.steps {
@@ -292,7 +292,7 @@ impl<'a, L: Numbers> Course<'a, L> {
         &self.kept[self.series.histories[&history]]
     }
 
-    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which take many sums side by side.
+    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which compute many sums side by side.
     fn middle(&self, a: &[L; LENGTH], b: &[L; LENGTH]) -> L {
         let k = self.k;
         if self.series.is_large {

@@ -27,8 +27,8 @@ pub fn model(input: TokenStream) -> TokenStream {
 
 /// Declares the models of a file, whose path begins at the folder of the crate: `dalembert::model_file!("src/disk.dal")`.
 ///
-/// The file has what stands between the braces of [`model!`], for one model or for several; the command line runs it as it is. The crate is
-/// built again where the file changes.
+/// The file holds the text between the braces of [`model!`], for one model or for several; the command line runs it as it
+/// is. The crate is built again when the file changes.
 #[proc_macro]
 pub fn model_file(input: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();

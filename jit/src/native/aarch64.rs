@@ -4,9 +4,9 @@
 //! |---|---|
 //! | `x0` to `x3`, constants in `x4` | bases of a function that calls nothing |
 //! | `x19` to `x22`, constants in `x25` | those of a function that calls others |
-//! | `x19` to `x23`, constants in `x25` | those of a series: parameters, what is known at first, the row of coefficients, kept rows, the newest of them |
-//! | `x24` | the order at hand of a series |
-//! | `x9` to `x12` | rows of both factors, products that are left, and bytes of a row in a loop over sums |
+//! | `x19` to `x23`, constants in `x25` | those of a series: parameters, values known at first, the row of coefficients, kept rows, the newest of them |
+//! | `x24` | the current order of a series |
+//! | `x9` to `x12` | rows of both factors, products left, and bytes of a row in a loop over sums |
 //! | `x16` | an address, or an integer, of a single instruction |
 
 // NOTE: the macro of the assembler converts numbers of registers and constants.
@@ -39,7 +39,7 @@ pub(super) const SIDE_BY_SIDE: usize = 16;
 const FACTORS: Register = SIDE_BY_SIDE as Register;
 const END: Register = 24;
 
-/// The vector register with a number. Those that a function has to preserve are left out.
+/// The vector register with a number. Registers that a function has to preserve are left out.
 fn v(register: Register) -> u8 {
     match register {
         0..8 => register,
@@ -60,7 +60,7 @@ const OF_SERIES: [u8; 5] = [19, 20, 21, 22, 23];
 /// An addition takes fewer bytes than these, or a multiple of them.
 const PAGE: i32 = 4096;
 
-/// Machine code on its way.
+/// Machine code under construction.
 pub(super) struct Assembly {
     ops: Assembler,
     /// The registers of the pointers that places are counted from.
@@ -70,11 +70,11 @@ pub(super) struct Assembly {
     constants: DynamicLabel,
     /// Constants by their bits, with their places.
     numbers: BTreeMap<u64, usize>,
-    /// Where the function on its way ends that a guard stops.
+    /// Label of the end of the current function after a guard that does not hold.
     stopped: DynamicLabel,
 }
 
-/// Bytes of a frame, and whether registers are saved in front of it.
+/// Bytes of a frame. True if registers are saved in front of it.
 #[derive(Clone, Copy)]
 struct Frame {
     length: i32,
@@ -90,7 +90,7 @@ impl Frame {
     }
 }
 
-/// Vectors of sums, and where their factors lie.
+/// Vectors of sums, and the places of their factors.
 struct Products {
     vectors: Register,
     /// Places of the first and the second factors, in a row.
@@ -145,7 +145,7 @@ impl Assembly {
         entry
     }
 
-    /// A function of parameters, what is known at first, unit, last order, coefficients from order 1 on, and room.
+    /// A function of parameters, values known at first, unit, last order, coefficients from order 1 on, and room.
     pub(super) fn series(&mut self, expansion: &Expansion<'_>) -> AssemblyOffset {
         (self.bases, self.pool) = (&OF_SERIES, POOL);
         let frame = Frame::of(expansion.frame(), true);
@@ -285,7 +285,7 @@ impl Assembly {
         self.add_ends(products);
     }
 
-    /// Adds as many products as `x11` says, from rows on that move apart or towards each other.
+    /// Adds as many products as `x11` counts, from rows that move apart or towards each other.
     fn add_range(&mut self, products: &Products, step: i32) {
         let [head, end] = core::array::from_fn(|_| self.ops.new_dynamic_label());
         dynasm!(self.ops ; .arch aarch64 ; cmp x11, 0 ; b.le =>end ; =>head);
@@ -296,7 +296,7 @@ impl Assembly {
         dynasm!(self.ops ; .arch aarch64 ; subs x11, x11, 1 ; b.ne =>head ; =>end);
     }
 
-    /// Adds the products of order 1 and the newest, of which the rows are then.
+    /// Adds the products of order 1 and the newest; the rows are those of these orders afterwards.
     fn add_ends(&mut self, products: &Products) {
         let [a, b] = ROWS;
         self.add(a, 22, products.kept);
@@ -324,7 +324,7 @@ impl Assembly {
         }
     }
 
-    /// The executable code of everything.
+    /// The executable code of all functions.
     pub(super) fn finish(mut self) -> Option<ExecutableBuffer> {
         let mut numbers = vec![0; self.numbers.len()];
         for (bits, place) in self.numbers {
@@ -352,7 +352,7 @@ impl Assembly {
         (self.pool, bytes(*self.numbers.entry(bits).or_insert(next)))
     }
 
-    /// The register and the distance that an instruction takes that reads or writes so many bytes.
+    /// The register and the distance for an instruction that reads or writes this count of bytes.
     fn reach(&mut self, (base, offset): (u8, i32), length: i32) -> (u8, u32) {
         let is_near = offset % length == 0 && (0..length * PAGE).contains(&offset);
         if is_near {
@@ -463,7 +463,7 @@ impl Assembly {
             }
             Instruction::Guard(from, bound) => {
                 let bound = self.register(bound, SCRATCH);
-                // NOTE: what cannot be compared is not larger. The end may be out of reach of a condition.
+                // NOTE: a comparison with NaN is not "larger". The end may be out of reach of a condition.
                 dynasm!(self.ops ; .arch aarch64
                     ; fcmp D(v(from)), D(v(bound))
                     ; b.gt >next

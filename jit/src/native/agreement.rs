@@ -40,7 +40,7 @@ models! {
     two_wheels_rod
 }
 
-/// A field whose series has what no shipped one has: time, polynomials of it as factors, an absolute value, and gaps.
+/// A field whose series has features that no shipped model has: time, polynomials of it as factors, an absolute value, and gaps.
 #[test]
 fn driven() {
     compare_text(
@@ -79,7 +79,7 @@ fn compare_text(text: &str) {
     }
 }
 
-/// Where functions are evaluated.
+/// Arguments of the functions.
 struct Point {
     parameters: Vec<f64>,
     t: f64,
@@ -131,7 +131,7 @@ fn compare(known: &FormOf<'_>) {
     }
 }
 
-/// Compares a function at a point: do its guards hold?
+/// Compares a function at a point. True if its guards hold there.
 fn compare_at(native: &Native, point: &Point) -> bool {
     let [mut expected, mut found] = [(); 2].map(|()| vec![0.0; native.code.outputs.len()]);
     let holds = native.code.run(point.at(), &mut expected).is_ok();

@@ -15,7 +15,7 @@ const FIRST: Base = Base::Argument(1);
 const SECOND: Base = Base::Argument(2);
 const VALUES: Base = Base::Argument(3);
 
-/// The code of a function: the velocities first, where it takes them, then its values.
+/// The code of a function: the velocities first, where it needs them, then its values.
 pub(super) fn straight(code: &Code) -> Straight {
     let mut straight = Straight::default();
     let t = straight.push(Operation::Argument);
@@ -30,16 +30,16 @@ pub(super) fn straight(code: &Code) -> Straight {
     straight
 }
 
-/// A function on its way.
+/// A function under construction.
 struct Body<'a> {
     straight: &'a mut Straight,
     code: &'a Code,
     t: Value,
     velocities: &'a [Value],
     registers: Vec<Option<Value>>,
-    /// Sines and cosines whose argument has both taken of it.
+    /// Instructions of sines and cosines whose argument needs both.
     paired: BTreeSet<usize>,
-    /// Where sine and cosine of an argument lie.
+    /// Places of sine and cosine, by argument.
     taken: BTreeMap<Value, Place>,
 }
 
@@ -169,7 +169,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// The register whose value must be larger than this part of that of another, or than 0.
+/// A register, and the lower bound of its value: a multiple of another register, or 0.
 fn bound(condition: &Condition) -> (usize, Option<(f64, usize)>) {
     match *condition {
         Condition::Pivot(_, value) => (value, None),
@@ -183,7 +183,7 @@ fn bound(condition: &Condition) -> (usize, Option<(f64, usize)>) {
     }
 }
 
-/// The places of sines and cosines whose argument has both taken of it.
+/// Instructions of sines and cosines whose argument needs both.
 fn paired(code: &Code) -> BTreeSet<usize> {
     // The instruction that wrote each register last.
     let mut written = vec![usize::MAX; code.registers];

@@ -32,7 +32,7 @@ macro_rules! functions_of_one_number {
             }
         )*
 
-        /// Where a function of one number lies.
+        /// Address of a function of one number.
         fn address_of(function: Elementary) -> usize {
             let function: convention!(fn(f64) -> f64) = match function {
                 $(Elementary::$variant => $name,)*
@@ -56,7 +56,7 @@ convention! {
 }
 
 impl OfNumbers {
-    /// Where the function lies.
+    /// Address of the function.
     pub(super) fn address(self) -> usize {
         match self {
             Self::Elementary(function) => address_of(function),
@@ -67,7 +67,7 @@ impl OfNumbers {
 }
 
 impl OfSeries {
-    /// Where the function lies.
+    /// Address of the function.
     pub(super) fn address(self) -> usize {
         match self {
             Self::Half => half as *const () as usize,
@@ -76,7 +76,7 @@ impl OfSeries {
     }
 }
 
-/// Where [`sine_and_cosine`] lies.
+/// Address of [`sine_and_cosine`].
 pub(super) fn address_of_sine_and_cosine() -> usize {
     sine_and_cosine as *const () as usize
 }
@@ -92,7 +92,7 @@ convention! {
 convention! {
     /// Half of a sum over one series, which is given twice.
     fn half(a: *const [f64; LENGTH], _: *const [f64; LENGTH], k: i64) -> f64 {
-        // SAFETY: series of a large expansion lie in one piece, each as long.
+        // SAFETY: each series of a large expansion is contiguous and has `LENGTH` numbers.
         jet::half(unsafe { &*a }, usize::try_from(k).unwrap_or(0))
     }
 }
@@ -101,7 +101,7 @@ convention! {
     /// A sum over two series.
     fn middle(a: *const [f64; LENGTH], b: *const [f64; LENGTH], k: i64) -> f64 {
         let k = usize::try_from(k).unwrap_or(0);
-        // SAFETY: series of a large expansion lie in one piece, each as long.
+        // SAFETY: each series of a large expansion is contiguous and has `LENGTH` numbers.
         let (a, b) = unsafe { (&*a, &*b) };
         jet::shared_middle(a, b, k)
     }

@@ -1,4 +1,4 @@
-//! The room of an expansion: where coefficients are kept, and which sums are taken together.
+//! The room of an expansion: the places of coefficients, and the groups of sums that are computed together.
 
 use std::collections::BTreeMap;
 
@@ -12,16 +12,16 @@ use crate::series::{Series, Step};
 
 /// Number of the frame: the last order of the loop, as an integer.
 pub(super) const LAST: usize = 0;
-/// Number of the frame: the order at hand, as a double.
+/// Number of the frame: the current order, as a double.
 pub(super) const WEIGHT: usize = 1;
 /// Number of the frame: the unit of time.
 pub(super) const UNIT: usize = 2;
 const FIXED: usize = 3;
 
-/// Where coefficients are kept.
+/// Places of coefficients.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// Where order 0 of what is read one coefficient at a time lies; of a large expansion that is everything.
+    /// Place of order 0 of histories that are read one coefficient at a time; in a large expansion, of all histories.
     pub(super) alone: BTreeMap<History, usize>,
     pub(super) groups: Vec<Group>,
     /// The distance of two orders.
@@ -32,13 +32,13 @@ pub(super) struct Layout {
     pub(super) room: usize,
 }
 
-/// Sums that are taken together.
+/// Sums that are computed together.
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) sums: Vec<Sum>,
-    /// Where order 0 of the first factors lies, and of the second ones; of halves both are the same.
+    /// Places of order 0 of the first and of the second factors; both are the same for halves.
     pub(super) places: [usize; 2],
-    /// Where the sums lie in the frame.
+    /// Place of the sums in the frame.
     pub(super) results: usize,
 }
 
@@ -113,7 +113,7 @@ impl Layout {
         }
     }
 
-    /// Where a sum lies in the frame.
+    /// Place of a sum in the frame.
     pub(super) fn result(&self, sum: Sum) -> Option<usize> {
         self.groups.iter().find_map(|group| {
             let place = group.sums.iter().position(|known| *known == sum)?;
@@ -122,7 +122,7 @@ impl Layout {
     }
 }
 
-/// Adds the sums of a term, and what it reads one coefficient at a time.
+/// Adds the sums of a term, and the histories that it reads one coefficient at a time.
 fn collect(term: &Term, sums: &mut Vec<Sum>, alone: &mut BTreeMap<History, usize>) {
     let mut keep = |history: History| {
         let place = alone.len();

@@ -5,17 +5,17 @@
 //! Series --series----> (the same, twice, and the sums of layout)
 //! ```
 //!
-//! The assembly is that of the processor: `x64.rs` of x86-64 with AVX, or `aarch64.rs`. It says how many numbers a vector has, and how
-//! functions are called. `helpers.rs` is what machine code calls. Memory is written first and then made executable, never both; it is freed
-//! with the last function.
+//! The assembly is that of the processor: `x64.rs` of x86-64 with AVX, or `aarch64.rs`. It defines the length of a vector
+//! and the calling convention. `helpers.rs` holds the functions that machine code calls. Memory is written first and then
+//! made executable, never both; it is freed with the last function.
 //!
-//! Unchecked by the compiler are this file and `helpers.rs`: pointers to functions of what the assembly wrote, and their calls with pointers to
-//! slices whose lengths were compared with what the code reads and writes. The code of a function reads and writes at constant distances
-//! from those pointers; that of a series goes over rows up to the order that it is given, of which there is room for all. Both call
-//! nothing but `helpers.rs`.
+//! The compiler cannot check two things in this file and `helpers.rs`: pointers to functions that the assembly wrote, and
+//! their calls with pointers to slices. The lengths of these slices were compared with the extents that the code reads and
+//! writes. The code of a function reads and writes at constant distances from the pointers. The code of a series goes over
+//! rows up to the given order; there is room for all of them. Both call nothing but `helpers.rs`.
 //!
-//! Operations are those of the machine of `machine.rs`, in the same order, and nothing is contracted: the bits are the same. Where a guard
-//! does not hold, that machine is asked which.
+//! Operations are those of the interpreter of `machine.rs`, in the same order, and nothing is contracted: the bits are the
+//! same. Where a guard does not hold, the interpreter finds out which.
 #![allow(unsafe_code)]
 
 #[cfg(test)]
@@ -48,7 +48,8 @@ use assembly::{Assembly, convention};
 use layout::Layout;
 use series::Expansion;
 
-/// Are products and sums rounded once, as `math::mul_add` does, which is compiled with the same features? On aarch64 that rounds twice.
+/// True if products and sums are rounded once, as by `math::mul_add`, which is compiled with the same features. On aarch64
+/// that rounds twice.
 const IS_FUSED: bool = cfg!(all(target_feature = "fma", not(feature = "strict")));
 
 /// Parameters, time, first and second place, values; 0 if every guard holds.
@@ -60,11 +61,11 @@ pub(crate) struct Native {
     entry: Entry,
     code: &'static Code,
     extent: Extent,
-    /// Where the code lies.
+    /// The memory of the code.
     _memory: Arc<ExecutableBuffer>,
 }
 
-/// How many numbers a function reads of each place.
+/// Extent of the numbers that a function reads from each place.
 #[derive(Debug, Clone, Copy, Default)]
 struct Extent {
     parameters: usize,
@@ -79,7 +80,7 @@ impl Native {
     /// The guard that does not hold.
     ///
     /// # Panics
-    /// If a slice is shorter than what is read or written.
+    /// If a slice is shorter than the extent that is read or written.
     pub(crate) fn run(&self, at: At<'_, f64>, values: &mut [f64]) -> Result<(), Fault> {
         match self.holds(at, values) {
             true => Ok(()),
@@ -138,7 +139,7 @@ impl Extent {
     }
 }
 
-/// Parameters, what is known at first, unit of time, order; coefficients from order 1 on, room for what is kept.
+/// Parameters, values known at first, unit of time, order; coefficients from order 1 on, room for kept coefficients.
 type Advance = convention!(unsafe fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64));
 
 /// A power series as machine code.
@@ -182,7 +183,7 @@ impl NativeSeries {
     /// As [`Series::advance`].
     ///
     /// # Panics
-    /// If a slice is shorter than what is read.
+    /// If a slice is shorter than the extent that is read.
     pub(crate) fn advance(
         &self,
         [parameters, state, firsts]: [&[f64]; 3],
@@ -233,13 +234,13 @@ impl NativeSeries {
 
 /// Machine code of a form.
 pub(crate) struct Compiled {
-    /// Of its functions, in their order.
+    /// Code of its functions, in their order.
     pub functions: Vec<Native>,
-    /// Of its series.
+    /// Code of its series.
     pub series: NativeSeries,
 }
 
-/// Machine code of functions and of a series; `None` on a machine that there is no code for.
+/// Machine code of functions and of a series; `None` on a processor without machine code.
 pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Option<Compiled> {
     let mut assembly = Assembly::new()?;
     let begin: &'static Code = series.begin;

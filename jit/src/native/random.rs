@@ -1,4 +1,4 @@
-//! Random straight-line code gives what it says, to the bit, however many registers it asks for.
+//! Random straight-line code gives the values of its operations, to the bit, with any number of registers in use.
 
 use super::helpers::OfNumbers;
 use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value, bytes};
@@ -24,7 +24,7 @@ impl Random {
     }
 }
 
-/// The bits of numbers; `None` of one that is none.
+/// The bits of numbers; `None` for NaN.
 pub(super) fn bits(numbers: &[f64]) -> Vec<Option<u64>> {
     let numbers = numbers.iter();
     numbers
@@ -42,7 +42,7 @@ struct Written {
     stored: Vec<f64>,
 }
 
-/// Code of so many operations that read values up to so far back.
+/// Code of `count` operations that read at most `reach` values back.
 fn write(random: &mut Random, (count, reach): (usize, usize), inputs: &[f64; INPUTS]) -> Written {
     let mut code = Written {
         straight: Straight::default(),

@@ -1,8 +1,8 @@
 //! Registers for straight-line code.
 //!
-//! Operations are taken in their order. A value that has a place in memory (a constant, an argument, what was put into the frame) is read
-//! from there where it is needed once, and kept in a register where it is needed again. Where no register is free, the value gives way
-//! that is needed last; it goes into the frame if it has no place yet. Calls keep no register.
+//! Operations are processed in their order. A value with a place in memory (a constant, an argument, a value in the frame)
+//! is read from there where it is needed once, and kept in a register where it is needed again. Where no register is free,
+//! the value that is needed last gives way; it goes into the frame if it has no place yet. Calls keep no register.
 
 use super::helpers;
 use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value};
@@ -39,9 +39,9 @@ pub(super) enum Instruction {
     AtFirst(Register, Operand),
     /// Adds a product from an order on.
     AddFrom(Register, i32, [Place; 2]),
-    /// Calls what lies at an address, with arguments in the first registers and this place.
+    /// Calls the function at an address, with arguments in the first registers and this place.
     Call(usize, Option<Place>),
-    /// Calls what lies at an address, with these places and the order.
+    /// Calls the function at an address, with these places and the order.
     CallSeries(usize, [Place; 2]),
     Guard(Register, Operand),
 }
@@ -66,7 +66,7 @@ impl Allocated {
     }
 }
 
-/// Where a value can be read again.
+/// Places from which a value can be read again.
 #[derive(Debug, Clone, Copy)]
 enum Home {
     Fixed(Operand),
@@ -76,17 +76,17 @@ enum Home {
 
 struct Allocation {
     instructions: Vec<Instruction>,
-    /// Where each value is read, the next one last.
+    /// Reads of each value, the next one last.
     reads: Vec<Vec<u32>>,
     registers: Vec<Option<Register>>,
     homes: Vec<Option<Home>>,
     /// The values of the registers.
     held: [Option<Value>; COUNT],
-    /// Registers that an instruction on its way reads, as bits.
+    /// Registers that the current instruction reads, as bits.
     locked: u16,
     frame: usize,
     free: Vec<Place>,
-    /// Places that become free once the instruction on its way has read them.
+    /// Places that become free once the current instruction has read them.
     released: Vec<Place>,
 }
 
@@ -117,7 +117,7 @@ pub(super) fn allocate(code: &Straight) -> Allocated {
     }
 }
 
-/// Where each value is read, from the last place on. What nothing needs reads nothing.
+/// Reads of each value, from the last one on. Operations that nothing needs read nothing.
 fn reads(code: &Straight) -> Vec<Vec<u32>> {
     let mut reads = vec![Vec::new(); code.operations.len()];
     for (place, operation) in code.operations.iter().enumerate().rev() {
@@ -250,7 +250,7 @@ impl Allocation {
         self.locked |= 1 << register;
     }
 
-    /// Where a value is read from now.
+    /// Operand from which a value is read now.
     fn found(&self, value: Value) -> Operand {
         match (self.registers[value.index()], self.homes[value.index()]) {
             (Some(register), _) => Operand::Register(register),
@@ -260,7 +260,7 @@ impl Allocation {
         }
     }
 
-    /// A register with the value, which stays its own during the instruction on its way.
+    /// A register with the value, locked for the current instruction.
     fn register(&mut self, value: Value) -> Register {
         let found = self.found(value);
         if let Operand::Register(register) = found {
@@ -307,7 +307,7 @@ impl Allocation {
         register
     }
 
-    /// The register of a sum for what it becomes, or a copy if it is needed later.
+    /// The register of a sum for its new value, or a copy if the old one is needed later.
     fn take_over(&mut self, value: Value, sum: Value, from: Register) -> Register {
         self.done(sum);
         if !self.is_needed(sum) {
@@ -343,7 +343,7 @@ impl Allocation {
         register as Register
     }
 
-    /// Puts a value into the frame that has no place in memory.
+    /// Puts a value without a place in memory into the frame.
     fn spill(&mut self, value: Value) {
         let (Some(register), None) = (self.registers[value.index()], self.homes[value.index()])
         else {
@@ -376,7 +376,7 @@ impl Allocation {
         self.instructions.push(Instruction::Move(0, first));
     }
 
-    /// What is needed later goes into the frame.
+    /// Puts values that are needed later into the frame.
     fn keep_no_register(&mut self) {
         for register in 0..COUNT {
             if let Some(value) = self.held[register].take() {

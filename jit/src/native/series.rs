@@ -1,8 +1,8 @@
-//! Series as two pieces of straight-line code: what comes before the loop over the orders, and what the loop does.
+//! Series as two pieces of straight-line code: the part before the loop over the orders, and the body of the loop.
 //!
-//! Orders of what is kept lie at equal distances in the room. Of an expansion that is not large, a row is an order of everything: first what is
-//! read one coefficient at a time, then the factors of sums, which a vector takes side by side before the rest of an order. Of an expansion
-//! that is large each series lies in one piece, and sums are calls.
+//! Orders of kept coefficients lie at equal distances in the room. In an expansion that is not large, a row is one order
+//! of everything: first the coefficients that are read one at a time, then the factors of sums, which vectors combine side
+//! by side before the rest of an order. In a large expansion each series is contiguous, and sums are calls.
 
 use std::collections::BTreeMap;
 
@@ -21,11 +21,11 @@ use crate::series::{First, Series, Step};
 /// Pointers of an expansion.
 const PARAMETERS: Base = Base::Argument(0);
 const FIRSTS: Base = Base::Argument(1);
-/// The coefficients of results at the order at hand; those of order 1 before the loop.
+/// The coefficients of results at the current order; those of order 1 before the loop.
 const ROW: Base = Base::Argument(2);
-/// Order 0 of what is kept.
+/// Order 0 of kept coefficients.
 const KEPT: Base = Base::Argument(3);
-/// The order at hand of what is kept.
+/// The current order of kept coefficients.
 const NEWEST: Base = Base::Argument(4);
 
 /// An expansion with registers.
@@ -35,9 +35,9 @@ pub(super) struct Expansion<'a> {
     pub(super) groups: &'a [Group],
     /// Bytes from one order of results to the next.
     pub(super) row: i32,
-    /// Bytes from one order of what is kept to the next.
+    /// Bytes from one order of kept coefficients to the next.
     pub(super) kept: i32,
-    /// Is the last order computed too, of which no rate is needed?
+    /// True if the last order is computed too, whose rate is not needed.
     pub(super) takes_last: bool,
 }
 
@@ -70,7 +70,7 @@ struct Body<'a> {
     straight: Straight,
     /// Numbers of the frame that both pieces know.
     frame: usize,
-    /// Where reciprocals lie.
+    /// Places of reciprocals.
     inverses: BTreeMap<Place, straight::Place>,
     next: BTreeMap<Place, Value>,
     inverse_order: Option<Value>,
@@ -117,7 +117,7 @@ impl<'a> Body<'a> {
             self.straight
                 .store(coefficient, straight::Place::of(ROW, i));
         }
-        // NOTE: what is needed between the pieces lies in front of what each of them uses alone.
+        // NOTE: numbers that both pieces need lie in front of those that one piece uses alone.
         self.straight.frame = self.frame;
     }
 
@@ -134,7 +134,7 @@ impl<'a> Body<'a> {
         self.inverses.insert(value, place);
     }
 
-    /// The order at hand of everything, and the next one of the components.
+    /// The current order of everything, and the next one of the components.
     fn advance(&mut self) {
         let (series, layout) = (self.series, self.layout);
         let weight = self.weight();
@@ -178,7 +178,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Keeps the factors of a group at the order at hand.
+    /// Keeps the factors of a group at the current order.
     fn keep_factors(&mut self, group: &Group) {
         let count = if group.sums[0].is_half() { 1 } else { 2 };
         for factor in 0..count {
@@ -230,7 +230,7 @@ impl<'a> Body<'a> {
     fn next_of(&mut self, value: Place) -> Value {
         match self.next.get(&value) {
             Some(next) => *next,
-            // What does not vary.
+            // A value that does not vary.
             None => self.straight.number(0.0),
         }
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::helpers::{OfNumbers, OfSeries};
 
-/// A value, by the place of the operation that gives it.
+/// A value, by the position of the operation that gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Value(u32);
 
@@ -14,7 +14,7 @@ impl Value {
     }
 }
 
-/// What a place in memory is counted from.
+/// Base from which a place in memory is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Base {
     /// The frame of the function.
@@ -40,12 +40,12 @@ impl Place {
         }
     }
 
-    /// The place so many numbers further on.
+    /// The place this count of numbers further on.
     pub(super) fn behind(self, count: usize) -> Self {
         self.shifted(bytes(count))
     }
 
-    /// The place so many bytes further on.
+    /// The place this count of bytes further on.
     pub(super) fn shifted(self, bytes: i32) -> Self {
         Self {
             base: self.base,
@@ -54,7 +54,7 @@ impl Place {
     }
 }
 
-/// The length of so many numbers, in bytes.
+/// The length of a count of numbers, in bytes.
 pub(super) fn bytes(count: usize) -> i32 {
     i32::try_from(8 * count).unwrap_or(i32::MAX)
 }
@@ -80,7 +80,7 @@ pub(super) enum Operation {
     Argument,
     /// A constant, by its bits.
     Number(u64),
-    /// A number in memory that nothing changes as long as the value is read.
+    /// A number in memory that does not change as long as the value is read.
     Load(Place),
     Unary(Unary, Value),
     Binary(Binary, [Value; 2]),
@@ -110,7 +110,7 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    /// Shows what an operation reads of other values.
+    /// Shows the values that an operation reads.
     pub(super) fn read(&self, mut see: impl FnMut(Value)) {
         match self {
             Self::Argument | Self::Number(_) | Self::Load(_) | Self::CallSeries(..) => {}
@@ -133,7 +133,7 @@ impl Operation {
         }
     }
 
-    /// Is it done even where nothing reads its value?
+    /// True if it is done even where nothing reads its value.
     pub(super) fn has_effect(&self) -> bool {
         matches!(
             self,
@@ -153,7 +153,7 @@ pub(super) struct Straight {
 }
 
 impl Straight {
-    /// Code behind other code that has so many numbers in the same frame.
+    /// Code behind other code that uses the first `frame` numbers of the same frame.
     pub(super) fn with_frame(frame: usize) -> Self {
         Self {
             frame,
@@ -161,7 +161,7 @@ impl Straight {
         }
     }
 
-    /// The values in their order, with what gives them.
+    /// The values in their order, with their operations.
     pub(super) fn values(&self) -> impl Iterator<Item = (Value, &Operation)> {
         (0..).map(Value).zip(&self.operations)
     }

@@ -44,10 +44,10 @@ const R13: u8 = 13;
 const R14: u8 = 14;
 const R15: u8 = 15;
 
-/// The order at hand of a series.
+/// The current order of a series.
 const ORDER: u8 = R14;
 
-/// Machine code on its way.
+/// Machine code under construction.
 pub(super) struct Assembly {
     ops: Assembler,
     /// The registers of the pointers that places are counted from.
@@ -55,11 +55,11 @@ pub(super) struct Assembly {
     numbers: BTreeMap<u64, DynamicLabel>,
     sign: DynamicLabel,
     magnitude: DynamicLabel,
-    /// Where the function on its way ends that a guard stops.
+    /// Label of the end of the current function after a guard that does not hold.
     stopped: DynamicLabel,
 }
 
-/// Vectors of sums, and where their factors lie.
+/// Vectors of sums, and the places of their factors.
 struct Products {
     vectors: Register,
     /// Places of the first and the second factors, in a row.
@@ -78,7 +78,7 @@ impl Products {
 const OF_LEAF: [u8; 4] = [RDI, RSI, RDX, RCX];
 const OF_CALLER: [u8; 4] = [RBX, R12, R13, R14];
 
-/// The bases of a series: parameters, what is known at first, the row of coefficients, kept rows, the newest of them.
+/// The bases of a series: parameters, values known at first, the row of coefficients, kept rows, the newest of them.
 const OF_SERIES: [u8; 5] = [RBX, RBP, R15, R12, R13];
 
 /// An instruction with a target, a register and an operand.
@@ -101,7 +101,7 @@ macro_rules! with_operand {
 }
 
 impl Assembly {
-    /// `None` on a processor that there is no code for.
+    /// `None` on a processor without machine code.
     pub(super) fn new() -> Option<Self> {
         if !std::arch::is_x86_feature_detected!("avx") {
             return None;
@@ -150,7 +150,7 @@ impl Assembly {
         entry
     }
 
-    /// A function of parameters, what is known at first, unit, last order, coefficients from order 1 on, and room.
+    /// A function of parameters, values known at first, unit, last order, coefficients from order 1 on, and room.
     pub(super) fn series(&mut self, expansion: &Expansion<'_>) -> AssemblyOffset {
         let entry = self.ops.offset();
         self.bases = &OF_SERIES;
@@ -263,7 +263,7 @@ impl Assembly {
         self.add_ends(products);
     }
 
-    /// Adds as many products as `rdx` says, from the rows at `rax` and `rcx` on, which move apart or towards each other.
+    /// Adds as many products as `rdx` counts, from the rows at `rax` and `rcx`, which move apart or towards each other.
     fn add_range(&mut self, products: &Products, step: i32) {
         let [head, end] = core::array::from_fn(|_| self.ops.new_dynamic_label());
         dynasm!(self.ops ; .arch x64 ; test rdx, rdx ; jle =>end ; =>head);
@@ -300,7 +300,7 @@ impl Assembly {
         }
     }
 
-    /// The executable code of everything.
+    /// The executable code of all functions.
     pub(super) fn finish(mut self) -> Option<ExecutableBuffer> {
         for (bits, label) in core::mem::take(&mut self.numbers) {
             let bits = i64::from_ne_bytes(bits.to_ne_bytes());
@@ -478,7 +478,7 @@ impl Assembly {
                 dynasm!(self.ops ; .arch x64 ; vucomisd Rx(from), QWORD [=>label]);
             }
         }
-        // NOTE: what cannot be compared is not larger.
+        // NOTE: a comparison with NaN is not "larger".
         dynasm!(self.ops ; .arch x64 ; jbe =>self.stopped);
     }
 
