@@ -1,4 +1,4 @@
-//! What a declaration costs to build: its expansion, how that grows with the size of a model, and the compiler's part.
+//! Build cost of a declaration: its expansion, the growth with the size of a model, and the time of the compiler.
 //!
 //! `cargo bench --package dalembert-benches --bench compile_time [-- --csv]`
 
@@ -13,7 +13,7 @@ use dalembert_codegen::{compile_modes, mechanics, model, program, read, spec};
 use dalembert_emit::try_expand;
 use dalembert_models::{Chain16, DoublePendulum, RollingDisk};
 
-/// What is measured of one expansion.
+/// Measurements of one expansion.
 struct Expansion {
     /// Milliseconds.
     time: f64,
@@ -47,7 +47,7 @@ fn operations(source: &str) -> usize {
         spec::Declaration::Model(spec) => spec,
         spec::Declaration::Modes(modes) => {
             let compiled = compile_modes(&modes).expect("a model");
-            let rates = compiled.modes.iter().map(|own| &own.programs.main.rate);
+            let rates = compiled.modes.iter().map(|mode| &mode.programs.main.rate);
             return rates.map(|rate| rate.cost.total()).sum();
         }
     };
@@ -151,7 +151,7 @@ struct UserCrate {
 }
 
 impl UserCrate {
-    /// Writes the crate, and builds what it depends on in every way that will be timed.
+    /// Writes the crate, and builds its dependencies with every command that will be timed.
     fn create() -> Self {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("user_crate");
         let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -186,10 +186,10 @@ impl UserCrate {
     }
 }
 
-/// What is timed of the user's crate.
+/// Commands that are timed in the user's crate.
 const COMMANDS: [&[&str]; 3] = [&["check"], &["build"], &["build", "--release"]];
 
-/// What cargo and an empty program take.
+/// A program without a model, for the time that cargo itself takes.
 const WITHOUT_MODEL: &str = "use dalembert as _;\nfn main() {}\n";
 
 /// A program that simulates a model from a state made of its declared initial values.

@@ -1,5 +1,4 @@
-//! What each effect of a scene costs, in instructions, and that a scene costs what a model does that was declared with
-//! nothing else.
+//! Cost of each effect of a scene, in instructions. A scene must cost as much as a model that was declared with nothing else.
 //!
 //! Instructions are counted by `valgrind --tool=callgrind`, so the figures repeat on a busy machine. The program runs
 //! itself under it, once for each run of the table.
@@ -49,7 +48,7 @@ blade!(
     }
 );
 blade!(Free, forces {} impacts {} scenes {});
-// A type for each row, as scenes are: a compiler inlines by how often a function is called.
+// A type for each row, as scenes have: a compiler inlines by the number of calls of a function.
 blade!(Kept, forces {} impacts {} scenes {});
 blade!(Measured, forces {} impacts {} scenes {});
 blade!(Slowed, forces { drag: -c*dot(x)*d(x) - c*dot(y)*d(y); } impacts {} scenes {});
@@ -69,7 +68,7 @@ blade!(
     scenes {}
 );
 
-/// A run of so many steps from the declared start, with these effects; gives accepted steps and impacts.
+/// A run of `steps` steps from the declared start, with these effects. Returns accepted steps and impacts.
 fn work<S: Described, E: Effect<S>>(system: &S, effects: E, steps: u64) -> [u64; 2] {
     let initial = system.initial();
     let completed = system.complete_velocity(0.0, &initial.q, &initial.qdot, &initial.named);
@@ -149,11 +148,10 @@ fn rows() -> [Row; 9] {
     ]
 }
 
-/// How often this program counts the instructions of: a run of few steps, of which the start is taken off, and one of
-/// many.
+/// Numbers of steps of the two runs that are counted: a short one, whose start is subtracted, and a long one.
 const STEPS: [u64; 2] = [100, 1100];
 
-/// What `valgrind` counts.
+/// Counts of `valgrind`.
 #[derive(Debug, Clone, Copy)]
 struct Counted {
     instructions: u64,
@@ -164,7 +162,7 @@ struct Counted {
 /// Runs this program under `valgrind`.
 ///
 /// # Errors
-/// Why there is no count.
+/// The reason why there is no count.
 fn count(row: usize, kind: &str, steps: u64) -> Result<Counted, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
@@ -181,7 +179,7 @@ fn count(row: usize, kind: &str, steps: u64) -> Result<Counted, String> {
     let printed = String::from_utf8_lossy(&output.stdout);
     let numbers: Option<Vec<u64>> = printed
         .split_whitespace()
-        .map(|own| own.parse().ok())
+        .map(|number| number.parse().ok())
         .collect();
     match (instructions, numbers.as_deref()) {
         (Some(instructions), Some(&[steps, impacts])) => Ok(Counted {
@@ -232,7 +230,7 @@ fn measure() -> Result<f64, String> {
     Ok(worst)
 }
 
-/// What a scene may cost more or less than the model: inlining may fall out otherwise.
+/// Allowed relative difference between a scene and its model: inlining may differ.
 const ALLOWED: f64 = 0.005;
 
 fn main() -> ExitCode {

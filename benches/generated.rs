@@ -1,6 +1,6 @@
 //! The generated functions in the shape of those written by hand: a state in, the result out.
 //!
-//! All panic on a fault; at the states that are compared and timed there is none.
+//! All panic on a fault; there is none at the states that are compared and timed.
 
 use dalembert::{Impacting, System, VectorField};
 

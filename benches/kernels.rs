@@ -1,4 +1,4 @@
-//! Times of single calls, generated and by hand: rate, energy, impact; of a step; of what an impact adds to a run.
+//! Times of single calls, generated and by hand: rate, energy, impact; of a step; and the cost of an impact in a run.
 //!
 //! `cargo bench --package dalembert-benches --bench kernels [-- FILTER]`
 
@@ -317,8 +317,9 @@ fn flight<S: System, E: Effect<S> + Clone>(
     group.bench_function(name, |bencher| bencher.iter(fly));
 }
 
-/// What one impact adds to a run: the difference of the first two times, locating it, carrying it out, starting again
-/// and the steps that takes. The other table is so large that there is no impact. The last run does not look for one.
+/// Cost of one impact in a run: the difference of the first two times. It includes locating the impact, carrying it out,
+/// starting again and the steps for that. The other table is so large that there is no impact. The last run does not look
+/// for one.
 fn located(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("flight/point_billiard");
     let point = PointBilliard::default();

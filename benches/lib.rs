@@ -1,6 +1,6 @@
-//! What the benchmarks share: the same mechanics written by hand, problems with known solutions, tables.
+//! Items that the benchmarks share: the same mechanics written by hand, problems with known solutions, tables.
 //!
-//! How to run them, what they measure and what they do not show: `benches/README.md`.
+//! Their use, their measurements and the limits of those: `benches/README.md`.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Problems with known solutions: each is solved, and the error of what came out is measured.
+//! Problems with known solutions: each is solved, and the error of the result is measured.
 //!
 //! The definitions and where the solutions are from: `benches/README.md`.
 
@@ -74,23 +74,23 @@ impl Method {
     }
 }
 
-/// How a problem is to be solved.
+/// Settings of a solution of a problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Manner {
-    /// With what.
+    /// The integrator.
     pub method: Method,
-    /// At which tolerance, relative and absolute.
+    /// The tolerance, relative and absolute.
     pub tolerance: Tolerance,
-    /// How many times; the time is that of one of them.
+    /// Number of repetitions; the time is that of one of them.
     pub times: u32,
 }
 
 /// A solution.
 #[derive(Debug, Clone, Copy)]
 pub struct Solved {
-    /// How the run ended.
+    /// End of the run.
     pub outcome: Outcome,
-    /// When it ended.
+    /// Time of the end.
     pub t: f64,
     /// Distance from the known solution; NaN if the run ended for another reason than it should have.
     pub error: f64,

@@ -9,7 +9,7 @@ pub struct Table {
     rows: Vec<Vec<String>>,
 }
 
-/// How a table is printed.
+/// Layout of a printed table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// Columns aligned to the right, two spaces between them.

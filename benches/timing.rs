@@ -1,13 +1,13 @@
-//! How the programs that time without criterion do it.
+//! Timing of the programs that do not use criterion.
 
 use std::time::{Duration, Instant};
 
-/// Whether this is `cargo bench`. `cargo test` runs the same programs without `--bench` and asks for a short run.
+/// True for `cargo bench`. `cargo test` runs the same programs without `--bench` and asks for a short run.
 pub fn is_benchmark() -> bool {
     std::env::args().any(|argument| argument == "--bench")
 }
 
-/// The time that something takes, with what it gives.
+/// The time of some work, with its result.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = Instant::now();
     let result = work();

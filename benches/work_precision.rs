@@ -1,4 +1,4 @@
-//! Work against precision: the measured error of each problem at each tolerance, with what it cost.
+//! Work against precision: the measured error of each problem at each tolerance, with its cost.
 //!
 //! `cargo bench --package dalembert-benches --bench work_precision [-- [--csv] [PROBLEM..]]`
 
@@ -9,7 +9,7 @@ use dalembert_benches::problems::{self, Manner, Method, Problem, Solved};
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::{is_benchmark, median};
 
-/// How much is measured.
+/// Extent of the measurements.
 struct Plan {
     /// Powers of ten of the tolerances.
     decades: &'static [i32],
@@ -42,7 +42,7 @@ struct Case {
 }
 
 impl Case {
-    /// A first run shows how often it has to be repeated.
+    /// A first run shows the number of repetitions needed.
     fn new(problem: Problem, method: Method, decade: i32, least: Duration) -> Self {
         let value: f64 = format!("1e{decade}").parse().expect("a number");
         let tolerance = Tolerance::new(value).expect("a tolerance");

@@ -163,7 +163,7 @@ fn total<T: Number, const N: usize>(rods: Rods<T>, cos: &[T; N], p: &[T; N], ome
     kinetic.times(0.5) - rods.m * rods.g * rods.l * drop
 }
 
-/// Velocities and what the links below carry along, in two passes over the chain.
+/// Velocities and the inertia carried by each link, in two passes over the chain.
 ///
 /// Let `P_i` be the momentum of all bobs from link `i` down; then `p_i = l t_i.P_i` with `t_i = (cos, sin)` along the
 /// motion of the link. From the last link up, `P_i = A_i v_{i-1} + b_i` with a symmetric matrix `A_i`: the inertia that
@@ -175,7 +175,7 @@ fn link_by_link<const N: usize>(
     cos: &[f64; N],
     p: &[f64; N],
 ) -> ([f64; N], [[f64; 2]; N]) {
-    // What carrying link i and all below it takes: B = m + A_{i+1}, applied to t; 1/(l t.B t); p/l - t.b.
+    // Inertia of link i and all below it: B = m + A_{i+1}, applied to t; 1/(l t.B t); p/l - t.b.
     let (mut carried, mut inverse, mut excess) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
     let (mut matrices, mut offsets) = ([[0.0; 3]; N], [[0.0; 2]; N]);
     let (mut a, mut b) = ([0.0; 3], [0.0; 2]);

@@ -1,4 +1,4 @@
-//! Numbers that count what is done with them, as the generator counts its operations.
+//! Numbers that count their operations, as the generator counts its own.
 
 use core::cell::Cell;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -9,7 +9,7 @@ thread_local! {
     static OPERATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
-/// A number each operation on which is counted.
+/// A number; each operation on it is counted.
 #[derive(Debug, Clone, Copy)]
 pub struct Counted(f64);
 

@@ -1,4 +1,4 @@
-//! What functions written by hand compute with: numbers, or numbers that count.
+//! Numbers of the functions written by hand: plain, or counting their operations.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 

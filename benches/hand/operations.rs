@@ -20,8 +20,9 @@ use super::{
 /// Generated functions may take this many times the operations of those by hand ..
 const MOST: f64 = 1.1;
 
-/// .. but these: the reciprocal of a mass is taken before it is multiplied by; a blow is added to the state, and a momentum
-/// that is turned round needs no addition; a factor that may vanish stays; a constraint of positions has no frame.
+/// .. but these: the reciprocal of a mass is computed before the product with it; a blow is added to the state, and a
+/// momentum that is turned round needs no addition; a factor that may vanish stays; a constraint of positions has no
+/// frame.
 const LARGER: [(&str, f64); 6] = [
     ("bouncing_ball (q, p) rate", 1.34),
     ("bouncing_ball (q, p) impact", 3.0),
@@ -46,7 +47,7 @@ struct Generated {
 }
 
 impl Generated {
-    /// Of the form in which the model is run.
+    /// Counts for the form in which the model is run.
     fn of<S: Described>(_: &S) -> Self {
         Self {
             name: S::DESCRIPTION.name,
@@ -54,7 +55,7 @@ impl Generated {
         }
     }
 
-    /// Of the global form, where another one is run.
+    /// Counts for the global form, where another one is run.
     fn global<S: Described>(_: &S) -> Self {
         Self {
             name: S::DESCRIPTION.name,
@@ -79,7 +80,7 @@ impl Generated {
         self.pair("rate", self.program.rate.cost.total(), by_hand)
     }
 
-    /// A generated energy that takes velocities begins with the function that gives them.
+    /// A generated energy that needs velocities begins with their function.
     fn energy(&self, by_hand: usize) -> Pair {
         let mut inputs = self.program.energy.ops.iter();
         let velocity = match inputs.any(|op| matches!(op, Op::Input(Input::Velocity(_)))) {
@@ -93,7 +94,7 @@ impl Generated {
         )
     }
 
-    /// An impact on the first surface by its declared law, which is elastic: the blow, and what it adds to the state.
+    /// An impact on the first surface by its declared law, which is elastic: the blow, and its addition to the state.
     fn impact(&self, by_hand: usize) -> Pair {
         let blows = &self.program.impacting.as_ref().expect("surfaces").blows;
         let blow: &Function = blows[0].as_ref().expect("an impulse");

@@ -1,4 +1,4 @@
-//! The point billiard: next to no work, so that what surrounds the formulas shows.
+//! The point billiard: next to no work, so that the cost around the formulas shows.
 
 use dalembert_models::PointBilliard;
 

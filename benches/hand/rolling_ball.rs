@@ -38,8 +38,8 @@ pub fn rate<T: Number>(
 #[inline(always)]
 pub fn energy<T: Number>(ball: &RollingBallEuler, [_, _, _, _, _, w_x, w_y, w_z]: [T; 8]) -> T {
     let [r, k] = parameters::<T, _>([ball.r, ball.k]);
-    let own = k * k;
-    ((own + r * r) * (w_x * w_x + w_y * w_y) + own * (w_z * w_z)).times(0.5)
+    let gyration = k * k;
+    ((gyration + r * r) * (w_x * w_x + w_y * w_y) + gyration * (w_z * w_z)).times(0.5)
 }
 
 /// The centre is reflected at the rim: its velocity is `r (w_y, -w_x)`.

@@ -19,7 +19,7 @@ pub fn energy<T: Number>(wheels: &TwoWheelsRod, [_, _, _, _, first, second]: [T;
     ((one + r1 * r1) * (first * first) + (one + r2 * r2) * (second * second)).times(0.5)
 }
 
-/// Elastic impact at either end of the rod: what counts is the rate at which the wheels part.
+/// Elastic impact at either end of the rod: it turns round the rate at which the wheels part.
 #[inline(always)]
 pub fn impact<T: Number>(
     wheels: &TwoWheelsRod,

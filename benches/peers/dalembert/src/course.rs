@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::timing::timed;
 use crate::{Plan, State};
 
-/// A system on its way from a state to a time.
+/// A run of a system from a state to a time.
 pub struct Course<'a, S: System, E> {
     pub work: &'static str,
     pub system: &'a S,
@@ -52,7 +52,7 @@ impl<S: System> Observer<S> for Impacts<S> {
 }
 
 impl<S: TaylorField + System, E: Effect<S> + Clone> Course<'_, S, E> {
-    /// Prints what both integrators make of it, at every tolerance.
+    /// Runs both integrators at every tolerance and prints the results.
     pub fn measure(&self, plan: &Plan) {
         for &value in plan.tolerances {
             let tolerance = Tolerance::new(value).expect("a tolerance");
@@ -123,7 +123,7 @@ impl<S: TaylorField + System, E: Effect<S> + Clone> Course<'_, S, E> {
     }
 }
 
-/// Where impacts accumulate.
+/// Time at which impacts accumulate.
 fn accumulation(outcome: Outcome) -> Value {
     match outcome {
         Outcome::Zeno { t, .. } => json!(t),

@@ -64,7 +64,7 @@ fn report(
     );
 }
 
-/// How fast a trajectory rolls.
+/// Rate of rolling of a trajectory.
 fn roll(index: usize) -> f64 {
     10.0 + 0.005 * (2.0 * index as f64 / (TRAJECTORIES - 1) as f64 - 1.0)
 }

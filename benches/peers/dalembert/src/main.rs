@@ -14,7 +14,7 @@ mod works;
 /// The state of a system.
 type State<S> = <S as dalembert::VectorField>::State;
 
-/// How much is measured.
+/// Extent of the measurements.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
     /// Relative and absolute, of one course.
@@ -31,7 +31,7 @@ const PLAN: Plan = Plan {
     repetitions: 5,
 };
 
-/// Names of works, and what measures them.
+/// Names of works with their measuring functions.
 const WORKS: [(&str, fn(&Plan)); 7] = [
     ("W1", works::disk_billiard),
     ("W2", works::sleigh),

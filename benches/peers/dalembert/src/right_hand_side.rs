@@ -91,7 +91,7 @@ fn torque(theta: &[f64], omega: &[f64], pdot: f64, i: usize) -> (f64, f64) {
     (sum, size)
 }
 
-/// By places: angular accelerations are what the accelerations of neighbouring masses differ by, across the rod.
+/// By places: an angular acceleration is the difference of the accelerations of neighbouring masses, across the rod.
 fn rods<S: System + Described>(chain: &S, plan: &Plan) {
     let mut error = 0.0_f64;
     let mut states = Vec::new();

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// The time, with what it gives.
+/// The time of some work, with its result.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = Instant::now();
     let result = work();
