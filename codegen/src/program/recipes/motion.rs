@@ -28,7 +28,7 @@ fn rate_of(mut kernel: Kernel<'_>, form: Form) -> Function {
     kernel.finish(outputs)
 }
 
-/// The function that takes fewer operations.
+/// The function with fewer operations.
 fn shorter(first: Function, second: Function) -> Function {
     match second.cost.total() < first.cost.total() {
         true => second,
