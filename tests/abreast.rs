@@ -1,4 +1,4 @@
-//! Runs abreast: each has the bits that it has alone, whatever goes on in the lanes beside it.
+//! Runs abreast: each has the bits of the run alone, independent of the lanes beside it.
 
 use dalembert::lanes::{Member, run_abreast};
 use dalembert::{Described, Run, Scene, Simulation, StartError, StateVector, Taylor, TaylorField};
@@ -25,8 +25,8 @@ dalembert::model! {
 
 type Results<S> = Vec<Result<Run<<S as VectorField>::State>, StartError>>;
 
-/// The members of an ensemble: systems of other parameters in turn, runs of other lengths, of which some have no time at
-/// all, one a budget of three steps, and one no state.
+/// The members of an ensemble: systems of other parameters in turn, and runs of other lengths. Some runs have no time at
+/// all, one has a budget of three steps, and one has no state.
 struct Members<S: VectorField> {
     systems: [S; 2],
     states: Vec<S::State>,
@@ -85,7 +85,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         runs.collect()
     }
 
-    /// `looks_inside` changes what is computed when, and no result.
+    /// `looks_inside` changes the order of the computation, and no result.
     fn abreast(&self, looks_inside: bool) -> Results<S> {
         let mut results: Vec<Option<_>> = self.states.iter().map(|_| None).collect();
         let members = (0..self.states.len()).map(|index| {
@@ -120,7 +120,7 @@ fn faster<S: Described>(system: &S, count: usize) -> Vec<S::State> {
     states.collect()
 }
 
-/// What tells whether two runs are the same to the bit, NaN included.
+/// Text that is equal for runs with the same bits, NaN included.
 fn told<S: StateVector>(run: &Result<Run<S>, StartError>) -> String {
     match run {
         Ok(run) => {
@@ -139,11 +139,11 @@ fn assert_same<S: Described + Scene + TaylorField>(parameter: usize) -> u64 {
         let members = Members::<S>::new(parameter, tolerance);
         let alone = members.alone();
         for looks_inside in [false, true] {
-            for (index, (own, abreast)) in
+            for (index, (single, abreast)) in
                 alone.iter().zip(&members.abreast(looks_inside)).enumerate()
             {
                 let name = S::DESCRIPTION.name;
-                assert_eq!(told(own), told(abreast), "{name}, member {index}");
+                assert_eq!(told(single), told(abreast), "{name}, member {index}");
             }
         }
         let runs = alone.iter().flatten();

@@ -35,9 +35,20 @@ fn check(name: &str, file: &str) {
                 point.set(symbol, value);
             }
         };
-        set(model.coordinates.iter().map(|own| own.q).collect(), "q");
         set(
-            model.coordinates.iter().map(|own| own.qdot).collect(),
+            model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.q)
+                .collect(),
+            "q",
+        );
+        set(
+            model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.qdot)
+                .collect(),
             "qdot",
         );
         for parameter in &model.parameters {
@@ -58,7 +69,7 @@ fn check(name: &str, file: &str) {
             let expected = numbers(&state[key]);
             let size = expected
                 .iter()
-                .fold(1.0, |size: f64, own| size.max(own.abs()));
+                .fold(1.0, |size: f64, value| size.max(value.abs()));
             for (found, expected) in found.iter().zip(&expected) {
                 let error = (found - expected).abs() / size;
                 assert!(error <= TOLERANCE, "{name} {key}: {found} {expected}");
@@ -84,7 +95,7 @@ fn check_constraints(name: &str) {
     let residuals: Vec<_> = derivation
         .constraints
         .iter()
-        .map(|own| own.residual)
+        .map(|constraint| constraint.residual)
         .collect();
     let rates = rates_modulo_a_prime(&model, &dynamics, &residuals);
     assert_eq!(rates, vec![0; residuals.len()], "{name}");

@@ -18,7 +18,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A density on the universal cover alone, and one that grows along a belt that moves.
+    /// A density on the universal cover alone, and a density that grows along a moving belt.
     pub Belt {
         coordinates { x; y; }
         parameters { c > 0 = 1; k > 0 = 1; }
@@ -125,12 +125,15 @@ fn checked(files: &[PathBuf]) -> Output {
 fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     let folder = folder("certificates");
     let models = dalembert_command::all();
-    let names: Vec<&str> = models.iter().map(|own| own.description().name).collect();
+    let names: Vec<&str> = models
+        .iter()
+        .map(|model| model.description().name)
+        .collect();
     let others = [
         "spiral", "belt", "winding", "charge", "cubic", "slowed", "bent",
     ];
     let names = names.iter().chain(&others);
-    let files: Vec<PathBuf> = names.map(|own| certificate(own, &folder)).collect();
+    let files: Vec<PathBuf> = names.map(|name| certificate(name, &folder)).collect();
     let output = checked(&files);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(
@@ -143,7 +146,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     assert_eq!(count("unchecked "), 0, "{text}");
 }
 
-/// The program is no rubber stamp: each of these changes makes a true claim of a certificate false, and is found.
+/// The checking program refuses false certificates: each of these changes makes a true claim of a certificate false, and is found.
 #[test]
 fn a_certificate_that_was_tampered_with_fails() {
     let folder = folder("tampered_certificates");

@@ -73,7 +73,7 @@ fn a_drop_in_rank_is_a_fault_that_names_the_constraint() {
     );
 }
 
-/// The vertical disk turns and rolls at constant rates whatever its inertia: `xddot = -R roll turn sin(phi)`.
+/// The vertical disk turns and rolls at constant rates for every inertia: `xddot = -R roll turn sin(phi)`.
 #[test]
 fn the_rolling_disk_keeps_its_digits_at_every_ratio_of_inertias() {
     for kappa in [1e-16, 1e-8, 1.0, 1e8, 1e12, 1e16] {

@@ -1,4 +1,4 @@
-//! Motion along surfaces after impacts: held at `h = 0`, left where the surface would have to pull.
+//! Motion along surfaces after impacts: held at `h = 0`, released where the surface would have to pull.
 
 use core::ops::ControlFlow;
 
@@ -59,7 +59,7 @@ const CONTACT: Policies = Policies {
     split: dalembert::policy::Split::First,
 };
 
-/// Keeps where surfaces begin and cease to hold the motion.
+/// Keeps the times at which surfaces begin and cease to hold the motion.
 struct Holds<S>(Vec<Hold<S>>);
 
 impl<M: System> Observer<M> for Holds<M::State> {
@@ -73,7 +73,7 @@ type State = <Model as VectorField>::State;
 
 type Ran = (Run<State>, Vec<Hold<State>>);
 
-/// A run from a state that is not looked at before.
+/// A run from a state that is not checked before.
 fn course<'a>(model: &'a Model, q: &[f64], qdot: &[f64], until: f64) -> Course<'a, Model> {
     let state = model.state_unchecked(0.0, &vector(q), &vector(qdot));
     Course::from_state(model, state.expect("a state"), until).tol(1e-13)

@@ -1,8 +1,8 @@
-//! What expansion costs: time per model, verdicts on densities, and how the N-link chain grows.
+//! Cost of expansion: time per model, verdicts on densities, and the growth with the N-link chain.
 //!
-//! The bounds are those of a user's build. Built without optimisation, as cargo builds procedural macros in every
-//! profile, each model must expand in under a second; optimised, in under 50 ms. Times are the least of five. A machine on
-//! which that is too slow by itself is told by the time it takes to read the generated text as tokens.
+//! The bounds are those of a user's build. Built without optimisation, as cargo builds procedural macros in every profile,
+//! each model must expand in under a second; optimised, in under 50 ms. Times are the least of five. On a slow machine the
+//! bound is relative: to the time of reading the generated text as tokens.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -21,19 +21,19 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 /// Measurements are made one at a time: tests of one file run side by side.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// What an expansion takes.
+/// Measurements of an expansion.
 struct Expansion {
     /// The least of five times.
     time: Duration,
-    /// The least of five ratios of the time to that of reading what is generated, measured next to each other.
+    /// The least of five ratios of the time to that of reading the generated code, measured next to each other.
     to_reading: f64,
     /// Characters of the generated code.
     length: usize,
 }
 
-/// As often as it takes to read what is generated an expansion may take on a machine that is slow.
+/// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code.
 const READINGS: f64 = 2.5;
-/// As many expansions without them the claims of a model may take there.
+/// On a slow machine, largest ratio of the time of a model's claims to that of an expansion without them.
 const EXPANSIONS: u32 = 10;
 
 fn expansion(source: &str) -> Expansion {
@@ -41,12 +41,12 @@ fn expansion(source: &str) -> Expansion {
     let (mut time, mut to_reading, mut length) = (Duration::MAX, f64::INFINITY, 0);
     for _ in 0..5 {
         let tokens = source.parse().expect("tokens");
-        let (own, items) = timed(|| try_expand(tokens).expect("a model"));
+        let (expansion, items) = timed(|| try_expand(tokens).expect("a model"));
         let text = items.to_string();
         let (reading, read) = timed(|| text.parse::<TokenStream>());
         assert!(read.is_ok());
-        time = time.min(own);
-        to_reading = to_reading.min(own.as_secs_f64() / reading.as_secs_f64());
+        time = time.min(expansion);
+        to_reading = to_reading.min(expansion.as_secs_f64() / reading.as_secs_f64());
         length = text.len();
     }
     Expansion {
@@ -56,7 +56,7 @@ fn expansion(source: &str) -> Expansion {
     }
 }
 
-/// The time that work takes on the processor: what else runs here does not count.
+/// The time of work on the processor, without the time of other programs.
 fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = on_processor();
     let result = work();
@@ -186,8 +186,8 @@ fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
     assert!(time < milliseconds(1000, 7000), "{time:?}");
 }
 
-/// What is examined beside existence itself, conditions on parameters among it, takes no longer than that on systems of five
-/// coordinates; sums along circles and obstructions in long numbers took ten times as long.
+/// The examination beyond existence, which includes conditions on parameters, takes no longer than on systems of five
+/// coordinates. Sums along circles and obstructions in long numbers took ten times as long.
 #[test]
 fn claims_of_bodies_and_trains_are_examined_in_time() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";

@@ -1,4 +1,4 @@
-//! Runs in more than double precision: against closed forms and digits of other programs, and where they end.
+//! Runs in more than double precision: against closed forms and digits of other programs, and the ends of such runs.
 
 use core::ops::ControlFlow;
 
@@ -138,7 +138,7 @@ fn fewer_parts_are_as_far_off_as_their_rounding() {
             truth[i] - Extended::of_parts([two[i].parts()[0], two[i].parts()[1], 0.0, 0.0]);
         let [a, b, c] = three[i].parts();
         let of_three = truth[i] - Extended::of_parts([a, b, c, 0.0]);
-        let sizes = [of_two, of_three].map(|own| own.nearest().abs());
+        let sizes = [of_two, of_three].map(|error| error.nearest().abs());
         assert!(sizes[0] > 1e-36 && sizes[0] < 1e-29, "{sizes:?}");
         assert!(sizes[1] > 1e-52 && sizes[1] < 1e-45, "{sizes:?}");
     }
@@ -203,7 +203,7 @@ fn a_wall_that_moves_is_met_at_its_time() {
     let sine = of(1.0) / (of(3.0) - of(1.0) / of(10.0));
     assert_near("time", impact.t, Numbers::asin(sine), 1e-45);
     let cosine = Numbers::sqrt(of(1.0) - sine * sine);
-    // The elastic law changes the speed by twice what it is without the motion of the wall, less that.
+    // The elastic law changes the speed by twice the speed relative to the wall.
     let before = of(3.0) * cosine;
     assert_near("before", impact.before[1], before, 1e-45);
     let wall = cosine / of(10.0);

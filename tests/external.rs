@@ -9,7 +9,7 @@ use serde_json::Value;
 /// Builds the crate in `tests/external` and gives the path of its binary.
 fn build() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("external");
-    // Crates outside the workspace are built in one folder: they share what they depend on.
+    // Crates outside the workspace are built in one folder, so that they share their dependencies.
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("outside");
     let status = Command::new(env!("CARGO"))
         .args(["build", "--quiet", "--manifest-path"])

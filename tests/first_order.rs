@@ -36,7 +36,7 @@ static PREY: Text = Text::new(
 );
 
 dalembert::model! {
-    /// A counter that starts again at 1, and a clock of how often.
+    /// A counter that starts again at 1, and a clock of its restarts.
     pub Sawtooth {
         const N = 2;
         coordinates { s[N]; turns; }
@@ -78,10 +78,10 @@ fn integrators_follow_the_field() {
         assert_eq!(run.outcome, Outcome::Done, "{name}");
         let is_high = integrator.order().is_none_or(|order| order > 5);
         let error = if is_high { 1e-11 } else { 1e-10 };
-        for (own, expected) in run.state.as_slice().iter().zip([x, phi]) {
+        for (found, expected) in run.state.as_slice().iter().zip([x, phi]) {
             assert!(
-                (own - expected).abs() <= error,
-                "{name}: {own} for {expected}"
+                (found - expected).abs() <= error,
+                "{name}: {found} for {expected}"
             );
         }
     }
@@ -95,13 +95,13 @@ fn the_state_is_the_position() {
     let mut rate = state;
     system.rate(0.5, &state, &mut rate).expect("a rate");
     let expected = [-2.0 + 0.5_f64.cos(), 3.0 + 0.25_f64.sin() / 10.0];
-    for (own, expected) in rate.as_slice().iter().zip(expected) {
-        assert!((own - expected).abs() <= 4.0 * f64::EPSILON);
+    for (found, expected) in rate.as_slice().iter().zip(expected) {
+        assert!((found - expected).abs() <= 4.0 * f64::EPSILON);
     }
     assert_eq!(system.velocity(0.5, &state), Ok(rate));
 }
 
-/// Emitted rates, gaps and resets are what the interpreter computes, to the bit.
+/// Emitted rates, gaps and resets equal those of the interpreter, to the bit.
 fn assert_emitted_is_interpreted<S>(system: &S, state: S::State)
 where
     S: Described + Impacting,
@@ -133,8 +133,8 @@ where
             .reset(s, t, &state)
             .expect("values")
             .expect("a reset");
-        let own = [jump.position.as_slice(), jump.velocity.as_slice()].concat();
-        assert_eq!(after, own);
+        let expected = [jump.position.as_slice(), jump.velocity.as_slice()].concat();
+        assert_eq!(after, expected);
     }
 }
 
@@ -173,8 +173,8 @@ fn resets_act_on_positions() {
         .observed(Integrator::Taylor, &mut ());
     assert_eq!((run.outcome, run.counters.impacts), (Outcome::Done, 2));
     let expected = [0.5, 2.5 / 3.0, 2.0];
-    for (own, expected) in run.state.as_slice().iter().zip(expected) {
-        assert!((own - expected).abs() <= 1e-14, "{own} for {expected}");
+    for (found, expected) in run.state.as_slice().iter().zip(expected) {
+        assert!((found - expected).abs() <= 1e-14, "{found} for {expected}");
     }
     let free = SAWTOOTH.scene("free");
     let run = Course::new(&free, &start, &start, 2.5)
@@ -188,7 +188,7 @@ fn resets_act_on_positions() {
 fn integrals_are_kept() {
     let system = PREY.model();
     let integral =
-        |own: &[f64]| own[0] - own[0].ln() + 4.0 / 3.0 * own[1] - 2.0 / 3.0 * own[1].ln();
+        |place: &[f64]| place[0] - place[0].ln() + 4.0 / 3.0 * place[1] - 2.0 / 3.0 * place[1].ln();
     let start = [1.0, 0.5];
     let run = Course::new(&system, &start, &[0.0; 2], 20.0).observed(Integrator::Taylor, &mut ());
     assert_eq!(run.outcome, Outcome::Done);

@@ -27,8 +27,8 @@ const QUANTITIES: [&str; 7] = [
     "mu_C_density_frame",
 ];
 
-/// Where Euler's angles are singular, so is the frame of the angular velocity in space: the angles' rates do not exist,
-/// the energy does.
+/// The frame of the angular velocity in space is singular where Euler's angles are: the rates of the angles do not exist
+/// there, the energy does.
 #[test]
 fn a_frame_ends_where_its_angles_do() {
     let ball = shipped("rolling_ball_euler").large([]);
@@ -94,8 +94,8 @@ fn input(state: &Value) -> Value {
     given.collect::<Map<String, Value>>().into()
 }
 
-/// Where a model has a reduced form, its motion is that of the global form: the same accelerations at the same
-/// velocities, time and forces included.
+/// The motion in the reduced form of a model is that of the global form: the same accelerations at the same velocities,
+/// time and forces included.
 #[derive(Default)]
 struct SameMotion {
     models: usize,
@@ -123,21 +123,24 @@ impl SameMotion {
             let actual = acceleration(system, t, &state, &rate);
             let size = expected
                 .iter()
-                .fold(1.0_f64, |size, own| size.max(own.abs()));
+                .fold(1.0_f64, |size, value| size.max(value.abs()));
             for (actual, expected) in actual.iter().zip(expected) {
                 let error = (actual - expected).abs();
                 assert!(error < 1e-7 * size, "{name}: {actual} for {expected}");
             }
             let energies = [system.energy(t, &state), global.energy(t, &other)];
-            let [own, of_global] = energies.map(|energy| energy.expect("an energy"));
+            let [reduced, of_global] = energies.map(|energy| energy.expect("an energy"));
             assert!(
-                (own - of_global).abs() <= 1e-13 * own.abs().max(1e-3),
+                (reduced - of_global).abs() <= 1e-13 * reduced.abs().max(1e-3),
                 "{name}"
             );
             let momenta = system.momentum(t, &state).expect("momenta");
             let back = system.state_from_momenta(t, &q, &momenta).expect("a state");
-            for (back, own) in back.as_slice().iter().zip(state.as_slice()) {
-                assert!((back - own).abs() < 1e-11 * own.abs().max(1.0), "{name}");
+            for (back, component) in back.as_slice().iter().zip(state.as_slice()) {
+                assert!(
+                    (back - component).abs() < 1e-11 * component.abs().max(1.0),
+                    "{name}"
+                );
             }
         }
     }
@@ -181,13 +184,16 @@ fn both_forms_project_to_the_same_velocity() {
         let mut random = Random::new(9);
         let zero = system.zero_vector();
         let (q, qdot) = (random.like(&zero, 0.2, 1.3), random.like(&zero, -1.0, 1.0));
-        let own = system.state_nearest(0.1, &q, &qdot).expect("a state");
+        let reduced = system.state_nearest(0.1, &q, &qdot).expect("a state");
         let other = global.state_nearest(0.1, &q, &qdot).expect("a state");
-        let [own, other] = [system.velocity(0.1, &own), global.velocity(0.1, &other)];
-        let [own, other] = [own.expect("a velocity"), other.expect("a velocity")];
-        for (own, other) in own.as_slice().iter().zip(other.as_slice()) {
+        let [reduced, other] = [system.velocity(0.1, &reduced), global.velocity(0.1, &other)];
+        let [reduced, other] = [reduced.expect("a velocity"), other.expect("a velocity")];
+        for (reduced, other) in reduced.as_slice().iter().zip(other.as_slice()) {
             let name = system.description().name;
-            assert!((own - other).abs() < 1e-12, "{name}: {own} and {other}");
+            assert!(
+                (reduced - other).abs() < 1e-12,
+                "{name}: {reduced} and {other}"
+            );
         }
     }
 }
@@ -199,7 +205,7 @@ fn run(system: &Model, q: &[f64], qdot: &[f64], count: u64) -> (Vec<f64>, Vec<f6
     (end.times(), end.qdot)
 }
 
-/// Impacts included, both forms run alike: on the circular table, which amplifies errors slowly.
+/// With impacts, both forms run alike: on the circular table, which amplifies errors slowly.
 #[test]
 fn both_forms_meet_the_same_impacts() {
     let disk = shipped("rolling_disk").with([("ta", 0.2), ("tb", 0.2)]);
@@ -212,18 +218,18 @@ fn both_forms_meet_the_same_impacts() {
         0.2,
     ];
     let q = [0.0, 0.0, 0.0, phi];
-    let (own, last) = run(&disk, &q, &qdot, 20);
+    let (reduced, last) = run(&disk, &q, &qdot, 20);
     let (other, global_last) = run(&disk.global(), &q, &qdot, 20);
-    assert_eq!((own.len(), other.len()), (20, 20));
-    for (own, other) in own.iter().zip(&other) {
-        assert!((own - other).abs() < 1e-9, "{own} and {other}");
+    assert_eq!((reduced.len(), other.len()), (20, 20));
+    for (reduced, other) in reduced.iter().zip(&other) {
+        assert!((reduced - other).abs() < 1e-9, "{reduced} and {other}");
     }
-    for (own, other) in last.iter().zip(&global_last) {
-        assert!((own - other).abs() < 1e-8, "{own} and {other}");
+    for (reduced, other) in last.iter().zip(&global_last) {
+        assert!((reduced - other).abs() < 1e-8, "{reduced} and {other}");
     }
 }
 
-/// On D by construction: no residual but that of rounding, however long the run and however loose the tolerance.
+/// On D by construction: no residual but rounding, for every length of the run and every tolerance.
 #[test]
 fn a_reduced_state_never_leaves_the_constraints() {
     let disk = shipped("rolling_disk").model();

@@ -10,7 +10,7 @@ use dalembert_tests::golden;
 fn expansion(source: &str) -> String {
     let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect("a model");
     let text = prettyplease::unparse(&syn::parse2(tokens).expect("items"));
-    // How the declaration itself is spelled depends on who turned it into tokens.
+    // The spelling of the declaration depends on the program that turned it into tokens.
     let is_source = |line: &&str| line.trim_start().starts_with("source: ");
     text.lines()
         .filter(|line| !is_source(line))

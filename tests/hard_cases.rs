@@ -114,7 +114,7 @@ fn an_inelastic_ball_accumulates_where_and_after_how_many_impacts_it_must() {
             let right = case["impacts_completed_before_zeno_minus_1e-6"]
                 .as_u64()
                 .expect("a count");
-            // For e = 0.999 a flight takes 1e-9 at the mark, and rounding has made of the time three times that.
+            // For e = 0.999 a flight takes 1e-9 at the mark, and rounding has added three times that to the time.
             let spread = if e > 0.99 { 8 } else { 0 };
             assert!(
                 before.abs_diff(right) <= spread,

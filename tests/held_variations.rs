@@ -18,7 +18,7 @@ static HILL: Text = Text::new(
     }",
 );
 
-/// A ball that is steered, on a bumpy slope that it does not slip on while it touches it; the slope is a belt that runs.
+/// A ball that is steered on a bumpy slope and does not slip while it touches it; the slope is a running belt.
 static BUMPS: Text = Text::new(
     "Bumps {
         coordinates { x; y; a; z; }
@@ -51,7 +51,7 @@ fn course<'a, M: Varied>(
     }
 }
 
-/// How often the motion of a run begins to be held, and ceases to be.
+/// Number of times that the motion of a run begins to be held, and ceases to be.
 fn turns<M: Varied>(course: Course<'_, M>) -> [usize; 2] {
     let mut seen = Turns::default();
     let run = course.observed(Integrator::Taylor, &mut seen);
@@ -59,7 +59,7 @@ fn turns<M: Varied>(course: Course<'_, M>) -> [usize; 2] {
     seen.0
 }
 
-/// Derivatives against differences of runs in which motion begins to be held, and ceases to be, so often.
+/// Compares derivatives with differences of runs in which motion begins and ceases to be held this number of times.
 fn check_differences<M: Varied>(
     system: &M,
     start: M::State,
@@ -111,7 +111,7 @@ fn loose_runs_have_derivatives_as_good_as_they_are() {
     for tolerance in [1e-5, 1e-8] {
         for (loose, sharp) in columns(tolerance).iter().zip(&sharp) {
             let size = |values: &mut dyn Iterator<Item = f64>| {
-                values.fold(0.0, |worst: f64, own| worst.max(own.abs()))
+                values.fold(0.0, |worst: f64, value| worst.max(value.abs()))
             };
             let (loose, sharp) = (loose.as_ref(), sharp.as_ref());
             let mut missed = loose.iter().zip(sharp).map(|(a, b)| a - b);

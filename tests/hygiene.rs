@@ -1,6 +1,6 @@
-//! Generated code compiles whatever the user's names and surroundings are.
+//! Generated code compiles with any names of the user and in any surroundings.
 
-/// Names that generated functions use themselves, names that differ in case only, and Greek ones.
+/// Names that generated functions use themselves, names that differ only in case, and Greek ones.
 mod names {
     dalembert::model! {
         pub Awkward {
@@ -20,7 +20,7 @@ mod names {
     }
 }
 
-/// Items that shadow what generated code relies on, and constants where it binds locals.
+/// Items that shadow those that generated code relies on, and constants where it binds locals.
 #[allow(dead_code, non_upper_case_globals, clippy::upper_case_acronyms)]
 mod surroundings {
     struct Option;
@@ -36,7 +36,7 @@ mod surroundings {
     const M: f64 = 2.0;
     fn components() {}
 
-    /// The places that a caller has imported are those of the model.
+    /// The indices that a caller has imported are those of the model.
     pub fn places() -> [usize; 3] {
         [y, phi, floor]
     }
@@ -52,7 +52,7 @@ mod surroundings {
     }
 }
 
-/// Nothing is in scope but `dalembert` and `core`.
+/// Only `dalembert` and `core` are in scope.
 mod bare {
     #![no_implicit_prelude]
 

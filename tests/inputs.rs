@@ -69,10 +69,10 @@ static CART: Text = Text::new(Cart::DESCRIPTION.source);
 
 type State = <Cart as VectorField>::State;
 
-/// What an input of the cart is made of, in one type, so that its runs are compiled once.
+/// Type of every input of the cart, so that its runs are compiled once.
 type Steering = fn(f64, &State) -> [f64; 1];
 
-/// Effects of a cart that nothing stops.
+/// Effects of a cart without walls.
 const NO_WALLS: Option<Impacts<Steered<Cart, Steering>>> = None;
 
 /// A run that is compiled once for all integrators and observers.
@@ -88,7 +88,7 @@ fn run<S: System>(
         .expect("a run")
 }
 
-/// A run of a system that nothing happens to, by steps.
+/// A run of a system without impacts, by steps.
 fn steered<S: System>(system: &S, start: S::State, until: f64) -> Run<S::State> {
     run(
         system,
@@ -137,9 +137,9 @@ fn inputs_are_functions_of_time_and_state() {
     };
     let steering: Steering = |t, state| [(W * t).sin() / (1.0 + state[0] * state[0] / 10.0)];
     let steered = cart.with_inputs(steering);
-    let own = (cart.k / cart.m).sqrt();
+    let natural = (cart.k / cart.m).sqrt();
     let size = 1.0 / (cart.k - cart.m * W * W);
-    let position = |t: f64| size * ((W * t).sin() - W / own * (own * t).sin());
+    let position = |t: f64| size * ((W * t).sin() - W / natural * (natural * t).sin());
     let start = (at_rest(&cart, 0.0), 7.0);
     let mut steps = Dop853::new(tolerance());
     let end = run(&steered, &mut steps, NO_WALLS, start, &mut ());
@@ -225,7 +225,7 @@ fn constraints_and_time_do_work_too() {
     let energy = |t, state| tug.energy(t, state).expect("an energy");
     let gained = energy(5.0, &run.state) - energy(0.0, &start);
     assert!(
-        work.done().iter().all(|own| own.abs() > 1e-3),
+        work.done().iter().all(|part| part.abs() > 1e-3),
         "{:?}",
         work.done()
     );
@@ -418,7 +418,7 @@ fn the_divergence_beside_inputs_is_that_of_held_ones() {
     }
 }
 
-/// Without the motor nothing depends on its torque.
+/// Without the motor, no result depends on its torque.
 #[test]
 fn scenes_without_an_input_have_densities() {
     let model = |scene: &str, claim: &str| {

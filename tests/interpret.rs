@@ -1,4 +1,4 @@
-//! Three routes to the same numbers: what is loaded, the program's interpreter, and derivatives of the Lagrangian by
+//! Three routes to the same numbers: loaded code, the program's interpreter, and derivatives of the Lagrangian by
 //! differences.
 
 use dalembert::describe::Description;
@@ -19,7 +19,7 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// What is loaded does what the interpreter does, to the bit: the same operations in the same order. Emitted code does the same (`erased`).
+/// Loaded code equals the interpreter to the bit: the same operations in the same order. Emitted code does too (`erased`).
 #[test]
 fn loaded_code_is_what_the_interpreter_executes() {
     let mut states = 0;
@@ -69,7 +69,7 @@ fn every_function_is_emitted_as_it_is_interpreted() {
     assert_eq!(emitted.as_slice(), interpreted);
 }
 
-/// Asserts that the force `f = dL/dq + F` in the program is what central differences of L give, which is evaluated as an expression.
+/// Asserts that the force `f = dL/dq + F` in the program equals central differences of L, evaluated as an expression.
 fn assert_force_is_differenced(system: &Large) {
     let Description { name, source, .. } = *system.description();
     let (model, derivation, _) = derive(source);
@@ -142,8 +142,8 @@ fn programs_are_well_formed() {
     }
 }
 
-/// The field keeps the value of every constraint, on it and off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences
-/// of the residual expression along the rate. Says how many constraints there are.
+/// The field keeps the value of every constraint, on it and off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences of the
+/// residual expression along the rate. Returns the number of constraints.
 fn assert_constraints_are_kept(system: &Large) -> usize {
     let Description { name, source, .. } = *system.description();
     let (model, derivation, _) = derive(source);

@@ -1,4 +1,4 @@
-//! The tables of refused declarations in `docs/language.md`: every row has the message it promises, help included.
+//! The tables of refused declarations in `docs/language.md`: every row gives the message it promises, with its help.
 
 use std::path::Path;
 
@@ -6,11 +6,11 @@ use proc_macro2::TokenStream;
 
 /// The head of the tables.
 const HEAD: &str = "| refused | message |";
-/// What the page says that a row belongs to.
+/// Declarations that the page gives for all rows.
 const COORDINATES: &str = "coordinates { x; y; theta: angle; }";
 const PARAMETERS: &str = "parameters { m > 0 = 1; k > 0 = 1; }";
 
-/// A row: the declarations, and the message they get.
+/// A row: the declarations, and their message.
 struct Row {
     line: usize,
     declarations: String,
@@ -84,7 +84,7 @@ fn lagrangian(declarations: &str) -> String {
     format!("lagrangian = m/2*({terms});")
 }
 
-/// What a row gets instead of what it promises.
+/// The actual message of a row, where it differs from the promised one.
 fn difference(row: &Row) -> Option<String> {
     let source = model(&row.declarations);
     let tokens: TokenStream = source.parse().expect("tokens");

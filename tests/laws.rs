@@ -73,7 +73,7 @@ fn gap_rate_and_energy_change_as_each_law_says() {
     }
 }
 
-/// The declared law has a function of its own, in which most of a contact is left out.
+/// The declared law has its own function, without most of the quantities of a contact.
 fn check_blows(system: &Large) {
     for state in states(system, 20, 14) {
         for surface in 0..system.description().surfaces.len() {
@@ -82,12 +82,12 @@ fn check_blows(system: &Large) {
             let actual = system.blow(surface, 0.0, &state).expect("a blow");
             let whole = |blow: &Blow<<Large as System>::Impulse>| -> Vec<f64> {
                 let direction = blow.direction.as_slice().iter();
-                direction.map(|own| blow.size * own).collect()
+                direction.map(|component| blow.size * component).collect()
             };
             let (expected_impulse, impulse) = (whole(&expected), whole(&actual));
             let size = expected_impulse
                 .iter()
-                .fold(0.0, |size: f64, own| size.max(own.abs()));
+                .fold(0.0, |size: f64, value| size.max(value.abs()));
             for (actual, expected) in impulse.iter().zip(&expected_impulse) {
                 assert!(
                     (actual - expected).abs() < 1e-12 * size,
@@ -129,7 +129,7 @@ fn blows_are_those_of_the_contact_by_the_declared_law() {
     check_blows(&system("rolling_ball_euler").global());
 }
 
-/// No law leaves the constraints, affine ones included.
+/// Every law keeps the constraints, affine ones included.
 fn check_constraints(system: &Large) {
     for state in states(system, 20, 12) {
         for surface in 0..system.description().surfaces.len() {

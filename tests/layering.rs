@@ -1,4 +1,4 @@
-//! Who may depend on whom: the invariants of `docs/architecture.md`, read from the sources.
+//! Allowed dependencies: the invariants of `docs/architecture.md`, read from the sources.
 
 use std::path::{Path, PathBuf};
 
@@ -24,14 +24,14 @@ fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// Whether a source lies in a folder `tests` below `src`.
+/// True if a source lies in a folder `tests` below `src`.
 fn is_inside_tests(path: &Path) -> bool {
     let parts: Vec<_> = path.iter().collect();
     let source = parts.iter().rposition(|part| *part == "src");
     source.is_some_and(|source| parts[source..].iter().any(|part| *part == "tests"))
 }
 
-/// Whether a line holds a text that is not the end of a longer name: `ArrayVec<` is no `Vec<`.
+/// True if a line holds a text that is not the end of a longer name: `ArrayVec<` is no `Vec<`.
 fn has_word(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(place, _)| {
         let before = line[..place].chars().next_back();
@@ -271,7 +271,7 @@ fn the_project_stands_alone() {
     }
 }
 
-/// Generated functions hide constants of their arguments' names; the generator knows which names it uses, and the runtime
+/// Generated functions hide constants of their arguments' names. The generator knows the names it uses, and the runtime
 /// has a function of each.
 #[test]
 fn the_arguments_of_generated_functions_have_one_list() {

@@ -13,7 +13,7 @@ use dalembert_stability::text::{Model, shipped, value};
 
 type State = <Model as VectorField>::State;
 
-/// Whose runs they are.
+/// The model of the runs.
 fn disk() -> Model {
     shipped("rolling_disk").model()
 }
@@ -114,15 +114,14 @@ fn flights_of_dop853_are_exact() {
     assert_flights_are_exact(Integrator::Dop853, 1e-4);
 }
 
-/// By how much the gap of a loose run may be wrong, for a tolerance of 1: gaps are 1 in the middle of the table, and a step
-/// may be off by the tolerance in metres on half axes of 0.15 and 0.2. A shallow hit may be late by more than [`LATE`].
+/// Allowed error of the gap of a loose run, for a tolerance of 1: gaps are 1 in the middle of the table, and a step may be
+/// off by the tolerance in metres on half axes of 0.15 and 0.2. A shallow hit may be late by more than [`LATE`].
 const WRONG: f64 = 30.0;
 
-/// Moments of a flight that are looked at.
+/// Number of moments of a flight that are compared.
 const MOMENTS: usize = 64;
 
-/// In every flight of a run the exact motion stays inside as far as tolerance can tell, and ends on the surface that was
-/// met.
+/// In every flight of a run the exact motion stays inside, up to the tolerance, and ends on the surface that was met.
 fn assert_flights_stay_inside(integrator: Integrator, tol: f64) {
     let (name, disk) = (integrator.name(), disk());
     let wrong = WRONG * tol;

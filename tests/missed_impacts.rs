@@ -12,7 +12,7 @@ use dalembert_stability::text::{Model, value};
 /// Rounding errors allowed in a time, in units of `2^-52` of the table's terms over the gap rate.
 const UNITS: f64 = 256.0;
 
-/// A next impact: how long until it, on which surface, and the gap rate it has.
+/// A next impact: the time until it, its surface, and its gap rate.
 #[derive(Debug, Clone, Copy)]
 struct Next {
     after: f64,
@@ -23,8 +23,8 @@ struct Next {
 /// The next impact in a table from a point on the wall or inside, moving inwards, as a closed form.
 type Ahead = fn(&Model, [f64; 2], [f64; 2]) -> Next;
 
-/// When a line that begins in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the root farther ahead, in the
-/// form without cancellation.
+/// Time at which a line that begins in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the root farther
+/// ahead, in the form without cancellation.
 fn leaves(a: f64, b: f64, c: f64) -> f64 {
     let root = (b * b - a * c.max(0.0)).sqrt();
     if b >= 0.0 {

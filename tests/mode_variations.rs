@@ -86,7 +86,7 @@ static MEDIUM: Text = Text::new(
     }",
 );
 
-/// As the one above, of modes that are reduced to their constraints.
+/// The model above, with modes that are reduced to their constraints.
 static REDUCED: Text = Text::new(
     "Reduced {
         coordinates { x; y; }
@@ -131,7 +131,7 @@ static THROWN: Text = Text::new(
     }",
 );
 
-/// A state of the first mode; what is not given is 0.
+/// A state of the first mode; omitted values are 0.
 fn state<S: Driven>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     let [mut position, mut velocity] = [system.zero_vector(); 2];
     position.as_mut_slice()[..q.len()].copy_from_slice(q);
@@ -313,9 +313,9 @@ fn check_wheel(wheel: &Large, stored: &Value) {
         .arrive(&declared(wheel), &mut [])
         .expect("an arrival");
     let orbit = section.periodic(&first.before).expect("a cycle");
-    let close = |own: f64, name: &str, stored: &Value| {
-        let error = (own - number(stored)).abs();
-        assert!(error < 1e-11, "{name}: {own}, by {error:e}");
+    let close = |found: f64, name: &str, stored: &Value| {
+        let error = (found - number(stored)).abs();
+        assert!(error < 1e-11, "{name}: {found}, by {error:e}");
     };
     close(orbit.point.time, "period", &cycle["period"]);
     let before = orbit.point.before;
@@ -332,7 +332,7 @@ fn check_wheel(wheel: &Large, stored: &Value) {
     );
     let expected = number(&cycle["multiplier_of_x_dot^2"]);
     let [multiplier, imaginary] = orbit.multipliers.iter().next().expect("one");
-    // It is a product of factors near 1: what rounding leaves of them is the error, however small it is.
+    // It is a product of factors near 1: the error is their rounding, even for a small product.
     let error = (multiplier - expected).abs();
     assert!(
         error < 4e-15 && imaginary == 0.0,

@@ -1,5 +1,4 @@
-//! Motions that come to a surface ever more nearly tangentially: an impact that the error of the integrator may have made is
-//! flagged.
+//! Motions that come to a surface ever more nearly tangentially: an impact that may be due to the error of the integrator is flagged.
 
 use dalembert::{EventLog, Instance, Outcome};
 use dalembert_cli::Integrator;
@@ -32,10 +31,10 @@ static TURNED: Text = Text::new(
 /// The integrators that choose their steps.
 fn adaptive() -> impl Iterator<Item = Integrator> {
     let every = Integrator::every().iter().copied();
-    every.filter(|own| own.is_adaptive())
+    every.filter(|integrator| integrator.is_adaptive())
 }
 
-/// Whether each impact is flagged as a graze.
+/// For each impact, true if it is flagged as a graze.
 fn grazes(system: &Model, integrator: Integrator, tolerance: f64) -> Vec<bool> {
     let until = system.initial().until.expect("an end");
     let mut log = EventLog::<_, 64>::new();

@@ -1,5 +1,4 @@
-//! A run allocates nothing, the same run gives the same bits twice, and what memory and stack it takes does not depend on
-//! how long it is.
+//! A run allocates nothing, the same run gives the same bits twice, and its memory and stack do not depend on its length.
 
 use dalembert::{
     Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Scene, Section, Simulation, Stepper, System,
@@ -72,7 +71,7 @@ fn a_search_for_an_orbit_allocates_nothing() {
     let count = allocations(|| {
         let first = section.arrive(&start, &mut []).expect("an arrival");
         let orbit = section.periodic(&first.before, 50);
-        dimension = orbit.ok().map(|own| own.dimension);
+        dimension = orbit.ok().map(|orbit| orbit.dimension);
     });
     assert_eq!((dimension, count), (Some(3), 0));
 }
@@ -117,7 +116,7 @@ fn held(line: &str) -> isize {
     bytes
 }
 
-/// Tables hold the rows that they print; what is counted and summed up holds nothing for a step or an impact.
+/// Tables hold the rows that they print; counts and sums hold nothing for a step or an impact.
 #[test]
 fn a_long_run_of_the_command_line_holds_no_more_than_a_short_one() {
     let [short, long] = [10, 2000].map(|until| {

@@ -1,4 +1,4 @@
-//! Constraints that are not linear in the velocities: Chetaev's rule, ways back to the constraint, and what stays undefined.
+//! Constraints that are not linear in the velocities: Chetaev's rule, ways back to the constraint, and undefined quantities.
 
 use dalembert::law::Law;
 use dalembert::projection::Projection;
@@ -15,7 +15,7 @@ use dalembert_tests::numeric::assert_near;
 use dalembert_tests::sampling::{Random, states};
 use serde_json::{Value, json};
 
-/// Everything that a nonlinear constraint may meet: a metric that is not constant, forces, time, a linear constraint and
+/// All features that a nonlinear constraint may meet: a metric that is not constant, forces, time, a linear constraint and
 /// an integrable one.
 static MIXED: Text = Text::new(
     "Mixed {
@@ -32,7 +32,7 @@ static MIXED: Text = Text::new(
     }",
 );
 
-/// An affine constraint as it is, and a second one that is none.
+/// An affine constraint as it is, and a second one that is not affine.
 static BELT: Text = Text::new(
     "Belt {
         coordinates { x; y; theta: angle; }
@@ -97,8 +97,8 @@ fn near(system: &Large, count: usize) -> Vec<State> {
         );
         let mut off = qdot;
         let shift = random.like(&qdot, -0.1, 0.1);
-        for (own, shift) in off.as_mut().iter_mut().zip(shift.as_ref()) {
-            *own += shift;
+        for (component, shift) in off.as_mut().iter_mut().zip(shift.as_ref()) {
+            *component += shift;
         }
         system.state_unchecked(0.0, &q, &off).expect("a state")
     }));
@@ -108,8 +108,8 @@ fn near(system: &Large, count: usize) -> Vec<State> {
 /// The state moved along its rate.
 fn moved(state: &State, rate: &State, step: f64) -> State {
     let mut moved = *state;
-    for (own, rate) in moved.as_mut().iter_mut().zip(rate.as_ref()) {
-        *own += step * rate;
+    for (component, rate) in moved.as_mut().iter_mut().zip(rate.as_ref()) {
+        *component += step * rate;
     }
     moved
 }
@@ -130,7 +130,7 @@ fn check_kept(system: &Large) {
     }
 }
 
-/// The systems that most is looked at with.
+/// The systems of most checks.
 fn systems() -> [Large; 3] {
     [
         shipped("constant_speed").sized(),
@@ -231,7 +231,7 @@ fn velocities_off_the_constraint_are_refused_or_moved_to_it() {
     let pairs = moved.as_ref().iter().zip(given);
     assert!(
         pairs
-            .map(|(own, given)| (own - given).abs())
+            .map(|(found, given)| (found - given).abs())
             .fold(0.0, f64::max)
             < 0.2
     );
@@ -313,7 +313,7 @@ fn projection_brings_a_coarse_run_back() {
         let left = residuals(&mixed, run.t, &run.state);
         (
             left.iter()
-                .fold(0.0, |worst: f64, own| worst.max(own.abs())),
+                .fold(0.0, |worst: f64, value| worst.max(value.abs())),
             mixed.levels(run.t, &mixed.position(&run.state)).as_ref()[0],
             run.counters.projections,
         )

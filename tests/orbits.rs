@@ -31,7 +31,7 @@ static WHEEL: Text = Text::new(
     }",
 );
 
-/// Most of a return that any run here takes.
+/// Largest duration of a return in these tests.
 const HORIZON: f64 = 1e4;
 
 type State = <Model as VectorField>::State;
@@ -135,7 +135,7 @@ fn two_bounces_in_an_ellipse_have_the_traces_of_its_axes() {
         assert!((orbit.point.time - period).abs() < 1e-12);
         assert_eq!(orbit.dimension, 3);
         let diagonal: f64 = (0..3).map(|i| orbit.derivative[i].as_ref()[i]).sum();
-        // The energy gives a 1 besides.
+        // The energy adds a 1.
         assert!((diagonal - 1.0 - trace).abs() < 1e-10, "{diagonal}");
         let product = orbit
             .multipliers
@@ -195,7 +195,7 @@ fn directions_of_a_section_keep_constraints_and_levels() {
     assert!(along.abs() < 1e-12, "{direction:?}");
 }
 
-/// Each bounce is lower than the one before: in the limit the ball returns to where it is, at rest.
+/// Each bounce is lower than the one before: in the limit the ball returns to its place, at rest.
 #[test]
 fn a_motion_that_ceases_is_no_orbit() {
     let ball = shipped("bouncing_ball").model();
@@ -269,7 +269,9 @@ fn the_command_prints_the_orbit_and_its_multipliers() {
         .as_array()
         .expect("multipliers")
         .iter();
-    let trace: f64 = real.map(|own| own["re"].as_f64().expect("a number")).sum();
+    let trace: f64 = real
+        .map(|multiplier| multiplier["re"].as_f64().expect("a number"))
+        .sum();
     assert!((trace - 195.0).abs() < 1e-10, "{trace}");
     let rows = document["derivative"].as_array().expect("rows");
     let directions = document["directions"].as_array().expect("directions");

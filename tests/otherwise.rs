@@ -1,4 +1,4 @@
-//! Several surfaces of one gap: each state that comes there is taken by one of them, or the run ends with a name.
+//! Several surfaces of one gap: each state at the gap belongs to one of them, or the run ends and names one.
 
 use dalembert::{EventLog, Impacting, Instance, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
@@ -43,7 +43,7 @@ static CLOSED_TENT: Text = Text::new(
     }",
 );
 
-/// A wall that reflects where it is soft, loses half the speed where it is not, and swallows everything in a spot.
+/// A wall that reflects where it is soft, halves the speed where it is not, and ends all motion in a spot.
 static PATCHED: Text = Text::new(
     "Patched {
         coordinates { x; y; }
@@ -138,7 +138,7 @@ fn otherwise_divides_a_wall() {
     ];
     for (y, speed) in cases {
         let [(_, outcome, state), (_, _, gauss)] = [DOP853, (Integrator::Gauss4, 0.125)]
-            .map(|own| run_of(&wall, own, [1.0, y], [-1.0, 0.0]));
+            .map(|method| run_of(&wall, method, [1.0, y], [-1.0, 0.0]));
         let gauss = gauss.as_ref();
         if speed > 0.0 {
             assert_eq!(outcome, Outcome::Done, "y = {y}");
@@ -153,7 +153,7 @@ fn otherwise_divides_a_wall() {
             .state_unchecked(0.0, &vector(&[0.0, y]), &vector(&[-1.0, 0.0]))
             .expect("a state");
         let counting = (0..3)
-            .filter(|&own| wall.surface_active(own, 0.0, &at))
+            .filter(|&surface| wall.surface_active(surface, 0.0, &at))
             .count();
         assert_eq!(counting, 1, "y = {y}");
     }

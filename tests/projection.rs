@@ -20,7 +20,7 @@ static HANGING_PENDULUM: Text = Text::new(
     }",
 );
 
-/// The largest residual, in parts of the largest speed before, and how far levels were left.
+/// The largest residual, relative to the largest speed before, and the largest distance from the levels.
 struct Kept<'a> {
     model: &'a Model,
     levels: Option<<Model as Constrained>::Levels>,
@@ -121,7 +121,7 @@ fn a_pendulum_meets_a_wall_at_its_lowest_point() {
 
 #[test]
 fn a_pendulum_that_comes_to_rest_keeps_its_rod() {
-    // Nothing is left of its velocity but rounding.
+    // Only rounding is left of its velocity.
     check(
         &HANGING_PENDULUM.model(),
         Some(Law::ImpactPlastic),

@@ -13,7 +13,7 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-/// What is wrong with a row of a table: `promise | kind | shown by`.
+/// Error of a row of a table: `promise | kind | shown by`.
 fn difference(row: &str) -> Option<String> {
     let cells: Vec<&str> = row.trim_matches('|').split(" | ").map(str::trim).collect();
     let [_, kind, shown] = cells[..] else {

@@ -1,5 +1,4 @@
-//! Constraints whose rank drops at one instant of the motion: the run ends there, however far its steps reach, and nowhere
-//! else.
+//! Constraints whose rank drops at one instant of the motion: the run ends there, for every length of its steps, and nowhere else.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -93,7 +92,7 @@ static ENTERED: Text = Text::new(
 
 type State = <Model as VectorField>::State;
 
-/// What a run met.
+/// Events of a run.
 type Log = EventLog<State, 4>;
 
 struct Start<'a> {
@@ -143,7 +142,7 @@ impl<'a> Start<'a> {
     }
 }
 
-/// The run ended where this constraint depends on the others, with this component of its state near a value.
+/// Asserts that the run ended where this constraint depends on the others, with this component of its state near a value.
 #[track_caller]
 fn assert_drop<S: StateVector>(
     case: &str,

@@ -25,7 +25,7 @@ const QUANTITIES: [&str; 14] = [
     "divergence_omega_n",
 ];
 
-/// Evaluates states of a model and gives what `eval` prints.
+/// Evaluates states of a model and returns the output of `eval`.
 fn eval(model: &str, flags: &[&str], states: &[Value]) -> Vec<Value> {
     let mut arguments = vec!["eval", model];
     arguments.extend(flags);
@@ -68,8 +68,8 @@ impl Mismatches {
             .extend(compare(path, actual, expected, TOLERANCE).err());
     }
 
-    /// As [`Mismatches::check`], but a component that almost vanishes by cancellation may be off by what rounding
-    /// the given 30 digits to `f64` does to it: there no arithmetic on the rounded numbers does better.
+    /// As [`Mismatches::check`], with an allowance for a component that almost vanishes by cancellation: the effect of
+    /// rounding the given 30 digits to `f64`. No arithmetic on the rounded numbers does better there.
     fn check_conditioned(
         &mut self,
         path: &str,
@@ -203,7 +203,7 @@ fn neighbours(state: &Value) -> Vec<Value> {
     moved
 }
 
-/// How much a result changes over neighbouring states, component by component.
+/// Change of a result over neighbouring states, component by component.
 fn spread(neighbours: &[Value], actual: &Value, result: &str) -> Vec<f64> {
     let flat = |value: &Value| {
         value

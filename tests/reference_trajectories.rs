@@ -35,7 +35,7 @@ impl<Sys: System> Observer<Sys> for Impacts {
     }
 }
 
-/// How a run is made: by which integrator, at which tolerance, and with which steps if that is fixed.
+/// Method of a run: the integrator, the tolerance, and the step if it is fixed.
 type Method = (Integrator, f64, Option<f64>);
 
 /// A run with a law on every surface, up to a number of impacts.
@@ -206,12 +206,12 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
     }
 }
 
-/// On the circular table the nonholonomic plastic disk settles into running along the rim: the gap rate at impact
-/// falls by 0.37 from one impact to the next, down to 1e-8. A gap known to `eta` gives the time of a crossing to
-/// `2 eta / |gap rate|` and no better, whatever the method, and shows no crossing that goes less deep than `eta`; here that
-/// is 1e-13, the error of a second of integration at tolerance 1e-13. At the 14th impact the gap would fall 4e-13 below zero,
-/// at the 15th 6e-14, at the 16th 8e-15 (gap rate squared over twice its change, 8 a second): those after the 14th are
-/// left out, a rounding decides whether the rim is met at all.
+/// On the circular table the nonholonomic plastic disk settles into running along the rim: the gap rate at impact falls by
+/// 0.37 from one impact to the next, down to 1e-8. A gap known to `eta` gives the time of a crossing to
+/// `2 eta / |gap rate|`, for every method, and shows no crossing that goes less deep than `eta`. Here `eta` is 1e-13, the
+/// error of a second of integration at tolerance 1e-13. The gap would fall 4e-13 below zero at the 14th impact, 6e-14 at
+/// the 15th, 8e-15 at the 16th (gap rate squared over twice its change, 8 a second). Those after the 14th are left out: a
+/// rounding decides if the rim is met at all.
 fn assert_grazing_times(label: &str, impacts: &Impacts, case: &Value) {
     let rate = |k: usize| number(&case["impacts"][k]["dh_minus"]).abs();
     assert_times(label, impacts, case, 10, billionth);
@@ -438,7 +438,9 @@ fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
 #[test]
 fn errors_fall_with_the_tolerance() {
     let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
-    let adaptive = Integrator::every().iter().filter(|own| own.is_adaptive());
+    let adaptive = Integrator::every()
+        .iter()
+        .filter(|integrator| integrator.is_adaptive());
     for &integrator in adaptive {
         let (name, errors) = (integrator.name(), ladder(&tolerances, integrator));
         let slope = slope(&tolerances, &errors);

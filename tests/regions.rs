@@ -111,7 +111,7 @@ fn a_stadium_keeps_its_particle() {
     assert!((energy - 0.5).abs() < 1e-12, "{energy}");
 }
 
-/// An impact is placed where the gap is closest to 0 on either side, but never where the motion does not exist.
+/// An impact is placed where the gap is closest to 0 on either side, but only where the motion exists.
 #[test]
 fn an_impact_at_the_end_of_a_chart_is_inside_it() {
     let brink = BRINK.model();

@@ -1,4 +1,4 @@
-//! The density form as `derive` writes it out against the values of the claims' arithmetic.
+//! The density form as `derive` prints it, against the values of the claims' arithmetic.
 
 use dalembert::Instance;
 use dalembert::describe::Description;
@@ -29,15 +29,15 @@ impl Compared {
         for attempt in 0..3_i32 {
             let mut values = decided.defaults();
             values.push((decided.model.time, 0.3));
-            for (i, own) in decided.model.coordinates.iter().enumerate() {
+            for (i, coordinate) in decided.model.coordinates.iter().enumerate() {
                 let value = 0.31 + 0.17 * f64::from(attempt) + 0.23 * i as f64;
-                values.push((own.q, value));
+                values.push((coordinate.q, value));
             }
             let expected = geometry_at(&decided.model.pool, &decided.problem, &values, None);
             let expected = expected.expect("a regular point").theta;
             let value = |symbol| {
-                let own = values.iter().find(|(own, _)| *own == symbol);
-                own.map_or(f64::NAN, |(_, value)| *value)
+                let known = values.iter().find(|(known, _)| *known == symbol);
+                known.map_or(f64::NAN, |(_, value)| *value)
             };
             let printed = decided.model.pool.eval(&theta, &value);
             for (k, (printed, expected)) in printed.iter().zip(&expected).enumerate() {
@@ -74,7 +74,7 @@ fn the_volume_is_reported_with_its_verdict() {
     let section = report
         .sections
         .iter()
-        .find(|own| own.title == "Invariant volume");
+        .find(|section| section.title == "Invariant volume");
     let items = &section.expect("a section").items;
     let formula = |name: &str| {
         items.iter().find_map(|item| match item {

@@ -75,7 +75,7 @@ static MIRROR_SLEIGH: Text = Text::new(MirrorSleigh::DESCRIPTION.source);
 
 static STRIP: Text = Text::new(Strip::DESCRIPTION.source);
 
-/// Emitted resets do what the interpreter does, to the bit.
+/// Emitted resets equal the interpreter, to the bit.
 fn compare<S: Described + Impacting>(system: &S, program: &Program) -> usize {
     let (t, n) = (0.25, S::Vector::CAPACITY);
     let resets = &program.impacting.as_ref().expect("surfaces").resets;
@@ -134,7 +134,7 @@ fn right_sides_take_the_values_before_the_impact() {
     assert!((velocities[0] - 3.5).abs() < 1e-14 && (velocities[1] - 1.0).abs() < 1e-14);
 }
 
-/// An impact: time, surface, and whether the state changed.
+/// An impact: time, surface, and true if the state changed.
 type Impact = (f64, usize, bool);
 
 /// A run with its impacts.
@@ -149,7 +149,7 @@ fn run(
         .observed(Integrator::Dop853, &mut log);
     let events = log
         .iter()
-        .map(|own| (own.t, own.surface, own.before != own.after));
+        .map(|event| (event.t, event.surface, event.before != event.after));
     (run, events.collect())
 }
 
@@ -167,7 +167,7 @@ fn both_forms_go_the_same_way_through_resets_of_positions() {
     let energy = |state: &_| sleigh.energy(0.0, state).expect("an energy");
     let start = state(&sleigh, &q, &qdot);
     assert!((energy(&reduced.0.state) - energy(&start)).abs() < 1e-10);
-    let surfaces: Vec<usize> = reduced.1.iter().map(|own| own.1).collect();
+    let surfaces: Vec<usize> = reduced.1.iter().map(|impact| impact.1).collect();
     assert!(
         surfaces.contains(&0) || surfaces.contains(&1),
         "{surfaces:?}"
@@ -177,7 +177,7 @@ fn both_forms_go_the_same_way_through_resets_of_positions() {
     for (left, right) in reduced.1.iter().zip(&whole.1) {
         assert!((left.0 - right.0).abs() < 1e-8, "{left:?} {right:?}");
         assert_eq!((left.1, left.2), (right.1, right.2));
-        // The counter leaves every digit of the state as it is.
+        // The counter leaves every digit of the state unchanged.
         assert_eq!(left.2, left.1 != 2);
     }
     let [left, right] = [
@@ -212,7 +212,10 @@ fn what_a_reset_does_to_the_volume_is_said() {
     let found = Declaration::of(Strip::DESCRIPTION.source).verdict("density: exact");
     let said = |surface: &str| {
         let start = format!("an impact at {surface} (reset {{ ");
-        let remark = found.remarks.iter().find(|own| own.starts_with(&start));
+        let remark = found
+            .remarks
+            .iter()
+            .find(|remark| remark.starts_with(&start));
         let remark = remark.unwrap_or_else(|| panic!("{surface}: {:?}", found.remarks));
         remark.split_once("}) ").expect("an effect").1.to_owned()
     };
@@ -224,7 +227,7 @@ fn what_a_reset_does_to_the_volume_is_said() {
     assert_eq!(said("bent"), bent);
     let open = "an impact at elsewhere may change it: the change of a volume by a reset of positions is not known";
     assert!(
-        found.remarks.iter().any(|own| own == open),
+        found.remarks.iter().any(|remark| remark == open),
         "{:?}",
         found.remarks
     );
@@ -376,7 +379,7 @@ fn derive_prints_the_map() {
     );
 }
 
-/// On a surface a coordinate follows from others, and with it what functions make of it.
+/// On a surface a coordinate follows from others, and so do functions of it.
 #[test]
 fn what_a_surface_ties_is_not_taken_for_independent() {
     let verdict = |surface: &str, reset: &str, claim: &str| {
@@ -394,7 +397,7 @@ fn what_a_surface_ties_is_not_taken_for_independent() {
     let linear = |reset| verdict("x >= -w", reset, claim);
     assert!(matches!(linear("x = x + 2*w"), Verdict::Proved(_)));
     assert!(matches!(linear("x = x + w"), Verdict::Refuted(_)));
-    // Of `x^2 = w^2` no coordinate is solved for in one way; real points see no change.
+    // For `x^2 = w^2` no coordinate follows in a unique way; real points see no change.
     let quadratic = |reset| verdict("x^2 >= w^2", reset, claim);
     let open = quadratic("x = 2*x; y = y*cos(w)/cos(2*w)");
     assert!(matches!(open, Verdict::Undecided(_)), "{open:?}");

@@ -1,4 +1,4 @@
-//! Scenes: each has the code of a model that was declared with nothing but what the scene uses.
+//! Scenes: each has the code of a model that declares only the parts that the scene uses.
 
 use std::collections::BTreeMap;
 
@@ -43,30 +43,30 @@ const LID: &str = "lid: 2 - y >= 0 when x > t;";
 /// The functions, types and constants of the traits of a type.
 type Implemented = BTreeMap<(String, String), String>;
 
-/// What is implemented for a type, but for its kernels and the trait by which it describes itself.
+/// Traits of a type with their items, without its kernels and its self-description.
 fn implemented(source: &str, type_name: &str) -> Implemented {
     let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect(source);
     let file: syn::File = syn::parse2(tokens).expect("items");
     let blocks = file.items.iter().filter_map(|item| match item {
-        syn::Item::Const(own) => Some(&*own.expr),
+        syn::Item::Const(constant) => Some(&*constant.expr),
         _ => None,
     });
     let statements = blocks.flat_map(|block| match block {
-        syn::Expr::Block(own) => own.block.stmts.as_slice(),
+        syn::Expr::Block(expression) => expression.block.stmts.as_slice(),
         _ => &[],
     });
     let mut all = Implemented::new();
     for statement in statements {
-        let syn::Stmt::Item(syn::Item::Impl(own)) = statement else {
+        let syn::Stmt::Item(syn::Item::Impl(block)) = statement else {
             continue;
         };
         let last = |path: &syn::Path| path.segments.last().expect("a name").ident.to_string();
-        let (Some((path, _)), syn::Type::Path(of)) = (&own.trait_, &*own.self_ty) else {
+        let (Some((path, _)), syn::Type::Path(of)) = (&block.trait_, &*block.self_ty) else {
             continue;
         };
         let name = last(path);
         if last(&of.path) == type_name && name != "Documented" {
-            let items = own.items.iter().map(|item| {
+            let items = block.items.iter().map(|item| {
                 let (item, text) = named(item);
                 ((name.clone(), item), text)
             });
@@ -76,7 +76,7 @@ fn implemented(source: &str, type_name: &str) -> Implemented {
                 _ => !item.eq_ignore_ascii_case("kernels"),
             };
             all.extend(items.filter(|((_, item), _)| is_code(item)));
-            // What a trait without items says is said by its being there.
+            // A trait without items is listed by its name.
             all.entry((name, String::new())).or_default();
         }
     }
@@ -84,12 +84,12 @@ fn implemented(source: &str, type_name: &str) -> Implemented {
     all
 }
 
-/// The name of an item of a trait, and what it is.
+/// The name of an item of a trait, and its text.
 fn named(item: &syn::ImplItem) -> (String, String) {
     let (name, tokens) = match item {
-        syn::ImplItem::Fn(own) => (&own.sig.ident, own.block.to_token_stream()),
-        syn::ImplItem::Type(own) => (&own.ident, own.ty.to_token_stream()),
-        syn::ImplItem::Const(own) => (&own.ident, own.expr.to_token_stream()),
+        syn::ImplItem::Fn(item) => (&item.sig.ident, item.block.to_token_stream()),
+        syn::ImplItem::Type(item) => (&item.ident, item.ty.to_token_stream()),
+        syn::ImplItem::Const(item) => (&item.ident, item.expr.to_token_stream()),
         _ => panic!("what traits have no other items"),
     };
     (name.to_string(), tokens.to_string())
@@ -105,13 +105,13 @@ fn kernels(compiled: &Compiled) -> Vec<String> {
         .collect()
 }
 
-/// What is known of both forms.
+/// Tables of both forms.
 fn tables(compiled: &Compiled) -> Vec<Tables> {
     let forms = FormOf::all(compiled, &[]);
     forms.iter().map(FormOf::tables).collect()
 }
 
-/// Asserts that a scene that uses these parts has what the model has that was declared with them alone.
+/// Asserts that a scene that uses these parts equals the model that declares only them.
 fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
     let plain = format!("P {{ {body} forces {{ {forces} }} impacts {{ {impacts} }} }}");
     let all = format!("forces {{ {DRAG} {DAMPING} }} impacts {{ {LID} {SIDES} }}");
@@ -127,7 +127,7 @@ fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
             continue;
         }
         // A scene holds the model, whose parameters are one step further away.
-        let own: Implemented = implemented(&scene, type_name)
+        let found: Implemented = implemented(&scene, type_name)
             .into_iter()
             .filter(|((name, _), _)| name != "InvariantVolume")
             .map(|(name, text)| {
@@ -138,7 +138,7 @@ fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
                 )
             })
             .collect();
-        assert_eq!(own, implemented(&plain, plain_name), "{uses}");
+        assert_eq!(found, implemented(&plain, plain_name), "{uses}");
     }
 }
 
@@ -302,7 +302,7 @@ fn densities_are_there_where_they_are_asked_for() {
     );
 }
 
-/// What a model shows of its scenes.
+/// Scenes that a model shows.
 #[derive(Default)]
 struct Shown(Vec<(&'static str, Vec<&'static str>, Vec<&'static str>)>);
 
@@ -351,7 +351,7 @@ fn a_claim_about_a_scene_is_examined_there() {
         );
         let refused = dalembert_emit::try_expand(source.parse().expect("tokens"));
         refused.err().map(|errors| {
-            let messages = errors.iter().map(|own| own.message().to_owned());
+            let messages = errors.iter().map(|error| error.message().to_owned());
             messages.collect::<Vec<_>>().join("\n")
         })
     };
@@ -370,7 +370,7 @@ fn a_claim_about_a_scene_is_examined_there() {
     );
 }
 
-/// What a command line prints, as JSON.
+/// Output of a command line, as JSON.
 fn printed(line: &str, input: &str) -> serde_json::Value {
     let words: Vec<&str> = line.split_whitespace().collect();
     let done = dalembert(&words, input);

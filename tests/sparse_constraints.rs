@@ -1,5 +1,5 @@
-//! Many constraints of which each meets few others: a chain declared by the places of its masses, with rods as
-//! constraints, against the same chain declared by the angles of its rods.
+//! Many constraints, each coupled to few others: a chain declared by the places of its masses, with rods as constraints,
+//! against the same chain declared by the angles of its rods.
 
 use dalembert::law::Law;
 use dalembert::{Described, Fault, Impacting, Instance, System, VectorField};
@@ -28,7 +28,7 @@ dalembert::model! {
     }
 }
 
-/// Places, velocities and accelerations of the masses, `x` first, from angles and what they do.
+/// Places, velocities and accelerations of the masses, `x` first, from those of the angles.
 fn places(angles: &[f64], rates: &[f64], accelerations: &[f64]) -> [[f64; 2 * LINKS]; 3] {
     let mut places = [[0.0; 2 * LINKS]; 3];
     let mut end = [[0.0; 2]; 3];
@@ -55,7 +55,7 @@ fn places(angles: &[f64], rates: &[f64], accelerations: &[f64]) -> [[f64; 2 * LI
     places
 }
 
-/// A random state of the chain by angles and what belongs to it by places, with the accelerations that angles give.
+/// A random state of the chain by angles and by places, with the accelerations from the angles.
 fn random_state(random: &mut Random) -> (<Rods as VectorField>::State, Vec<f64>) {
     let chain = Chain16::default();
     let angles = random.vector::<<Chain16 as System>::Vector>(-3.0, 3.0);
@@ -83,7 +83,7 @@ fn rods_as_constraints_move_the_masses_as_angles_do() {
         rods.rate(0.0, &state, &mut rate).expect("a rate");
         // Unit masses: the rate of a momentum is an acceleration.
         let errors = expected.iter().enumerate();
-        let error = largest(errors.map(|(i, own)| rate[2 * LINKS + i] - own));
+        let error = largest(errors.map(|(i, value)| rate[2 * LINKS + i] - value));
         let size = largest(expected.iter().copied());
         assert!(error <= 1e-11 * size, "{error:e} of {size}");
     }
@@ -143,7 +143,7 @@ fn a_solve_that_would_lose_its_digits_is_refused_with_its_condition() {
     assert!((1e4..1e6).contains(&condition), "{condition:e}");
 }
 
-/// No motion takes a rod to length 0: nothing is looked for in steps.
+/// No motion takes a rod to length 0: no drop of rank is sought in steps.
 #[test]
 fn rods_cannot_become_dependent() {
     assert!(!Rods::default().can_lose_rank());

@@ -1,9 +1,9 @@
-//! The hard cases of `dalembert stability`: all of them hold, or are said to be pending and do not.
+//! The hard cases of `dalembert stability`: each holds, or is marked as pending and fails.
 
 use dalembert_cli::suite::{Case, Verdict, every_integrator, examine};
 use dalembert_stability as stability;
 
-/// Examines cases one by one, and says what each measured.
+/// Examines cases one by one, and prints their measurements.
 fn assert_hold(cases: impl Iterator<Item = Case>) {
     let mut failed = Vec::new();
     for case in cases {
@@ -69,7 +69,7 @@ fn every_row_has_a_case_with_a_number_of_its_own_and_a_bound() {
         ("G", 12),
         ("H", 11),
     ];
-    // Rows about other things than runs have no case here.
+    // Rows that are not about runs have no case here.
     let elsewhere = ["E07", "G01", "G02", "G03", "G04", "G05", "G06", "G07"];
     for (section, count) in rows {
         for number in 1..=count {

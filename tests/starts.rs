@@ -1,4 +1,4 @@
-//! Starts that the declaration leaves open: what `check` says of them, and how equations of positions complete them.
+//! Starts that the declaration leaves open: the report of `check` on them, and their completion by equations of positions.
 
 use dalembert::{Instance, Keep, Outcome, ParameterError, StateError, System};
 use dalembert_cli::{Exit, Integrator};
@@ -6,7 +6,7 @@ use dalembert_stability::course::{Course, state, vector};
 use dalembert_stability::text::{Model, Text};
 use dalembert_tests::command::{self, Finished};
 
-/// A particle that may be beyond 1 only; nothing says where it starts, which is at 0.
+/// A particle that may only be beyond 1; its start is not declared, and is 0.
 static BEHIND: Text = Text::new(
     "Behind {
         coordinates { x; y; }
@@ -67,7 +67,7 @@ static FOUR_BAR: Text = Text::new(
     }",
 );
 
-/// A free particle that a ring is to catch where it is not.
+/// A free particle that a ring is to catch away from its place.
 static CAUGHT: Text = Text::new(
     "Caught {
         modes {
@@ -125,13 +125,13 @@ fn equations_of_positions_are_solved_and_kept() {
 #[test]
 fn places_off_the_equations_are_refused() {
     let rod = ROD.with([("l", 0.5)]);
-    let own = rod.initial();
+    let start = rod.initial();
     let refused = Err(StateError::OffPosition {
         constraint: 0,
         residual: 0.8 * 0.8 - 0.25,
         scale: 0.8 * 0.8 + 0.25,
     });
-    assert_eq!(rod.complete_position(0.0, &own.q, &own.placed), refused);
+    assert_eq!(rod.complete_position(0.0, &start.q, &start.placed), refused);
     let refused = rod.state(0.0, &vector(&[0.5, 1e-3]), &vector(&[0.0, 0.0]));
     assert!(
         matches!(refused, Err(StateError::OffPosition { constraint: 0, .. })),
@@ -216,7 +216,7 @@ fn what_stays_is_said_where_parameters_change() {
     assert!(
         pairs
             .into_iter()
-            .all(|(own, given)| (own - given).abs() < 1e-15)
+            .all(|(found, given)| (found - given).abs() < 1e-15)
     );
     let as_heavy = heavy
         .carried(&light, 0.0, &state, Keep::Momenta)

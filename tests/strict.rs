@@ -6,14 +6,14 @@ use std::process::Command;
 
 use dalembert_tests::golden;
 
-/// A way to build the program in `tests/strict`.
+/// A build of the program in `tests/strict`.
 struct Build {
     name: &'static str,
     profile: &'static str,
     /// The folder it is built in. One for each machine: the C part of the elementary functions is not built anew when
     /// only its machine changes.
     target: &'static str,
-    /// What the compiler of Rust and that of C may use of the machine.
+    /// Flags of the compilers of Rust and C for the machine.
     flags: &'static str,
     cpu: &'static str,
 }
@@ -41,7 +41,7 @@ const NATIVE: Build = Build {
 };
 
 impl Build {
-    /// What the program prints.
+    /// Output of the program.
     fn output(&self) -> String {
         let binary = self.binary();
         let output = Command::new(binary).output().expect("the program starts");

@@ -67,8 +67,8 @@ fn expand<S: TaylorField>(
         .collect()
 }
 
-/// Coefficients are those that the interpreter computes; the first is the rate but for the rounding of its
-/// products, whose constant factors are taken in another order.
+/// Coefficients equal those of the interpreter. The first is the rate up to the rounding of its products, whose constant
+/// factors are multiplied in another order.
 fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state: S::State) {
     let name = system.description().name;
     let (t, unit, order) = (0.25, 0.125, 12);
@@ -79,22 +79,24 @@ fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state
     let mut rate = state;
     system.rate(t, &state, &mut rate).expect("a rate");
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let rounding = 16.0 * f64::EPSILON * largest(&mut rate.as_slice().iter().map(|own| own.abs()));
-    for (own, rate) in emitted[1].iter().zip(rate.as_slice()) {
-        let missed = (own - unit * rate).abs();
+    let rounding =
+        16.0 * f64::EPSILON * largest(&mut rate.as_slice().iter().map(|component| component.abs()));
+    for (coefficient, rate) in emitted[1].iter().zip(rate.as_slice()) {
+        let missed = (coefficient - unit * rate).abs();
         assert!(
             missed <= unit * rounding,
-            "{name}: {own} for {}",
+            "{name}: {coefficient} for {}",
             unit * rate
         );
     }
     assert_eq!(emitted[0].len(), interpreted.len(), "{name}");
     for k in 0..=order {
         let size = largest(&mut interpreted.iter().map(|component| component[k].abs()));
-        // What cancels exactly on paper is rounding here, of the size of the first orders.
-        let rounding = f64::EPSILON * largest(&mut interpreted.iter().map(|own| own[1].abs()));
+        // Terms that cancel exactly on paper leave rounding here, of the size of the first orders.
+        let rounding =
+            f64::EPSILON * largest(&mut interpreted.iter().map(|component| component[1].abs()));
         let pairs = emitted[k].iter().zip(&interpreted);
-        let error = largest(&mut pairs.map(|(emitted, own)| (emitted - own[k]).abs()));
+        let error = largest(&mut pairs.map(|(emitted, component)| (emitted - component[k]).abs()));
         assert!(
             error <= 1e-5 * size + rounding,
             "{name}: order {k}: {error:e} of {size:e}"
@@ -221,7 +223,7 @@ fn series_of_functions_sum_up_to_their_values() {
     }
 }
 
-/// A straight line turned about an angle that grows steadily: what is constant or linear by structure is seen.
+/// A straight line turned about an angle that grows steadily: structure that is constant or linear is recognised.
 #[test]
 fn structure_makes_series_end() {
     let source = "
@@ -275,7 +277,7 @@ fn error(order: usize, count: u32) -> f64 {
     assert_eq!(run.counters.accepted, u64::from(count));
     let pairs = run.state.as_ref().iter().zip(soliton_at(1.0));
     pairs
-        .map(|(own, expected)| (own - expected).abs())
+        .map(|(found, expected)| (found - expected).abs())
         .fold(0.0, f64::max)
 }
 
@@ -291,7 +293,7 @@ fn series_converge_at_their_order() {
     }
 }
 
-/// Orders by the least work, and what a run counts.
+/// Orders by the least work, and the counters of a run.
 #[test]
 fn orders_and_work_are_as_stored() {
     let expected = [
@@ -407,7 +409,7 @@ fn steps_do_not_depend_on_units_of_time() {
     assert_eq!(steps(0), steps(-400));
 }
 
-/// Two runs agree to the bit, and with DOP853 as well as its errors allow.
+/// Two runs agree to the bit, and with DOP853 within its errors.
 #[test]
 fn runs_repeat_and_agree_with_another_method() {
     for system in every_system() {

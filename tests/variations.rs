@@ -90,7 +90,7 @@ fn dual(system: &Large, state: &State, direction: &State) -> Duals {
     (parameters, row)
 }
 
-/// Positions and velocities of a state, and how they change along a direction.
+/// Positions and velocities of a state, and their changes along a direction.
 fn unfolded(system: &Large, t: f64, state: &State, direction: &State) -> Vec<f64> {
     let (parameters, row) = dual(system, state, direction);
     let velocities = system
@@ -103,7 +103,7 @@ fn unfolded(system: &Large, t: f64, state: &State, direction: &State) -> Vec<f64
         .collect()
 }
 
-/// Directions that span those of the states on the constraints; there is one constraint at most that a state can be off.
+/// Directions that span those of the states on the constraints. A state can be off at most one constraint.
 fn allowed_directions(system: &Large, t: f64, state: &State) -> Vec<Tangent<Large>> {
     let deviation = |direction: &State| -> f64 {
         let (parameters, row) = dual(system, state, direction);
@@ -111,11 +111,14 @@ fn allowed_directions(system: &Large, t: f64, state: &State) -> Vec<Tangent<Larg
             .deviations(&parameters, Dual::of(t), &row)
             .expect("deviations");
         let deviations = Row::<Dual>::as_slice(&deviations);
-        deviations.first().map_or(0.0, |own| own.slopes()[0])
+        deviations.first().map_or(0.0, |first| first.slopes()[0])
     };
     let length = system.state_len();
     let components: Vec<Tangent<Large>> = (0..length).map(Tangent::of_component).collect();
-    let deviations: Vec<f64> = components.iter().map(|own| deviation(&own.state)).collect();
+    let deviations: Vec<f64> = components
+        .iter()
+        .map(|component| deviation(&component.state))
+        .collect();
     let worst = (0..length).max_by(|&i, &j| deviations[i].abs().total_cmp(&deviations[j].abs()));
     let worst = worst.filter(|&i| deviations[i] != 0.0);
     let mut directions = components;
@@ -138,11 +141,11 @@ fn check_reference(text: &Text, name: &str) -> usize {
         .as_array()
         .expect("velocities");
     let chart: Vec<usize> = (0..names.len())
-        .chain(independent.iter().map(|own| {
+        .chain(independent.iter().map(|velocity| {
             names.len()
                 + names
                     .iter()
-                    .position(|name| name == own)
+                    .position(|name| name == velocity)
                     .expect("a coordinate")
         }))
         .collect();
@@ -157,7 +160,7 @@ fn check_reference(text: &Text, name: &str) -> usize {
         let surface = system.description().surfaces.iter();
         let surface = surface
             .clone()
-            .position(|own| own.name == impact["surface"])
+            .position(|surface| surface.name == impact["surface"])
             .expect("surface");
         let (q, qdot) = (
             vector(&numbers(&impact["q"])),
@@ -182,7 +185,7 @@ fn check_reference(text: &Text, name: &str) -> usize {
         let size = rows
             .iter()
             .flatten()
-            .fold(0.0, |size: f64, own| size.max(own.abs()));
+            .fold(0.0, |size: f64, value| size.max(value.abs()));
         for (direction, column) in directions.iter().zip(&columns) {
             let start = unfolded(&system, t, &before, &direction.state);
             let end = unfolded(&system, t, &after, &column.state);
@@ -307,7 +310,9 @@ fn any_integrator_may_make_the_run() {
     let (one, other) = (tangents(Integrator::Taylor), tangents(Integrator::Dop853));
     for (one, other) in one.iter().zip(&other) {
         let (one, other) = (one.as_ref(), other.as_ref());
-        let size = one.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+        let size = one
+            .iter()
+            .fold(0.0, |size: f64, value| size.max(value.abs()));
         for (a, b) in one.iter().zip(other) {
             assert!((a - b).abs() <= 1e-11 * size, "{one:?} {other:?}");
         }

@@ -47,16 +47,16 @@ fn error(steps: &Steps, stored: &[Value]) -> f64 {
     assert_eq!(steps.0.len(), stored.len());
     let mut largest = 0.0_f64;
     for ((t, before, after), stored) in steps.0.iter().zip(stored) {
-        let mut compare = |own: f64, stored: f64| largest = largest.max((own - stored).abs());
+        let mut compare = |found: f64, stored: f64| largest = largest.max((found - stored).abs());
         compare(*t, number(&stored["t"]));
-        for (own, stored) in before.as_ref().iter().zip(numbers(&stored["before"])) {
-            compare(*own, stored);
+        for (found, stored) in before.as_ref().iter().zip(numbers(&stored["before"])) {
+            compare(*found, stored);
         }
-        for (own, stored) in after.as_ref()[1..]
+        for (found, stored) in after.as_ref()[1..]
             .iter()
             .zip(numbers(&stored["after(xi,eta)"]))
         {
-            compare(*own, stored);
+            compare(*found, stored);
         }
     }
     largest
@@ -92,15 +92,15 @@ fn the_fixed_point_comes_back_after_a_period() {
             panic!("{} steps", steps.0.len());
         };
         assert!((t - period).abs() <= 1e-11, "{t} for {period}");
-        for (own, stored) in before
+        for (found, stored) in before
             .as_ref()
             .iter()
             .zip(numbers(&set["state_before_impact"]))
         {
-            assert!((own - stored).abs() <= 1e-11, "{own} for {stored}");
+            assert!((found - stored).abs() <= 1e-11, "{found} for {stored}");
         }
-        for (own, stored) in after.as_ref()[1..].iter().zip(fixed) {
-            assert!((own - stored).abs() <= 1e-11, "{own} for {stored}");
+        for (found, stored) in after.as_ref()[1..].iter().zip(fixed) {
+            assert!((found - stored).abs() <= 1e-11, "{found} for {stored}");
         }
     }
 }

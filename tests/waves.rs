@@ -1,4 +1,4 @@
-//! Impacts between bodies that touch: waves that pass through them in no time.
+//! Impacts between bodies that touch: waves that pass through them instantly.
 
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -263,7 +263,7 @@ fn a_very_light_ball_between_two_heavy_ones_is_no_accumulation() {
     }
 }
 
-/// Balls that do not bounce off each other move on together.
+/// Balls with plastic impacts move on together.
 #[test]
 fn balls_that_stick_are_pressed_and_go_on_as_one() {
     let balls = balls(&[1.0; 5]);

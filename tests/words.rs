@@ -1,4 +1,4 @@
-//! The words of the language: read where they are listed, documented, and those of the runtime where both have them.
+//! The words of the language: read where they are listed, documented, and equal in generator and runtime where both have them.
 
 use dalembert::{Described, Impacting, Law};
 use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, RESET, SECTIONS};
@@ -6,7 +6,7 @@ use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, RESET, SECTIONS};
 const LANGUAGE: &str = include_str!("../docs/language.md");
 const EQUATIONS: &str = include_str!("../docs/equations.md");
 
-/// What stands between two texts.
+/// Text between two others.
 fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
     let (_, rest) = text
         .split_once(start)

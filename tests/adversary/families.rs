@@ -14,9 +14,9 @@ pub struct Case {
     pub declarations: String,
     /// The claim.
     pub claim: String,
-    /// Whether it is true.
+    /// True if it is true.
     pub is_true: bool,
-    /// Whether one of the methods of `docs/proofs.md` decides it; else it may stay open.
+    /// True if one of the methods of `docs/proofs.md` decides it; else it may stay open.
     pub is_decidable: bool,
 }
 
@@ -57,8 +57,8 @@ fn flat(count: usize) -> String {
 fn potential(draw: &mut Draw) -> Case {
     let count = 3 + draw.below(3);
     let which: Vec<usize> = (1..count).collect();
-    // NOTE: a drawn function may be constant, as a product of `exp(cos(th)^2)` and `exp(sin(th)^2)` is; with the sine the force is not
-    // zero, which would be refused.
+    // NOTE: a drawn function may be constant, as a product of `exp(cos(th)^2)` and `exp(sin(th)^2)` is. With the sine the
+    // force is not zero; a zero force would be refused.
     let sine = Function::Sin(Box::new(Coordinate(1)));
     let potential = Sum(vec![function(draw, &IS_ANGLE, &which, 2), sine]);
     let mut slopes: Vec<Vec<Function>> = which
@@ -86,7 +86,7 @@ fn potential(draw: &mut Draw) -> Case {
             slopes[0].push(Product(factors));
             is_smooth = false;
         }
-        // A function of a coordinate that a line has.
+        // A function of a coordinate on a line.
         4 => slopes[1].push(shifted(draw, 2)),
         _ => {}
     }
@@ -207,7 +207,7 @@ fn quantity(draw: &mut Draw) -> Case {
         other => format!("(2 + sin({}))", other.text(&NAMES)),
     };
     let name = NAMES[direction];
-    // A force that does no work beside it, in the other directions.
+    // A force beside it that does no work, in the other directions.
     let [a, b] = [1, 2].map(|k| NAMES[(direction + k) % count]);
     let velocity = draw
         .choice(&["1", "-dot(V)", "-dot(V)^3"])
@@ -283,7 +283,7 @@ fn systems(draw: &mut Draw) -> Case {
     }
 }
 
-/// Translations of a Lagrangian to which a form is added: symmetries iff its derivative along them is exact.
+/// Translations of a Lagrangian with an added form: symmetries iff the derivative of the form along them is exact.
 fn gauge(draw: &mut Draw) -> Case {
     let count = 3;
     let added = function(draw, &IS_ANGLE, &[0, 1, 2], 2);
@@ -313,7 +313,7 @@ fn gauge(draw: &mut Draw) -> Case {
             terms.join(" + ")
         ),
         claim: format!("symmetry: {translation}"),
-        // A growing translation meets a magnetic field as an electric one, without a potential.
+        // A growing translation sees a magnetic field as an electric one, without a potential.
         is_true: match kind {
             1 => !is_growing,
             2 => false,
@@ -323,7 +323,7 @@ fn gauge(draw: &mut Draw) -> Case {
     }
 }
 
-/// Parameters whose default is an exception, or is none.
+/// Parameters whose default is an exceptional value, or is not.
 fn exceptional(draw: &mut Draw) -> Case {
     let (value, is_zero) =
         draw.choice(&[("0", true), ("1", false), ("1/3", false), ("1e-9", false)]);

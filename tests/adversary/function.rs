@@ -2,7 +2,7 @@
 
 use crate::draw::Draw;
 
-/// A function; its text is what a declaration is written with.
+/// A function; declarations are written with its text.
 #[derive(Debug, Clone)]
 pub enum Function {
     /// A number as written.
@@ -35,9 +35,9 @@ pub fn number(text: impl Into<String>) -> Function {
 impl Function {
     /// The text, with the names of coordinates.
     pub fn text(&self, names: &[&str]) -> String {
-        let text = |own: &Self| own.text(names);
+        let text = |function: &Self| function.text(names);
         match self {
-            Number(own) => format!("({own})"),
+            Number(text) => format!("({text})"),
             Coordinate(i) => names[*i].to_owned(),
             Sum(terms) => format!(
                 "({})",
@@ -45,13 +45,13 @@ impl Function {
             ),
             Product(factors) => factors.iter().map(text).collect::<Vec<_>>().join("*"),
             Power(base, exponent) => format!("({})^{exponent}", text(base)),
-            Inverse(own) => format!("1/({})", text(own)),
-            Sin(own) => format!("sin({})", text(own)),
-            Cos(own) => format!("cos({})", text(own)),
-            Exp(own) => format!("exp({})", text(own)),
-            Root(own) => format!("sqrt({})", text(own)),
-            Ramp(own) => format!("((abs({0}) + {0})/2)", text(own)),
-            Step(own) => format!("(({0}/abs({0}) + 1)/2)", text(own)),
+            Inverse(base) => format!("1/({})", text(base)),
+            Sin(base) => format!("sin({})", text(base)),
+            Cos(base) => format!("cos({})", text(base)),
+            Exp(base) => format!("exp({})", text(base)),
+            Root(base) => format!("sqrt({})", text(base)),
+            Ramp(base) => format!("((abs({0}) + {0})/2)", text(base)),
+            Step(base) => format!("(({0}/abs({0}) + 1)/2)", text(base)),
         }
     }
 
@@ -60,9 +60,9 @@ impl Function {
         let chain = |outer: Self, inner: &Self| Some(Product(vec![outer, inner.slope(i)?]));
         match self {
             Number(_) | Step(_) => None,
-            Coordinate(own) => (*own == i).then(|| number("1")),
+            Coordinate(coordinate) => (*coordinate == i).then(|| number("1")),
             Sum(terms) => {
-                let slopes: Vec<Self> = terms.iter().filter_map(|own| own.slope(i)).collect();
+                let slopes: Vec<Self> = terms.iter().filter_map(|term| term.slope(i)).collect();
                 (!slopes.is_empty()).then_some(Sum(slopes))
             }
             Product(factors) => {
@@ -86,18 +86,21 @@ impl Function {
                 };
                 chain(outer, base)
             }
-            Inverse(own) => chain(
-                Product(vec![number("-1"), Inverse(Box::new(Power(own.clone(), 2)))]),
-                own,
+            Inverse(base) => chain(
+                Product(vec![
+                    number("-1"),
+                    Inverse(Box::new(Power(base.clone(), 2))),
+                ]),
+                base,
             ),
-            Sin(own) => chain(Cos(own.clone()), own),
-            Cos(own) => chain(Product(vec![number("-1"), Sin(own.clone())]), own),
-            Exp(own) => chain(self.clone(), own),
-            Root(own) => chain(
+            Sin(base) => chain(Cos(base.clone()), base),
+            Cos(base) => chain(Product(vec![number("-1"), Sin(base.clone())]), base),
+            Exp(base) => chain(self.clone(), base),
+            Root(base) => chain(
                 Product(vec![number("1/2"), Inverse(Box::new(self.clone()))]),
-                own,
+                base,
             ),
-            Ramp(own) => chain(Step(own.clone()), own),
+            Ramp(base) => chain(Step(base.clone()), base),
         }
     }
 }
@@ -108,7 +111,7 @@ pub fn shifted(draw: &mut Draw, i: usize) -> Function {
     Sum(vec![Coordinate(i), number(format!("-({place})"))])
 }
 
-/// A single-valued function of some coordinates, `is_angle` says of which kind each is.
+/// A single-valued function of some coordinates; `is_angle` is true for those that are angles.
 pub fn function(draw: &mut Draw, is_angle: &[bool], which: &[usize], depth: usize) -> Function {
     let i = which[draw.below(which.len())];
     if depth == 0 {

@@ -1,6 +1,6 @@
-//! Declarations that try to get a false theorem proved, or a true one refuted: their answers are known by construction.
+//! Declarations built so that a false theorem may be proved, or a true one refuted. Their answers are known by construction.
 //!
-//! | family | what is planted |
+//! | family | contents |
 //! |---|---|
 //! | `potential` | drags that are differentials of a known function, with periods, curls in a box, curls of 1e-15 |
 //! | `leaf` | curves that wind towards a circle, anywhere, or to none |
@@ -10,8 +10,8 @@
 //! | `exceptional` | parameters whose default is an exception |
 //! | `wall` | impacts on a part of a curve |
 //!
-//! The quick test draws from fixed seeds. `ADVERSARY_SEED` begins elsewhere, `ADVERSARY_CASES` asks for another number; a wrong verdict is
-//! printed with its declaration.
+//! The quick test draws from fixed seeds. `ADVERSARY_SEED` begins elsewhere, `ADVERSARY_CASES` asks for another number. A
+//! wrong verdict is printed with its declaration.
 
 mod draw;
 mod families;
@@ -33,11 +33,11 @@ const OPEN: f64 = 0.05;
 struct Tally {
     right: usize,
     open: usize,
-    /// Open although decidable.
+    /// Cases left open although decidable.
     missed: usize,
 }
 
-/// What is wrong with the verdict on a case, if anything; else it is counted.
+/// Error of the verdict on a case, if there is one; else the case is counted.
 fn judged(seed: u64, case: &Case, tally: &mut Tally) -> Result<(), String> {
     let source = format!(
         "Case{seed} {{ {} claims {{ {}; }} }}",
@@ -60,7 +60,7 @@ fn judged(seed: u64, case: &Case, tally: &mut Tally) -> Result<(), String> {
     }
 }
 
-/// Judges as many cases as asked for, and prints what became of them.
+/// Judges as many cases as asked for, and prints the counts of the verdicts.
 fn judge(cases: u64) {
     let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let first = asked("ADVERSARY_SEED").unwrap_or(0_u64);
@@ -85,7 +85,7 @@ fn judge(cases: u64) {
         wrong.len(),
         wrong.join("\n")
     );
-    let missed: usize = tallies.values().map(|own| own.missed).sum();
+    let missed: usize = tallies.values().map(|tally| tally.missed).sum();
     let part = missed as f64 / cases as f64;
     println!("{:.2} % undecided though decidable", 100.0 * part);
     assert!(part < OPEN, "{missed} of {cases} are undecided");

@@ -1,5 +1,5 @@
-//! Verdicts where entries contain exponentials, roots, bare angles, logarithms and their relations; what is refused; and
-//! models without equations. A verdict may stay open there, and is never wrong.
+//! Verdicts where entries contain exponentials, roots, bare angles, logarithms and their relations; refusals; and models
+//! without equations. A verdict may stay open there, and is never wrong.
 
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer, refusal};
 use dalembert_tests::verified::verified;
@@ -58,7 +58,7 @@ fn a_line_inside_and_outside_of_the_sine() {
     }
 }
 
-/// Two ways to write a number that is 0: a verdict that took it for something else would deny the density.
+/// Two ways to write a number that is 0: a verdict that took it for another number would deny the density.
 #[test]
 fn related_atoms_are_not_taken_for_independent_ones() {
     let relations = [
@@ -81,7 +81,7 @@ fn related_atoms_are_not_taken_for_independent_ones() {
         ("exp(x*ln(y)) - exp(x*ln(y/2))*exp(x*ln(2))", POSITIVE),
     ];
     for (zero, coordinates) in relations {
-        // Without the zero there is a density; with something else in its place there is none.
+        // Without the zero there is a density; with a nonzero number in its place there is none.
         let source = particle(coordinates, FLAT, &format!("y + ({zero})*x"));
         for seed in 1..8 {
             let existence = Decided::with_seed(&source, seed).existence();
@@ -162,7 +162,7 @@ fn functions_with_kinks_are_refused_in_metric_and_forms() {
     }
 }
 
-/// Off the domain of a root or logarithm residues say something, real points nothing.
+/// Off the domain of a root or logarithm, residues exist but real values do not.
 #[test]
 fn parts_without_real_values_prove_nothing() {
     for f in [

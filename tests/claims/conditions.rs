@@ -11,9 +11,9 @@ fn conditions(source: &str) -> Vec<String> {
     let scan = find_conditions(&mut decided.model, &decided.problem, &exactness, 1);
     let scan = scan.expect("a scan");
     assert!(scan.is_complete, "{source}");
-    let text = |own: &Condition| {
-        let place = if own.is_global { "" } else { ", locally" };
-        format!("{}{place}", own.text(&decided.model))
+    let text = |condition: &Condition| {
+        let place = if condition.is_global { "" } else { ", locally" };
+        format!("{}{place}", condition.text(&decided.model))
     };
     scan.found.iter().map(text).collect()
 }
@@ -22,9 +22,9 @@ fn conditions(source: &str) -> Vec<String> {
 fn the_sleigh_needs_its_centre_of_mass_over_the_blade() {
     let sleigh = declaration(&visible_system("chaplygin_sleigh"));
     assert_eq!(conditions(&sleigh), ["a = 0"]);
-    // Without mass the metric is singular: that is no condition, whatever is assumed of it.
+    // Without mass the metric is singular: that is not a condition, under any assumption.
     assert_eq!(conditions(&sleigh.replace("m > 0", "m")), ["a = 0"]);
-    // Nothing is left where the condition is excluded.
+    // No condition is left where the assumption excludes it.
     assert!(conditions(&sleigh.replace("a =", "a > 0 =")).is_empty());
     assert!(conditions(&sleigh.replace("a =", "a in [1/2, 1] =")).is_empty());
 }
@@ -35,7 +35,7 @@ fn suslov_needs_a_principal_axis() {
     assert_eq!(conditions(&suslov), ["I13 = 0 and I23 = 0"]);
 }
 
-/// `b = 0` alone does not do: it leaves the mass of the rear part off its axis. Without both the blades are in one
+/// `b = 0` alone is not enough: it leaves the mass of the rear part off its axis. Without both offsets the blades are in one
 /// point, and the constraints dependent where they are parallel.
 #[test]
 fn the_roller_racer_needs_both_offsets_to_vanish() {
@@ -88,7 +88,7 @@ fn a_trailer_needs_its_axle_below_the_hitch() {
     assert_eq!(conditions(trailer), ["l1 = 0, locally"]);
 }
 
-/// A value that is no 0 and no equality; the default does not matter.
+/// A value that is neither 0 nor an equality; the default does not matter.
 #[test]
 fn values_at_which_the_obstruction_vanishes_are_found() {
     let particle = "Particle {

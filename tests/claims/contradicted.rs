@@ -1,5 +1,5 @@
-//! What is true of a shipped model is proved, and what is not is refused at its line with numbers that can be computed
-//! once more: every claim negated, and claims with a wrong sign, parameter, exponent or component.
+//! True claims of a shipped model are proved. False ones are refused at their line, with numbers that can be computed once
+//! more: every claim negated, and claims with a wrong sign, parameter, exponent or component.
 //!
 //! The numbers of a message are read from its text and compared with differences along the emitted motion, the emitted
 //! impact, and brackets in plain double precision, see `dalembert_tests::witness`.
@@ -64,7 +64,7 @@ impl Contradicted {
     }
 }
 
-/// A claim that is contradicted without a point is true: at random states it is.
+/// A claim that is contradicted without a point is true: it holds at random states.
 fn holds_numerically(system: &Large, claim: &str, message: &str) {
     let (head, value) = claim.split_once(':').expect("a claim");
     for state in states(&system.global(), 5, 31) {
@@ -73,7 +73,7 @@ fn holds_numerically(system: &Large, claim: &str, message: &str) {
         let size = 1.0 + here.energy.abs();
         if head.trim() == "density" {
             let Some((_, potential)) = message.split_once("with G = ") else {
-                // Where G has no closed form, what it must have for a differential is closed; one state will do.
+                // Where G has no closed form, its differential must be closed; one state is enough.
                 let curl = witness::curl(system, &here.q);
                 assert!(curl < 1e-5, "{message}: {curl}");
                 return;
@@ -94,7 +94,8 @@ fn holds_numerically(system: &Large, claim: &str, message: &str) {
             let law = dalembert::law::Law::Elastic;
             let after = system.impact(surface.trim(), law, 0.3, state);
             let after = system.snapshot(0.3, &after);
-            let [old, new] = [&here, &after].map(|own| witness::at(system, value, own, None));
+            let [old, new] =
+                [&here, &after].map(|snapshot| witness::at(system, value, snapshot, None));
             assert!((new - old).abs() < 1e-11 * size, "{claim}: {old} {new}");
         } else {
             let rate = witness::rate(system, value, 0.3, state);
@@ -136,7 +137,7 @@ fn the_density_of_the_sleigh_has_one_exponent() {
     all_refuted(
         "chaplygin_sleigh",
         &[
-            // The exponent of the thesis, which counts the divergence three times (5.10).
+            // The exponent of the thesis, where the divergence is counted three times (5.10).
             "density = 1/abs(dot(theta))^3",
             "density = 1/dot(theta)^2",
             "density = 1/sqrt(abs(dot(theta)))",

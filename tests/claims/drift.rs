@@ -30,7 +30,7 @@ fn friction_contracts_and_what_does_no_work_on_d_does_not() {
         // Gyroscopic, and the force of a position.
         "c*(dot(x)*d(theta) - dot(theta)*d(x))",
         "(x - y)*d(theta)",
-        // What one friction loses the other gains.
+        // The gain of one friction is the loss of the other.
         "-c*dot(theta)/m*d(theta) + c/I*(dot(x)*d(x) + dot(y)*d(y))",
     ] {
         assert_eq!(verified(&with(harmless)), Existence::Global, "{harmless}");
@@ -97,8 +97,7 @@ fn balls_on_a_turning_table_keep_a_volume() {
     verified(&table("A*(b1^2 + b2^2) + C*b3^2"));
 }
 
-/// The volume of phase space is kept although metric and potential depend on time; constraints that turn with time are
-/// another matter.
+/// The volume of phase space is kept although metric and potential depend on time. This does not hold for constraints that turn with time.
 #[test]
 fn time_enters_metric_and_constraints() {
     let free = "Free { coordinates { x; y; }

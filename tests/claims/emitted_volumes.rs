@@ -44,7 +44,7 @@ fn emitted(source: &str) -> String {
     let items = std::mem::take(&mut file.items)
         .into_iter()
         .flat_map(|item| match item {
-            syn::Item::Const(own) => implementations(*own.expr),
+            syn::Item::Const(constant) => implementations(*constant.expr),
             other => vec![other],
         });
     let is_volume = |item: &syn::Item| {
@@ -79,7 +79,7 @@ fn emitted_volumes_are_as_stored() {
     compare("mixed_disk_volume", MixedDisk::DESCRIPTION.source);
 }
 
-/// The names of what is reported.
+/// Names of the reported quantities.
 #[derive(Default)]
 struct Names(Vec<String>);
 
@@ -121,8 +121,8 @@ fn vector<S: Described>(values: &[f64]) -> S::Vector {
     S::Vector::of(values)
 }
 
-/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms, with what
-/// `change` adds to the logarithm of the density.
+/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms. `change` is added
+/// to the logarithm of the density.
 fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 {
     let system = S::with_defaults();
     let flow = Flow {
@@ -173,16 +173,19 @@ fn other_densities_are_not_kept() {
 }
 
 fn assert_interpreted<S: Described + InvariantVolume>() {
-    let own = WithVolume::declared(S::DESCRIPTION.source).expect("a volume");
+    let interpreted = WithVolume::declared(S::DESCRIPTION.source).expect("a volume");
     let system = S::with_defaults();
-    let volume = own.program.volume.as_ref().expect("functions");
+    let volume = interpreted.program.volume.as_ref().expect("functions");
     assert_eq!(S::INDEPENDENT, volume.independent);
     assert_eq!(S::IS_SINGLE_VALUED, volume.is_single_valued);
     let mut random = Random::new(17);
     for _ in 0..5 {
-        let values = own.configuration(&mut random);
+        let values = interpreted.configuration(&mut random);
         let q = vector::<S>(&values);
-        let [density, total] = [own.log_density(0.2, &values), own.log_volume(0.2, &values)];
+        let [density, total] = [
+            interpreted.log_density(0.2, &values),
+            interpreted.log_volume(0.2, &values),
+        ];
         assert_eq!(system.log_density(0.2, &q), Ok(density));
         assert_eq!(system.log_volume(0.2, &q), Ok(total));
     }
@@ -202,7 +205,7 @@ fn compare_densities<S: Described + InvariantVolume>() -> usize {
     let file = read("invariant_densities");
     let systems = file["systems"].as_array().expect("systems").iter();
     let mut compared = 0;
-    for entry in systems.filter(|own| own["system"] == S::DESCRIPTION.name) {
+    for entry in systems.filter(|entry| entry["system"] == S::DESCRIPTION.name) {
         let mut system = S::with_defaults();
         for (k, parameter) in S::DESCRIPTION.parameters.iter().enumerate() {
             let value = entry["parameters"].get(parameter.name);
@@ -295,12 +298,12 @@ fn a_density_without_a_formula_is_an_integral() {
         let [a, b, c, d] = mass.0;
         (a * d - b * c).ln() - 0.5 * (i * j + m * (i * across * across + j * along * along)).ln()
     };
-    let own = |q: &<RouthSphere as System>::Vector| {
+    let offset = |q: &<RouthSphere as System>::Vector| {
         sphere.log_density(0.0, q).expect("a density") - expected(q)
     };
-    let reference = own(&[0.4, -0.2, 0.3, 1.0, 0.7].into());
+    let reference = offset(&[0.4, -0.2, 0.3, 1.0, 0.7].into());
     for (phi, theta) in [(-2.0, 0.2), (3.0, 2.0), (0.0, 3.0), (40.0, 1.3)] {
-        let difference = own(&[0.1, 3.0, phi, theta, -0.7].into()) - reference;
+        let difference = offset(&[0.1, 3.0, phi, theta, -0.7].into()) - reference;
         assert!(difference.abs() < 1e-12, "{phi} {theta}: {difference}");
     }
 }

@@ -56,11 +56,11 @@ fn theta_on_the_frame_agrees() {
         .expect("a regular point");
         let expected = numbers(&system["golden"]["theta_on_frame"]);
         assert_eq!(geometry.demands.len(), expected.len());
-        for (own, expected) in geometry.demands.iter().zip(expected) {
+        for (found, expected) in geometry.demands.iter().zip(expected) {
             let size = f64::max(expected.abs(), 1.0);
             assert!(
-                (own - expected).abs() <= 1e-10 * size,
-                "{}: {own} for {expected}",
+                (found - expected).abs() <= 1e-10 * size,
+                "{}: {found} for {expected}",
                 system["name"]
             );
         }
@@ -85,17 +85,20 @@ fn obstructions_agree() {
         let Some(found) = found else { continue };
         seen += 1;
         assert_eq!(found.bracket, expected["bracket"], "{name}");
-        let close = |own: f64, expected: f64| {
+        let close = |found: f64, expected: f64| {
             let size = f64::max(expected.abs(), 1.0);
             assert!(
-                (own - expected).abs() <= 1e-8 * size,
-                "{name}: {own} for {expected}"
+                (found - expected).abs() <= 1e-8 * size,
+                "{name}: {found} for {expected}"
             );
         };
         close(found.delta, number(&expected["delta"]));
         for (element, expected) in expected["relation"].as_object().expect("a relation") {
-            let own = found.relation.iter().find(|(name, _)| name == element);
-            close(own.map_or(0.0, |(_, own)| *own), number(expected));
+            let term = found.relation.iter().find(|(name, _)| name == element);
+            close(
+                coefficient.map_or(0.0, |(_, coefficient)| *coefficient),
+                number(expected),
+            );
         }
     }
     assert!(seen >= 4);
@@ -114,8 +117,8 @@ fn obstructions_are_those_of_the_mean_curvature() {
         let q: Vec<f64> = model
             .coordinates
             .iter()
-            .map(|own| {
-                let found = values.iter().find(|(symbol, _)| *symbol == own.q);
+            .map(|coordinate| {
+                let found = values.iter().find(|(symbol, _)| *symbol == coordinate.q);
                 found.expect("a value").1
             })
             .collect();
@@ -124,22 +127,27 @@ fn obstructions_are_those_of_the_mean_curvature() {
             let other = curved.bracket(&q, element);
             pair.iter_mut()
                 .zip(other)
-                .for_each(|(own, other)| *own -= coefficient * other);
+                .for_each(|(entry, other)| *entry -= coefficient * other);
         }
         let delta = pair.pop().expect("a demand");
         let error = (delta - found.delta).abs();
         assert!(error < 1e-6 * found.scale, "{}: {delta}", system["name"]);
         assert!(
-            pair.iter().all(|own| own.abs() < 1e-6),
+            pair.iter().all(|entry| entry.abs() < 1e-6),
             "{}: {pair:?}",
             system["name"]
         );
     }
 }
 
-/// The terms that the file's densities are made of, `det m` included.
+/// The terms of the file's densities, `det m` included.
 fn listed_density(decided: &mut Decided, geometry: &Geometry, formula: &str) -> ExprId {
-    let symbols: Vec<_> = decided.model.coordinates.iter().map(|own| own.q).collect();
+    let symbols: Vec<_> = decided
+        .model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
     let pool = &mut decided.model.pool;
     let logarithm = |pool: &mut Pool, factor: Rational, of: ExprId| {
         let logarithm = pool.call(Function::Ln, of);
@@ -199,11 +207,11 @@ fn listed_densities_satisfy_the_criterion_in_symbols() {
                 system["name"]
             );
         }
-        // A multiple of a density that is not constant is none.
+        // The product of a density and a nonconstant function is not a density.
         if !pool.is_syntactic_zero(density) {
             let twice = pool.scale(&Rational::from(2), density);
             let residuals = geometry.residuals(pool, &dependent, twice);
-            let is_refuted = |own: &ExprId| pool.zero_test(*own) == Verdict::Refuted;
+            let is_refuted = |residual: &ExprId| pool.zero_test(*residual) == Verdict::Refuted;
             assert!(residuals.iter().any(is_refuted), "{}", system["name"]);
         }
     }
@@ -216,7 +224,7 @@ fn densities_that_are_found_are_those_listed() {
         let Some(formula) = system["density"]["g"].as_str() else {
             continue;
         };
-        // That of the helical circle is many-valued, with a coefficient that is a parameter.
+        // The density of the helical circle is many-valued, with a coefficient that is a parameter.
         let Some((found, certified)) = decided.exactness().density.clone() else {
             assert_eq!(system["name"], "helical_circle");
             continue;
@@ -235,10 +243,10 @@ fn densities_that_are_found_are_those_listed() {
                 system["name"]
             );
         }
-        // They may differ by what D does not see, and do not: by constants at most.
+        // They could differ by a function that D does not see, but differ by constants at most.
         let difference = pool.sub(found, listed);
-        for own in &decided.model.coordinates {
-            let slope = decided.model.pool.diff(difference, own.q);
+        for coordinate in &decided.model.coordinates {
+            let slope = decided.model.pool.diff(difference, coordinate.q);
             assert_eq!(
                 decided.model.pool.zero_test(slope),
                 Verdict::Proved,

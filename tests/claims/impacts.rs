@@ -1,5 +1,6 @@
-//! What impacts do to an invariant volume: what a build says of each law, and the hybrid Jacobian by differences of the
-//! emitted impact map on D*: determinant in a fibre times the ratio of the fluxes through the surface.
+//! Effect of impacts on an invariant volume: the remarks of a build on each law, and the hybrid Jacobian by differences of
+//! the emitted impact map on D*. The Jacobian is the determinant in a fibre times the ratio of the fluxes through the
+//! surface.
 
 use dalembert::{Described, Impacting, StateVector, System};
 use dalembert_models::ChaplyginSleigh;
@@ -73,12 +74,12 @@ dalembert::model! {
 type Four = <WalledDisk as System>::Vector;
 type Five = <WalledTable as System>::Vector;
 
-/// What is said of each surface of a model with `density: exact`, in order.
+/// Remarks on each surface of a model with `density: exact`, in order.
 fn remarks<S: Described>() -> Vec<String> {
     let declaration = Declaration::of(S::DESCRIPTION.source);
     let found = declaration.verdict("density: exact");
     assert!(found.is_accepted(), "{}", found.note());
-    let about = |own: &String| own.starts_with("an impact at ");
+    let about = |remark: &String| remark.starts_with("an impact at ");
     found.remarks.into_iter().filter(about).collect()
 }
 

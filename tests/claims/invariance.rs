@@ -1,5 +1,5 @@
-//! What a verdict on densities must not depend on: the forms that a distribution is annihilated by, coordinates and
-//! their order, the seed of the random points.
+//! Independence of a verdict on densities from the forms that annihilate a distribution, the coordinates and their order,
+//! and the seed of the random points.
 
 use dalembert_codegen::claims::{Geometry, geometry_at};
 use dalembert_expr::SymbolId;
@@ -18,9 +18,9 @@ fn systems() -> Vec<(Scheme, Decided)> {
         .collect()
 }
 
-fn assert_same(own: &Decided, other: &Decided, what: &str) {
-    let (local, known) = (&own.exactness().local, &other.exactness().local);
-    assert_eq!(own.existence(), other.existence(), "{what}");
+fn assert_same(decided: &Decided, other: &Decided, what: &str) {
+    let (local, known) = (&decided.exactness().local, &other.exactness().local);
+    assert_eq!(decided.existence(), other.existence(), "{what}");
     assert_eq!(
         (local.rank, local.extended_rank),
         (known.rank, known.extended_rank),
@@ -64,15 +64,15 @@ fn rescaled(scheme: &Scheme) -> (Scheme, String) {
 /// Values of coordinates and parameters of a model, and its geometry there.
 fn at(decided: &Decided, attempt: usize, dependent: &[usize]) -> (Vec<(SymbolId, f64)>, Geometry) {
     let mut values = decided.defaults();
-    for (i, own) in decided.model.coordinates.iter().enumerate() {
-        values.push((own.q, 0.4 + ((3 * i + 5 * attempt) % 7) as f64 / 9.0));
+    for (i, coordinate) in decided.model.coordinates.iter().enumerate() {
+        values.push((coordinate.q, 0.4 + ((3 * i + 5 * attempt) % 7) as f64 / 9.0));
     }
     let (pool, problem) = (&decided.model.pool, &decided.problem);
     let geometry = geometry_at(pool, problem, &values, Some(dependent)).expect("a regular point");
     (values, geometry)
 }
 
-/// Whether volumes could be compared.
+/// Compares verdicts and volumes. True if the volumes could be compared.
 fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
     let (other, factor) = rescaled(scheme);
     let source = other.declaration();
@@ -89,7 +89,7 @@ fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
     values.extend(
         coordinates
             .zip(1..)
-            .map(|(own, i)| (own.q, 0.3 + 0.1 * f64::from(i))),
+            .map(|(coordinate, i)| (coordinate.q, 0.3 + 0.1 * f64::from(i))),
     );
     let dependent = decided.regular_dependent(&values);
     let mut ratios = Vec::new();
@@ -98,7 +98,7 @@ fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
         let (other_values, after) = at(&other, attempt, &dependent);
         let factor = other.model.outputs[0].value;
         let value = |symbol| {
-            let found = other_values.iter().find(|(own, _)| *own == symbol);
+            let found = other_values.iter().find(|(known, _)| *known == symbol);
             found.map_or(f64::NAN, |(_, value)| *value)
         };
         let factor = other.model.pool.eval(&[factor], &value)[0];
@@ -140,7 +140,11 @@ fn other_forms_of_the_same_distribution_have_the_same_verdict_and_volume() {
 /// `q_i = Q_i + f(Q_(i+1))`, a map of Q onto itself with inverse; intervals stay.
 fn bent(scheme: &Scheme) -> Scheme {
     let mut other = scheme.clone();
-    let names: Vec<_> = scheme.coordinates.iter().map(|own| own.0.clone()).collect();
+    let names: Vec<_> = scheme
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.0.clone())
+        .collect();
     for (i, (name, domain)) in scheme.coordinates.iter().enumerate().rev() {
         if domain.starts_with('(') {
             continue;

@@ -47,12 +47,14 @@ fn decided(source: &str) -> (Model, Derivation, Problem, Exactness) {
     (model, derivation, problem, exactness)
 }
 
-/// What is found for a model, as text.
+/// The density found for a model, as text.
 fn found(source: &str) -> Option<String> {
     let (mut model, derivation, problem, exactness) = decided(source);
     let clock = Instant::now();
     let found = find_momentum_density(&mut model, &derivation, &problem, &exactness, 1);
-    let text = found.expect("points").map(|own| own.text(&model.pool));
+    let text = found
+        .expect("points")
+        .map(|density| density.text(&model.pool));
     println!("{} {text:?} {:?}", model.name, clock.elapsed());
     text
 }
@@ -108,7 +110,7 @@ fn every_known_density_is_found_up_to_a_constant() {
     let systems = file["systems"].as_array().expect("systems");
     let known: Vec<_> = systems
         .iter()
-        .filter(|own| own.get("momentum_density").is_some())
+        .filter(|system| system.get("momentum_density").is_some())
         .collect();
     assert!(known.len() >= 4);
     known.into_iter().for_each(check);
@@ -119,7 +121,7 @@ fn systems_with_a_density_of_the_configuration_are_not_searched() {
     let file = read("verdicts_visible");
     let systems = file["systems"].as_array().expect("systems").iter();
     let exact: Vec<_> = systems
-        .filter(|own| own["verdict"]["global_exists"] == Value::Bool(true))
+        .filter(|system| system["verdict"]["global_exists"] == Value::Bool(true))
         .collect();
     assert!(exact.len() >= 10);
     for system in exact {

@@ -1,5 +1,5 @@
-//! False theorems that were once proved, and their kin: products of absolute values, exceptional parameters, densities that
-//! are singular far out, periods that are small, conditions of surfaces.
+//! False theorems that were once proved, and related ones: products of absolute values, exceptional parameters, densities
+//! that are singular far out, small periods, conditions of surfaces.
 
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_tests::claim::verdict;
@@ -63,7 +63,7 @@ fn drag_in_a_box_is_seen_whatever_the_name_of_the_model() {
     }
 }
 
-/// A force that acts in a box only is a force.
+/// A force that acts only in a box counts as a force.
 #[test]
 fn a_fan_that_blows_in_a_box_changes_the_momentum() {
     let fan = "coordinates { x; y; z; }
@@ -93,7 +93,7 @@ fn a_default_that_is_an_exception_is_no_proof() {
     );
 }
 
-/// Each has a leaf on which the return map is no volume's: `x' = f(x)` along the circle of `y`, at a zero of `f`.
+/// Each has a leaf on which the return map keeps no volume: `x' = f(x)` along the circle of `y`, at a zero of `f`.
 #[test]
 fn densities_that_are_singular_far_out_are_not_proved() {
     for f in [
@@ -184,7 +184,7 @@ fn roots_that_do_not_vanish_far_out_are_certified() {
     );
 }
 
-/// Forces that are far below rounding of the terms they are added to.
+/// Forces far below the rounding of the terms they are added to.
 #[test]
 fn small_forces_are_seen_at_a_point_of_47_digits() {
     for size in ["1e-12", "1e-18", "1e-25"] {
@@ -291,7 +291,7 @@ fn periods_count_where_an_enclosure_excludes_0() {
         let is_proved = matches!(found.verdict, Verdict::Proved(_));
         assert!(is_proved, "{slope}: {}", found.note());
     }
-    // What is printed are digits of the period, not of the sums that cancel.
+    // The printed digits are those of the period, not those of the cancelling sums.
     let small = drag("1e-7 + cos(th)*exp(sin(th)^3)");
     let found = finding("Sample", &small, "density: locally_exact");
     assert!(
@@ -304,7 +304,7 @@ fn periods_count_where_an_enclosure_excludes_0() {
     not_proved(&narrow, "density: exact");
 }
 
-/// A potential that is infinite on the way around a circle: nothing makes the turn, and the density that grows with it is no other one.
+/// A potential that is infinite on the way around a circle: no motion makes the turn, and the density that grows along it is the same one.
 #[test]
 fn circles_that_no_motion_can_go_around_prove_nothing() {
     let charged = |potential: &str| {
@@ -326,7 +326,7 @@ fn circles_that_no_motion_can_go_around_prove_nothing() {
     assert!(is_proved, "{}", found.note());
 }
 
-/// Drags whose density may grow along a loop around what is left out of Q, or around an end of its domain.
+/// Drags whose density may grow along a loop around a hole of Q, or around an end of its domain.
 #[test]
 fn loops_around_what_is_left_out_are_not_forgotten() {
     for slope in [
@@ -348,7 +348,7 @@ fn loops_around_what_is_left_out_are_not_forgotten() {
         forces { drag: -dot(z)*((step(x - 1) + step(x + 1))*dot(th) + exp(-s^2)*dot(s))*d(z); }";
     not_proved(steps, "density: exact");
     not_refuted(steps, "density: locally_exact");
-    // Nothing is left out of a plane, or of a line, around which a loop leads.
+    // A plane or a line has no hole for a loop to lead around.
     for slope in [
         "exp(-x^2)*dot(x)",
         "exp(-x^2)*dot(x)/x",
@@ -385,7 +385,7 @@ fn parts_of_a_surface_that_do_not_count_refute_nothing() {
     not_proved(declared, "not conserved under v: (x - 3)*dot(x)");
 }
 
-/// Coordinates that each lie in a well of their own, whose force has a root and a logarithm; `energy` is conserved.
+/// Coordinates, each in its own well, whose forces have a root and a logarithm; `energy` is conserved.
 fn wells(count: usize) -> String {
     format!(
         "coordinates {{ x[{count}]; }}
@@ -401,7 +401,7 @@ const BODIES: &str = "const N = 5;
         + sum(i in 1..=N - 1: sum(j in i + 1..=N: m[i]*m[j]/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2)));
     let moment = sum(i in 1..=N: m[i]*(x[i]*dot(y[i]) - y[i]*dot(x[i])));";
 
-/// Forces of any degree in the velocities: the divergence of those that have a density is linear, and stated densities balance any.
+/// Forces of any degree in the velocities. The divergence of forces with a density is linear; stated densities balance any degree.
 #[test]
 fn forces_of_higher_degree_are_decided() {
     let pushed = |default: &str, forces: &str| {
@@ -455,8 +455,8 @@ fn forces_of_higher_degree_are_decided() {
 fn many_roots_and_logarithms_are_no_obstacle() {
     let proved = |declared: &str, claim: &str| {
         let found = finding("Sample", declared, claim);
-        // As many roots as there are: a chance of error that is worth nothing proves nothing.
-        let is_proved = matches!(&found.verdict, Verdict::Proved(own) if own.error < 1e-12);
+        // As many roots as allowed: a proof with a large chance of error is not a proof.
+        let is_proved = matches!(&found.verdict, Verdict::Proved(proof) if proof.error < 1e-12);
         assert!(is_proved, "{claim} of {declared}: {}", found.note());
     };
     for count in [9, 12, 30] {

@@ -1,5 +1,5 @@
 //! Shipped models against `reference/invariant_densities.json`: theta on D, existence, differences of the density's
-//! logarithm, and what elastic impacts do off D.
+//! logarithm, and the effect of elastic impacts off D.
 
 use dalembert_cli::Exit;
 use dalembert_codegen::claims::{Equation, find_conditions};
@@ -11,11 +11,11 @@ use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::verdict::{Decided, Existence};
 use serde_json::{Value, json};
 
-fn close(own: f64, expected: f64, what: &str) {
+fn close(found: f64, expected: f64, what: &str) {
     let size = f64::max(expected.abs(), 1.0);
     assert!(
-        (own - expected).abs() <= 1e-12 * size,
-        "{what}: {own} for {expected}"
+        (found - expected).abs() <= 1e-12 * size,
+        "{what}: {found} for {expected}"
     );
 }
 
@@ -32,17 +32,17 @@ fn name(entry: &Value) -> &str {
 
 fn decided(entry: &Value) -> Decided {
     let models = models();
-    let mut own = models.iter().map(dalembert_cli::Entry::description);
-    let model = own.find(|own| own.name == name(entry));
+    let mut descriptions = models.iter().map(dalembert_cli::Entry::description);
+    let model = descriptions.find(|description| description.name == name(entry));
     Decided::of(model.expect("a model").source)
 }
 
-/// Values of the parameters that the model has.
+/// Values of the parameters of the model.
 fn parameters(entry: &Value, decided: &Decided) -> Vec<(SymbolId, f64)> {
     let values = entry["parameters"].as_object().expect("values");
     let parameters = decided.model.parameters.iter();
     parameters
-        .map(|own| (own.symbol, number(&values[&own.name.display])))
+        .map(|parameter| (parameter.symbol, number(&values[&parameter.name.display])))
         .collect()
 }
 
@@ -65,12 +65,12 @@ fn theta_on_d_agrees() {
                 q,
             };
             let geometry = flow.geometry(&state);
-            for (own, expected) in geometry.theta.iter().zip(numbers(&point["theta"])) {
-                close(*own, expected, name(&entry));
+            for (found, expected) in geometry.theta.iter().zip(numbers(&point["theta"])) {
+                close(*found, expected, name(&entry));
             }
             assert_eq!(geometry.demands.len(), expected.len(), "{}", name(&entry));
-            for (own, expected) in geometry.demands.iter().zip(expected) {
-                close(*own, expected, name(&entry));
+            for (found, expected) in geometry.demands.iter().zip(expected) {
+                close(*found, expected, name(&entry));
             }
         }
     }
@@ -100,7 +100,7 @@ fn existence_agrees() {
                 Equation::Zero(polynomial) => {
                     let of_symbol = |symbol| {
                         let mut all = decided.model.parameters.iter();
-                        let position = all.position(|own| own.symbol == symbol);
+                        let position = all.position(|parameter| parameter.symbol == symbol);
                         value(&position.expect("a parameter"))
                     };
                     decided.model.pool.eval(&[*polynomial], &of_symbol)[0] == 0.0
@@ -108,8 +108,10 @@ fn existence_agrees() {
             }
         };
         let found = scan.expect("a scan").found;
-        let mut met = found.iter().filter(|own| own.equations.iter().all(is_met));
-        assert!(met.any(|own| own.is_global), "{}", name(&entry));
+        let mut met = found
+            .iter()
+            .filter(|condition| condition.equations.iter().all(is_met));
+        assert!(met.any(|condition| condition.is_global), "{}", name(&entry));
     }
 }
 
@@ -126,10 +128,14 @@ fn densities_differ_between_points_as_listed() {
         let mut offsets = Vec::new();
         for point in entry["points"].as_array().expect("points") {
             let mut values = parameters.clone();
-            let coordinates = decided.model.coordinates.iter().map(|own| own.q);
+            let coordinates = decided
+                .model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.q);
             values.extend(coordinates.zip(numbers(&point["q"])));
-            let own = decided.log_density_at(&values).expect("a regular point");
-            offsets.push(own - number(&point["g"]));
+            let found = decided.log_density_at(&values).expect("a regular point");
+            offsets.push(found - number(&point["g"]));
         }
         for offset in &offsets {
             close(*offset, offsets[0], name(&entry));
@@ -138,7 +144,7 @@ fn densities_differ_between_points_as_listed() {
     assert!(seen >= 1);
 }
 
-/// What `eval` prints for a state off D.
+/// Output of `eval` for a state off D.
 fn eval(entry: &Value, momenta: &[f64]) -> Value {
     let values = entry["parameters"].as_object().expect("values");
     let settings: Vec<String> = values
@@ -146,7 +152,7 @@ fn eval(entry: &Value, momenta: &[f64]) -> Value {
         .map(|(name, value)| format!("{name}={}", value.as_str().expect("a number")))
         .collect();
     let mut arguments = vec!["eval", name(entry)];
-    arguments.extend(settings.iter().flat_map(|own| ["--set", own]));
+    arguments.extend(settings.iter().flat_map(|setting| ["--set", setting]));
     let states = json!([{ "q": entry["q"], "p": momenta }]);
     let finished = dalembert(&arguments, &states.to_string());
     assert_eq!(finished.exit, Exit::Reached, "{}", finished.errors);
@@ -173,13 +179,13 @@ fn elastic_impacts_off_d_keep_energy_and_constraint_momenta() {
         let printed = eval(&entry, &before);
         let after = elastic(&entry, &printed);
         let p = numbers(&after["p_plus"]);
-        for (own, expected) in p.iter().zip(numbers(&entry["p_plus"])) {
-            close(*own, expected, name(&entry));
+        for (found, expected) in p.iter().zip(numbers(&entry["p_plus"])) {
+            close(*found, expected, name(&entry));
         }
         for (key, p) in [("P(W)_minus", &before), ("P(W)_plus", &p)] {
-            let own = constraint_momenta(&printed, p);
-            for (own, expected) in own.iter().zip(numbers(&entry[key])) {
-                close(*own, expected, name(&entry));
+            let momenta = constraint_momenta(&printed, p);
+            for (found, expected) in momenta.iter().zip(numbers(&entry[key])) {
+                close(*found, expected, name(&entry));
             }
         }
         close(

@@ -13,49 +13,54 @@ use dalembert_tests::volume::{WithVolume, divergence};
 
 /// A system without a density of the configuration alone, with one that depends on velocities.
 struct Singular {
-    own: WithVolume,
+    system: WithVolume,
     density: MomentumDensity,
 }
 
 impl Singular {
     fn of(source: &str) -> Self {
-        let mut own = WithVolume::natural(source);
-        let problem = Problem::of(&mut own.model, &own.derivation);
-        let found =
-            find_momentum_density(&mut own.model, &own.derivation, &problem, &own.exactness, 1);
+        let mut system = WithVolume::natural(source);
+        let problem = Problem::of(&mut system.model, &system.derivation);
+        let found = find_momentum_density(
+            &mut system.model,
+            &system.derivation,
+            &problem,
+            &system.exactness,
+            1,
+        );
         let density = found.expect("points").expect("a density");
-        Self { own, density }
+        Self { system, density }
     }
 
     fn independent(&self) -> &[usize] {
-        let volume = self.own.program.volume.as_ref();
+        let volume = self.system.program.volume.as_ref();
         &volume.expect("functions").independent
     }
 
     /// `l` at `(q, v_ind)`.
     fn factor(&self, t: f64, at: &[f64]) -> f64 {
-        let (q, independent) = at.split_at(self.own.model.coordinates.len());
-        let qdot = self.own.velocities(t, q, independent);
-        let is = |symbol: SymbolId| move |own: &SymbolId| *own == symbol;
+        let (q, independent) = at.split_at(self.system.model.coordinates.len());
+        let qdot = self.system.velocities(t, q, independent);
+        let is = |symbol: SymbolId| move |known: &SymbolId| *known == symbol;
         let velocities: Vec<SymbolId> = self
-            .own
+            .system
             .model
             .coordinates
             .iter()
-            .map(|own| own.qdot)
+            .map(|coordinate| coordinate.qdot)
             .collect();
         let value = |symbol| match velocities.iter().position(is(symbol)) {
             Some(i) => qdot[i],
-            None => self.own.value(symbol, t, q),
+            None => self.system.value(symbol, t, q),
         };
-        self.own.model.pool.eval(&[self.density.factor], &value)[0]
+        self.system.model.pool.eval(&[self.density.factor], &value)[0]
     }
 
     /// `ln f` with exponents multiplied by these, and the logarithm of `mu_C`.
     fn log_volume(&self, t: f64, at: &[f64], [mass, power]: [f64; 2]) -> f64 {
-        let q = &at[..self.own.model.coordinates.len()];
-        let [_, mass_determinant] = self.own.determinants(t, q);
-        self.own.log_volume(t, q)
+        let q = &at[..self.system.model.coordinates.len()];
+        let [_, mass_determinant] = self.system.determinants(t, q);
+        self.system.log_volume(t, q)
             + mass * self.density.mass_exponent.to_f64() * mass_determinant.ln()
             + power * self.density.exponent.to_f64() * self.factor(t, at).abs().ln()
     }
@@ -66,7 +71,7 @@ impl Singular {
         let mut largest = 0.0_f64;
         let mut states = 0;
         while states < 6 {
-            let mut at = self.own.configuration(&mut random);
+            let mut at = self.system.configuration(&mut random);
             at.extend(self.independent().iter().map(|_| random.within(-1.0, 1.0)));
             if self.factor(0.0, &at).abs() < 0.3 {
                 continue;
@@ -85,9 +90,9 @@ fn singular_volumes_are_kept() {
     let file = read("verdicts_visible");
     let systems = file["systems"].as_array().expect("systems").iter();
     let mut kept = 0;
-    for system in systems.filter(|own| own.get("momentum_density").is_some()) {
+    for system in systems.filter(|entry| entry.get("momentum_density").is_some()) {
         let singular = Singular::of(&declaration(system));
-        let motion = |t: f64, at: &[f64]| singular.own.motion(t, at);
+        let motion = |t: f64, at: &[f64]| singular.system.motion(t, at);
         let divergence = singular.divergence(motion, [1.0, 1.0]);
         println!("{} {divergence:.1e}", system["name"]);
         assert!(divergence < 1e-9, "{}: {divergence:e}", system["name"]);

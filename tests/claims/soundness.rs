@@ -1,5 +1,5 @@
-//! Nothing is proved by an accident of evaluation: domains, branches, jumps, rounding, angles, parts of surfaces that are
-//! out of sight, models without states. Every claim here is proved because it is true, refused, or undecided.
+//! No proof by an accident of evaluation: domains, branches, jumps, rounding, angles, hidden parts of surfaces, models
+//! without states. Every claim here is proved because it is true, refused, or undecided.
 
 use dalembert_codegen::claims::Verdict;
 use dalembert_tests::claim::Outcome::{Proved, Refused, Refuted, Undecided};
@@ -93,7 +93,7 @@ fn a_rate_of_zero_does_not_hide_a_jump() {
     ] {
         free(claim, Undecided(place));
     }
-    // What would jump is itself constant, or of one sign.
+    // The quantity that would jump is itself constant, or of one sign.
     free("conserved: atan2(y*dot(x) - x*dot(y), dot(x))", Proved);
     free("conserved: abs(dot(x))/dot(x)", Proved);
     free("conserved: abs(dot(x))/(1 + dot(y)^2)", Proved);
@@ -105,7 +105,7 @@ fn absolute_values_are_those_of_real_numbers() {
     free("conserved: abs(dot(x))", Proved);
     free("conserved: abs(x)", Refuted("d/dt(abs(x)) = 0.5"));
     free("conserved: abs(x) - sqrt(x^2)", Proved);
-    // Positive at the first points that are tried, where it is 0 for rounding alone.
+    // `x` is positive at the first points that are tried: the quantity is 0 there, up to rounding.
     free(
         "conserved: abs(x) - x",
         Refuted("d/dt(abs(x) - x) = 3\nat x = -0.28"),

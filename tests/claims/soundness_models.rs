@@ -1,5 +1,5 @@
-//! What claims of surfaces, densities and whole models are not proved by: parts of surfaces that are out of sight, relations
-//! between logarithms, absolute values, no states. See also `soundness.rs`.
+//! Invalid proofs of claims about surfaces, densities and whole models: from hidden parts of surfaces, relations between
+//! logarithms, absolute values, no states. See also `soundness.rs`.
 
 use dalembert::Described;
 use dalembert_tests::claim::Outcome::{Proved, Refuted, Undecided};
@@ -83,7 +83,7 @@ fn impacts_happen_where_the_surface_counts() {
         NOWHERE,
     );
     at("x >= -1000", "not conserved under w: dot(x)", Proved);
-    // No such place.
+    // No such place exists.
     at(
         "2 + sin(x)*cos(y) >= 0",
         "not conserved under w: dot(x)",
@@ -201,7 +201,7 @@ fn kepler_keeps_what_it_keeps() {
 }
 
 dalembert::model! {
-    /// A particle in a vortex, whose density grows along loops around its axis, which are not looked at: `assume` lets it pass.
+    /// A particle in a vortex. Its density grows along loops around the axis, which are not examined: `assume` accepts the claim.
     pub Assumed {
         coordinates { x; y; z; }
         parameters { c > 0 = 1/2; }
@@ -223,7 +223,7 @@ fn what_is_assumed_is_said_to_be() {
     assert!(open.note().starts_with(reason), "{}", open.note());
     let open = declaration.verdict("density: exact");
     assert_eq!((open.word(), open.is_accepted()), ("undecided", false));
-    // What can be decided is decided.
+    // Decidable claims are decided.
     let proved = declaration.verdict("assume not conserved: energy");
     assert_eq!(proved.word(), "proved");
     let refuted = declaration.verdict("assume conserved: energy");
@@ -248,9 +248,10 @@ fn the_rounding_of_a_position_on_a_surface_is_no_witness() {
         let message = |claim: String| {
             let tokens = declaration(&claim).parse().expect("tokens");
             let refused = dalembert_emit::try_expand(tokens).err();
-            refused.map(|own| {
-                own.iter()
-                    .map(|own| own.message().to_owned())
+            refused.map(|errors| {
+                errors
+                    .iter()
+                    .map(|error| error.message().to_owned())
                     .collect::<String>()
             })
         };

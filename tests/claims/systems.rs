@@ -40,7 +40,7 @@ fn suslov_has_a_density_iff_the_axis_is_principal() {
     );
 }
 
-/// Veselova's constraint, of fixed axis in space, keeps a volume whatever the inertia.
+/// Veselova's constraint, of fixed axis in space, keeps a volume for every inertia.
 #[test]
 fn constraints_of_fixed_axis_in_space_keep_a_volume() {
     let parameters = "A > 0 = 3; B > 0 = 4; C > 0 = 5; D = 1/2; E = 1/3;";
@@ -68,7 +68,7 @@ fn balls_on_a_plane() {
         Existence::Global
     );
     assert_eq!(verified(&ball("0, 0, 0", round, rubber)), Existence::Global);
-    // Routh's sphere, its centre of mass on the axis of symmetry; off it there is nothing.
+    // Routh's sphere, its centre of mass on the axis of symmetry; off the axis there is no density.
     assert_eq!(verified(&ball("0, 0, l", symmetric, "")), Existence::Global);
     assert_eq!(verified(&ball("l, 0, 0", symmetric, "")), Existence::None);
     assert_eq!(verified(&ball("l, 0, k", triaxial, "")), Existence::None);
@@ -205,7 +205,7 @@ fn integrable_constraints_have_a_density() {
     assert_eq!(verified(sphere), Existence::Global);
 }
 
-/// Two holonomic constraints, mixed by a matrix whose determinant is no part of the declaration: `G = ln det m - ln det F`.
+/// Two holonomic constraints, mixed by a matrix whose determinant is not part of the declaration: `G = ln det m - ln det F`.
 #[test]
 fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     let pair = "Pair { coordinates { x; y; z; w; }
@@ -221,7 +221,7 @@ fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     assert!(potential.contains("ln|det A_dep|"), "{potential}");
 }
 
-/// Without constraints the volume of phase space is kept, whatever the metric.
+/// Without constraints the volume of phase space is kept, for every metric.
 #[test]
 fn free_systems_keep_the_volume_of_phase_space() {
     let free = "Free { coordinates { x; y; theta: angle; } parameters { k > 0 = 3; }

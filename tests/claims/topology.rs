@@ -103,8 +103,8 @@ fn the_wheels_of_a_robot_decide_whether_there_is_a_density() {
     assert_invariant(&robot(""), &|q| f64::exp(kappa * (q[3] + q[4])));
 }
 
-/// With `dx = x dy` every density is `f(C) m/|x|`, `C` the leaf: on both sides of `x = 0` alike, and on that leaf
-/// `exp(-y)`, which is many-valued if `y` is an angle.
+/// With `dx = x dy` every density is `f(C) m/|x|`, `C` the leaf. On both sides of `x = 0` the form is the same, and on
+/// that leaf it is `exp(-y)`, which is many-valued if `y` is an angle.
 #[test]
 fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
     let leaves = |y: &str| {
@@ -124,7 +124,7 @@ fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
     assert_eq!(verified(half), Existence::Global);
 }
 
-/// Where both forms of the snakeboard are the same it has no equations.
+/// Where both forms of the snakeboard are the same, it has no equations.
 #[test]
 fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     let snakeboard = |phi: &str| {
@@ -211,8 +211,8 @@ fn a_default_does_not_hide_a_period() {
     }
 }
 
-/// Friction that is quadratic in the velocity: the density is `exp` of an integral over the circle, which vanishes. Its
-/// numeric value refutes nothing, and proves nothing either where no symmetry that is looked for makes it 0.
+/// Friction quadratic in the velocity: the density is `exp` of an integral over the circle, which vanishes. Its numeric
+/// value refutes nothing, and proves nothing either unless a symmetry of the searched kinds makes it 0.
 #[test]
 fn periods_that_converge_to_zero_refute_nothing() {
     for f in [

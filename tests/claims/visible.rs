@@ -1,5 +1,5 @@
 //! The models of `dalembert_tests::visible_models` are the systems of `reference/verdicts_visible.json`: metric, forms and
-//! potential agree at the golden point. What contradicts their claims is refuted.
+//! potential agree at the golden point. Contradictions of their claims are refuted.
 
 use dalembert_tests::claim::{Declaration, refusal};
 use dalembert_tests::formula::{Scope, value};
@@ -33,9 +33,11 @@ impl<'g> Golden<'g> {
         let list = |key: &str| system[key].as_array().expect("a list");
         let coordinates: Vec<&str> = list("coordinates")
             .iter()
-            .map(|own| text(&own["name"]))
+            .map(|coordinate| text(&coordinate["name"]))
             .collect();
-        let names = list("params").iter().map(|own| text(&own["name"]));
+        let names = list("params")
+            .iter()
+            .map(|parameter| text(&parameter["name"]));
         Self {
             system,
             parameters: names
@@ -75,11 +77,11 @@ impl<'g> Golden<'g> {
     }
 }
 
-fn close(name: &str, own: f64, expected: f64) {
-    let error = (own - expected).abs();
+fn close(name: &str, found: f64, expected: f64) {
+    let error = (found - expected).abs();
     assert!(
         error <= 1e-13 * (1.0 + expected.abs()),
-        "{name}: {own} for {expected}"
+        "{name}: {found} for {expected}"
     );
 }
 
@@ -96,7 +98,7 @@ fn the_declared_systems_are_those_of_the_file() {
             .description()
             .coordinates
             .iter()
-            .map(|own| own.name)
+            .map(|coordinate| coordinate.name)
             .collect();
         assert_eq!(names, golden.coordinates, "{name}");
         for (parameter, value) in &golden.parameters {
@@ -120,8 +122,8 @@ fn the_declared_systems_are_those_of_the_file() {
         assert_eq!(model.description().constraints.len(), forms.len());
         for (dual, form) in report.0["W"].chunks(n).zip(forms) {
             for (k, row) in metric.chunks(n).enumerate() {
-                let own: f64 = row.iter().zip(dual).map(|(g, w)| g * w).sum();
-                close(name, own, golden.value(&form[k], &rest));
+                let found: f64 = row.iter().zip(dual).map(|(g, w)| g * w).sum();
+                close(name, found, golden.value(&form[k], &rest));
             }
         }
     }
@@ -139,7 +141,12 @@ fn densities_of_each_kind_are_claimed_where_the_file_has_them() {
             _ => "none",
         };
         let declaration = Declaration::of(model.description().source);
-        let has = |claim: &str| declaration.claims.iter().any(|own| own.starts_with(claim));
+        let has = |claim: &str| {
+            declaration
+                .claims
+                .iter()
+                .any(|listed| listed.starts_with(claim))
+        };
         assert!(has(&format!("density : {expected}")), "{name}");
         assert!(has("conserved : energy"), "{name}");
         assert!(
@@ -153,7 +160,10 @@ fn densities_of_each_kind_are_claimed_where_the_file_has_them() {
 fn what_contradicts_the_file_is_refuted() {
     for (name, model) in &mut systems() {
         let declaration = Declaration::of(model.description().source);
-        let is_none = declaration.claims.iter().any(|own| own == "density : none");
+        let is_none = declaration
+            .claims
+            .iter()
+            .any(|listed| listed == "density : none");
         for word in ["exact", "locally_exact", "none"] {
             let claim = format!("density: {word}");
             if declaration.claims.contains(&format!("density : {word}")) {
@@ -181,7 +191,7 @@ fn energy_is_kept_by_the_emitted_motion_and_densities_balance_its_divergence() {
         let listed = file["systems"].as_array().expect("systems");
         let system = listed
             .iter()
-            .find(|own| own["name"] == **name)
+            .find(|system| system["name"] == **name)
             .expect("a system");
         let q = Golden::of(system).q;
         let qdot: Vec<f64> = (0..q.len()).map(|i| 0.4 - 0.3 * i as f64).collect();

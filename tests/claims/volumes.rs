@@ -23,7 +23,9 @@ fn systems() -> Vec<(Value, String)> {
 
 /// The declaration of the system of this name.
 fn source_of(name: &str) -> String {
-    let found = systems().into_iter().find(|(own, _)| own["name"] == name);
+    let found = systems()
+        .into_iter()
+        .find(|(system, _)| system["name"] == name);
     found.expect("a system of this name").1
 }
 
@@ -47,12 +49,12 @@ fn listed(system: &WithVolume, q: &[f64]) -> f64 {
     let output = system.model.outputs[0].value;
     let parameter = system.model.parameters[0].symbol;
     let value = |symbol| {
-        let own = system
+        let index = system
             .model
             .coordinates
             .iter()
-            .position(|own| own.q == symbol);
-        match own {
+            .position(|coordinate| coordinate.q == symbol);
+        match index {
             Some(i) => q[i],
             None if symbol == parameter => mass,
             None => f64::NAN,
@@ -68,41 +70,41 @@ fn densities_are_the_listed_ones() {
         let name = &system["name"];
         let Some(formula) = system["density"]["g"].as_str() else {
             assert_eq!(
-                WithVolume::declared(&source).map(|own| own.volume),
+                WithVolume::declared(&source).map(|system| system.volume),
                 None,
                 "{name}"
             );
             continue;
         };
-        let Some(own) = WithVolume::declared(&with_listed(&source, formula)) else {
+        let Some(interpreted) = WithVolume::declared(&with_listed(&source, formula)) else {
             assert_ne!(system["density"]["valid"], "global", "{name}");
             continue;
         };
         assert_eq!(
-            own.volume.is_single_valued,
+            interpreted.volume.is_single_valued,
             system["density"]["valid"] == "global",
             "{name}"
         );
         let mut random = Random::new(11);
-        // What D cannot tell apart, densities may multiply by a function of.
-        let is_unique = own.exactness.local.rank == own.model.coordinates.len();
+        // Densities may differ by a factor that depends on quantities D does not distinguish.
+        let is_unique = interpreted.exactness.local.rank == interpreted.model.coordinates.len();
         for _ in 0..5 {
-            let q = own.configuration(&mut random);
+            let q = interpreted.configuration(&mut random);
             let (found, expected) = if is_unique {
-                let other = own.configuration(&mut random);
+                let other = interpreted.configuration(&mut random);
                 (
-                    own.log_density(0.0, &q) - own.log_density(0.0, &other),
-                    listed(&own, &q) - listed(&own, &other),
+                    interpreted.log_density(0.0, &q) - interpreted.log_density(0.0, &other),
+                    listed(&interpreted, &q) - listed(&interpreted, &other),
                 )
             } else {
                 let independent: Vec<f64> = q.iter().map(|_| random.within(-1.0, 1.0)).collect();
-                let qdot = own.velocities(0.0, &q, &independent);
+                let qdot = interpreted.velocities(0.0, &q, &independent);
                 let along = |shift: f64| -> Vec<f64> {
                     q.iter().zip(&qdot).map(|(x, v)| x + shift * v).collect()
                 };
                 (
-                    difference(|shift| own.log_density(0.0, &along(shift))),
-                    difference(|shift| listed(&own, &along(shift))),
+                    difference(|shift| interpreted.log_density(0.0, &along(shift))),
+                    difference(|shift| listed(&interpreted, &along(shift))),
                 )
             };
             assert!(
@@ -132,20 +134,20 @@ fn own_divergence(system: &WithVolume, states: usize) -> f64 {
     divergence(system, states, |t, at| system.log_volume(t, at))
 }
 
-/// What differences of eighth order leave of 0.
+/// Divergence that differences of eighth order leave of 0.
 const KEPT: f64 = 1e-10;
 
 #[test]
 fn volumes_are_kept() {
     let mut kept = 0;
     for (system, source) in systems() {
-        let Some(own) = WithVolume::declared(&source) else {
+        let Some(interpreted) = WithVolume::declared(&source) else {
             continue;
         };
-        let functions = own.program.volume.as_ref().expect("functions");
+        let functions = interpreted.program.volume.as_ref().expect("functions");
         assert_eq!(verify(&functions.log_density), Ok(()));
         assert_eq!(verify(&functions.log_volume), Ok(()));
-        let divergence = own_divergence(&own, 6);
+        let divergence = own_divergence(&interpreted, 6);
         assert!(divergence < KEPT, "{}: {divergence:e}", system["name"]);
         kept += 1;
     }
@@ -157,12 +159,12 @@ fn volumes_are_kept() {
 fn volumes_of_models_are_kept() {
     let mut kept = Vec::new();
     for description in every_system().iter().map(Instance::description) {
-        // Long chains show nothing that short ones do not.
+        // Long chains show nothing beyond short ones.
         if description.coordinates.len() > 6 {
             continue;
         }
-        if let Some(own) = WithVolume::declared(description.source) {
-            let divergence = own_divergence(&own, 4);
+        if let Some(interpreted) = WithVolume::declared(description.source) {
+            let divergence = own_divergence(&interpreted, 4);
             assert!(divergence < KEPT, "{}: {divergence:e}", description.name);
             kept.push(description.name);
         }
@@ -192,11 +194,11 @@ const GROWING: &str = "Growing {
 
 #[test]
 fn volumes_that_depend_on_time_are_kept() {
-    let own = WithVolume::declared(GROWING).expect("a volume");
-    assert!(own_divergence(&own, 6) < KEPT);
+    let growing = WithVolume::declared(GROWING).expect("a volume");
+    assert!(own_divergence(&growing, 6) < KEPT);
     let q = [0.3, 0.7, -0.2];
-    assert!((own.log_density(0.2, &q) - own.log_density(1.2, &q)).abs() > 0.1);
-    let frozen = divergence(&own, 6, |_, at| own.log_volume(0.3, at));
+    assert!((growing.log_density(0.2, &q) - growing.log_density(1.2, &q)).abs() > 0.1);
+    let frozen = divergence(&growing, 6, |_, at| growing.log_volume(0.3, at));
     assert!(frozen > 1e-3, "{frozen:e}");
 }
 
@@ -214,10 +216,12 @@ fn a_factor_n_is_seen() {
             }
             Some(volume)
         });
-        let Some(own) = scaled.filter(|own| !own.volume.potential.terms.is_empty()) else {
+        let Some(interpreted) =
+            scaled.filter(|interpreted| !interpreted.volume.potential.terms.is_empty())
+        else {
             continue;
         };
-        let divergence = own_divergence(&own, 6);
+        let divergence = own_divergence(&interpreted, 6);
         assert!(divergence > 1e-3, "{}: {divergence:e}", system["name"]);
         seen += 1;
     }
@@ -231,19 +235,19 @@ fn columns(forms: &[Vec<f64>], columns: &[usize]) -> Vec<Vec<f64>> {
 
 #[test]
 fn mixed_constraints_have_the_same_volume() {
-    let own = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
-    assert_eq!(own.volume.dependent, [1, 2]);
-    assert!(own_divergence(&own, 6) < KEPT);
+    let mixed = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
+    assert_eq!(mixed.volume.dependent, [1, 2]);
+    assert!(own_divergence(&mixed, 6) < KEPT);
     let without_minor =
-        |t: f64, at: &[f64]| own.log_density(t, at) + own.determinants(t, &at[..4])[0].ln();
-    assert!(divergence(&own, 6, without_minor) > 1e-3);
+        |t: f64, at: &[f64]| mixed.log_density(t, at) + mixed.determinants(t, &at[..4])[0].ln();
+    assert!(divergence(&mixed, 6, without_minor) > 1e-3);
     // mu_C is divided by the determinant of the mixture, and the density of the disk itself is constant.
     let mixture = |q: &[f64]| ((2.0 + q[0] * q[0]) * (1.0 + q[1] * q[1]) - q[1] * q[2].sin()).ln();
     let mut random = Random::new(8);
-    let reference = own.configuration(&mut random);
+    let reference = mixed.configuration(&mut random);
     for _ in 0..5 {
-        let q = own.configuration(&mut random);
-        let found = own.log_density(0.0, &q) - own.log_density(0.0, &reference);
+        let q = mixed.configuration(&mut random);
+        let found = mixed.log_density(0.0, &q) - mixed.log_density(0.0, &reference);
         let expected = mixture(&q) - mixture(&reference);
         assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
     }
@@ -275,30 +279,30 @@ fn of_all_kinds(model: &mut Model, dependent: &[usize]) -> Volume {
 fn every_term_is_lowered() {
     for dependent in [[0, 1], [0, 2], [1, 2]] {
         let choose = |model: &mut Model, _: &_, _| Some(of_all_kinds(model, &dependent));
-        let own =
+        let mixed =
             WithVolume::with(MixedDisk::DESCRIPTION.source, choose).expect("the volume given");
         let mut random = Random::new(9);
-        let q = own.configuration(&mut random);
-        let [metric, mass] = own.determinants(0.0, &q);
-        let forms = own.forms(0.0, &q);
+        let q = mixed.configuration(&mut random);
+        let [metric, mass] = mixed.determinants(0.0, &q);
+        let forms = mixed.forms(0.0, &q);
         let minor = |chosen: &[usize]| determinant(columns(&forms, chosen)).abs().ln();
         let density = 0.5 * mass.ln() - 3.0 * metric.ln()
             + 2.0 / 7.0 * minor(&[1, 2])
             + 0.5 * q[0].abs().ln()
             + 5.0 * q[1];
         let volume = density + metric.ln() - minor(&dependent);
-        assert!((own.log_density(0.0, &q) - density).abs() < 1e-12);
-        assert!((own.log_volume(0.0, &q) - volume).abs() < 1e-12);
+        assert!((mixed.log_density(0.0, &q) - density).abs() < 1e-12);
+        assert!((mixed.log_volume(0.0, &q) - volume).abs() < 1e-12);
     }
 }
 
 #[test]
 fn a_singular_minor_is_a_fault() {
-    let own = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
-    let functions = own.program.volume.as_ref().expect("functions");
-    // Where the disk points along y, its velocity along x and its spin do not say how it rolls.
+    let disk = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
+    let functions = disk.program.volume.as_ref().expect("functions");
+    // Where the disk points along y, its rolling does not follow from its velocity along x and its spin.
     let q = [0.3, 0.4, 0.2, std::f64::consts::FRAC_PI_2];
-    let at = own.input(0.0, &q, &[], &[]);
+    let at = disk.input(0.0, &q, &[], &[]);
     assert!(interpret(&functions.log_density, &at).is_ok());
     let fault = interpret(&functions.log_volume, &at);
     assert!(
@@ -310,12 +314,12 @@ fn a_singular_minor_is_a_fault() {
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
         constraints { slope: x*d(y) + y*d(z) = 0; }
     }";
-    let own = WithVolume::natural(single);
-    assert_eq!(own.volume.dependent, [2]);
-    let functions = own.program.volume.as_ref().expect("functions");
+    let particle = WithVolume::natural(single);
+    assert_eq!(particle.volume.dependent, [2]);
+    let functions = particle.program.volume.as_ref().expect("functions");
     let fault = interpret(
         &functions.log_volume,
-        &own.input(0.0, &[0.3, 0.0, 0.2], &[], &[]),
+        &particle.input(0.0, &[0.3, 0.0, 0.2], &[], &[]),
     );
     assert!(
         matches!(fault, Err(Guard::Constraint { constraint: 0, .. })),
@@ -325,12 +329,12 @@ fn a_singular_minor_is_a_fault() {
 
 #[test]
 fn everything_that_is_reported_includes_the_density() {
-    let own = WithVolume::declared(&source_of("falling_disk")).expect("a volume");
-    let q = own.configuration(&mut Random::new(4));
+    let disk = WithVolume::declared(&source_of("falling_disk")).expect("a volume");
+    let q = disk.configuration(&mut Random::new(4));
     let zero = vec![0.0; q.len()];
-    let values = own.run(&own.program.geometry.function, 0.0, &q, &zero, &zero);
-    let [density] = own.reported("log_density", &values) else {
+    let values = disk.run(&disk.program.geometry.function, 0.0, &q, &zero, &zero);
+    let [density] = disk.reported("log_density", &values) else {
         panic!("no density");
     };
-    assert_eq!(*density, own.log_density(0.0, &q));
+    assert_eq!(*density, disk.log_density(0.0, &q));
 }

@@ -1,5 +1,5 @@
-//! Whole runs of every model and scene by every integrator: behind pointers, loaded from the text, and of some with everything inlined, the same steps,
-//! impacts and states to the bit.
+//! Whole runs of every model and scene by every integrator: behind pointers, loaded from the text, and some with
+//! everything inlined. The steps, impacts and states are the same to the bit.
 
 use dalembert::Policies;
 use dalembert::describe::Description;
@@ -15,10 +15,10 @@ use super::models::{Compiled, every_model};
 /// The longest run.
 const UNTIL: f64 = 2.0;
 
-/// The tolerance of all integrators; steps of one size and of low order that suit a tighter one are many.
+/// The tolerance of all integrators. Steps of fixed size and of low order would be too many at a tighter one.
 const TOLERANCE: f64 = 1e-7;
 
-/// Keeps what happens, as text: a number that is none is no number's equal.
+/// Keeps the events as text: NaN does not equal itself.
 #[derive(Default)]
 struct Log(Vec<String>);
 
@@ -35,7 +35,7 @@ impl Watch for Log {
     }
 }
 
-/// The declared start of a model; of one without a start, some state inside of its chart.
+/// The declared start of a model; for a model without a start, a state inside of its chart.
 fn origin(model: &dyn AnyModel) -> Origin {
     let start = model.initial();
     let declared = model

@@ -1,5 +1,5 @@
-//! Every kernel of every form, emitted and loaded from its text, at random points: the same numbers to the bit, over every kind of number that it is
-//! behind a pointer for, and the same guards.
+//! Every kernel of every form, emitted and loaded from its text, at random points. The numbers are the same to the bit,
+//! over every kind of number with kernels behind pointers, and so are the guards.
 
 use std::fmt::Debug;
 
@@ -43,7 +43,7 @@ impl Pair {
 
 /// A number over which kernels are compared.
 trait Drawn: Numbers {
-    /// A number with a value near to 0 or beyond, and random parts of its kind.
+    /// A number with a value near 0 or beyond, and random parts of its kind.
     fn draw(random: &mut Random) -> Self;
 }
 
@@ -93,7 +93,7 @@ impl Drawn for TaylorModel {
     }
 }
 
-/// A place where kernels are evaluated.
+/// Arguments of kernels.
 struct Point<L> {
     parameters: Vec<L>,
     t: L,
@@ -131,14 +131,14 @@ impl<L: Drawn> Point<L> {
     }
 }
 
-/// Numbers of results that were compared: those with values, and guards that do not hold.
+/// Counts of compared results: those with values, and guards that do not hold.
 #[derive(Debug, Default)]
 struct Count {
     values: usize,
     guarded: usize,
 }
 
-/// Compares a kernel over one kind of number at points; is it given?
+/// Compares a kernel over one kind of number at points. True if the kernel is given.
 fn compare_kernel<L: Drawn>(
     pair: Pair,
     (kernel, length): (Kernel, usize),
@@ -171,7 +171,7 @@ fn compare_kernel<L: Drawn>(
 }
 
 fn assert_same<L: Numbers + Debug>(what: impl Debug, expected: &[L], found: &[L]) {
-    // NOTE: text, since a number that is none is no number's equal.
+    // NOTE: text, since NaN does not equal itself.
     if expected != found {
         let [expected, found] = [expected, found].map(|numbers| format!("{numbers:?}"));
         assert_eq!(expected, found, "{what:?}");

@@ -21,7 +21,7 @@ dalembert::model! {
 
 /// A model that was compiled.
 pub struct Compiled {
-    /// What it says of itself.
+    /// Its self-description.
     pub description: Description,
     /// Its form and those of its scenes, by name; that of the model itself first, as `all`.
     pub emitted: Vec<(&'static str, &'static Form)>,

@@ -19,7 +19,7 @@ fn the_motion_slides_where_both_sides_lead_to_the_line() {
     );
 }
 
-/// Without a difference nothing happens, to the last bit.
+/// Without a difference between the media the motion is unchanged, to the last bit.
 #[test]
 fn between_equal_media_nothing_happens() -> Result<(), Fault> {
     let particle = shipped("refracted_particle").with([("m2", 1.0)]);

@@ -1,4 +1,4 @@
-//! A known fact of each shipped model: what is said of it in closed form, or by its source, is so of its runs.
+//! A known fact of each shipped model, in closed form or from its source, holds for its runs.
 
 mod billiards;
 mod fields;
@@ -11,12 +11,12 @@ use dalembert::{Instance, Run, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, Driven, state};
 
-/// A run from these positions and velocities, which the constraints admit.
+/// A run from these positions and velocities, which satisfy the constraints.
 fn course<'a, M: Driven>(model: &'a M, q: &[f64], qdot: &[f64], until: f64) -> Course<'a, M> {
     Course::from_state(model, state(model, q, qdot), until)
 }
 
-/// Where a run ends by [`Integrator::Dop853`].
+/// End of a run by [`Integrator::Dop853`].
 fn end<M: Driven>(course: Course<'_, M>) -> Run<<M as VectorField>::State> {
     course.observed(Integrator::Dop853, &mut ())
 }

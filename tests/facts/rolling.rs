@@ -96,7 +96,7 @@ fn the_table_changes_its_speed_each_time() {
     }
 }
 
-/// A ball that rolls when it comes to the rough side keeps rolling: nothing is lost.
+/// A ball that already rolls when it comes to the rough side keeps rolling, without loss.
 #[test]
 fn a_ball_that_rolls_already_is_not_disturbed() -> Result<(), Fault> {
     let ball = shipped("smooth_and_rough_plane").large([]);

@@ -43,7 +43,7 @@ fn a_disk_rolls_down_an_incline_where_it_did_not_slip_in_its_impact() {
         let [m, r, inertia, g] = ["m", "r", "I", "g"].map(of);
         let (sin, cos) = of("alpha").sin_cos();
         let fall = (0.2 / (g * cos)).sqrt();
-        // The impulse that stops the slip of what touches the floor.
+        // The impulse that stops the slip of the point of contact.
         let speed = g * sin * fall;
         let inverse = 1.0 / m + r * r / inertia;
         let impulse = (belt - speed) / inverse;
@@ -144,8 +144,8 @@ fn check_trace(system: &Model) {
         system.kick(&mut rate, 1.0, &force);
         let residuals = |step: f64| {
             let mut moved = state;
-            for (own, rate) in moved.as_mut().iter_mut().zip(rate.as_ref()) {
-                *own += step * rate;
+            for (component, rate) in moved.as_mut().iter_mut().zip(rate.as_ref()) {
+                *component += step * rate;
             }
             let (q, qdot) = (
                 system.position(&moved),

@@ -181,7 +181,9 @@ fn at_the_wall(tip: &Model, count: usize, seed: u64) -> Vec<State> {
                 return state;
             }
             qdot = tip.velocity(0.0, &state).expect("a velocity");
-            qdot.as_mut().iter_mut().for_each(|own| *own = -*own);
+            qdot.as_mut()
+                .iter_mut()
+                .for_each(|component| *component = -*component);
             tip.state(0.0, &at, &qdot).expect("a state")
         })
         .collect()
@@ -222,15 +224,19 @@ fn focusing_is_the_projection_on_all_constraints_and_the_law_acts_within_them() 
         for form in [blade, stick, drag] {
             assert!(dot(&form, qdot.as_ref()).abs() < 1e-13);
         }
-        // What an impulse of these constraints changes has no component along what they leave.
+        // The change by an impulse of these constraints has no component along the velocities that they leave.
         let [after, start] =
-            [&focused, &before].map(|own| tip.momentum(0.0, own).expect("momenta"));
+            [&focused, &before].map(|state| tip.momentum(0.0, state).expect("momenta"));
         assert!(dot(&left, &difference(after.as_ref(), start.as_ref())).abs() < 1e-13);
         // One direction is left, so that a law can only multiply the velocity along it.
         let rate = tip.gap_rates(0.0, &focused).expect("rates").as_ref()[0];
         let factor = if rate < 0.0 { -0.25 } else { 1.0 };
         turned += usize::from(rate >= 0.0);
-        let expected: Vec<f64> = qdot.as_ref().iter().map(|own| own * factor).collect();
+        let expected: Vec<f64> = qdot
+            .as_ref()
+            .iter()
+            .map(|component| component * factor)
+            .collect();
         let after = struck(&tip, Law::Newton(0.25), before);
         let actual = tip.velocity(0.0, &after).expect("a velocity");
         assert_near("newton", actual.as_ref(), &expected, 1e-13);
@@ -256,8 +262,8 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// Carnot's theorem for linear constraints (Cortes and Vinogradov, 5.7): the energy never grows, and what focusing takes is
-/// the energy of the velocity it takes.
+/// Carnot's theorem for linear constraints (Cortes and Vinogradov, 5.7): the energy never grows, and focusing takes the
+/// energy of the velocity that it removes.
 #[test]
 fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints() {
     let tip = TIP.model();
@@ -265,8 +271,8 @@ fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints
     for before in at_the_wall(&tip, 60, 6) {
         let focused = focused(&tip, &before);
         let states = [&before, &focused];
-        let [v, v_focused] = states.map(|own| tip.velocity(0.0, own).expect("one"));
-        let [p, p_focused] = states.map(|own| tip.momentum(0.0, own).expect("one"));
+        let [v, v_focused] = states.map(|state| tip.velocity(0.0, state).expect("one"));
+        let [p, p_focused] = states.map(|state| tip.momentum(0.0, state).expect("one"));
         let velocity = difference(v.as_ref(), v_focused.as_ref());
         let momentum = difference(p.as_ref(), p_focused.as_ref());
         let taken = 0.5 * dot(&velocity, &momentum);
@@ -284,7 +290,7 @@ fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints
             let lost = energy(&before) - energy(&struck(&tip, law, before));
             assert!(lost >= taken * (1.0 - 1e-12), "{law}: {lost} of {taken}");
         }
-        // A state that satisfies them already loses nothing.
+        // A state that already satisfies them loses nothing.
         if tip.gap_rates(0.0, &focused).expect("rates").as_ref()[0] < 0.0 {
             let after = struck(&tip, Law::Elastic, focused);
             assert_near("focused", &[energy(&after)], &[energy(&focused)], 1e-14);
@@ -359,14 +365,18 @@ fn integrators_agree_on_a_ball_that_rolls_against_its_wall() {
     assert_near("state", steps.as_ref(), series.as_ref(), 1e-11);
 }
 
-/// What a model with claims is told; its messages if it is refused.
+/// Notes on a model with claims; its messages if it is refused.
 fn told(claims: &str) -> Result<Vec<String>, Vec<String>> {
     let model = format!(
         "P {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
          impacts {{ w: y >= 0 => elastic, instantaneous {{ s: dot(x) = 0; }}; }} claims {{ {claims} }} }}"
     );
     match compile(model.parse().expect("tokens")) {
-        Ok(compiled) => Ok(compiled.findings.iter().map(|own| own.note()).collect()),
+        Ok(compiled) => Ok(compiled
+            .findings
+            .iter()
+            .map(|finding| finding.note())
+            .collect()),
         Err(errors) => Err(errors
             .iter()
             .map(|error| error.message().to_owned())

@@ -67,11 +67,11 @@ fn run<S: Driven>(
     (events, end)
 }
 
-fn close(own: f64, stored: f64, bound: f64, what: &str) {
-    let error = (own - stored).abs() / (1.0 + stored.abs());
+fn close(found: f64, stored: f64, bound: f64, what: &str) {
+    let error = (found - stored).abs() / (1.0 + stored.abs());
     assert!(
         error <= bound,
-        "{what}: {own} is not {stored}, by {error:e}"
+        "{what}: {found} is not {stored}, by {error:e}"
     );
 }
 
@@ -100,7 +100,7 @@ fn a_ball_comes_onto_a_rough_plane() {
         let velocity = numbers(&case["velocity_smooth"]);
         // Its own axis lies along the angular velocity and stands still, away from where the angles are singular.
         let spin = [velocity[2], velocity[3], velocity[4]];
-        let size = spin.iter().map(|own| own * own).sum::<f64>().sqrt();
+        let size = spin.iter().map(|rate| rate * rate).sum::<f64>().sqrt();
         let (theta, psi) = ((spin[2] / size).acos(), spin[0].atan2(-spin[1]));
         let q = [number(&case["x0"]), number(&case["y0"]), 0.3, theta, psi];
         let qdot = [velocity[0], velocity[1], size, 0.0, 0.0];
@@ -118,11 +118,11 @@ fn a_ball_comes_onto_a_rough_plane() {
             "place",
         );
         let after = speeds(&ball, last.t, &last.after);
-        for (own, stored) in after.into_iter().zip(numbers(&case["velocity_after"])) {
-            close(own, stored, 1e-12, "velocity");
+        for (found, stored) in after.into_iter().zip(numbers(&case["velocity_after"])) {
+            close(found, stored, 1e-12, "velocity");
         }
-        let energies =
-            [&events[0].before, &last.after].map(|own| ball.energy(0.0, own).expect("an energy"));
+        let energies = [&events[0].before, &last.after]
+            .map(|state| ball.energy(0.0, state).expect("an energy"));
         close(
             energies[0],
             number(&case["energy_before"]),
@@ -136,8 +136,8 @@ fn a_ball_comes_onto_a_rough_plane() {
             "energy after",
         );
         let place = ball.position(&end);
-        for (own, stored) in place.as_slice().iter().zip(numbers(&case["position_at_T"])) {
-            close(*own, stored, 1e-11, "end");
+        for (found, stored) in place.as_slice().iter().zip(numbers(&case["position_at_T"])) {
+            close(*found, stored, 1e-11, "end");
         }
         let mode = if is_refracted {
             smooth_and_rough_plane::Mode::Rough
@@ -163,7 +163,7 @@ fn a_table_switches_its_speed() {
         let (x, y, vx, vy) = (initial[0], initial[1], initial[2], initial[3]);
         let theta = 1.3;
         let spin = [slow * x - vy, vx + slow * y, initial[4]];
-        let rates = euler_rates(theta, spin.map(|own| own / value(&ball, "r")));
+        let rates = euler_rates(theta, spin.map(|rate| rate / value(&ball, "r")));
         let rates = [rates[0], rates[1], initial[4] - theta.cos() * rates[0]];
         let switches = trajectory["switches"].as_array().expect("switches");
         let until = number(&switches[switches.len() - 1]["t"]) + 1e-3;
@@ -183,9 +183,9 @@ fn a_table_switches_its_speed() {
                 ("velocity_plus", &event.after),
             ];
             for (name, state) in sides {
-                let own = speeds(&ball, event.t, state);
-                for (own, stored) in own.into_iter().zip(numbers(&stored[name])) {
-                    close(own, stored, 1e-11, name);
+                let velocities = speeds(&ball, event.t, state);
+                for (found, stored) in velocities.into_iter().zip(numbers(&stored[name])) {
+                    close(found, stored, 1e-11, name);
                 }
             }
         }
@@ -210,8 +210,8 @@ fn a_rod_is_arrested() {
         assert_eq!(events.len(), 1);
         close(events[0].t, number(&first["t"]), 1e-12, "time");
         let p = wheels.momentum(0.0, &events[0].after).expect("momenta");
-        for (own, stored) in p.as_slice().iter().zip(numbers(&first["inelastic_p_plus"])) {
-            close(*own, stored, 1e-13, "momentum");
+        for (found, stored) in p.as_slice().iter().zip(numbers(&first["inelastic_p_plus"])) {
+            close(*found, stored, 1e-13, "momentum");
         }
         let energy = wheels.energy(0.0, &events[0].after).expect("an energy");
         close(energy, number(&first["energy_inelastic"]), 1e-13, "energy");
@@ -231,8 +231,8 @@ fn light_is_refracted_as_snell_says() {
         let (events, end) = run(&particle, &[-qdot[0], 0.0], &qdot, 1.5);
         assert_eq!(events.len(), 1);
         let after = particle.momentum(1.5, &end).expect("momenta");
-        for (own, stored) in after.as_slice().iter().zip(numbers(&case["p_after"])) {
-            close(*own, stored, 4e-16, "momentum");
+        for (found, stored) in after.as_slice().iter().zip(numbers(&case["p_after"])) {
+            close(*found, stored, 4e-16, "momentum");
         }
         let is_reflected = case["outcome"] == "total reflection";
         reflected += usize::from(is_reflected);
@@ -250,9 +250,9 @@ fn a_point_crosses_a_sphere_in_a_plane() {
         let until = number(&case["t_out"]) + 0.5;
         let (events, _) = run(&point, &initial[1..3], &initial[3..5], until);
         assert_eq!(events.len(), 2);
-        let compare = |own: &[f64], name: &str| {
-            for (own, stored) in own.iter().zip(numbers(&case[name])) {
-                close(*own, stored, 1e-11, name);
+        let compare = |found: &[f64], name: &str| {
+            for (found, stored) in found.iter().zip(numbers(&case[name])) {
+                close(*found, stored, 1e-11, name);
             }
         };
         let momentum = |t: f64, state: &_| point.momentum(t, state).expect("momenta");
@@ -321,7 +321,7 @@ fn wheels_of_many_spokes_have_the_stored_limit_cycles() {
     check_wheel(&ten, &file["wheels"][1]);
 }
 
-/// A start anywhere is drawn to the limit cycle.
+/// Every start is drawn to the limit cycle.
 #[test]
 fn a_wheel_tends_to_its_limit_cycle() {
     let file = read("rimless_wheels");
@@ -388,7 +388,7 @@ static LEAVING: Text = Text::new(
     }",
 );
 
-/// Where sliding begins and ends.
+/// Times at which sliding begins and ends.
 struct Slides(Vec<(f64, bool)>);
 
 impl<Sys: System> Observer<Sys> for Slides {

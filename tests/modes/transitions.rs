@@ -1,4 +1,4 @@
-//! Transitions one by one: what they keep, what they take, what they do not depend on, and how they end a run.
+//! Transitions one by one: the quantities they keep and take, their independence of names and coordinates, and the ends of runs at them.
 
 use dalembert::policy::{Policies, Split};
 use dalembert::{EventLog, Impacting, Instance, Outcome, StateVector, System};
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::{close, large};
 
-/// Where the particle can go on refracted or reflected a run ends if that is asked for; where it cannot it goes on.
+/// A particle that can go on both refracted and reflected ends its run, if that is asked for; otherwise it goes on.
 #[test]
 fn a_motion_that_splits_ends_where_that_is_asked_for() {
     let ends = |potential: Option<f64>| {
@@ -39,7 +39,7 @@ fn a_motion_that_splits_ends_where_that_is_asked_for() {
     assert_eq!(document["outcome"]["kind"], "ambiguous");
 }
 
-/// A mode by itself knows no other.
+/// A mode by itself has no other modes.
 #[test]
 fn a_mode_by_itself_ends_at_a_transition() {
     let left = mode(&shipped("refracted_particle").model(), 0);
@@ -81,7 +81,7 @@ fn a_surface_of_several_modes_is_met_in_each() {
     close(times[1], met, 1e-12, "wall");
 }
 
-/// The ball of `SmoothAndRoughPlane` in other words: names, orders, constraints and surfaces are others, motions are not.
+/// The ball of `SmoothAndRoughPlane` in other words: names, orders, constraints and surfaces differ, motions do not.
 static REWORDED: Text = Text::new(
     "Reworded {
         parameters { k > 0 = 2/3; r > 0 = 1; }
@@ -125,8 +125,8 @@ fn at_the_line(n: u32) -> [[f64; 5]; 2] {
     [q, qdot]
 }
 
-/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin never add energy, and take that of
-/// the velocity that is lost; nothing is lost exactly where the constraints hold already.
+/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin never add energy, and take the
+/// energy of the lost velocity. There is no loss exactly where the constraints already hold.
 #[test]
 fn constraints_that_begin_take_the_energy_of_what_is_lost() {
     let ball = large("smooth_and_rough_plane", []);
@@ -177,11 +177,11 @@ fn transitions_do_not_depend_on_words_and_factors() {
     };
     for n in 0..100 {
         let [q, qdot] = at_the_line(n);
-        let reworded = |own: [f64; 5]| [own[4], own[1], own[3], own[0], own[2]];
+        let reworded = |values: [f64; 5]| [values[4], values[1], values[3], values[0], values[2]];
         let same = after(&other, reworded(q), reworded(qdot));
         let expected = reworded(after(&ball, q, qdot));
-        for (own, expected) in same.iter().zip(expected) {
-            close(*own, expected, 1e-13, "velocity");
+        for (found, expected) in same.iter().zip(expected) {
+            close(*found, expected, 1e-13, "velocity");
         }
     }
 }
@@ -267,15 +267,15 @@ fn transitions_do_not_depend_on_coordinates() {
             assert_eq!(straight.mode(&after), crooked.mode(&same));
             seen[surface][usize::from(straight.mode(&after) > 0)] += 1;
             let rates = crooked.velocity(0.0, &same).expect("a velocity");
-            let three = |own: &[f64]| <[f64; 3]>::try_from(own).expect("three");
+            let three = |values: &[f64]| <[f64; 3]>::try_from(values).expect("three");
             let place = crooked.position(&same);
             let found = straightened(three(place.as_slice()), three(rates.as_slice()));
             let velocity = straight.velocity(0.0, &after).expect("a velocity");
-            for (own, expected) in found[1].iter().zip(velocity.as_slice()) {
-                close(*own, *expected, 1e-13, "velocity");
+            for (found, expected) in found[1].iter().zip(velocity.as_slice()) {
+                close(*found, *expected, 1e-13, "velocity");
             }
-            for (own, expected) in found[0].iter().zip(position) {
-                close(*own, expected, 1e-15, "position");
+            for (found, expected) in found[0].iter().zip(position) {
+                close(*found, expected, 1e-15, "position");
             }
         }
     }
@@ -299,7 +299,7 @@ static TRAP: Text = Text::new(
     }",
 );
 
-/// Where the belts meet each sends the motion back to the other.
+/// At the meeting of the belts, each sends the motion back to the other.
 #[test]
 fn modes_that_lead_to_each_other_trap_the_motion() {
     let trap = TRAP.model();

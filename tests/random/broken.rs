@@ -1,5 +1,4 @@
-//! Broken declarations are refused with messages at their tokens: nothing panics, and nothing points at the whole
-//! call.
+//! Broken declarations are refused with messages at their tokens: no panic, and no message at the whole call.
 
 use std::fmt;
 
@@ -74,7 +73,7 @@ fn deleted(source: String) -> impl Strategy<Value = Tokens> {
 
 fn deleted_from_any() -> impl Strategy<Value = Tokens> {
     let known = prop::sample::select(sources()).prop_map(str::to_owned);
-    let drawn = Declaration::any(3).prop_map(|own| own.named("Random"));
+    let drawn = Declaration::any(3).prop_map(|declaration| declaration.named("Random"));
     prop_oneof![known, drawn].prop_flat_map(deleted)
 }
 
@@ -175,12 +174,12 @@ fn check(tokens: &Tokens) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Whether a place consists of tokens that were read.
+/// True if a place consists of tokens that were read.
 fn is_within(tokens: &Tokens, at: Location) -> bool {
     tokens.0.is_empty() || !at.first.byte_range().is_empty()
 }
 
-/// Whether a place goes from the first token to the last.
+/// True if a place goes from the first token to the last.
 fn is_whole(tokens: &Tokens, at: Location) -> bool {
     let tokens: Vec<TokenTree> = tokens.0.clone().into_iter().collect();
     let [first, .., last] = tokens.as_slice() else {

@@ -1,8 +1,8 @@
 //! Random declarations: natural systems with any metric, potential, constraints, forces and surfaces.
 //!
-//! What the language demands holds by construction. The metric is a positive diagonal plus squares; the constraint
-//! with number `a` begins with `d(x_a)` and goes on in later coordinates, so that the forms are independent; a gap
-//! is a coordinate plus a function of the others, so that it changes its sign with a gradient that is not zero.
+//! The demands of the language hold by construction. The metric is a positive diagonal plus squares. The constraint with
+//! number `a` begins with `d(x_a)` and goes on in later coordinates, so that the forms are independent. A gap is a
+//! coordinate plus a function of the others, so that it changes its sign with a gradient that is not zero.
 
 use std::fmt;
 
@@ -13,14 +13,14 @@ use super::function::{Function, Names, PARAMETERS};
 /// A declaration that has not been written down yet.
 #[derive(Clone)]
 pub struct Declaration {
-    /// Which coordinates are angles; the last one is a line.
+    /// True for coordinates that are angles; the last one is a line.
     angles: Vec<bool>,
-    /// How far the order of declaration is turned against that of the numbers.
+    /// Shift of the order of declaration against that of the numbers.
     turned: usize,
     inertias: Vec<Inertia>,
     /// One-forms whose squares are added to the kinetic energy.
     couplings: Vec<Vec<Function>>,
-    /// What is linear in the velocities.
+    /// Terms of the Lagrangian linear in the velocities.
     linear: Option<Vec<Function>>,
     potential: Function,
     constraints: Vec<Constraint>,
@@ -132,14 +132,16 @@ impl Declaration {
             self.coordinates(),
             format!("parameters {{ {PARAMETERS} }}"),
             format!("lagrangian = {};", self.lagrangian()),
-            section("constraints", &self.constraints, |a, own| {
-                self.constraint(a, own)
+            section("constraints", &self.constraints, |a, constraint| {
+                self.constraint(a, constraint)
             }),
-            section("forces", &self.forces, |k, own| self.force(k, own)),
-            section("impacts", &self.surfaces, |s, own| self.surface(s, own)),
+            section("forces", &self.forces, |k, force| self.force(k, force)),
+            section("impacts", &self.surfaces, |s, surface| {
+                self.surface(s, surface)
+            }),
         ];
-        let written = sections.iter().filter(|own| !own.is_empty());
-        let lines = written.map(|own| format!("\n    {own}"));
+        let written = sections.iter().filter(|section| !section.is_empty());
+        let lines = written.map(|section| format!("\n    {section}"));
         format!("pub {name} {{{}\n}}", lines.collect::<String>())
     }
 
@@ -172,7 +174,8 @@ impl Declaration {
     /// `f*d(x_first) + ..`
     fn form(&self, components: &[Function], first: usize, rate: &str) -> String {
         let terms = components.iter().enumerate().skip(first);
-        let terms = terms.map(|(i, own)| format!("({})*{rate}(x{i})", own.written(self.all())));
+        let terms =
+            terms.map(|(i, component)| format!("({})*{rate}(x{i})", component.written(self.all())));
         let terms: Vec<String> = terms.collect();
         terms.join(" + ")
     }
@@ -182,7 +185,7 @@ impl Declaration {
         let affine = constraint
             .affine
             .as_ref()
-            .map(|own| own.written(self.all()));
+            .map(|affine| affine.written(self.all()));
         match constraint.notation {
             Notation::Velocities => {
                 format!("dot(x{a}) = {later} + {}", affine.unwrap_or("0".into()))
@@ -224,8 +227,12 @@ impl Declaration {
             true => format!("x{last} <= {s} + 2 + {rest}"),
             false => format!("x{last} + {rest} >= -{s}"),
         };
-        let condition = surface.condition.as_ref().map(|own| own.written(names));
-        let condition = condition.map_or(String::new(), |own| format!(" when 1 + x{last} > {own}"));
+        let condition = surface
+            .condition
+            .as_ref()
+            .map(|condition| condition.written(names));
+        let condition =
+            condition.map_or(String::new(), |text| format!(" when 1 + x{last} > {text}"));
         format!("{gap}{condition}{}", LAWS[surface.law])
     }
 

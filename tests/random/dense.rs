@@ -64,8 +64,8 @@ impl<'a> Dense<'a> {
     pub fn new(compiled: &'a Compiled) -> Self {
         let pool = &compiled.model.pool;
         let parameters = compiled.model.parameters.iter();
-        let parameters = parameters.map(|own| {
-            let default = own.default.expect("a default");
+        let parameters = parameters.map(|parameter| {
+            let default = parameter.default.expect("a default");
             pool.eval(&[default], &|_| f64::NAN)[0]
         });
         Self {
@@ -78,9 +78,18 @@ impl<'a> Dense<'a> {
     pub fn values(&self, expressions: &[ExprId], at: &Point) -> Vec<f64> {
         let model = &self.compiled.model;
         let value = |symbol: SymbolId| {
-            let coordinate = model.coordinates.iter().position(|own| own.q == symbol);
-            let velocity = model.coordinates.iter().position(|own| own.qdot == symbol);
-            let parameter = model.parameters.iter().position(|own| own.symbol == symbol);
+            let coordinate = model
+                .coordinates
+                .iter()
+                .position(|candidate| candidate.q == symbol);
+            let velocity = model
+                .coordinates
+                .iter()
+                .position(|candidate| candidate.qdot == symbol);
+            let parameter = model
+                .parameters
+                .iter()
+                .position(|candidate| candidate.symbol == symbol);
             match (coordinate, velocity, parameter) {
                 (Some(i), _, _) => at.q[i],
                 (_, Some(i), _) => at.qdot[i],
@@ -108,7 +117,7 @@ impl<'a> Dense<'a> {
         let force = self.values(&derivation.field.force, at);
         let drift = self.values(&derivation.field.drift, at);
         let constraints = derivation.constraints.iter();
-        let curvature: Vec<_> = constraints.map(|own| own.curvature).collect();
+        let curvature: Vec<_> = constraints.map(|constraint| constraint.curvature).collect();
         Evaluated {
             p: moved(&kinetic, 1.0, &linear),
             energy: dot(&kinetic, &at.qdot) / 2.0 + potential,
@@ -116,12 +125,12 @@ impl<'a> Dense<'a> {
             forms: model
                 .constraints
                 .iter()
-                .map(|own| self.values(&own.form, at))
+                .map(|constraint| self.values(&constraint.form, at))
                 .collect(),
             affine: model
                 .constraints
                 .iter()
-                .map(|own| self.value(own.affine, at))
+                .map(|constraint| self.value(constraint.affine, at))
                 .collect(),
             curvature: self.values(&curvature, at),
             metric,
@@ -199,8 +208,8 @@ impl Evaluated {
         solve(&self.metric, covector)
     }
 
-    /// The condition of the saddle matrix in the norm of the largest row sum: what a relative error of its entries
-    /// may do to a solution.
+    /// The condition number of the saddle matrix in the norm of the largest row sum: the largest growth of a relative
+    /// error of its entries in a solution.
     pub fn condition(&self) -> f64 {
         let matrix = self.saddle_matrix();
         let columns: Vec<Vec<f64>> = (0..matrix.len())

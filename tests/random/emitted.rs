@@ -1,4 +1,4 @@
-//! Emitted code of random declarations is what the interpreter executes, to the bit.
+//! Emitted code of random declarations equals the interpreter, to the bit.
 //!
 //! `tests/random/models.rs` holds declarations that were drawn once; `ACCEPT=1` draws them anew.
 
@@ -16,7 +16,7 @@ use super::declaration::Declaration;
 use super::interpreted::compiled;
 use super::models;
 
-/// How many models are drawn.
+/// Number of models that are drawn.
 const COUNT: usize = 12;
 
 /// Declarations that are not refused, from a fixed seed.
@@ -30,7 +30,7 @@ fn drawn() -> Vec<Declaration> {
     let endless =
         std::iter::repeat_with(|| any.new_tree(&mut runner).expect("a declaration").current());
     endless
-        .filter(|own| compiled(own).is_ok())
+        .filter(|declaration| compiled(declaration).is_ok())
         .take(COUNT)
         .collect()
 }
@@ -54,7 +54,7 @@ fn the_declarations_are_those_that_are_drawn() {
     golden::compare_file(&path, &source());
 }
 
-/// Compares everything that is emitted for a model at random states, in both forms.
+/// Compares all emitted functions of a model at random states, in both forms.
 fn check<S: Described>(system: &S) {
     let tokens = S::DESCRIPTION.source.parse().expect("tokens");
     let compiled = dalembert_codegen::compile(tokens).expect("a model");

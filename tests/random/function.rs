@@ -29,11 +29,11 @@ enum Factor {
 /// The names a function may use.
 #[derive(Debug, Clone, Copy)]
 pub struct Names<'a> {
-    /// Which coordinates are angles.
+    /// True for coordinates that are angles.
     pub angles: &'a [bool],
-    /// The coordinates that may occur, from this on.
+    /// The first coordinate that may occur.
     pub first: usize,
-    /// To before this.
+    /// End of the coordinates that may occur.
     pub end: usize,
 }
 
@@ -81,7 +81,10 @@ impl Term {
     }
 
     fn written(&self, names: Names<'_>) -> String {
-        let factors = self.factors.iter().filter_map(|own| own.written(names));
+        let factors = self
+            .factors
+            .iter()
+            .filter_map(|factor| factor.written(names));
         factors.fold(format!("({}/4)", self.quarters), |product, factor| {
             format!("{product}*{factor}")
         })

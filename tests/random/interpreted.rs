@@ -34,15 +34,15 @@ fn sample(most: usize) -> impl Strategy<Value = (Declaration, Point, Vec<f64>)> 
     })
 }
 
-/// The stages of the generator on a random declaration. Chance may make a declaration that says nothing, which is
-/// refused with one of these messages; any other refusal is a mistake of the generator.
+/// The stages of the generator on a random declaration. Chance may make a declaration without content, which is refused
+/// with one of these messages; any other refusal is a mistake of the generator.
 pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
     const SAYS_NOTHING: [&str; 2] = ["this force is zero", "same surface as"];
     let source = declaration.named("Random");
     let tokens = source.parse().expect("tokens");
     dalembert_codegen::compile(tokens).map_err(|refused| {
         let messages: Vec<&str> = refused.iter().map(|error| error.message()).collect();
-        let is_empty = |text: &&str| SAYS_NOTHING.iter().any(|own| text.contains(own));
+        let is_empty = |text: &&str| SAYS_NOTHING.iter().any(|known| text.contains(known));
         match messages.iter().all(is_empty) {
             true => TestCaseError::reject("a declaration that says nothing"),
             false => TestCaseError::fail(format!("{messages:?}")),
@@ -50,7 +50,7 @@ pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
     })
 }
 
-/// What is compared, with the size of the errors that are allowed.
+/// Quantities that are compared, with the size of the allowed errors.
 pub struct Comparison<'a> {
     pub compiled: &'a Compiled,
     dense: Dense<'a>,
@@ -61,7 +61,7 @@ pub struct Comparison<'a> {
     quasi: Vec<f64>,
     /// Rates of the motion's part of the state, or an impulse on it.
     motion: Vec<f64>,
-    /// What rounding may do, relative to the numbers that occur.
+    /// Allowed rounding, relative to the numbers that occur.
     pub tolerance: f64,
 }
 
@@ -102,7 +102,7 @@ impl<'a> Comparison<'a> {
         same_within(what, actual, expected, self.tolerance)
     }
 
-    /// The group of this name in what `eval` prints.
+    /// The group of this name in the output of `eval`.
     fn group(&self, values: &[f64], name: &str) -> Vec<f64> {
         let mut start = 0;
         for group in &self.compiled.programs.global().geometry.groups {
@@ -137,38 +137,58 @@ pub fn same_within(
 }
 
 /// Velocities, rates, multipliers and energy.
-fn check_motion(own: &Comparison<'_>) -> Result<(), TestCaseError> {
-    let values = own.run(&own.compiled.programs.global().geometry.function);
-    let group = |name| own.group(&values, name);
-    let (acceleration, multipliers) = own.evaluated.motion();
-    let rate = [own.at.qdot.clone(), own.evaluated.momentum_rate()].concat();
-    own.same("qdot", &group("qdot"), &own.at.qdot)?;
-    own.same("pdot", &group("pdot"), &own.evaluated.momentum_rate())?;
-    own.same("acceleration", &group("acceleration"), &acceleration)?;
-    own.same("multipliers", &group("multipliers"), &multipliers)?;
-    own.same("energy", &group("energy"), &[own.evaluated.energy])?;
-    own.same("metric", &group("metric"), &own.evaluated.metric.concat())?;
-    let program = own.compiled.programs.global();
-    let mut parts = own.run(&program.force);
+fn check_motion(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let values = comparison.run(&comparison.compiled.programs.global().geometry.function);
+    let group = |name| comparison.group(&values, name);
+    let (acceleration, multipliers) = comparison.evaluated.motion();
+    let rate = [
+        comparison.at.qdot.clone(),
+        comparison.evaluated.momentum_rate(),
+    ]
+    .concat();
+    comparison.same("qdot", &group("qdot"), &comparison.at.qdot)?;
+    comparison.same(
+        "pdot",
+        &group("pdot"),
+        &comparison.evaluated.momentum_rate(),
+    )?;
+    comparison.same("acceleration", &group("acceleration"), &acceleration)?;
+    comparison.same("multipliers", &group("multipliers"), &multipliers)?;
+    comparison.same("energy", &group("energy"), &[comparison.evaluated.energy])?;
+    comparison.same(
+        "metric",
+        &group("metric"),
+        &comparison.evaluated.metric.concat(),
+    )?;
+    let program = comparison.compiled.programs.global();
+    let mut parts = comparison.run(&program.force);
     if let Some(constrained) = &program.constrained {
-        let reaction = own.run(&constrained.reaction_force);
+        let reaction = comparison.run(&constrained.reaction_force);
         parts.iter_mut().zip(reaction).for_each(|(f, r)| *f += r);
     }
-    own.same("force", &parts, &own.evaluated.momentum_rate())?;
-    own.same("rate", &own.run(&program.rate), &rate)?;
-    own.same("velocity", &own.run(&program.velocity), &own.at.qdot)?;
-    own.same("momentum", &own.run(&program.momentum), &own.evaluated.p)
+    comparison.same("force", &parts, &comparison.evaluated.momentum_rate())?;
+    comparison.same("rate", &comparison.run(&program.rate), &rate)?;
+    comparison.same(
+        "velocity",
+        &comparison.run(&program.velocity),
+        &comparison.at.qdot,
+    )?;
+    comparison.same(
+        "momentum",
+        &comparison.run(&program.momentum),
+        &comparison.evaluated.p,
+    )
 }
 
 /// The geometry of the constraints, and the projections on them.
-fn check_constraints(own: &Comparison<'_>) -> Result<(), TestCaseError> {
-    let Some(program) = &own.compiled.programs.global().constrained else {
+fn check_constraints(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let Some(program) = &comparison.compiled.programs.global().constrained else {
         return Ok(());
     };
-    let evaluated = &own.evaluated;
-    let values = own.run(&own.compiled.programs.global().geometry.function);
-    let group = |name| own.group(&values, name);
-    let n = own.at.q.len();
+    let evaluated = &comparison.evaluated;
+    let values = comparison.run(&comparison.compiled.programs.global().geometry.function);
+    let group = |name| comparison.group(&values, name);
+    let n = comparison.at.q.len();
     let fields: Vec<_> = evaluated
         .forms
         .iter()
@@ -183,33 +203,33 @@ fn check_constraints(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let projector: Vec<f64> = (0..n)
         .flat_map(|i| columns.iter().map(move |column| column[i]))
         .collect();
-    own.same("W", &group("W"), &fields.concat())?;
-    own.same("constraint_mass", &group("constraint_mass"), &mass.concat())?;
-    own.same("pi_D", &group("pi_D"), &projector)?;
-    own.same(
+    comparison.same("W", &group("W"), &fields.concat())?;
+    comparison.same("constraint_mass", &group("constraint_mass"), &mass.concat())?;
+    comparison.same("pi_D", &group("pi_D"), &projector)?;
+    comparison.same(
         "multipliers",
-        &own.run(&program.multipliers),
+        &comparison.run(&program.multipliers),
         &evaluated.motion().1,
     )?;
-    let projected = times(&evaluated.metric, &evaluated.projected(&own.at.qdot));
+    let projected = times(&evaluated.metric, &evaluated.projected(&comparison.at.qdot));
     let projected = moved(&projected, 1.0, &evaluated.linear);
     let back = program
         .return_to_constraints
         .as_ref()
         .expect("a global form");
-    own.same("project", &own.run(&back.nearest), &projected)?;
-    check_restored(own, &own.run(&back.restore))?;
-    check_levels(own, &own.run(&program.level_correction))
+    comparison.same("project", &comparison.run(&back.nearest), &projected)?;
+    check_restored(comparison, &comparison.run(&back.restore))?;
+    check_levels(comparison, &comparison.run(&program.level_correction))
 }
 
-/// Where there is a frame: velocities and rates of quasi-velocities at the nearest allowed velocity.
-fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
-    let Ok(frame) = &own.compiled.derivation.frame else {
+/// In the frame, if there is one: velocities and rates of quasi-velocities at the nearest allowed velocity.
+fn check_reduced(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let Ok(frame) = &comparison.compiled.derivation.frame else {
         return Ok(());
     };
-    let mut at = own.at.clone();
-    at.qdot = own.evaluated.projected(&own.at.qdot);
-    let mut on = Comparison::new(own.compiled, at, own.excess.clone());
+    let mut at = comparison.at.clone();
+    at.qdot = comparison.evaluated.projected(&comparison.at.qdot);
+    let mut on = Comparison::new(comparison.compiled, at, comparison.excess.clone());
     let forms = frame
         .quasi
         .iter()
@@ -221,7 +241,7 @@ fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     let (acceleration, multipliers) = on.evaluated.motion();
     let rate = moved(&times(&forms, &acceleration), 1.0, &curvature);
     check_surfaces(&mut on, &acceleration, rate.clone())?;
-    let program = &own.compiled.programs.main;
+    let program = &comparison.compiled.programs.main;
     let reduced = program.reduced.as_ref().expect("a reduced form");
     on.same("reduced velocity", &on.run(&program.velocity), &on.at.qdot)?;
     on.same(
@@ -243,8 +263,16 @@ fn check_reduced(own: &Comparison<'_>) -> Result<(), TestCaseError> {
     for program in [&on.compiled.programs.main, on.compiled.programs.global()] {
         check_blows(&on, program)?;
     }
-    own.same("nearest", &own.run(&reduced.nearest_velocities), &on.quasi)?;
-    own.same("nearest", &own.run(&reduced.nearest_momenta), &on.quasi)?;
+    comparison.same(
+        "nearest",
+        &comparison.run(&reduced.nearest_velocities),
+        &on.quasi,
+    )?;
+    comparison.same(
+        "nearest",
+        &comparison.run(&reduced.nearest_momenta),
+        &on.quasi,
+    )?;
     match &program.constrained {
         Some(program) => on.same("multipliers", &on.run(&program.multipliers), &multipliers),
         None => Ok(()),
@@ -285,28 +313,28 @@ fn check_surfaces(
 }
 
 /// Restored momenta belong to velocities on the constraints.
-fn check_restored(own: &Comparison<'_>, p: &[f64]) -> Result<(), TestCaseError> {
-    let evaluated = &own.evaluated;
+fn check_restored(comparison: &Comparison<'_>, p: &[f64]) -> Result<(), TestCaseError> {
+    let evaluated = &comparison.evaluated;
     let qdot = evaluated.raised(&moved(p, -1.0, &evaluated.linear));
     let residuals = moved(&times(&evaluated.forms, &qdot), 1.0, &evaluated.affine);
-    own.same("restore", &residuals, &vec![0.0; residuals.len()])
+    comparison.same("restore", &residuals, &vec![0.0; residuals.len()])
 }
 
 /// The correction of positions is the least one, in the metric, that changes the levels by the excess.
-fn check_levels(own: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCaseError> {
-    let evaluated = &own.evaluated;
-    let levelled: Vec<usize> = own.compiled.derivation.levelled().collect();
+fn check_levels(comparison: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCaseError> {
+    let evaluated = &comparison.evaluated;
+    let levelled: Vec<usize> = comparison.compiled.derivation.levelled().collect();
     let forms: Vec<Vec<f64>> = levelled
         .iter()
         .map(|&a| evaluated.forms[a].clone())
         .collect();
-    let excess: Vec<f64> = own
+    let excess: Vec<f64> = comparison
         .excess
         .iter()
         .take(forms.len())
-        .map(|own| -own)
+        .map(|level| -level)
         .collect();
-    own.same("level correction", &times(&forms, correction), &excess)?;
+    comparison.same("level correction", &times(&forms, correction), &excess)?;
     let covector = times(&evaluated.metric, correction);
     let fields: Vec<_> = forms.iter().map(|form| evaluated.raised(form)).collect();
     let mass: Vec<_> = forms.iter().map(|form| times(&fields, form)).collect();
@@ -317,104 +345,132 @@ fn check_levels(own: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCase
         .fold(vec![0.0; covector.len()], |sum, (weight, form)| {
             moved(&sum, *weight, form)
         });
-    own.same("level correction", &covector, &combined)
+    comparison.same("level correction", &covector, &combined)
 }
 
 /// Gaps and the data of the impact laws.
-fn check_contacts(own: &Comparison<'_>) -> Result<(), TestCaseError> {
-    let Some(program) = &own.compiled.programs.global().impacting else {
+fn check_contacts(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let Some(program) = &comparison.compiled.programs.global().impacting else {
         return Ok(());
     };
-    let gap = |s: usize, at: &Point| own.dense.value(own.compiled.model.surfaces[s].gap, at);
+    let gap = |s: usize, at: &Point| {
+        comparison
+            .dense
+            .value(comparison.compiled.model.surfaces[s].gap, at)
+    };
     for (s, contact) in program.contacts.iter().enumerate() {
-        let n = own.at.q.len();
-        let along =
-            |direction: &[f64], dt: f64| slope(&mut |h| gap(s, &own.at.shifted(h, direction, dt)));
+        let n = comparison.at.q.len();
+        let along = |direction: &[f64], dt: f64| {
+            slope(&mut |h| gap(s, &comparison.at.shifted(h, direction, dt)))
+        };
         let form: Vec<f64> = (0..n).map(|i| along(&unit(n, i), 0.0)).collect();
-        let gradient = own.evaluated.raised(&form);
-        let allowed = own.evaluated.project(&gradient);
-        let direction = times(&own.evaluated.metric, &allowed);
+        let gradient = comparison.evaluated.raised(&form);
+        let allowed = comparison.evaluated.project(&gradient);
+        let direction = times(&comparison.evaluated.metric, &allowed);
         let expected = [
-            along(&own.at.qdot, 1.0),
-            dot(&direction, &own.at.qdot),
+            along(&comparison.at.qdot, 1.0),
+            dot(&direction, &comparison.at.qdot),
             along(&vec![0.0; n], 1.0),
             dot(&form, &allowed),
             dot(&form, &gradient),
         ];
         let expected = [expected.to_vec(), direction].concat();
-        let tolerance = own.tolerance.max(1e-8);
-        same_within("contact", &own.run(contact), &expected, tolerance)?;
-        let expected = gap(s, &own.at);
-        own.same("gap", &own.run(&program.gaps)[s..=s], &[expected])?;
+        let tolerance = comparison.tolerance.max(1e-8);
+        same_within("contact", &comparison.run(contact), &expected, tolerance)?;
+        let expected = gap(s, &comparison.at);
+        comparison.same("gap", &comparison.run(&program.gaps)[s..=s], &[expected])?;
     }
     Ok(())
 }
 
-/// What the derivation differentiated, by differences of what was declared.
-fn check_derivatives(own: &Comparison<'_>) -> Result<(), TestCaseError> {
-    let (model, derivation) = (&own.compiled.model, &own.compiled.derivation);
-    let n = own.at.q.len();
+/// Derivatives of the derivation, by differences of the declared expressions.
+fn check_derivatives(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let (model, derivation) = (&comparison.compiled.model, &comparison.compiled.derivation);
+    let n = comparison.at.q.len();
     let close =
         |what: &str, actual: &[f64], expected: &[f64]| same_within(what, actual, expected, 1e-8);
-    let lagrangian = |at: &Point| own.dense.value(model.lagrangian.whole, at);
+    let lagrangian = |at: &Point| comparison.dense.value(model.lagrangian.whole, at);
     let applied: Vec<f64> = (0..n)
         .map(|k| {
             model
                 .forces
                 .iter()
-                .map(|force| own.dense.value(force.form[k], &own.at))
+                .map(|force| comparison.dense.value(force.form[k], &comparison.at))
                 .sum()
         })
         .collect();
-    let force = (0..n).map(|k| slope(&mut |h| lagrangian(&own.at.shifted(h, &unit(n, k), 0.0))));
+    let force =
+        (0..n).map(|k| slope(&mut |h| lagrangian(&comparison.at.shifted(h, &unit(n, k), 0.0))));
     let force: Vec<f64> = force.collect();
-    close("force", &own.evaluated.force, &moved(&force, 1.0, &applied))?;
-    let momentum = (0..n).map(|k| slope(&mut |h| lagrangian(&own.at.kicked(h, k))));
+    close(
+        "force",
+        &comparison.evaluated.force,
+        &moved(&force, 1.0, &applied),
+    )?;
+    let momentum = (0..n).map(|k| slope(&mut |h| lagrangian(&comparison.at.kicked(h, k))));
     close(
         "momentum",
-        &own.evaluated.p,
+        &comparison.evaluated.p,
         &momentum.collect::<Vec<f64>>(),
     )?;
-    let carried = |h| own.dense.evaluate(&own.at.shifted(h, &own.at.qdot, 1.0));
-    let drift = own.dense.values(&derivation.field.drift, &own.at);
+    let carried = |h| {
+        comparison
+            .dense
+            .evaluate(&comparison.at.shifted(h, &comparison.at.qdot, 1.0))
+    };
+    let drift = comparison
+        .dense
+        .values(&derivation.field.drift, &comparison.at);
     close("drift", &drift, &slopes(&|h| carried(h).p))?;
     let residuals = |h| {
         let carried = carried(h);
-        moved(&times(&carried.forms, &own.at.qdot), 1.0, &carried.affine)
+        moved(
+            &times(&carried.forms, &comparison.at.qdot),
+            1.0,
+            &carried.affine,
+        )
     };
     let curvature: Vec<_> = derivation
         .constraints
         .iter()
-        .map(|own| own.curvature)
+        .map(|constraint| constraint.curvature)
         .collect();
     close(
         "curvature",
-        &own.dense.values(&curvature, &own.at),
+        &comparison.dense.values(&curvature, &comparison.at),
         &slopes(&residuals),
     )
 }
 
 /// The divergence of the field on T*Q, by differences.
-fn check_divergence(own: &Comparison<'_>) -> Result<(), TestCaseError> {
-    let (q, p) = (&own.at.q, &own.evaluated.p);
+fn check_divergence(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
+    let (q, p) = (&comparison.at.q, &comparison.evaluated.p);
     let n = q.len();
     let divergence: f64 = (0..n)
         .map(|i| {
             let unit = unit(n, i);
-            let by_q = slope(&mut |h| own.dense.rate(own.at.t, &moved(q, h, &unit), p)[i]);
-            let by_p = slope(&mut |h| own.dense.rate(own.at.t, q, &moved(p, h, &unit))[n + i]);
+            let by_q = slope(&mut |h| {
+                comparison
+                    .dense
+                    .rate(comparison.at.t, &moved(q, h, &unit), p)[i]
+            });
+            let by_p = slope(&mut |h| {
+                comparison
+                    .dense
+                    .rate(comparison.at.t, q, &moved(p, h, &unit))[n + i]
+            });
             by_q + by_p
         })
         .sum();
-    let rate = own.dense.rate(own.at.t, q, p);
+    let rate = comparison.dense.rate(comparison.at.t, q, p);
     let size = rate.iter().fold(1.0_f64, |size, rate| size.max(rate.abs()));
-    let density = own.compiled.programs.global().density.as_ref();
-    let actual = own.run(&density.expect("of a whole model").divergence);
+    let density = comparison.compiled.programs.global().density.as_ref();
+    let actual = comparison.run(&density.expect("of a whole model").divergence);
     same_within(
         "divergence",
         &actual,
         &[divergence],
-        1e-7 * size * (1.0 + own.tolerance * 1e10),
+        1e-7 * size * (1.0 + comparison.tolerance * 1e10),
     )
 }
 
@@ -427,16 +483,16 @@ fn check(declaration: &Declaration, at: Point, excess: Vec<f64>) -> Result<(), T
     {
         prop_assert_eq!(verify(function), Ok(()));
     }
-    let own = Comparison::new(&compiled, at, excess);
-    check_motion(&own)?;
-    check_constraints(&own)?;
-    check_reduced(&own)?;
-    check_contacts(&own)?;
+    let comparison = Comparison::new(&compiled, at, excess);
+    check_motion(&comparison)?;
+    check_constraints(&comparison)?;
+    check_reduced(&comparison)?;
+    check_contacts(&comparison)?;
     if compiled.derivation.constraints.is_empty() {
-        check_blows(&own, programs.global())?;
+        check_blows(&comparison, programs.global())?;
     }
-    check_derivatives(&own)?;
-    check_divergence(&own)
+    check_derivatives(&comparison)?;
+    check_divergence(&comparison)
 }
 
 proptest! {

@@ -1,4 +1,4 @@
-//! Random declarations: what is generated from them agrees with independent routes, and what is broken is refused.
+//! Random declarations: generated code agrees with independent routes, and broken declarations are refused.
 //!
 //! The quick tests draw from a fixed seed. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` ask for more cases and for other
 //! ones; a failure shrinks and prints the declaration that shows it.
@@ -14,7 +14,7 @@ mod models;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// This many cases, or what the environment asks for.
+/// This number of cases, or the number that the environment asks for.
 fn config(cases: u32) -> Config {
     let environment = Config::default();
     let asked = std::env::var_os("PROPTEST_CASES").is_some();

@@ -21,7 +21,7 @@ pub fn rendered(path: &str, text: &str) -> Result<String, String> {
         };
         for (at, message) in refused.iter().flat_map(Diagnostic::places) {
             let error = titled(message) + &underlined(path, text, *at)?;
-            // The compiler does not repeat an error.
+            // The compiler prints an error once.
             if !errors.contains(&error) {
                 errors.push(error);
             }

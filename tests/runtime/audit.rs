@@ -1,4 +1,4 @@
-//! The audit confirms runs whose impacts are right, and finds the impact that a run has missed, whatever the integrator.
+//! The audit confirms runs with correct impacts, and finds an impact that a run has missed, with every integrator.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::audit::{Audit, Finding};
@@ -59,7 +59,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A point among walls that count in places only, and a line that it is carried back from.
+    /// A point among walls that count only in places, and a line that carries it back.
     pub Course {
         coordinates { x; y; }
         parameters { g >= 0 = 1; }
@@ -80,7 +80,7 @@ struct Start<'a> {
     until: f64,
 }
 
-/// A run, and what its audit says.
+/// A run with the result of its audit.
 #[derive(Debug)]
 #[allow(dead_code, reason = "printed where a test fails")]
 struct Audited {
@@ -243,7 +243,7 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
     for run in with_every_integrator(&course, || Impacts::declared(&course), start) {
         assert_eq!(run.finding, None, "{run:?}");
     }
-    // What counts is found: the reset alone, on the way through the ledge beyond its edge.
+    // The surface that counts is found: only the reset, on the way through the ledge beyond its edge.
     let beyond = Start {
         q: &[2.0, 0.5],
         v: &[1.0, 0.0],

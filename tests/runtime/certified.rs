@@ -1,4 +1,4 @@
-//! Certified motion contains the motion, with boxes that stay narrow, and says where it loses it.
+//! Certified motion contains the motion, with boxes that stay narrow, and reports where it loses the motion.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::certified::CertifiedFlow;

@@ -1,6 +1,6 @@
 //! Certified motion across impacts contains references of many digits, with boxes that stay narrow.
 //!
-//! Stored references are those of `tests/reference`. Parameters that are no doubles are given as ranges that contain them.
+//! Stored references are those of `tests/reference`. Parameters that are not doubles are given as ranges that contain them.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -784,7 +784,7 @@ fn digits(number: &str) -> Extended<3> {
     number.parse().unwrap()
 }
 
-/// Whether a number of many digits lies between the ends of an interval.
+/// True if a number of many digits lies between the ends of an interval.
 fn holds(range: Interval, number: Extended<3>) -> bool {
     let [lo, hi] = [range.lo, range.hi].map(Extended::<3>::from);
     (number - lo).nearest() >= 0.0 && (hi - number).nearest() >= 0.0
@@ -797,7 +797,7 @@ struct Reference {
     after: &'static [&'static str],
 }
 
-/// Follows a run along a reference; the width of the widest enclosure of a time or of a component.
+/// Follows a run along a reference. Returns the width of the widest enclosure of a time or of a component.
 fn follow<S: Variational + Impacting>(
     mut run: CertifiedRun<'_, S>,
     references: &[Reference],
@@ -853,7 +853,7 @@ fn impacts<S: Variational + Scene>(system: &S, start: &S::State, t_end: f64) -> 
     impacts
 }
 
-/// Follows a start beside a run in numbers of 48 digits; the width of the widest component at the end.
+/// Follows a start beside a run in numbers of 48 digits. Returns the width of the widest component at the end.
 fn beside<S: Variational + Scene + Impacting>(
     system: &S,
     start: &S::State,
@@ -1061,7 +1061,7 @@ fn every_motion_from_a_box_is_held_across_impacts() {
             *range = range.hull(point(value.nearest()));
         }
     }
-    // The widest is as wide as the motions make it, nearly.
+    // The widest box is nearly as wide as the motions require.
     let found = enclosures.last().unwrap().1;
     let [found, reached] = [found, reached].map(|ranges| {
         let widths = ranges.map(Interval::width);

@@ -1,4 +1,4 @@
-//! Periodic orbits that exist by proof: in enclosures that contain references of many digits, and refused where there are none.
+//! Periodic orbits whose existence is proved: in enclosures that contain references of many digits, and refused where there are none.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::time::Instant;
@@ -48,7 +48,7 @@ dalembert::model! {
     }
 }
 
-/// Whether a number of many digits lies between the ends of an interval.
+/// True if a number of many digits lies between the ends of an interval.
 fn holds(range: Interval, digits: &str) -> bool {
     let number: Extended<3> = digits.parse().unwrap();
     let [lo, hi] = [range.lo, range.hi].map(Extended::<3>::from);

@@ -1,4 +1,4 @@
-//! Certified runs end where what happens is not certain, before it happens, and say why.
+//! Certified runs end before an event that is not certain, and report the reason.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -97,7 +97,7 @@ dalembert::model! {
     }
 }
 
-/// Impacts until the end, and how it came.
+/// Impacts until the end, and the reason of the end.
 fn run<S: Variational + Impacting>(
     system: &S,
     start: &[Interval],
@@ -170,7 +170,7 @@ fn two_walls_at_one_time_are_refused() {
             "{surfaces:?}, {ended:?}"
         );
     }
-    // Of a box that is wider, either.
+    // A wider box may meet either first.
     let start = [
         Interval::new(-1e-3, 2e-3),
         Interval::point(0.0),
@@ -305,7 +305,7 @@ fn a_reset_that_stays_at_its_surface_is_refused() {
 
 #[test]
 fn refraction_and_reflection_are_told_apart() {
-    // Energies of both modes are enclosed by themselves: ranges of speeds are narrow beside what they differ by.
+    // Energies of both modes are enclosed by themselves: ranges of speeds are narrow compared with their difference.
     let mode = |speed: Interval| {
         let start = [Interval::point(-1.0), speed, Interval::point(0.0)];
         let halves = Halves::default();
@@ -314,7 +314,7 @@ fn refraction_and_reflection_are_told_apart() {
         Ok(impact.map(|_| run.component(2).middle().round()))
     };
     assert_eq!(mode(Interval::new(1.01, 1.0101)), Ok(Some(1.0)));
-    // Reflected, it is at the surface that it came to, and nothing says on which side.
+    // A reflected point is at the surface that it came to, and its side is not known.
     assert_eq!(
         mode(Interval::new(0.9899, 0.99)),
         Err(Reason::MayStay { surface: 0 })

@@ -1,4 +1,4 @@
-//! Impacts as a part of steps of one size: what the step across them preserves.
+//! Impacts inside steps of fixed size: the quantities that the step across them preserves.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;

@@ -167,7 +167,7 @@ fn open_velocities_are_completed_and_contradictions_refused() {
     assert_eq!(complete([f64::NAN, 4.0], [0.0, 1.0]), Ok(completed));
 }
 
-/// What projection makes of a state where a step was cut.
+/// State after projection where a step was cut.
 fn settled(left: f64, mut state: State) -> Result<State, Outcome> {
     let mut counters = Counters::default();
     let mut now = Moment {
@@ -184,7 +184,7 @@ fn settled(left: f64, mut state: State) -> Result<State, Outcome> {
 
 #[test]
 fn a_residual_of_vanishing_terms_is_no_failure() {
-    // At the lowest point `y ydot` is all that is left of the residual, and restoring leaves rounding of it.
+    // At the lowest point only `y ydot` is left of the residual, and restoring leaves its rounding.
     let rounding = f64::EPSILON;
     for velocity in [[-1.0, 1e-11], [1e-9, 1e-5], [0.0, 1e-30], [0.0, 1e-300]] {
         let state = State::new(0.0, -1.0, velocity[0], velocity[1]);

@@ -1,4 +1,4 @@
-//! Numbers of more than double precision: against values of 70 digits, by identities, and where they are no numbers.
+//! Numbers of more than double precision: against values of 70 digits, by identities, and at infinite values and NaN.
 
 use dalembert::extended::{Extended, NotDecimal};
 use dalembert::numbers::Numbers;
@@ -158,7 +158,7 @@ fn samples<const P: usize>() -> impl Iterator<Item = Extended<P>> {
     })
 }
 
-/// Whether no part overlaps the next.
+/// True if no part overlaps the next.
 fn is_normal<const P: usize>(number: Extended<P>) -> bool {
     number
         .parts()
@@ -178,7 +178,7 @@ fn check_identities<const P: usize>() {
     for round in 0..1000 {
         let mut next = || numbers.next().expect("a number");
         let (x, y, z) = (next(), next(), next());
-        let size = |own: Extended<P>| own.nearest().abs();
+        let size = |number: Extended<P>| number.nearest().abs();
         near("sums", (x + y) - x, y, size(x).max(size(y)));
         near("quotients", (x / y) * y, x, size(x));
         near(
@@ -189,7 +189,7 @@ fn check_identities<const P: usize>() {
         );
         near("fused", x.mul_add(y, z), x * y + z, size(x * y) + size(z));
         near("roots", Numbers::sqrt(x * x), Numbers::abs(x), size(x));
-        // What cancels leaves nothing.
+        // A number and its opposite cancel to 0.
         assert_eq!((x + -x).parts(), [0.0; P]);
         if round % 20 > 0 {
             continue;
@@ -295,7 +295,7 @@ fn angles_on_the_axes_have_all_digits() {
         let apart = (angle - eighth * X::from(eighths)).nearest().abs();
         assert!(apart <= 8.0 * X::ROUNDING, "{y} {x}: {angle}");
     }
-    // The sine of the rounded circle constant is what rounding took from it.
+    // The sine of the rounded circle constant is the rounding error of the constant.
     assert!(Numbers::sin(pi).nearest().abs() < 4.0 * X::ROUNDING);
     assert_eq!(Numbers::cos(pi), -one);
 }
@@ -345,7 +345,7 @@ fn decimal_text_is_read_and_written_to_the_last_digit() {
         ("4.9e-310", 4.9e-310),
     ] {
         assert_eq!(
-            text.parse::<Extended<2>>().map(|own| own.nearest()),
+            text.parse::<Extended<2>>().map(|parsed| parsed.nearest()),
             Ok(value),
             "{text}"
         );

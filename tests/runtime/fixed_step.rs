@@ -1,4 +1,4 @@
-//! What methods of fixed step preserve, how much work they take, and how they go on where a step cannot be made.
+//! Invariants of methods of fixed step, their work, and their behaviour where a step cannot be made.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 mod support;
@@ -21,7 +21,7 @@ fn with_step<M: Method>(h: f64) -> FixedStep<Plane, M> {
     FixedStep::new(tolerance()).with_step(h)
 }
 
-/// A pendulum in `(angle, velocity)`, of which only the rate is needed.
+/// A pendulum in `(angle, velocity)`; only its rate is needed.
 fn pendulum() -> Line {
     Line::new(|_, x, _| Ok(-x.sin()))
 }
@@ -189,7 +189,7 @@ fn a_step_too_long_to_be_solved_is_made_in_parts() {
 
 #[test]
 fn a_step_that_cannot_be_solved_ends_the_run_by_name() {
-    // 1e9 per unit of time: not even a thousandth of the step contracts.
+    // 1e9 per unit of time: the iteration does not contract even at a thousandth of the step.
     let stiff = Line::new(|_, x, _| Ok(-1e18 * x));
     let run = Simulation::new(&stiff, Gauss4::new(tolerance()).with_step(0.1), ())
         .run(0.0, Plane::new(1.0, 0.0), 1.0, &mut ())
@@ -278,7 +278,7 @@ fn two_runs_agree_to_the_bit() {
     assert_eq!(run(0.07), run(0.07));
 }
 
-/// Beyond 0 the force of `ln(x)` is a number again, its energy is none.
+/// Beyond 0 the force of `ln(x)` is a number again, and its energy is NaN.
 #[test]
 fn a_run_ends_where_the_energy_is_no_number() {
     let system = Line {

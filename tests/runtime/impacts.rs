@@ -1,4 +1,4 @@
-//! Impacts found where closed forms say, and carried out once.
+//! Impacts found at the times of closed forms, and carried out once.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 mod support;
@@ -67,7 +67,7 @@ fn near_graze(eps: f64, mut check: impl FnMut(f64, &Log, &str)) {
 #[test]
 fn a05_near_grazes_are_found_in_whatever_step() {
     for eps in [1e-2, 1e-4, 1e-8, 1e-12] {
-        // The number 1 - eps, not eps, is what the start holds.
+        // The start holds the number 1 - eps, not eps.
         let held: f64 = 1.0 - (1.0 - eps);
         let root = held.sqrt();
         near_graze(eps, |end, log, case| {

@@ -57,7 +57,7 @@ fn run<M: System + TaylorField>(
         .unwrap()
 }
 
-/// The ends of a motion by every integrator, as positions and velocities; what ended before the time must say where.
+/// The ends of a motion by every integrator, as positions and velocities; a motion that ended early must report its place.
 fn ends<M: System + TaylorField + Lagrangian>(
     model: &M,
     start: [f64; 2],
@@ -99,8 +99,7 @@ fn ends<M: System + TaylorField + Lagrangian>(
     .into()
 }
 
-/// NOTE: a step of one size that is felt to pass a narrow force is shortened, but how well it integrates the force nobody
-/// estimates.
+/// NOTE: a step of fixed size that meets a narrow force is shortened, but the error of its integration is not estimated.
 fn is_fixed(name: &str) -> bool {
     matches!(name, "rk4" | "gauss6" | "dla2")
 }
@@ -162,7 +161,7 @@ fn a_steep_wall_turns_the_motion_back() {
 
 #[test]
 fn smooth_forces_cost_no_steps() {
-    // Without a needle the steps are those of the integrator: as many as with its force far out of reach.
+    // Without a needle the steps are those of the integrator: as many as with the needle far out of reach.
     let tolerance = Tolerance::new(1e-10).unwrap();
     let steps = |s: f64| run(&Spring { s }, Dop853::new(tolerance), [1.0, 0.0], 4.0).counters;
     let counters = steps(1e-3);

@@ -98,7 +98,7 @@ fn bounces_of_a_reset_accumulate_as_others_do() {
     });
 }
 
-/// A circle of length 1: at `x = 1` the point is put back to 0, and no trace of the surface is left there.
+/// A circle of length 1: at `x = 1` the point is put back to 0, and the surface has no further effect there.
 #[test]
 fn a_position_that_is_reset_goes_on_from_there() {
     let point = Particle::new([0.0, 0.0], [CEILING])

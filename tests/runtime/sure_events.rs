@@ -1,5 +1,6 @@
-//! No impact is stepped over and none is invented, whatever the gap is: first impacts of random starts against conservative
-//! advancement, which moves along the exact flight by the gap over a bound of its rate and so never passes a surface.
+//! No impact is stepped over and none is invented, for every gap. First impacts of random starts are compared with
+//! conservative advancement, which moves along the exact flight by the gap over a bound of its rate and so never passes a
+//! surface.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{
@@ -70,7 +71,7 @@ impl Flight {
     }
 }
 
-/// Gaps in closed form, and how fast they may change at most for each unit of speed, and by themselves.
+/// Gaps in closed form, with bounds of their rates: for each unit of speed, and at rest.
 trait Family: Impacting + TaylorField + Lagrangian {
     fn distances(&self, t: f64, point: [f64; 2]) -> Vec<f64>;
 
@@ -125,7 +126,7 @@ impl Family for Needle {
     }
 }
 
-/// What the exact flight does.
+/// Outcome of the exact flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Exact {
     Hits {
@@ -133,11 +134,11 @@ enum Exact {
         surface: usize,
     },
     Passes,
-    /// It touches, or nearly: either is right, and the times say little.
+    /// It touches or nearly touches: both outcomes are right, and the times differ.
     Grazes,
 }
 
-/// How shallow an impact must be to count as a graze, in parts of the speed; and how close a miss.
+/// Normal speed, as a part of the speed, below which an impact is a graze; and the distance of a near miss.
 const SHALLOW: f64 = 1e-3;
 
 /// The first impact, by conservative advancement.
@@ -175,7 +176,7 @@ fn exact<F: Family>(family: &F, flight: &Flight, until: f64) -> Exact {
     Exact::Grazes
 }
 
-/// Counts of what was compared.
+/// Counts of comparisons.
 #[derive(Debug, Default)]
 struct Tally {
     runs: u64,

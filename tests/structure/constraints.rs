@@ -1,4 +1,4 @@
-//! D under the discrete Lagrange-d'Alembert principle: kept to rounding at the ends of steps, in the global form that
+//! D under the discrete Lagrange-d'Alembert principle: kept to rounding at the ends of steps, in the global form, which
 //! could leave it.
 
 use core::ops::ControlFlow;

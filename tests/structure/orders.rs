@@ -1,5 +1,5 @@
-//! The observed order of every method, on every declared system, against DOP853 at its finest. Those that choose their
-//! steps are held to a length, at a tolerance so loose that nothing else decides.
+//! The observed order of every method, on every declared system, against DOP853 at its finest. Methods with step-size
+//! control are held to a fixed length, at a tolerance so loose that it does not act.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -11,14 +11,14 @@ use dalembert_tests::sampling::{every_system, states};
 
 type State = <Large as VectorField>::State;
 
-/// How long the motions are followed.
+/// Duration of the motions.
 const TIME: f64 = 0.5;
 
-/// Errors between which the slope is taken: below them are rounding and the reference's own error, above them steps
-/// so long that the leading term does not lead.
+/// Errors between which the slope is measured. Below them are rounding and the error of the reference; above them steps
+/// are so long that the leading term does not dominate.
 const RANGE: [f64; 2] = [2e-11, 1e-4];
 
-/// The order of series: one whose leading term leads within the range.
+/// The order of series, for which the leading term dominates within the range.
 const TAYLOR_ORDER: usize = 5;
 
 /// Positions and velocities at the end, and the number of steps.
@@ -79,7 +79,7 @@ impl Orders {
             return;
         };
         self.measured += 1;
-        // Errors of high orders reach rounding before their leading term leads: until then they fall faster.
+        // Errors of high orders reach rounding before their leading term dominates: until then they fall faster.
         let ceiling = if is_exact {
             order as f64 + 0.3
         } else {
@@ -114,7 +114,7 @@ impl Orders {
         macro_rules! check_limited {
             ($method:ident, $order:expr, $limited:expr) => {{
                 let error = |h: f64| {
-                    // Steps that the tolerance has shortened say nothing.
+                    // Steps shortened by the tolerance do not count.
                     let reached = end(system, $limited(h), state);
                     let reached = reached.filter(|(_, steps)| *steps == (TIME / h).round() as u64);
                     reached.map_or(f64::NAN, |(reached, _)| difference(&reached, &reference))

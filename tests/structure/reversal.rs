@@ -1,4 +1,4 @@
-//! Reversible systems under symmetric methods: with velocities reversed they run back along their way.
+//! Reversible systems under symmetric methods: with velocities reversed they run back along their path.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -10,14 +10,14 @@ use dalembert_tests::sampling::{states, system};
 
 type State = <Large as VectorField>::State;
 
-/// How far the way back misses the start after 4 units of time.
+/// Distance from the start after a run of 4 units of time and back.
 fn miss(system: &Large, state: State, stepper: impl Stepper<Large> + Copy) -> f64 {
     let run = |state: State| {
         let mut stepper = stepper;
         let end =
             Simulation::new(system, Chosen::new(&mut stepper), ()).run(0.0, state, 4.0, &mut ());
         let end = end.expect("a start");
-        // Where a step is made in parts, the way back may be made in others.
+        // Where a step is divided, the way back may be divided in another way.
         assert_eq!((end.outcome, end.counters.rejected), (Outcome::Done, 0));
         end.state
     };

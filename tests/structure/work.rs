@@ -11,10 +11,10 @@ use dalembert_tests::golden;
 use dalembert_tests::sampling::{every_system, states};
 use serde_json::Value;
 
-/// How long the motions are followed.
+/// Duration of the motions.
 const TIME: &str = "1";
 
-/// Every integrator, with its tolerance or the step that it keeps.
+/// Every integrator, with its tolerance or its fixed step.
 const INTEGRATORS: [(&str, [&str; 2]); 8] = [
     ("dop853", ["--tol", "1e-9"]),
     ("dopri5", ["--tol", "1e-9"]),

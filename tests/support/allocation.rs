@@ -15,7 +15,7 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// Counts bytes that are taken, or given back.
+/// Counts bytes that are allocated, or freed.
 fn hold(bytes: isize) {
     let _ = HELD.try_with(|held| {
         held.set(held.get() + bytes);
@@ -46,7 +46,7 @@ pub fn allocations(work: impl FnOnce()) -> u64 {
     COUNT.with(Cell::get) - before
 }
 
-/// The most bytes that `work` holds on this thread beyond those held before it, with [`Counting`] as the global allocator.
+/// The most bytes that `work` holds on this thread in addition to those held before it, with [`Counting`] as the global allocator.
 pub fn peak(work: impl FnOnce()) -> isize {
     let before = HELD.with(Cell::get);
     PEAK.with(|peak| peak.set(before));

@@ -1,4 +1,4 @@
-//! Declarations with other claims, and what becomes of them: verdicts, and the numbers of a message.
+//! Declarations with other claims, and the results of the claims: verdicts, and the numbers of a message.
 
 use dalembert_codegen::claims::{Finding, Verdict, examine};
 use dalembert_codegen::{mechanics, model, spec};
@@ -20,14 +20,14 @@ impl Declaration {
     /// Takes a declaration apart.
     ///
     /// # Panics
-    /// If it is none.
+    /// If it is not a declaration.
     pub fn of(source: &str) -> Self {
         let tokens: TokenStream = source.parse().expect("tokens");
         let mut before: Vec<TokenTree> = tokens.into_iter().collect();
         let Some(TokenTree::Group(body)) = before.pop() else {
             panic!("a declaration ends with its body");
         };
-        let mut own = Self {
+        let mut declaration = Self {
             before: before.into_iter().collect(),
             body: Vec::new(),
             claims: Vec::new(),
@@ -35,17 +35,19 @@ impl Declaration {
         let mut entries = body.stream().into_iter();
         while let Some(token) = entries.next() {
             if !matches!(&token, TokenTree::Ident(word) if word == "claims") {
-                own.body.push(token);
+                declaration.body.push(token);
                 continue;
             }
             match entries.next() {
-                Some(TokenTree::Group(claims)) => own.claims.extend(entries_of(claims.stream())),
+                Some(TokenTree::Group(claims)) => {
+                    declaration.claims.extend(entries_of(claims.stream()))
+                }
                 // Those about a scene stay where they are: `claims for free { .. }`.
-                Some(other) => own.body.extend([token, other]),
+                Some(other) => declaration.body.extend([token, other]),
                 None => {}
             }
         }
-        own
+        declaration
     }
 
     /// The declaration with one claim, on a line of its own, and that line.
@@ -58,7 +60,7 @@ impl Declaration {
         (format!("{head}{claim};\n}}\n}}"), line)
     }
 
-    /// What becomes of a claim.
+    /// Finding on a claim.
     pub fn verdict(&self, claim: &str) -> Finding {
         verdict(&self.claiming(claim).0)
     }
@@ -81,7 +83,7 @@ fn entries_of(tokens: TokenStream) -> Vec<String> {
 /// The finding on the only claim of a declaration.
 ///
 /// # Panics
-/// If the declaration is refused before its claim is looked at.
+/// If the declaration is refused before its claim is examined.
 pub fn verdict(source: &str) -> Finding {
     let spec = spec::parse(source.parse().expect("tokens")).expect(source);
     let mut model = model::check(&spec).expect(source);
@@ -105,7 +107,7 @@ pub fn refusal(source: &str) -> (String, [usize; 2]) {
     (text.clone(), [at.first.start().line, at.last.end().line])
 }
 
-/// What becomes of a claim.
+/// Result of a claim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
     /// It is true, and proved.
@@ -114,14 +116,14 @@ pub enum Outcome {
     Refuted(&'static str),
     /// Left open with this as the reason.
     Undecided(&'static str),
-    /// Refused before it is looked at, with this message.
+    /// Refused before it is examined, with this message.
     Refused(&'static str),
 }
 
-/// Checks what becomes of a claim of a model with these declarations.
+/// Checks the result of a claim of a model with these declarations.
 ///
 /// # Panics
-/// If it is something else.
+/// If the result differs.
 #[track_caller]
 pub fn check(declarations: &str, claim: &str, expected: Outcome) {
     let source = format!("Sample {{ {declarations} claims {{ {claim}; }} }}");
@@ -147,9 +149,9 @@ pub fn check(declarations: &str, claim: &str, expected: Outcome) {
 /// The numbers of a message.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {
-    /// What was computed, as `delta = -0.39`: names and values in order.
+    /// Computed values, as `delta = -0.39`: names and values in order.
     pub values: Vec<(String, f64)>,
-    /// Where, as `at x = 0.36, m = 2`: names and values in order.
+    /// Place, as `at x = 0.36, m = 2`: names and values in order.
     pub at: Vec<(String, f64)>,
 }
 
@@ -181,28 +183,28 @@ impl Witness {
     /// A value by its name.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no such value.
     pub fn value(&self, name: &str) -> f64 {
-        let found = self.values.iter().find(|(own, _)| own == name);
+        let found = self.values.iter().find(|(known, _)| known == name);
         found.unwrap_or_else(|| panic!("no `{name}` in {self:?}")).1
     }
 
-    /// Sets the parameters of a system to those of the message, and gives time, positions and velocities; what the
-    /// message does not show is 0.
+    /// Sets the parameters of a system to those of the message, and returns time, positions and velocities; quantities
+    /// that the message does not show are 0.
     pub fn place(&self, system: &mut dyn Numeric) -> (f64, Vec<f64>, Vec<f64>) {
         let names: Vec<&str> = system
             .description()
             .coordinates
             .iter()
-            .map(|own| own.name)
+            .map(|coordinate| coordinate.name)
             .collect();
         let (mut t, mut q) = (0.0, vec![0.0; names.len()]);
         let mut qdot = q.clone();
         for (name, value) in &self.at {
             let velocity = name
                 .strip_prefix("dot(")
-                .and_then(|own| own.strip_suffix(')'));
-            let position = |name: &str| names.iter().position(|own| *own == name);
+                .and_then(|rest| rest.strip_suffix(')'));
+            let position = |name: &str| names.iter().position(|known| *known == name);
             if let Some(i) = velocity.and_then(position) {
                 qdot[i] = *value;
             } else if let Some(i) = position(name) {

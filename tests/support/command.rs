@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use dalembert_cli::{Entry, Exit, Streams};
 
-/// What one command line gave.
+/// Result of one command line.
 #[derive(Debug)]
 pub struct Finished {
     /// The exit.

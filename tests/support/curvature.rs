@@ -34,7 +34,7 @@ impl<'m> Curved<'m> {
     ) -> Self {
         let mut roots: Vec<_> = model.lagrangian.metric.iter().flatten().copied().collect();
         let forms = derivation.constraints.iter();
-        roots.extend(forms.flat_map(|own| own.form.clone()));
+        roots.extend(forms.flat_map(|constraint| constraint.form.clone()));
         Self {
             model,
             roots,
@@ -46,13 +46,13 @@ impl<'m> Curved<'m> {
 
     /// Metric and forms.
     fn tensors(&self, q: &[f64]) -> (Matrix, Matrix) {
-        let coordinates = self.model.coordinates.iter().map(|own| own.q);
+        let coordinates = self.model.coordinates.iter().map(|coordinate| coordinate.q);
         let known: Vec<_> = coordinates
             .zip(q.iter().copied())
             .chain(self.parameters.iter().copied())
             .collect();
         let value = |symbol: SymbolId| {
-            let found = known.iter().find(|(own, _)| *own == symbol);
+            let found = known.iter().find(|(known, _)| *known == symbol);
             found.map_or(f64::NAN, |(_, value)| *value)
         };
         let values = self.model.pool.eval(&self.roots, &value);
@@ -95,11 +95,11 @@ impl<'m> Curved<'m> {
                 normal
                     .iter_mut()
                     .zip(other)
-                    .for_each(|(own, other)| *own -= part * other);
+                    .for_each(|(entry, other)| *entry -= part * other);
             }
             let length = inner(&metric, &normal, &normal).sqrt();
             logarithm += length.ln();
-            normals.push(normal.iter().map(|own| own / length).collect());
+            normals.push(normal.iter().map(|component| component / length).collect());
         }
         (normals, logarithm)
     }
@@ -121,10 +121,10 @@ impl<'m> Curved<'m> {
         sum
     }
 
-    /// A nested bracket such as `[X1,[X1,X2]]`: its components, and what it demands of the derivative of G at the end.
+    /// A nested bracket such as `[X1,[X1,X2]]`: its components, then its demand on the derivative of G.
     ///
     /// # Panics
-    /// If the text is none.
+    /// If the text is not a bracket.
     pub fn bracket(&self, q: &[f64], text: &str) -> Vec<f64> {
         let Some(inside) = text.strip_prefix('[') else {
             let position: usize = text[1..].parse().expect("a number");
@@ -144,7 +144,7 @@ impl<'m> Curved<'m> {
 
 /// The derivative of a function along a vector.
 fn along(q: &[f64], v: &[f64], f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
-    let size = v.iter().fold(0.0_f64, |size, own| size.max(own.abs()));
+    let size = v.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
     if size == 0.0 {
         return vec![0.0; f(q).len()];
     }
@@ -191,7 +191,7 @@ pub fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
                 let factor = row[step] / pivot[step];
                 row.iter_mut()
                     .zip(&pivot)
-                    .for_each(|(own, pivot)| *own -= factor * pivot);
+                    .for_each(|(entry, pivot)| *entry -= factor * pivot);
             }
         }
     }
@@ -216,7 +216,7 @@ pub fn determinant(matrix: &[Vec<f64>]) -> f64 {
             let factor = row[step] / pivot[step];
             row.iter_mut()
                 .zip(&pivot)
-                .for_each(|(own, pivot)| *own -= factor * pivot);
+                .for_each(|(entry, pivot)| *entry -= factor * pivot);
         }
     }
     product

@@ -11,30 +11,30 @@ use dalembert_stability::varied::Varied;
 /// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
 const DIFFERENCE: f64 = 2e-9;
 
-/// The derivative at 0 of what `f` gives, by differences over four steps and their halves.
+/// The derivative of `f` at 0, by differences over four steps and their halves.
 pub fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
     let central = |h: f64| {
         let (ahead, behind) = (f(h), f(-h));
         let mut slope = ahead.zeroed();
-        for (i, own) in slope.as_mut_slice().iter_mut().enumerate() {
-            *own = (ahead.as_slice()[i] - behind.as_slice()[i]) / (2.0 * h);
+        for (i, entry) in slope.as_mut_slice().iter_mut().enumerate() {
+            *entry = (ahead.as_slice()[i] - behind.as_slice()[i]) / (2.0 * h);
         }
         slope
     };
     let [one, two, four] = [1.0, 2.0, 4.0].map(|factor| central(factor * step));
     let mut slope = one.zeroed();
-    for (i, own) in slope.as_mut_slice().iter_mut().enumerate() {
-        let [one, two, four] = [&one, &two, &four].map(|own| own.as_slice()[i]);
-        *own = (64.0 * one - 20.0 * two + four) / 45.0;
+    for (i, entry) in slope.as_mut_slice().iter_mut().enumerate() {
+        let [one, two, four] = [&one, &two, &four].map(|values| values.as_slice()[i]);
+        *entry = (64.0 * one - 20.0 * two + four) / 45.0;
     }
     slope
 }
 
-/// Derivatives of the end of a run with respect to the first `used` components of its start and to all parameters, against
-/// differences of runs with as many impacts. Says how many there were.
+/// Compares derivatives of the end of a run, with respect to the first `used` components of its start and to all
+/// parameters, with differences of runs with as many impacts. Returns the number of impacts.
 ///
 /// # Panics
-/// Where they differ, and where a run does not come to its end.
+/// If they differ, or if a run does not come to its end.
 pub fn check_differences<M: Varied>(
     system: &M,
     start: M::State,
@@ -58,8 +58,8 @@ pub fn check_differences<M: Varied>(
                 system.set_parameter(k, system.parameter(k) + h * along);
             }
             let parts = start.as_mut_slice().iter_mut();
-            for (entry, own) in parts.zip(direction.state.as_slice()) {
-                *entry += h * own;
+            for (entry, component) in parts.zip(direction.state.as_slice()) {
+                *entry += h * component;
             }
             let run = course(&system, start).observed(Integrator::Taylor, &mut ());
             assert!(run.outcome.is_done(), "{name}: {}", run.outcome);
@@ -70,7 +70,7 @@ pub fn check_differences<M: Varied>(
         assert!(found.len() >= expected.len());
         let size = expected
             .iter()
-            .fold(1.0, |size: f64, own| size.max(own.abs()));
+            .fold(1.0, |size: f64, value| size.max(value.abs()));
         for (found, expected) in found.iter().zip(expected) {
             assert!(
                 (found - expected).abs() <= DIFFERENCE * size,
@@ -81,7 +81,7 @@ pub fn check_differences<M: Varied>(
     impacts
 }
 
-/// How often motion begins to be held, and ceases to be.
+/// Number of times that motion begins to be held, and ceases to be.
 #[derive(Default)]
 pub struct Turns(pub [usize; 2]);
 

@@ -79,14 +79,14 @@ impl<'d> Flow<'d> {
             model
                 .coordinates
                 .iter()
-                .map(|own| own.q)
+                .map(|coordinate| coordinate.q)
                 .zip(state.q.iter().copied()),
         );
         values.push((model.time, state.t));
         values
     }
 
-    /// What the generator says about the point.
+    /// The generator's geometry at the point.
     ///
     /// # Panics
     /// If the point is singular.
@@ -101,7 +101,7 @@ impl<'d> Flow<'d> {
         .expect("a regular point")
     }
 
-    /// What `X_i(G) = c_i` demands of the rate of `G` along the motion.
+    /// Demand of `X_i(G) = c_i` on the rate of `G` along the motion.
     pub fn demand(&self, state: &State) -> f64 {
         let demands = self.geometry(state).demands;
         let drifts = demands.len() - state.v.len();
@@ -130,18 +130,18 @@ impl<'d> Flow<'d> {
         for i in 0..state.q.len() {
             sum += slope(
                 state,
-                |own| &mut own.q[i],
-                |own| volume(own) * self.rates(own).0[i],
+                |state| &mut state.q[i],
+                |state| volume(state) * self.rates(state).0[i],
             );
         }
         for (k, i) in self.independent().enumerate() {
             sum += slope(
                 state,
-                |own| &mut own.v[k],
-                |own| volume(own) * self.rates(own).1[i],
+                |state| &mut state.v[k],
+                |state| volume(state) * self.rates(state).1[i],
             );
         }
-        sum += slope(state, |own| &mut own.t, volume);
+        sum += slope(state, |state| &mut state.t, volume);
         sum / volume(state)
     }
 }

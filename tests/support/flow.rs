@@ -17,7 +17,7 @@ impl<S: Described> Flow<'_, S> {
     /// The positions and all velocities at `(q, v_ind)`.
     ///
     /// # Panics
-    /// Where the other velocities do not follow from the independent ones.
+    /// If the independent velocities do not determine the others.
     pub fn velocities(&self, t: f64, at: &[f64]) -> [S::Vector; 2] {
         let (positions, velocities) = at.split_at(S::DESCRIPTION.coordinates.len());
         let [mut q, mut qdot, mut named] = [S::Vector::zeros(S::Vector::CAPACITY); 3];
@@ -44,7 +44,7 @@ impl<S: Described> Flow<'_, S> {
         let size = rate
             .as_slice()
             .iter()
-            .fold(1.0, |size: f64, own| size.max(own.abs()));
+            .fold(1.0, |size: f64, value| size.max(value.abs()));
         let velocity = |shift: f64, i: usize| {
             let mut moved = state;
             let components = moved.as_mut_slice().iter_mut().zip(rate.as_slice());

@@ -1,10 +1,10 @@
-//! Values of expressions as written in claims, by a reader of its own: nothing of the generator is used.
+//! Values of expressions as written in claims, by a separate reader that uses nothing of the generator.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::numeric::Snapshot;
 
-/// What names stand for.
+/// Meaning of names.
 pub struct Scope<'s> {
     /// Names of coordinates.
     pub coordinates: &'s [&'s str],
@@ -21,7 +21,7 @@ pub struct Scope<'s> {
 /// The value of an expression.
 ///
 /// # Panics
-/// On everything that does not occur in the claims that are tested.
+/// On any expression that does not occur in the tested claims.
 pub fn value(text: &str, scope: &Scope<'_>) -> f64 {
     let tokens: TokenStream = text.parse().expect("tokens");
     let mut reader = Reader {
@@ -63,7 +63,7 @@ struct Reader<'r> {
 
 impl Reader<'_> {
     fn eat(&mut self, sign: char) -> bool {
-        let found = matches!(self.tokens.get(self.next), Some(TokenTree::Punct(own)) if own.as_char() == sign);
+        let found = matches!(self.tokens.get(self.next), Some(TokenTree::Punct(mark)) if mark.as_char() == sign);
         self.next += usize::from(found);
         found
     }
@@ -140,10 +140,15 @@ impl Reader<'_> {
         if let Some(i) = self.coordinate(name) {
             return state.q[i];
         }
-        if let Some((_, value)) = parameters.iter().find(|(own, _)| *own == name) {
+        if let Some((_, value)) = parameters.iter().find(|(known, _)| *known == name) {
             return *value;
         }
-        if let Some((_, text)) = self.scope.definitions.iter().find(|(own, _)| own == name) {
+        if let Some((_, text)) = self
+            .scope
+            .definitions
+            .iter()
+            .find(|(known, _)| known == name)
+        {
             return self.inner(text.clone()).sum();
         }
         match name {
@@ -155,12 +160,15 @@ impl Reader<'_> {
     }
 
     fn coordinate(&self, name: &str) -> Option<usize> {
-        self.scope.coordinates.iter().position(|own| *own == name)
+        self.scope
+            .coordinates
+            .iter()
+            .position(|known| *known == name)
     }
 
     fn call(&self, function: &str, argument: TokenStream) -> f64 {
         let state = self.scope.state;
-        let own = || {
+        let coordinate = || {
             let name = argument.to_string();
             let name = match name.split_once('[') {
                 Some((family, index)) => {
@@ -172,9 +180,9 @@ impl Reader<'_> {
         };
         let value = || self.inner(argument.clone()).sum();
         match function {
-            "dot" => state.qdot[own()],
-            "momentum" => state.p[own()],
-            "partial" => f64::from(u8::from(self.scope.partial == Some(own()))),
+            "dot" => state.qdot[coordinate()],
+            "momentum" => state.p[coordinate()],
+            "partial" => f64::from(u8::from(self.scope.partial == Some(coordinate()))),
             "sin" => value().sin(),
             "cos" => value().cos(),
             "exp" => value().exp(),

@@ -25,10 +25,10 @@ pub fn input<'a, S: Instance>(
     }
 }
 
-/// Asserts that rate, energy and velocity are what the interpreter gives, to the bit; says at how many states.
+/// Asserts that rate, energy and velocity equal those of the interpreter, to the bit. Returns the number of states.
 ///
 /// # Panics
-/// Where they are not.
+/// If they differ.
 pub fn compare_motion<S: Instance>(system: &S, program: &Program) -> usize {
     let (name, t) = (system.description().name, 0.25);
     let states = states(system, 5, 1);
@@ -46,10 +46,10 @@ pub fn compare_motion<S: Instance>(system: &S, program: &Program) -> usize {
     states.len()
 }
 
-/// As [`compare_motion`], for everything that is reported at a state.
+/// As [`compare_motion`], for all quantities that are reported at a state.
 ///
 /// # Panics
-/// Where they differ.
+/// If they differ.
 pub fn compare_report<S: Instance>(system: &S, program: &Program) {
     let (name, t) = (system.description().name, 0.25);
     for state in states(system, 5, 2) {

@@ -1,4 +1,4 @@
-//! What the tests share: reference values, the command line inside the process, systems that only tests declare,
+//! Items that the tests share: reference values, the command line inside the process, systems that only tests declare,
 //! an allocation counter.
 
 /// Makes every Rust block of the language reference a doctest.

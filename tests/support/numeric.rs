@@ -1,4 +1,4 @@
-//! Emitted models as functions of slices, so that one test can ask any of them; nothing of the generator is used.
+//! Emitted models as functions of slices, so that one test can use any of them; nothing of the generator is used.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use dalembert::describe::{Description, Report};
 use dalembert::law::{Contact, Law};
 use dalembert::{Instance, StateVector, System, VectorField};
 
-/// What is known of a state.
+/// Quantities of a state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
     /// Time.
@@ -43,7 +43,7 @@ impl Reported {
     /// A reported number.
     ///
     /// # Panics
-    /// When there is none of this name.
+    /// When there is no number of this name.
     pub fn number(&self, name: &str) -> f64 {
         self.0[name][0]
     }
@@ -57,7 +57,7 @@ pub trait Numeric {
     /// The description.
     fn description(&self) -> &'static Description;
 
-    /// Sets a parameter by name; whether there is one.
+    /// Sets a parameter by name. True if there is one.
     fn set(&mut self, name: &str, value: f64) -> bool;
 
     /// The value of a parameter by index.
@@ -72,7 +72,7 @@ pub trait Numeric {
     /// The rate of a state.
     fn rate(&self, t: f64, state: &[f64]) -> Vec<f64>;
 
-    /// What is known of a state.
+    /// Quantities of a state.
     fn snapshot(&self, t: f64, state: &[f64]) -> Snapshot;
 
     /// Everything derived at a state.
@@ -89,7 +89,10 @@ impl<S: Instance> Numeric for S {
 
     fn set(&mut self, name: &str, value: f64) -> bool {
         let parameters = Instance::description(self).parameters.iter();
-        match parameters.map(|own| own.name).position(|own| own == name) {
+        match parameters
+            .map(|parameter| parameter.name)
+            .position(|parameter| parameter == name)
+        {
             Some(index) => {
                 self.set_parameter(index, value);
                 true
@@ -186,14 +189,14 @@ pub fn moved(state: &[f64], s: f64, direction: &[f64]) -> Vec<f64> {
     state
         .iter()
         .zip(direction)
-        .map(|(own, slope)| own + s * slope)
+        .map(|(component, slope)| component + s * slope)
         .collect()
 }
 
-/// Asserts that numbers are near to the right ones.
+/// Asserts that numbers are near the right ones.
 ///
 /// # Panics
-/// Where they are not.
+/// If they are not.
 #[track_caller]
 pub fn assert_near(label: &str, found: &[f64], right: &[f64], bound: f64) {
     assert_eq!(found.len(), right.len(), "{label}");

@@ -1,5 +1,5 @@
-//! Brackets of the frame of D with what they demand of the derivative of a density, in plain double precision: metric
-//! and forms are those that a model reports, every derivative is a central difference.
+//! Brackets of the frame of D with their demands on the derivative of a density, in plain double precision. Metric and
+//! forms are those that a model reports; every derivative is a central difference.
 //!
 //! ```text
 //! X_i = e_i - A_dep^{-1} A e_i          theta_k = m_ab (W^{a,j} d_j eta_bk + eta_bj d_k W^{a,j})
@@ -24,7 +24,7 @@ struct Geometry {
 }
 
 impl<'c> Criterion<'c> {
-    /// With the choice of dependent velocities for which the frame at `q` is the one given; `None` if there is none.
+    /// The criterion with the choice of dependent velocities for which the frame at `q` is `frame`; `None` if there is none.
     pub fn new(system: &'c dyn Numeric, q: &[f64], frame: &[Vec<f64>]) -> Option<Self> {
         let (n, m) = (q.len(), q.len() - frame.len());
         let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
@@ -33,15 +33,15 @@ impl<'c> Criterion<'c> {
                 system,
                 dependent: (0..n).filter(|i| bits >> i & 1 == 1).collect(),
             })
-            .find(|own| {
+            .find(|criterion| {
                 let differs = |(x, y): (&f64, &f64)| (x - y).abs() > 1e-9 * (1.0 + y.abs());
-                let fields = own.frame(q);
+                let fields = criterion.frame(q);
                 let close = |(x, y): (&Vec<f64>, &Vec<f64>)| !x.iter().zip(y).any(differs);
                 fields.is_some_and(|fields| fields.iter().zip(frame).all(close))
             })
     }
 
-    /// With the first choice of dependent velocities that is regular at `q`; `None` if there is none.
+    /// The criterion with the first choice of dependent velocities that is regular at `q`; `None` if there is none.
     pub fn regular(system: &'c dyn Numeric, q: &[f64]) -> Option<Self> {
         let (n, m) = (q.len(), system.description().constraints.len());
         let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
@@ -50,7 +50,7 @@ impl<'c> Criterion<'c> {
                 system,
                 dependent: (0..n).filter(|i| bits >> i & 1 == 1).collect(),
             })
-            .find(|own| own.frame(q).is_some())
+            .find(|criterion| criterion.frame(q).is_some())
     }
 
     /// The derivative of G by each coordinate, where the frame and its brackets of two span all directions.
@@ -63,7 +63,7 @@ impl<'c> Criterion<'c> {
             .take(q.len())
             .map(|name| self.element(&name, q))
             .collect();
-        let demands: Vec<f64> = elements.iter().map(|own| own[q.len()]).collect();
+        let demands: Vec<f64> = elements.iter().map(|element| element[q.len()]).collect();
         (elements.len() == q.len()).then_some(())?;
         solve(&elements, &demands)
     }
@@ -104,7 +104,7 @@ impl<'c> Criterion<'c> {
     /// `theta` at a position.
     pub fn theta(&self, q: &[f64]) -> Vec<f64> {
         let n = q.len();
-        let own = self.geometry(q);
+        let geometry = self.geometry(q);
         // Forms and duals, one after the other, along a direction.
         let along = |direction: &[f64]| {
             slopes(&|s| {
@@ -119,16 +119,16 @@ impl<'c> Criterion<'c> {
         };
         let axis = |k: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
         let by_axis: Vec<Vec<f64>> = (0..n).map(|k| along(&axis(k))).collect();
-        let by_dual: Vec<Vec<f64>> = own.duals.iter().map(|dual| along(dual)).collect();
-        let mass: Vec<Vec<f64>> = own
+        let by_dual: Vec<Vec<f64>> = geometry.duals.iter().map(|dual| along(dual)).collect();
+        let mass: Vec<Vec<f64>> = geometry
             .forms
             .iter()
-            .map(|form| own.duals.iter().map(|dual| dot(form, dual)).collect())
+            .map(|form| geometry.duals.iter().map(|dual| dot(form, dual)).collect())
             .collect();
         let m = mass.len();
         let lie = |a: usize, b: usize, k: usize| {
             let dual = &by_axis[k][(m + a) * n..(m + a + 1) * n];
-            by_dual[a][b * n + k] + dot(&own.forms[b], dual)
+            by_dual[a][b * n + k] + dot(&geometry.forms[b], dual)
         };
         (0..n)
             .map(|k| {

@@ -15,7 +15,7 @@ pub fn read(name: &str) -> Value {
 /// A number, a decimal string or a fraction such as `1/400`.
 ///
 /// # Panics
-/// When it is none of these.
+/// When the value is none of these.
 pub fn number(value: &Value) -> f64 {
     let text = match value {
         Value::Number(number) => return number.as_f64().unwrap_or(f64::NAN),
@@ -46,8 +46,8 @@ pub fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// Compares nested arrays of numbers component by component: relative error at most `tolerance`, absolute where
-/// the expected value is 0. The first mismatch in words.
+/// Compares nested arrays of numbers component by component: relative error at most `tolerance`, absolute where the
+/// expected value is 0. Describes the first mismatch.
 ///
 /// # Errors
 /// The first component that differs, or a difference of shape.

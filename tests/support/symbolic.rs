@@ -4,7 +4,7 @@ use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
-/// Metric, forms and what follows from them, for linear constraints without time.
+/// Metric, forms and the quantities derived from them, for linear constraints without time.
 #[derive(Debug)]
 pub struct Geometry {
     symbols: Vec<SymbolId>,
@@ -23,7 +23,7 @@ impl Geometry {
         let forms: Vec<_> = derivation
             .constraints
             .iter()
-            .map(|own| own.form.clone())
+            .map(|constraint| constraint.form.clone())
             .collect();
         let pool = &mut model.pool;
         let duals: Vec<_> = forms
@@ -35,7 +35,11 @@ impl Geometry {
             .map(|form| duals.iter().map(|dual| dot(pool, form, dual)).collect())
             .collect();
         Self {
-            symbols: model.coordinates.iter().map(|own| own.q).collect(),
+            symbols: model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.q)
+                .collect(),
             duals,
             forms,
             metric,

@@ -125,7 +125,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A ball that rolls, its centre of mass off its centre (Routh); its density is none of those that are looked for.
+    /// A ball that rolls, its centre of mass off its centre (Routh). Its density is not of a searched kind.
     pub RouthSphere {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { m > 0 = 1; I > 0 = 1/2; J > 0 = 1/3; R > 0 = 1; l > 0 = 1/4; }

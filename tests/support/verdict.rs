@@ -22,7 +22,7 @@ pub struct Decided {
     pub derivation: Derivation,
     /// The motion on D.
     pub dynamics: Dynamics,
-    /// What a density depends on.
+    /// The problem of the density.
     pub problem: Problem,
     /// The verdict.
     pub exactness: Result<Exactness, Undecided>,
@@ -105,7 +105,7 @@ impl Decided {
     pub fn log_density(&self, values: &[(SymbolId, f64)], geometry: &Geometry) -> Option<f64> {
         let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
         let value = |symbol: SymbolId| {
-            let found = values.iter().find(|(own, _)| *own == symbol);
+            let found = values.iter().find(|(known, _)| *known == symbol);
             found.map_or(f64::NAN, |(_, value)| *value)
         };
         let number = |id| self.model.pool.eval(&[id], &value)[0];
@@ -117,7 +117,7 @@ impl Decided {
             Term::Plain(f) => number(*f),
         };
         let terms = potential.terms.iter();
-        Some(terms.map(|(k, own)| number(*k) * term(own)).sum())
+        Some(terms.map(|(k, factor)| number(*k) * term(factor)).sum())
     }
 
     /// As [`Decided::log_density`], with the geometry of the point and the generator's choice of dependent velocities.
@@ -131,14 +131,18 @@ impl Decided {
     /// # Panics
     /// If there is none of this name.
     pub fn symbol(&self, name: &str) -> SymbolId {
-        let coordinates = self.model.coordinates.iter().map(|own| (&own.name, own.q));
+        let coordinates = self
+            .model
+            .coordinates
+            .iter()
+            .map(|coordinate| (&coordinate.name, coordinate.q));
         let parameters = self
             .model
             .parameters
             .iter()
-            .map(|own| (&own.name, own.symbol));
+            .map(|parameter| (&parameter.name, parameter.symbol));
         let mut all = coordinates.chain(parameters);
-        let found = all.find(|(own, _)| own.display == name);
+        let found = all.find(|(known, _)| known.display == name);
         found.unwrap_or_else(|| panic!("no `{name}`")).1
     }
 
@@ -148,9 +152,9 @@ impl Decided {
     /// If one has no default.
     pub fn defaults(&self) -> Vec<(SymbolId, f64)> {
         let pool = &self.model.pool;
-        let value = |own: &model::Parameter| {
-            let default = own.default.expect("a default");
-            (own.symbol, pool.eval(&[default], &|_| 0.0)[0])
+        let value = |parameter: &model::Parameter| {
+            let default = parameter.default.expect("a default");
+            (parameter.symbol, pool.eval(&[default], &|_| 0.0)[0])
         };
         self.model.parameters.iter().map(value).collect()
     }
@@ -164,7 +168,7 @@ impl Decided {
             self.model.coordinates.len(),
             self.model.constraints.len() as u32,
         );
-        let choices = (0_u32..1 << n).filter(|own| own.count_ones() == m);
+        let choices = (0_u32..1 << n).filter(|choice| choice.count_ones() == m);
         let minor = |choice: u32| {
             let dependent: Vec<_> = (0..n).filter(|i| choice >> i & 1 == 1).collect();
             let geometry = geometry_at(&self.model.pool, &self.problem, values, Some(&dependent))?;
@@ -196,7 +200,7 @@ impl Decided {
         let position = |name: &Value| {
             let mut coordinates = self.model.coordinates.iter();
             coordinates
-                .position(|own| own.name.display == *name)
+                .position(|coordinate| coordinate.name.display == *name)
                 .expect("a coordinate")
         };
         names.iter().map(position).collect()
@@ -209,7 +213,10 @@ impl Decided {
 /// If it is accepted.
 pub fn refusal(source: &str) -> Vec<String> {
     let refused = try_expand(source.parse().expect("tokens")).expect_err(source);
-    refused.iter().map(|own| own.message().to_owned()).collect()
+    refused
+        .iter()
+        .map(|error| error.message().to_owned())
+        .collect()
 }
 
 /// The answer to a claim.
@@ -223,7 +230,7 @@ pub enum Answer {
     Undecided(String),
 }
 
-/// The answer to a claim that is added to a declaration, as a user is told it.
+/// The answer of the generator to a claim that is added to a declaration.
 ///
 /// # Panics
 /// If the declaration is refused for another reason.

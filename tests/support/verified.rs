@@ -67,12 +67,12 @@ fn check_curvature(decided: &Decided, source: &str) {
         return;
     }
     let found = find_obstruction(model, &decided.problem, local).expect("an obstruction");
-    let values = |own: &Coordinate| {
+    let values = |coordinate: &Coordinate| {
         let found = found
             .sample
             .values
             .iter()
-            .find(|(name, _)| *name == own.name.display);
+            .find(|(name, _)| *name == coordinate.name.display);
         // Coordinates that nothing depends on are not part of the sample.
         found.map_or(0.5, |(_, value)| *value)
     };
@@ -81,8 +81,8 @@ fn check_curvature(decided: &Decided, source: &str) {
     let curved = Curved::new(model, &decided.derivation, &parameters, dependent);
     let mut pair = curved.bracket(&q, &found.bracket);
     for (element, coefficient) in &found.relation {
-        for (own, other) in pair.iter_mut().zip(curved.bracket(&q, element)) {
-            *own -= coefficient * other;
+        for (entry, other) in pair.iter_mut().zip(curved.bracket(&q, element)) {
+            *entry -= coefficient * other;
         }
     }
     let delta = pair.pop().expect("a demand");
@@ -92,7 +92,7 @@ fn check_curvature(decided: &Decided, source: &str) {
     );
     assert!(
         pair.iter()
-            .all(|own| own.abs() < 1e-3 * found.scale.max(1.0)),
+            .all(|entry| entry.abs() < 1e-3 * found.scale.max(1.0)),
         "{source}\n{pair:?}"
     );
 }

@@ -21,7 +21,7 @@ pub fn visible_systems() -> Vec<Value> {
 /// If there is none.
 pub fn visible_system(name: &str) -> Value {
     let mut systems = visible_systems().into_iter();
-    systems.find(|own| own["name"] == name).expect(name)
+    systems.find(|system| system["name"] == name).expect(name)
 }
 
 /// Coordinates, parameters, Lagrangian and constraints of a system, in the notation of `model!`.
@@ -37,7 +37,7 @@ pub struct Scheme {
     pub lagrangian: String,
     /// The coefficients of each constraint by the coordinates in `columns`.
     pub forms: Vec<Vec<String>>,
-    /// What the columns of the forms are differentials of.
+    /// Functions whose differentials are the columns of the forms.
     pub columns: Vec<String>,
 }
 
@@ -51,7 +51,7 @@ impl Scheme {
         let text = |value: &Value| value.as_str().expect("a text").to_owned();
         let coordinates: Vec<_> = list(&system["coordinates"])
             .iter()
-            .map(|own| (text(&own["name"]), text(&own["domain"])))
+            .map(|coordinate| (text(&coordinate["name"]), text(&coordinate["domain"])))
             .collect();
         let mut parameters = String::new();
         for parameter in list(&system["params"]) {

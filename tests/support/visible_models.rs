@@ -1,5 +1,5 @@
-//! The systems of `reference/verdicts_visible.json` as a user writes them, each with what is true of it: that this file
-//! compiles is the proof. `tests/claims/visible.rs` shows that they are those systems.
+//! The systems of `reference/verdicts_visible.json` as a user writes them, each with its true claims: this file compiles
+//! only if they are proved. `tests/claims/visible.rs` shows that they are those systems.
 
 use crate::numeric::Numeric;
 
@@ -180,7 +180,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A screw: a density on the line that is none on the circle.
+    /// A screw: its density is one on the line, and none on the circle.
     pub HelicalCircle {
         coordinates { phi: angle; x; z; }
         parameters { k = 1/3; b > 0 = 1; }

@@ -14,7 +14,7 @@ use crate::sampling::Random;
 pub struct WithVolume {
     /// The model.
     pub model: Model,
-    /// What was derived.
+    /// The derivation of the model.
     pub derivation: Derivation,
     /// The decision.
     pub exactness: Exactness,
@@ -41,7 +41,7 @@ impl WithVolume {
     /// If the declaration is refused.
     pub fn declared(source: &str) -> Option<Self> {
         Self::with(source, |_, _, found| {
-            found.filter(|own| own.integral.is_none())
+            found.filter(|volume| volume.integral.is_none())
         })
     }
 
@@ -58,7 +58,7 @@ impl WithVolume {
         Self::with(source, natural).expect("regular constraints")
     }
 
-    /// The system of a declaration with the volume that `choose` makes of the one that was found.
+    /// The system of a declaration with the volume that `choose` returns for the one that was found.
     ///
     /// # Panics
     /// As [`WithVolume::declared`].
@@ -127,9 +127,9 @@ impl WithVolume {
     pub fn reported<'a>(&self, name: &str, values: &'a [f64]) -> &'a [f64] {
         let mut rest = values;
         for group in &self.program.geometry.groups {
-            let (own, tail) = rest.split_at(group.shape.count());
+            let (values, tail) = rest.split_at(group.shape.count());
             if group.name == name {
-                return own;
+                return values;
             }
             rest = tail;
         }
@@ -162,24 +162,24 @@ impl WithVolume {
     /// The value of time, a coordinate or a parameter.
     ///
     /// # Panics
-    /// If the symbol is none of them.
+    /// If the symbol is something else.
     pub fn value(&self, symbol: SymbolId, t: f64, q: &[f64]) -> f64 {
         if symbol == self.model.time {
             return t;
         }
-        let own = |own: &model::Coordinate| own.q == symbol;
-        if let Some(i) = self.model.coordinates.iter().position(own) {
+        let is_coordinate = |coordinate: &model::Coordinate| coordinate.q == symbol;
+        if let Some(i) = self.model.coordinates.iter().position(is_coordinate) {
             return q[i];
         }
-        let own = |own: &model::Parameter| own.symbol == symbol;
-        let k = self.model.parameters.iter().position(own);
+        let is_parameter = |parameter: &model::Parameter| parameter.symbol == symbol;
+        let k = self.model.parameters.iter().position(is_parameter);
         self.parameter(k.expect("a parameter"))
     }
 
     /// The constraint forms by rows, the affine part last.
     pub fn forms(&self, t: f64, q: &[f64]) -> Vec<Vec<f64>> {
-        let row = |own: &mechanics::constraint::ConstraintForm| {
-            let entries = [own.form.clone(), vec![own.affine]].concat();
+        let row = |constraint: &mechanics::constraint::ConstraintForm| {
+            let entries = [constraint.form.clone(), vec![constraint.affine]].concat();
             self.evaluate(&entries, t, q)
         };
         self.derivation.constraints.iter().map(row).collect()
@@ -203,7 +203,7 @@ impl WithVolume {
         [metric, mass].map(determinant)
     }
 
-    /// All velocities, from those that are independent.
+    /// All velocities, from the independent ones.
     pub fn velocities(&self, t: f64, q: &[f64], independent: &[f64]) -> Vec<f64> {
         let chosen = &self.program.volume.as_ref().expect("a volume").independent;
         let mut qdot = vec![0.0; q.len()];

@@ -1,4 +1,4 @@
-//! The numbers of messages about claims, computed once more by other means: differences along what a model emits.
+//! The numbers of messages about claims, computed again by other means: differences along the emitted motion.
 
 use dalembert::law::Law;
 
@@ -18,9 +18,13 @@ pub fn at(system: &dyn Numeric, text: &str, state: &Snapshot, partial: Option<us
         .description()
         .coordinates
         .iter()
-        .map(|own| own.name)
+        .map(|coordinate| coordinate.name)
         .collect();
-    let names = system.description().parameters.iter().map(|own| own.name);
+    let names = system
+        .description()
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name);
     let parameters: Vec<(&str, f64)> = names
         .enumerate()
         .map(|(index, name)| (name, system.get(index)))
@@ -48,21 +52,21 @@ pub fn rate(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
 /// `m^{ab}` and bars for absolute values.
 ///
 /// # Panics
-/// On forms of potentials that no message has.
+/// On forms of potentials that do not occur in messages.
 pub fn rate_of_potential(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
     let text = text.replace("ln(det m)", "mass");
     let direction = system.rate(t, state);
     let text = text.replace("ln|", "ln(abs(").replace('|', "))");
     slope(&mut |s| {
         let moved = moved(state, s, &direction);
-        let own = system.report(t + s, &moved);
-        let determinant = determinant(&own.0["constraint_mass"]).ln();
+        let report = system.report(t + s, &moved);
+        let determinant = determinant(&report.0["constraint_mass"]).ln();
         let text = text.replace("mass", &format!("({determinant:.17})"));
         at(system, &text, &system.snapshot(t + s, &moved), None)
     })
 }
 
-/// Of one or two rows.
+/// The determinant of a matrix of one or two rows.
 fn determinant(rows: &[f64]) -> f64 {
     match rows {
         [only] => *only,
@@ -71,10 +75,10 @@ fn determinant(rows: &[f64]) -> f64 {
     }
 }
 
-/// Compares every number of a message with one of this file's; `claim` is the claim it is about.
+/// Compares every number of a message with one computed in this file; `claim` is the claim of the message.
 ///
 /// # Panics
-/// If one differs, or is not known.
+/// If one differs, or is unknown.
 pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
     let witness = Witness::of(message).unwrap_or_else(|| panic!("no witness: {message}"));
     let (t, q, qdot) = witness.place(system);
@@ -82,15 +86,15 @@ pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
     let state = system.state(t, &q, &qdot);
     assert!(!witness.values.is_empty(), "{message}");
     for (name, printed) in &witness.values {
-        let (own, tolerance) = match name.as_str() {
+        let (found, tolerance) = match name.as_str() {
             "delta" => (delta(system, message, &q), NESTED),
             "period" => (period(system, message, &q), NESTED),
             _ => (computed(system, claim, name, t, &state), ONCE),
         };
-        let error = (own - printed).abs();
+        let error = (found - printed).abs();
         assert!(
             error <= tolerance[0] * printed.abs() + tolerance[1],
-            "{name}: {own} here, in the message {message}"
+            "{name}: {found} here, in the message {message}"
         );
     }
     let [expected, found] = opposites(&witness);
@@ -134,7 +138,7 @@ fn computed(system: &dyn Numeric, claim: &str, name: &str, t: f64, state: &[f64]
     let field = claim.strip_prefix("symmetry:").expect("a symmetry");
     if let Some(pair) = inner("second derivative of this rate in dot(", ")") {
         let (first, second) = pair.split_once(") and dot(").expect("two velocities");
-        let [i, j] = [first, second].map(|own| position(system, own));
+        let [i, j] = [first, second].map(|name| position(system, name));
         return twice(system, field, t, state, [i, j]);
     }
     if let Some(coordinate) = name.strip_prefix("Euler-Lagrange expression of this rate for ") {
@@ -142,15 +146,17 @@ fn computed(system: &dyn Numeric, claim: &str, name: &str, t: f64, state: &[f64]
     }
     let constraint = inner("rate of the left side of ", " along its flow").expect("a known number");
     let names = system.description().constraints.iter();
-    let a = names.map(|own| own.name).position(|own| own == constraint);
+    let a = names
+        .map(|name| name.name)
+        .position(|name| name == constraint);
     let a = a.expect("a constraint");
-    flow(system, field, t, state, &|own| {
+    flow(system, field, t, state, &|place| {
         // eta^a(qdot) = g(W^a, qdot); for linear constraints that is the left side.
-        let report = system.report(t, &system.state(t, &own.q, &own.qdot));
-        let n = own.q.len();
+        let report = system.report(t, &system.state(t, &place.q, &place.qdot));
+        let n = place.q.len();
         let lowered = report.0["metric"]
             .chunks(n)
-            .map(|row| product(row, &own.qdot));
+            .map(|row| product(row, &place.qdot));
         let lowered: Vec<f64> = lowered.collect();
         product(&report.0["W"][a * n..(a + 1) * n], &lowered)
     })
@@ -160,7 +166,7 @@ fn computed(system: &dyn Numeric, claim: &str, name: &str, t: f64, state: &[f64]
 fn position(system: &dyn Numeric, name: &str) -> usize {
     let mut names = system.description().coordinates.iter();
     names
-        .position(|own| own.name == name)
+        .position(|coordinate| coordinate.name == name)
         .expect("a coordinate")
 }
 
@@ -168,19 +174,19 @@ fn position(system: &dyn Numeric, name: &str) -> usize {
 fn rate_of_lagrangian(system: &dyn Numeric, field: &str, t: f64, q: &[f64], qdot: &[f64]) -> f64 {
     let state = system.state(t, q, qdot);
     // L = 2 T + A.qdot - (T + V)
-    flow(system, field, t, &state, &|own| {
-        let report = system.report(t, &system.state(t, &own.q, &own.qdot));
-        let n = own.q.len();
+    flow(system, field, t, &state, &|place| {
+        let report = system.report(t, &system.state(t, &place.q, &place.qdot));
+        let n = place.q.len();
         let lowered = report.0["metric"]
             .chunks(n)
-            .map(|row| product(row, &own.qdot));
+            .map(|row| product(row, &place.qdot));
         let lowered: Vec<f64> = lowered.collect();
-        let linear = product(&own.p, &own.qdot) - product(&lowered, &own.qdot);
-        product(&lowered, &own.qdot) + linear - own.energy
+        let linear = product(&place.p, &place.qdot) - product(&lowered, &place.qdot);
+        product(&lowered, &place.qdot) + linear - place.energy
     })
 }
 
-/// The second derivative of that rate in two velocities, of which it is a polynomial of degree 2.
+/// The second derivative of that rate in two velocities. The rate is a polynomial of degree 2 in them.
 fn twice(system: &dyn Numeric, field: &str, t: f64, state: &[f64], pair: [usize; 2]) -> f64 {
     let here = system.snapshot(t, state);
     let at = |[a, b]: [f64; 2]| {
@@ -198,9 +204,9 @@ fn euler_lagrange(system: &dyn Numeric, field: &str, t: f64, state: &[f64], i: u
     let here = system.snapshot(t, state);
     let along = slope(&mut |s| {
         let q = moved(&here.q, s, &here.qdot);
-        let [after, before] = [0.5, -0.5].map(|own| {
+        let [after, before] = [0.5, -0.5].map(|shift| {
             let mut qdot = here.qdot.clone();
-            qdot[i] += own;
+            qdot[i] += shift;
             rate_of_lagrangian(system, field, t + s, &q, &qdot)
         });
         after - before
@@ -241,13 +247,13 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// What the bracket of a message demands less what the combination does; the vector fields must agree.
+/// Demand of the bracket of a message less the demand of the combination; the vector fields must agree.
 fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     let names: Vec<&str> = system
         .description()
         .coordinates
         .iter()
-        .map(|own| own.name)
+        .map(|coordinate| coordinate.name)
         .collect();
     let line = |part: &str| {
         let found = message.lines().find(|line| line.contains(part));
@@ -270,18 +276,24 @@ fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
         rest = moved(&rest, -coefficient, &criterion.element(name, q));
     }
     let delta = rest.pop().expect("a demand");
-    let largest = rest.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+    let largest = rest
+        .iter()
+        .fold(0.0, |size: f64, value| size.max(value.abs()));
     assert!(largest < NESTED[1], "no relation: {rest:?}, {message}");
     delta
 }
 
-/// How much G grows on the turn of a message, by the trapezoidal rule.
+/// Growth of G on the turn of a message, by the trapezoidal rule.
 fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     const POINTS: u32 = 32;
     let (_, turn) = message.split_once("by `period` when ").expect("a turn");
     let (angle, _) = turn.split_once(" makes a turn").expect("one turn");
-    let mut names = system.description().coordinates.iter().map(|own| own.name);
-    let i = names.position(|own| own == angle).expect("a coordinate");
+    let mut names = system
+        .description()
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.name);
+    let i = names.position(|name| name == angle).expect("a coordinate");
     let step = std::f64::consts::TAU / f64::from(POINTS);
     let slopes = (0..POINTS).map(|k| {
         let mut q = q.to_vec();
@@ -292,10 +304,10 @@ fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     step * slopes.sum::<f64>()
 }
 
-/// The largest `d_i b_j - d_j b_i` of the form b that is the differential of G if there is one.
+/// The largest `d_i b_j - d_j b_i` of the form b that is the differential of G, if G exists.
 ///
 /// # Panics
-/// Where the frame of D and its brackets of two do not span all directions.
+/// If the frame of D and its brackets of two do not span all directions.
 pub fn curl(system: &dyn Numeric, q: &[f64]) -> f64 {
     let criterion = Criterion::regular(system, q).expect("a regular position");
     let rows: Vec<Vec<f64>> = (0..q.len())
@@ -328,7 +340,7 @@ fn vector(text: &str, names: &[&str]) -> Vec<f64> {
         let name = direction.strip_prefix("d_").expect("a direction");
         let i = names
             .iter()
-            .position(|own| *own == name)
+            .position(|known| *known == name)
             .expect("a coordinate");
         components[i] = coefficient;
     }

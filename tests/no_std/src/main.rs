@@ -1,4 +1,4 @@
-//! Simulates a bouncing ball without the standard library; exit status 0 if it bounced as it should.
+//! Simulates a bouncing ball without the standard library; exit status 0 if it bounced correctly.
 
 #![no_std]
 #![no_main]

@@ -10,7 +10,7 @@ pub type Plane = SVector<f64, 2>;
 #[derive(Clone, Copy)]
 pub struct Line {
     pub force: fn(f64, f64, f64) -> Result<f64, Fault>,
-    /// The potential, where a test needs one.
+    /// The potential, where a test uses one.
     pub potential: fn(f64) -> f64,
     pub chart: f64,
     pub mass: f64,

@@ -44,9 +44,9 @@ pub struct Particle<const S: usize> {
     pub force: [f64; 2],
     pub surfaces: [Gap; S],
     pub law: Law,
-    /// Where each surface counts.
+    /// True where a surface counts.
     pub active: fn(usize, [f64; 2]) -> bool,
-    /// What the law `reset` makes of a state.
+    /// State after the law `reset`.
     pub reset: fn(usize, State) -> State,
 }
 
@@ -61,7 +61,7 @@ impl<const S: usize> Particle<S> {
         }
     }
 
-    /// With a reset on every surface.
+    /// Sets the reset of every surface.
     pub fn with_reset(mut self, reset: fn(usize, State) -> State) -> Self {
         self.law = Law::Reset;
         self.reset = reset;

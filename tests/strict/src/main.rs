@@ -54,7 +54,7 @@ impl Observer<Skate> for Hash {
     }
 }
 
-/// The hash of a run, and how many impacts it had.
+/// The hash of a run, and the number of its impacts.
 fn run(skate: &Skate, stepper: impl Stepper<Skate>) -> Result<(Hash, u64), Box<dyn std::error::Error>> {
     let (q, qdot) = ([0.1, -0.2, 0.3], [1.9, 0.4, 1.3]);
     let state = skate.state_projected(0.0, &q.into(), &qdot.into())?;
