@@ -96,7 +96,7 @@ fn obstructions_agree() {
         for (element, expected) in expected["relation"].as_object().expect("a relation") {
             let term = found.relation.iter().find(|(name, _)| name == element);
             close(
-                coefficient.map_or(0.0, |(_, coefficient)| *coefficient),
+                term.map_or(0.0, |(_, coefficient)| *coefficient),
                 number(expected),
             );
         }
