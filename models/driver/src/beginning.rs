@@ -1,4 +1,4 @@
-//! A state from its beginning: positions and velocities as they are given, then completed and checked.
+//! Initial states: given positions and velocities, which are then completed and checked.
 
 use dalembert::StateError;
 use dalembert::describe::Description;
@@ -16,10 +16,11 @@ pub enum Component {
 }
 
 impl Component {
-    /// The one of this name, such as `x` or `x_dot`. A first-order system has no velocities of its own.
+    /// The coordinate or velocity of this name, such as `x` or `x_dot`. Velocities of first-order systems are not
+    /// found, since they are not free.
     ///
     /// # Errors
-    /// [`Unknown`].
+    /// [`Unknown`] if no coordinate or velocity has this name.
     pub fn find(description: &Description, name: &str) -> Result<Self, Unknown> {
         let coordinates: Vec<&str> = names::coordinates(description).collect();
         let n = coordinates.len();
@@ -38,12 +39,12 @@ impl Component {
     }
 }
 
-/// A state before it is checked; single numbers of it may still be changed.
+/// A state before its checks; single components can still be changed.
 #[derive(Debug, Clone)]
 pub enum Beginning {
-    /// The model's `initial`, with changes; what nobody named follows from the constraints.
+    /// The model's `initial` with changes; the constraints determine the components that are not named.
     Named(Start),
-    /// Every number is given.
+    /// All components are given.
     Given {
         /// Positions.
         q: Vec<f64>,
@@ -72,7 +73,7 @@ impl Beginning {
         }
     }
 
-    /// Sets a velocity. Where momenta are given there are none to set, and nothing changes.
+    /// Sets a velocity. No effect if momenta are given.
     pub fn set_velocity(&mut self, index: usize, value: f64) {
         match self {
             Self::Named(start) => {
@@ -101,7 +102,7 @@ impl Beginning {
     /// The state, complete and checked.
     ///
     /// # Errors
-    /// Why the system refuses it.
+    /// [`StateError`] if the system refuses the state.
     pub fn settle(
         &self,
         model: &dyn AnyModel,
@@ -113,11 +114,11 @@ impl Beginning {
                 let q = Self::placed(model, start, policy)?;
                 let completed = model.complete_velocity(&q, &start.qdot, &start.named);
                 let (qdot, policy) = match completed {
-                    // Completed velocities satisfy the constraints; a residual of the state is rounding on the way
-                    // through the momenta, which can be all there is of a constraint whose terms vanish here.
+                    // Completed velocities satisfy the constraints. A residual of the state is rounding error from the
+                    // conversion through the momenta, which can dominate a constraint whose terms vanish here.
                     Ok(qdot) => (qdot, OffConstraint::Keep),
                     Err(error) if policy == OffConstraint::Error => return Err(error),
-                    // The named velocities contradict the constraints, and that is for the policy to settle.
+                    // The named velocities contradict the constraints; the policy decides.
                     Err(_) => (start.qdot.clone(), policy),
                 };
                 (q, Rates::Velocities(qdot), policy)
@@ -127,7 +128,7 @@ impl Beginning {
         model.state(0.0, &origin).map(|_| origin)
     }
 
-    /// The positions of a start, as far as they are open solved for.
+    /// The positions of a start; open positions are solved from the constraints.
     fn placed(
         model: &dyn AnyModel,
         start: &Start,

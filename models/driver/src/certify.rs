@@ -1,7 +1,7 @@
 //! Certified motion of a model: enclosures of times, positions and velocities, as plain data.
 //!
-//! It is that of the runtime over the system of all forms, compiled for the largest capacity alone. A form has to have kernels over intervals:
-//! those that are loaded from a text have them.
+//! The enclosures are computed by the runtime with the system of all forms, which is compiled for the largest capacity
+//! only. The form needs kernels over intervals, which forms loaded from a text have.
 
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
@@ -17,13 +17,13 @@ use crate::integrator::Form;
 use crate::model::{OffConstraint, Origin, Rates};
 use crate::refusal::{Refusal, Uncertified};
 
-/// Bytes of stack that the longest vectors take in code that nothing optimises, four times over.
+/// Stack size in bytes: four times the need of the longest vectors in unoptimised code.
 const STACK: usize = 16 << 20;
 
-/// The system that certified motion is compiled for: the one that holds every form.
+/// The system for which certified motion is compiled: the one with room for every form.
 type System = Erased<32>;
 
-/// What is to be certified, from `t = 0` on.
+/// Request for certified motion from `t = 0` on.
 #[derive(Debug, Clone)]
 pub struct Certification {
     /// The form of the equations.
@@ -32,20 +32,20 @@ pub struct Certification {
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
-    /// Laws by index of the surface, instead of the declared ones; a later one counts.
+    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges in place of the values of parameters, by index. A model with modes takes no ranges but these, and begins with the same state
-    /// for all of them.
+    /// Ranges in place of the values of parameters, by index. A model with modes accepts only these ranges, and starts
+    /// in the same state for all their values.
     pub parameters: Vec<(usize, Interval)>,
     /// Ranges in place of the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,
-    /// Ranges in place of velocities by index: of the origin's in the global form of a model without constraints, of quasi-velocities in
-    /// the reduced form. Elsewhere, and beside momenta, they count for nothing.
+    /// Ranges in place of velocities, by index: the origin's velocities in the global form of a model without
+    /// constraints, quasi-velocities in the reduced form. They are ignored in other cases and if momenta are given.
     pub rates: Vec<(usize, Interval)>,
 }
 
-/// All positions and velocities that are possible, one range per coordinate; all numbers for a velocity that may not exist, NaN of a
-/// coordinate that the mode does not have.
+/// All possible positions and velocities, one range per coordinate. The range of a velocity that may not exist is the
+/// whole real line; the range of a coordinate that the mode does not have is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranges {
     /// The name of the mode, of a model with modes.
@@ -61,18 +61,18 @@ pub struct Ranges {
 pub struct Strike {
     /// The index of the surface.
     pub surface: usize,
-    /// All times that it may have.
+    /// A range that contains the time of the impact for every motion.
     pub time: Interval,
-    /// All states that arrive.
+    /// A range of all states before the impact.
     pub before: Ranges,
-    /// All states after it.
+    /// A range of all states after the impact.
     pub after: Ranges,
 }
 
 /// The end of certified motion.
 #[derive(Debug, Clone)]
 pub struct Certified {
-    /// The time up to which the motion is certified: until then there are no impacts but those that were shown.
+    /// The time up to which the motion is certified; the reported impacts are the only ones before it.
     pub t: f64,
     /// All states at that time.
     pub last: Ranges,
@@ -80,7 +80,7 @@ pub struct Certified {
     pub impacts: u64,
     /// The number of steps.
     pub steps: u64,
-    /// Why it is not certified as far as was asked for.
+    /// The reason for which certification stopped before the requested end.
     pub lost: Option<Lost>,
 }
 
@@ -90,13 +90,13 @@ pub(crate) struct Subject<'a> {
     pub form: Option<&'static erased::Form>,
     /// The values of all parameters, inputs included.
     pub values: &'a [f64],
-    /// The origin, and the state that it is in the form that was asked for.
+    /// The origin, and its state in the requested form.
     pub origin: &'a Origin,
     pub state: &'a [f64],
 }
 
 impl Subject<'_> {
-    /// Follows the motion, and shows its impacts.
+    /// Follows the motion, and reports its impacts.
     pub(crate) fn certify(
         &self,
         request: &Certification,
@@ -112,7 +112,7 @@ impl Subject<'_> {
         })
     }
 
-    /// The same on the stack there is.
+    /// As `certify`, on the stack of the current thread.
     fn certify_here(
         &self,
         request: &Certification,
@@ -128,7 +128,7 @@ impl Subject<'_> {
             system = system.global();
         }
         let form = system.form();
-        // Of a model with modes, those of its modes.
+        // For a model with modes, the form of its first mode.
         let known = form.forms.first().copied().unwrap_or(form);
         if known.kernels::<Interval>().is_none() {
             let why = match (form.tables.varies, own.tables.varies) {
@@ -181,7 +181,7 @@ impl Subject<'_> {
         })
     }
 
-    /// All states that the motion may begin with.
+    /// All initial states.
     fn start(
         &self,
         system: &System,
@@ -213,7 +213,7 @@ impl Subject<'_> {
                 };
                 let row = match is_free {
                     true => of_box([&request.positions, &request.rates])?,
-                    // Velocities at the origin: elsewhere the constraints allow others.
+                    // The given velocities satisfy the constraints at the origin only; `positions` are widened below.
                     false => of_box([&[], &[]])?,
                 };
                 row.as_slice().to_vec()

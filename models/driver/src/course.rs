@@ -1,4 +1,5 @@
-//! Choices that a run needs where its request is silent: the form of the equations, the last time, the laws of surfaces.
+//! Defaults of a run for values that its request leaves open: the form of the equations, the last time, the laws of
+//! surfaces.
 
 use dalembert::describe::Description;
 use dalembert::law::Law;
@@ -7,10 +8,10 @@ use thiserror::Error;
 use crate::integrator::Form;
 use crate::model::AnyModel;
 
-/// The time that a run to a number of impacts may take, unless the model's own `until` is longer.
+/// The time that a run to a number of impacts may take, unless the model's declared `until` is longer.
 const IMPACT_HORIZON: f64 = 3600.0;
 
-/// Why a form cannot be run.
+/// Reasons for which a form cannot be run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum FormError {
     /// The model has no reduced form.
@@ -19,21 +20,21 @@ pub enum FormError {
         /// The model.
         model: &'static str,
     },
-    /// States off the constraints, or a projection, were asked for.
+    /// The request has states off the constraints or a projection.
     #[error("the reduced form holds no states off the constraints, and takes no projection")]
     OnConstraints,
 }
 
-/// Why a law cannot be used.
+/// Reasons for which a law cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum LawError {
-    /// The surface leads to another mode.
+    /// The surface is a transition to another mode.
     #[error("a transition leads to another mode, and takes no law")]
     Transition,
     /// The model has no surfaces.
     #[error("the model has no impact surfaces")]
     NoSurfaces,
-    /// The law `reset` for a surface without one.
+    /// The law is `reset` and the surface declares no reset.
     #[error("surface `{surface}` declares no reset")]
     NoReset {
         /// The surface.
@@ -42,10 +43,10 @@ pub enum LawError {
 }
 
 impl Form {
-    /// The wanted form, else the reduced one where the model has it and nothing `needs_global`.
+    /// The wanted form. Without one, the reduced form if the model has it and nothing `needs_global`.
     ///
     /// # Errors
-    /// [`FormError`].
+    /// [`FormError`] if the wanted form does not exist or does not suit the request.
     pub fn choose(
         description: &Description,
         wanted: Option<Self>,
@@ -64,7 +65,8 @@ impl Form {
     }
 }
 
-/// The last time of a run: as asked for, else the declared one, which a number of impacts may extend. `None` where nothing ends it.
+/// The last time of a run: the requested time, else the declared one, which a requested number of impacts extends.
+/// `None` if neither ends the run.
 pub fn horizon(model: &dyn AnyModel, until: Option<f64>, impacts: Option<u64>) -> Option<f64> {
     let declared = model.initial().until;
     let declared = declared.filter(|until| until.is_finite() && *until > 0.0);
@@ -75,10 +77,10 @@ pub fn horizon(model: &dyn AnyModel, until: Option<f64>, impacts: Option<u64>) -
     }
 }
 
-/// Adds a law for one surface, or for all that are no transitions.
+/// Adds a law for one surface, or for all surfaces except transitions.
 ///
 /// # Errors
-/// [`LawError`].
+/// [`LawError`] if the law does not suit the surface, or the model has no surfaces.
 pub fn add_law(
     laws: &mut Vec<(usize, Law)>,
     model: &dyn AnyModel,

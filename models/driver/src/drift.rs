@@ -1,4 +1,4 @@
-//! How a quantity that the motion keeps is kept by an integrator over a long run: a series, and how it grows.
+//! Drift of a conserved quantity over a long run: a series of deviations, and their growth.
 
 use core::ops::ControlFlow;
 
@@ -6,12 +6,12 @@ use dalembert::{
     Effect, Observer, Outcome, Segment, Simulation, StartError, Stepper, System, VectorField,
 };
 
-/// A part of a run.
+/// A window of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Its end.
+    /// The time at its end.
     pub t: f64,
-    /// The largest absolute deviation from the value at the start of the run, at the ends of its steps.
+    /// The largest absolute deviation from the value at the start of the run, over the ends of the steps.
     pub largest: f64,
     /// The mean deviation.
     pub mean: f64,
@@ -22,29 +22,29 @@ pub struct Window {
 pub struct Series {
     /// The value at the start.
     pub start: f64,
-    /// The windows, in order; those without a step are left out.
+    /// The windows, in order; windows without a step are left out.
     pub windows: Vec<Window>,
-    /// How the run ended.
+    /// The outcome of the run.
     pub outcome: Outcome,
     /// Steps made.
     pub steps: u64,
 }
 
-/// What a long run is asked.
+/// Request for a series.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<Q> {
-    /// How far it goes from `t = 0`.
+    /// The end time of the run, which starts at `t = 0`.
     pub until: f64,
-    /// Into how many windows it is divided.
+    /// Number of windows.
     pub windows: usize,
-    /// The quantity, of time and state.
+    /// The quantity, as a function of time and state.
     pub quantity: Q,
 }
 
 /// Follows a quantity along a run.
 ///
 /// # Errors
-/// Why the runtime refuses to start.
+/// [`StartError`] if the runtime refuses to start.
 pub fn follow<S, Step, E, Q>(
     system: &S,
     state: S::State,
@@ -89,15 +89,16 @@ impl Series {
         largest.fold(0.0, f64::max)
     }
 
-    /// What a straight line through the means of the windows gains over the run: drift, as oscillations cancel.
+    /// Increase over the run of the straight line fitted to the means of the windows: the drift, since oscillations
+    /// cancel.
     pub fn drift(&self) -> f64 {
         let points: Vec<_> = self.windows.iter().map(|it| (it.t, it.mean)).collect();
         let span = self.windows.last().map_or(0.0, |last| last.t);
         slope(&points) * span
     }
 
-    /// The `k` of the growth `t^k` of the largest deviation so far: about 0 where it is bounded, 1/2 for a random walk of
-    /// rounding errors, 1 for a steady drift. NaN where there is no deviation at all.
+    /// The exponent `k` in the growth `t^k` of the running maximum of the deviation: about 0 if it is bounded, 1/2 for
+    /// a random walk of rounding errors, 1 for a steady drift. NaN if every deviation is 0.
     pub fn exponent(&self) -> f64 {
         let mut so_far = 0.0_f64;
         let points: Vec<_> = self
@@ -113,7 +114,7 @@ impl Series {
     }
 }
 
-/// The slope of the straight line through points, by least squares.
+/// Least-squares slope of the straight line through points.
 fn slope(points: &[(f64, f64)]) -> f64 {
     let count = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;

@@ -5,14 +5,14 @@ use dalembert::integrate::{
     MidpointPrinciple, Scheme, TAYLOR,
 };
 
-/// The integrators.
+/// Integrators of runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Integrator {
     /// Dormand and Prince of order 8(5,3), dense output of order 7.
     Dop853,
     /// Dormand and Prince of order 5(4), dense output of order 4.
     Dopri5,
-    /// Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15).
+    /// Taylor series, with an order that depends on the tolerance (12 at 1e-9, 19 at 1e-15).
     Taylor,
     /// Fixed step: the classical Runge-Kutta method of order 4.
     Rk4,
@@ -20,14 +20,14 @@ pub enum Integrator {
     Gauss4,
     /// Fixed step: Gauss collocation of order 6, symplectic without constraints.
     Gauss6,
-    /// Fixed step: discrete Lagrange-d'Alembert principle of order 2, constraints hold to rounding.
+    /// Fixed step: discrete Lagrange-d'Alembert principle of order 2; constraints hold to rounding.
     Dla2,
-    /// Fixed step: the same composed to order 4.
+    /// Fixed step: composition of [`Dla2`](Self::Dla2) of order 4.
     Dla4,
 }
 
 impl Integrator {
-    /// All of them.
+    /// All integrators.
     pub const fn every() -> &'static [Self] {
         &[
             Self::Dop853,
@@ -55,7 +55,7 @@ impl Integrator {
         }
     }
 
-    /// The order of the solution at the ends of steps; `None` where it follows the tolerance.
+    /// The order of the solution at the ends of steps; `None` if it depends on the tolerance.
     pub const fn order(self) -> Option<usize> {
         match self {
             Self::Dop853 => Some(Dop853Scheme::ORDER),
@@ -69,23 +69,23 @@ impl Integrator {
         }
     }
 
-    /// Whether it chooses its steps by an error estimate.
+    /// True if it chooses its steps by an error estimate.
     pub const fn is_adaptive(self) -> bool {
         matches!(self, Self::Dop853 | Self::Dopri5 | Self::Taylor)
     }
 }
 
-/// What the state of a run consists of.
+/// Form of the equations: the components of the state of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// Positions and the quasi-velocities that the constraints leave: (q, u) on D.
+    /// Positions and the quasi-velocities that the constraints leave free: (q, u) on D.
     Reduced,
-    /// Positions and momenta, off the constraints too: (q, p) on T*Q.
+    /// Positions and momenta, also off the constraints: (q, p) on T*Q.
     Global,
 }
 
 impl Form {
-    /// Both of them.
+    /// Both forms.
     pub const fn every() -> &'static [Self] {
         &[Self::Reduced, Self::Global]
     }

@@ -1,21 +1,21 @@
-//! Runs of models that are known only at run time, periodic orbits, and what accuracy costs.
+//! Runs of models that are known only at run time, periodic orbits, and the cost of accuracy.
 //!
 //! | file | job |
 //! |---|---|
-//! | `model.rs` | the trait of a model whose type is forgotten, and what its functions take and give |
-//! | `typed.rs` | the trait for the type of a system |
-//! | `run/` | one run: how it is made, what watches it, how it ended |
+//! | `model.rs` | the trait of a model whose type is erased, and the data that its functions take and return |
+//! | `typed.rs` | the implementation of this trait for the type of a system |
+//! | `run/` | one run: its settings, its observer, its end |
 //! | `accuracy/` | measured errors of integrators, with work and time |
 //! | `orbit.rs` | periodic orbits |
 //! | `variation.rs` | derivatives of runs |
 //! | `certify.rs` | enclosures of motions and impacts |
-//! | `drift.rs` | what a long run keeps of a quantity |
-//! | `course.rs` | choices that a run needs where its request is silent |
-//! | `beginning.rs` | states from what is given of them |
+//! | `drift.rs` | drift of a conserved quantity over a long run |
+//! | `course.rs` | defaults of a run for values that its request leaves open |
+//! | `beginning.rs` | initial states from given components |
 //! | `names.rs`, `words.rs`, `outcome.rs` | names of quantities; refusals, faults and outcomes in the names of the model |
 //!
-//! A model that has a form is run by the system of all forms ([`of_form`]), which is compiled here, once; any other is compiled with all
-//! that runs it where its type is named ([`of_type`]).
+//! A model that has a form is run by the system of all forms ([`of_form`]), which is compiled once, in this crate. Any
+//! other model is compiled, with the code that runs it, at the place that names its type ([`of_type`]).
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! A model behind a trait that knows nothing of its type.
+//! Trait of a model whose type is erased.
 
 use dalembert::describe::{Description, Report};
 use dalembert::law::Law;
@@ -20,19 +20,19 @@ pub enum Rates {
     Momenta(Vec<f64>),
 }
 
-/// What to do with positions or a velocity that violate the constraints.
+/// Policy for positions or velocities that violate the constraints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OffConstraint {
-    /// Refuse them, beyond 1e-9 of the sum of the absolute values of the constraint's terms.
+    /// Refuse them if the residual exceeds 1e-9 of the sum of the absolute values of the constraint's terms.
     Error,
-    /// Replace them by allowed positions near by and the nearest allowed velocity in the metric.
+    /// Replace the positions by nearby allowed ones, and the velocity by the nearest allowed one in the metric.
     Project,
-    /// Start there; the motion keeps the residual.
+    /// Start there; the residual persists along the motion.
     Keep,
 }
 
 impl OffConstraint {
-    /// All of them.
+    /// All policies.
     pub const fn every() -> &'static [Self] {
         &[Self::Error, Self::Project, Self::Keep]
     }
@@ -47,14 +47,14 @@ impl OffConstraint {
     }
 }
 
-/// A state as it is given.
+/// A given state, before its checks.
 #[derive(Debug, Clone)]
 pub struct Origin {
     /// Positions, one per coordinate.
     pub q: Vec<f64>,
     /// Velocities or momenta.
     pub rates: Rates,
-    /// What to do where it is off the constraints.
+    /// Policy if it is off the constraints.
     pub policy: OffConstraint,
 }
 
@@ -65,15 +65,15 @@ pub struct Start {
     pub q: Vec<f64>,
     /// Velocities, one per coordinate.
     pub qdot: Vec<f64>,
-    /// Whether the position is given; equations of positions among the constraints may choose the others.
+    /// True for each position that is given; constraints that are equations of positions may determine the others.
     pub placed: Vec<bool>,
-    /// Whether the velocity is given; the constraints may choose the others.
+    /// True for each velocity that is given; the constraints may determine the others.
     pub named: Vec<bool>,
     /// The declared end of a run.
     pub until: Option<f64>,
 }
 
-/// What tables and pictures show of a state; NaN where a quantity does not exist.
+/// Values of a state for tables and pictures; NaN if a quantity does not exist.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// The name of the mode, of a model with modes.
@@ -93,7 +93,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// A point of which nothing is known.
+    /// A point whose values are all undefined.
     pub fn undefined(description: &Description) -> Self {
         let nothing = vec![f64::NAN; description.coordinates.len()];
         Self {
@@ -110,28 +110,28 @@ impl Point {
 
 /// A model with values for its parameters. States are those of its global form, positions and momenta.
 pub trait AnyModel: Runs {
-    /// The way in which its functions are called.
+    /// The way in which the model's functions are called.
     fn code(&self) -> Code;
-    /// Names, shapes and documentation of what is declared.
+    /// Names, shapes and documentation of the declared quantities.
     fn description(&self) -> Description;
     /// The names of the inputs, whose values are the parameters after those of the description.
     fn inputs(&self) -> &'static [&'static str];
     /// The value of a parameter; inputs come after those of the description.
     fn parameter(&self, index: usize) -> f64;
-    /// Sets a parameter. The value is checked where a state is made.
+    /// Sets a parameter. Its value is checked when a state is made.
     fn set_parameter(&mut self, index: usize, value: f64);
-    /// The mode, by number, that states are made in.
+    /// Sets the mode, by number, of states that are made later.
     fn set_mode(&mut self, mode: usize);
-    /// Refuses values that the declaration rules out.
+    /// Checks the parameters against their declaration.
     ///
     /// # Errors
-    /// The first of them.
+    /// [`ParameterError`] of the first parameter with a value that the declaration rules out.
     fn check_parameters(&self) -> Result<(), ParameterError>;
     /// The declared initial condition.
     fn initial(&self) -> Start;
-    /// The positions with those that are not `placed` chosen by equations of positions among the constraints.
+    /// Completes positions: constraints that are equations of positions determine those that are not `placed`.
     fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError>;
-    /// The velocities with those that are not `named` chosen by the constraints.
+    /// Completes velocities: the constraints determine those that are not `named`.
     fn complete_velocity(
         &self,
         q: &[f64],
@@ -141,18 +141,18 @@ pub trait AnyModel: Runs {
     /// The state `(q, p)` of the global form.
     ///
     /// # Errors
-    /// As the states of a run are refused.
+    /// [`StateError`] under the same conditions as for the start of a run.
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError>;
     /// The declared region's function, positive where motion is allowed; `None` without a region.
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
-    /// Shows everything that is derived at a state of the global form.
+    /// Reports every derived quantity at a state of the global form.
     ///
     /// # Errors
-    /// Where something does not exist there.
+    /// [`Fault`] if a quantity does not exist there.
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault>;
     /// The law that a surface declares.
     fn law(&self, surface: usize) -> Option<Law>;
-    /// The state after the impact of a law.
+    /// The state after an impact with this law.
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64>;
     /// The state after an impulse on its momenta.
     fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64>;
@@ -160,25 +160,25 @@ pub trait AnyModel: Runs {
 
 /// The runs of a model with values for its parameters.
 pub trait Runs {
-    /// Makes a run from `t = 0`, and shows it to a watch.
+    /// Makes a run from `t = 0`, observed by a watch.
     ///
     /// # Errors
-    /// Why it does not begin.
+    /// [`Refusal`] if the run does not start.
     fn simulate(
         &self,
         origin: &Origin,
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, Refusal>;
-    /// As [`Runs::simulate`], with Taylor series, of several runs at once; `looks_inside` where watches look at
-    /// states inside steps.
+    /// Makes several runs as [`Runs::simulate`] does, at once and with Taylor series; `looks_inside` is true if watches
+    /// evaluate states inside steps.
     fn simulate_abreast(
         &self,
         runs: Vec<Together<'_>>,
         settings: &Settings,
         looks_inside: bool,
     ) -> Vec<Result<Ending, Refusal>>;
-    /// What accuracy costs from this state on; `tell` hears what is about to be measured.
+    /// Measures the cost of accuracy from this state on; calls `tell` before each measurement.
     fn study(
         &self,
         origin: &Origin,
@@ -186,23 +186,24 @@ pub trait Runs {
         plan: &Plan,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Study, Refusal>;
-    /// The measured error of a run that ended so.
+    /// Measures the error of the run with this ending.
     fn verify(
         &self,
         origin: &Origin,
         settings: &Settings,
         ending: &Ending,
     ) -> Result<Verified, Refusal>;
-    /// A periodic orbit near the first arrival from this state; `None` for a scene without variations.
+    /// Finds a periodic orbit near the first arrival from this state; `None` for a scene without variations.
     fn orbit(
         &self,
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
-    /// Derivatives of the last state of a run with respect to these variables; `is_over` says where nobody wants to wait any longer.
+    /// Derivatives of the last state of a run with respect to these variables. The run is given up once `is_over`
+    /// returns true.
     ///
     /// # Errors
-    /// Why the run does not begin. The inner result says why it has no derivatives.
+    /// [`Refusal`] if the run does not start. The inner error explains why it has no derivatives.
     fn differentiate(
         &self,
         origin: &Origin,
@@ -210,10 +211,11 @@ pub trait Runs {
         variables: &[Variable],
         is_over: &mut dyn FnMut() -> bool,
     ) -> Result<Result<Derivatives, VariationError>, Refusal>;
-    /// Encloses the motion from this state on, and shows its impacts.
+    /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors
-    /// Why no motion of the model is certified. Where it is lost later is said by what is returned.
+    /// [`Refusal`] if no motion of the model can be certified. [`Certified::lost`] explains an early end of
+    /// certification.
     fn certify(
         &self,
         origin: &Origin,
@@ -222,13 +224,13 @@ pub trait Runs {
     ) -> Result<Certified, Refusal>;
 }
 
-/// One of several runs that are made at once.
+/// One of several runs that are made together.
 pub struct Together<'w> {
     /// The values of all parameters.
     pub parameters: Vec<f64>,
-    /// The state that it begins with.
+    /// The initial state.
     pub origin: Origin,
-    /// What is shown the run.
+    /// The observer of the run.
     pub watch: &'w mut dyn Watch,
 }
 
@@ -249,19 +251,19 @@ pub struct Contacted {
     pub direction: Vec<f64>,
 }
 
-/// The way in which the functions of a model are called. Speed depends on it, results do not.
+/// The way in which the functions of a model are called. It changes the speed, not the results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Code {
-    /// They are inlined into what runs the model.
+    /// They are inlined into the code that runs the model.
     Inlined,
-    /// They are compiled, and behind pointers.
+    /// They are compiled, and called through pointers.
     Pointers,
-    /// They were made from the text of the model when it was loaded, and are behind pointers.
+    /// They are generated from the text of the model when it is loaded, and called through pointers.
     Loaded,
 }
 
 impl Code {
-    /// The way, as it is printed after a time.
+    /// The name of the way, as printed after a time.
     pub fn name(self) -> &'static str {
         match self {
             Self::Inlined => "inlined",

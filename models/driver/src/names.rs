@@ -1,4 +1,4 @@
-//! Names of quantities of a model, and finding the one that is meant.
+//! Names of a model's quantities, and their lookup.
 
 use std::fmt::{self, Write as _};
 
@@ -11,7 +11,7 @@ pub struct Unknown {
     pub what: &'static str,
     /// The name that was given.
     pub given: String,
-    /// The names there are.
+    /// The accepted names.
     pub accepted: Vec<String>,
 }
 
@@ -31,7 +31,7 @@ impl std::error::Error for Unknown {}
 /// The position of `given` among `accepted`.
 ///
 /// # Errors
-/// [`Unknown`].
+/// [`Unknown`] if `given` is not among them.
 pub fn find<'a>(
     what: &'static str,
     given: &str,
@@ -73,7 +73,7 @@ pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str>
     description.surfaces.iter().map(|surface| surface.name)
 }
 
-/// The nearest accepted name, if one is near, and all of them.
+/// The nearest accepted name, if there is one, and all accepted names.
 fn hints(given: &str, accepted: &[String]) -> String {
     let mut text = String::new();
     if let Some(nearest) = nearest(given, accepted) {
@@ -88,7 +88,7 @@ fn hints(given: &str, accepted: &[String]) -> String {
     text
 }
 
-/// The first of the names nearest to `given`, unless more than a third of its letters would have to change.
+/// The first of the names nearest to `given`, unless more than a third of its letters differ.
 fn nearest<'a>(given: &str, accepted: &'a [String]) -> Option<&'a String> {
     let lower = given.to_lowercase();
     let distance = |name: &String| strsim::damerau_levenshtein(&lower, &name.to_lowercase());

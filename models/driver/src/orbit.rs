@@ -1,4 +1,4 @@
-//! Periodic orbits of a model, behind a trait that knows nothing of its type.
+//! Periodic orbits of a model whose type is erased.
 
 use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
@@ -14,45 +14,45 @@ use crate::model::Point;
 use crate::refusal::Refusal;
 use crate::typed::point;
 
-/// What is looked for.
+/// Request for a periodic orbit.
 #[derive(Debug, Clone)]
 pub struct Search {
-    /// The index of the surface whose returns are looked at.
+    /// The index of the surface that is the section.
     pub surface: usize,
-    /// Returns that make a period.
+    /// Number of returns in a period.
     pub returns: u32,
-    /// How long one return may take.
+    /// Longest time of one return.
     pub horizon: f64,
     /// The tolerance of the integrator.
     pub tolerance: Tolerance,
-    /// Laws by index of the surface, instead of the declared ones; a later one counts.
+    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
     pub laws: Vec<(usize, Law)>,
-    /// What impacts do where a law alone does not tell how to go on.
+    /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
 }
 
-/// An orbit, in numbers.
+/// A periodic orbit as plain data.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// The period.
     pub period: f64,
     /// The point of the section.
     pub before: Point,
-    /// The state after what happens at the section.
+    /// The state after the event at the section.
     pub after: Point,
-    /// The distance by which it misses itself.
+    /// Distance between the point of the section and its image.
     pub residual: f64,
-    /// Steps of the iteration.
+    /// Number of Newton steps.
     pub iterations: u32,
     /// Directions of the section, each in components of the state.
     pub directions: Vec<Vec<f64>>,
     /// The derivative of the return in these directions, row after row.
     pub derivative: Vec<f64>,
-    /// Real and imaginary parts.
+    /// The Floquet multipliers: real and imaginary parts.
     pub multipliers: Vec<[f64; 2]>,
 }
 
-/// Looks for an orbit of whatever model it is shown, from the first arrival from this state on.
+/// Searches for an orbit of a model of any type, from the first arrival from this state on.
 pub(crate) struct Finder<'a> {
     pub search: &'a Search,
     pub q: &'a [f64],
@@ -60,7 +60,7 @@ pub(crate) struct Finder<'a> {
 }
 
 impl VariationalVisitor for Finder<'_> {
-    /// `Err` of the inner result where there is no orbit, of the outer where no run begins.
+    /// The inner error says that there is no orbit, the outer one that no run starts.
     type Output = Result<Result<Found, OrbitError>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {

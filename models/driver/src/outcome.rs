@@ -1,4 +1,4 @@
-//! Ends of runs in the names of the model.
+//! Outcomes of runs, in the names of the model.
 
 use dalembert::Outcome;
 use dalembert::describe::Description;
@@ -6,12 +6,12 @@ use dalembert::integrate::Counters;
 
 use crate::names;
 
-/// A fact that goes with the kind of an outcome.
+/// A fact about an outcome.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fact {
     /// A number.
     Number(f64),
-    /// A place in an order.
+    /// An index.
     Index(usize),
     /// A declared name.
     Name(&'static str),

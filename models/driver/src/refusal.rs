@@ -1,10 +1,10 @@
-//! Why a run does not begin.
+//! Reasons for which a run does not start.
 
 use dalembert::integrate::ToleranceError;
 use dalembert::{MaxStepError, StartError, StateError};
 use thiserror::Error;
 
-/// Why no motion of a model is certified.
+/// Reasons for which no motion of a model can be certified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Uncertified {
@@ -13,38 +13,38 @@ pub enum Uncertified {
         "certified motion runs models that are loaded from a text, and this one is compiled into the program; give the file of its declaration"
     )]
     Compiled,
-    /// The global form of a model that has a reduced one.
+    /// The form is the global one and the model has a reduced one.
     #[error(
         "certified motion takes the reduced form of this model; leave out what asks for the global one: --form global, --off-constraint keep"
     )]
     OnlyReduced,
-    /// The scene was declared without what the derivatives of a motion take.
+    /// The scene was declared without `variations`, which the derivatives of a motion need.
     #[error(
         "the scene was declared without `variations`, which certified motion takes; add it to what the scene uses"
     )]
     WithoutVariations,
-    /// There is no thread with the stack that is needed.
+    /// The system refuses a thread with the stack that is needed.
     #[error("certified motion needs 16 MiB of stack, which the system does not give")]
     NoThread,
 }
 
-/// Why a run does not begin.
+/// Reasons for which a run does not start.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// There is no such state.
+    /// The state is refused.
     #[error(transparent)]
     State(#[from] StateError),
-    /// The tolerance is none.
+    /// The tolerance is invalid.
     #[error(transparent)]
     Tolerance(#[from] ToleranceError),
-    /// The largest step is none.
+    /// The largest step is invalid.
     #[error(transparent)]
     MaxStep(#[from] MaxStepError),
     /// The runtime refuses the start.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// No motion of the model is certified.
+    /// No motion of the model can be certified.
     #[error(transparent)]
     Uncertified(#[from] Uncertified),
 }

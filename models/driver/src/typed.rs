@@ -1,4 +1,4 @@
-//! The model of a system's type.
+//! [`AnyModel`] for the type of a system.
 
 use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};
@@ -22,7 +22,8 @@ use crate::refusal::Refusal;
 use crate::run::{self, Abreast, Ending, Settings, Watch};
 use crate::variation::{Begun, Differentiator, Variable, VariationError, Varied};
 
-/// A model that can be run without its type: everything that `model!` implements of one with values for its parameters.
+/// A system that can be run behind [`AnyModel`]: the traits that `model!` implements for a model with values for its
+/// parameters.
 pub trait Model:
     Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
 {
@@ -33,15 +34,15 @@ impl<M> Model for M where
 {
 }
 
-/// A model type behind [`AnyModel`].
+/// A typed model behind [`AnyModel`].
 struct Typed<M> {
     model: M,
     code: Code,
-    /// The form, of the system of a form.
+    /// The form, for the system of a form.
     form: Option<&'static erased::Form>,
 }
 
-/// The model of a type with its declared values.
+/// The model of a type, with its declared values.
 pub fn of_type<M: Model + Described>() -> Box<dyn AnyModel> {
     Box::new(Typed {
         model: M::with_defaults(),
@@ -50,8 +51,8 @@ pub fn of_type<M: Model + Described>() -> Box<dyn AnyModel> {
     })
 }
 
-/// The model of a form with its declared values, run by the system of the least capacity that holds it; `None` where none does
-/// ([`erased::Form::capacity`]).
+/// The model of a form, with its declared values, run by the system of the least sufficient capacity
+/// ([`erased::Form::capacity`]); `None` if the form exceeds every capacity.
 pub fn of_form(form: &'static erased::Form, code: Code) -> Option<Box<dyn AnyModel>> {
     fn with_room<const C: usize>(
         form: &'static erased::Form,
@@ -70,8 +71,8 @@ pub fn of_form(form: &'static erased::Form, code: Code) -> Option<Box<dyn AnyMod
 }
 
 impl<M: Model> Typed<M> {
-    /// The velocity that is meant, after every check but that of the constraints. Momenta are those of the global
-    /// form: they may lie off the constraints.
+    /// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and may
+    /// lie off the constraints.
     fn checked_velocity(
         &self,
         t: f64,
@@ -116,14 +117,14 @@ impl<M: Model> Typed<M> {
         }
         Ok(match (origin.policy, &origin.rates) {
             (OffConstraint::Project, _) => system.state_nearest(t, &q, &qdot)?,
-            // Momenta that may be kept are kept to the last digit.
+            // Given momenta are kept to the last digit unless the policy projects them.
             (_, Rates::Momenta(p)) => system.state_from_momenta(t, &q, &vector(&q, p))?,
             _ => system.state_unchecked(t, &q, &qdot)?,
         })
     }
 }
 
-/// Whether a mark of [`Initial`](dalembert::describe::Initial) is set.
+/// True if a mark of [`Initial`](dalembert::describe::Initial) is set.
 fn is_marked(mark: &f64) -> bool {
     *mark != 0.0
 }
@@ -133,7 +134,7 @@ fn marks(marked: &[bool]) -> Vec<f64> {
     marked.iter().map(mark).collect()
 }
 
-/// What is to be done with the model in the form that the settings ask for, and the state in it.
+/// Evaluates an expression with the model in the form of the settings and its state in that form.
 macro_rules! in_form {
     ($typed:ident, $origin:ident, $settings:ident, |$model:ident, $state:ident| $work:expr) => {{
         match $settings.form {
@@ -368,7 +369,7 @@ impl<M: Model> Runs for Typed<M> {
     }
 }
 
-/// Makes several runs at once, in a form of the model. Runs that have no state to begin with are told why.
+/// Makes several runs at once, in one form of the model. A run without a valid initial state yields its [`Refusal`].
 fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     typed: &Typed<M>,
     runs: Vec<Together<'_>>,
@@ -404,11 +405,11 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     endings
 }
 
-/// What tables and pictures show of a state.
+/// Values of a state for tables and pictures.
 pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
     let description = model.description();
     let mode = description.modes.get(model.mode(state));
-    // A mode need not have all coordinates of the model.
+    // A mode may lack some coordinates of the model.
     let has = |index: usize| mode.is_none_or(|mode| mode.coordinates.contains(&index));
     let own = |values: &[f64]| -> Vec<f64> {
         let numbered = values.iter().enumerate();
@@ -435,7 +436,7 @@ pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
     }
 }
 
-/// A vector like this one, of these components; missing ones are 0.
+/// A vector of the same length, with these components; missing components are 0.
 fn vector<V: StateVector>(like: &V, components: &[f64]) -> V {
     let mut vector = like.zeroed();
     for (component, &value) in vector.as_mut_slice().iter_mut().zip(components) {

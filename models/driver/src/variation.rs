@@ -1,6 +1,6 @@
 //! Derivatives of a run with respect to its start and its parameters, across impacts, as plain data.
 //!
-//! They are computed by the system of all forms with the largest capacity alone, for which all this is compiled once.
+//! They are computed by the system of all forms with the largest capacity only, for which this code is compiled once.
 
 use std::ops::ControlFlow;
 
@@ -25,16 +25,16 @@ use crate::run::{Settings, effects};
 /// The system whose runs are differentiated.
 type System = Erased<32>;
 
-/// A quantity that a run may be differentiated by.
+/// A variable of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
-    /// A coordinate at the start.
+    /// An initial coordinate.
     Position(usize),
-    /// A velocity at the start, by its coordinate; the others follow as the constraints demand.
+    /// An initial velocity, by its coordinate; the constraints determine the dependent velocities.
     Velocity(usize),
-    /// A quasi-velocity at the start.
+    /// An initial quasi-velocity.
     Quasi(usize),
-    /// A parameter. The start stays as it is in positions and velocities, or, of the reduced form, in quasi-velocities.
+    /// A parameter. The initial positions and velocities (in the reduced form: quasi-velocities) stay constant.
     Parameter(usize),
 }
 
@@ -43,13 +43,13 @@ pub enum Variable {
 pub struct Derivatives {
     /// The time of the last state.
     pub t: f64,
-    /// Derivatives of all positions, one list for each variable.
+    /// Derivatives of all positions, one vector per variable.
     pub q: Vec<Vec<f64>>,
-    /// Derivatives of all velocities.
+    /// Derivatives of all velocities, one vector per variable.
     pub qdot: Vec<Vec<f64>>,
 }
 
-/// Why a run has no derivatives.
+/// Reasons for which a run has no derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VariationError {
@@ -58,19 +58,19 @@ pub enum VariationError {
         "derivatives are those of models that are loaded from a text, and this one is compiled into the program"
     )]
     Compiled,
-    /// The scene was declared without what derivatives take.
+    /// The scene was declared without `variations`.
     #[error("the scene was declared without `variations`; add it to what the scene uses")]
     WithoutVariations,
-    /// An integrator of fixed step.
+    /// The integrator has a fixed step.
     #[error("derivatives are those of runs by dop853, dopri5 or taylor")]
     FixedStep,
-    /// A model with modes.
+    /// The model has modes.
     #[error("derivatives of models with modes are not given by name")]
     Modes,
-    /// The global form of a model with constraints.
+    /// The form is the global one and the model has constraints.
     #[error("derivatives of a model with constraints are those of its reduced form")]
     Constrained,
-    /// A velocity that follows from others.
+    /// The constraints determine this velocity from the others.
     #[error("the velocity of this coordinate follows from the others")]
     Dependent {
         /// The coordinate.
@@ -85,7 +85,7 @@ pub enum VariationError {
 }
 
 impl VariationError {
-    /// The reason that is known before the run.
+    /// The reason for which no run with these settings has derivatives, if there is one.
     pub(crate) fn beforehand(description: &Description, settings: &Settings) -> Option<Self> {
         let is_free = description.constraints.is_empty();
         match settings.form {
@@ -107,7 +107,7 @@ impl Variable {
     /// The variable of this name: a coordinate, a velocity, a quasi-velocity of the reduced form, or a parameter.
     ///
     /// # Errors
-    /// [`Unknown`].
+    /// [`Unknown`] if no variable has this name.
     pub fn find(description: &Description, name: &str) -> Result<Self, Unknown> {
         let coordinates = names::coordinates(description).enumerate();
         let velocities = coordinates
@@ -131,22 +131,22 @@ impl Variable {
 
 /// Differentiates a run.
 pub(crate) struct Differentiator<'a> {
-    /// The form, of a model that has one.
+    /// The form, for a model that has one.
     pub form: Option<&'static erased::Form>,
     /// The values of all parameters, inputs included.
     pub values: &'a [f64],
     pub variables: &'a [Variable],
     pub settings: &'a Settings,
-    /// The state of the form that the settings ask for.
+    /// The state in the form of the settings.
     pub state: &'a [f64],
     /// Positions and velocities of that state.
     pub q: &'a [f64],
     pub qdot: &'a [f64],
-    /// True where nobody wants to wait any longer.
+    /// Returns true once the caller gives up the run.
     pub is_over: &'a mut dyn FnMut() -> bool,
 }
 
-/// What a differentiator makes of a model: the inner error where there are no derivatives, the outer where no run begins.
+/// Result of a differentiator: the inner error if there are no derivatives, the outer one if no run starts.
 pub(crate) type Varied = Result<Result<Derivatives, VariationError>, Refusal>;
 
 impl VariationalVisitor for Differentiator<'_> {
@@ -174,7 +174,7 @@ impl VariationalVisitor for Differentiator<'_> {
 }
 
 impl Differentiator<'_> {
-    /// The derivatives of the last state.
+    /// Computes the derivatives of the last state.
     pub(crate) fn run(self) -> Varied {
         let Some(mut system) = self.form.and_then(System::of) else {
             return Ok(Err(VariationError::Compiled));
@@ -224,7 +224,7 @@ impl Differentiator<'_> {
             .and_then(|tangents| derivatives(system, run.t, &run.state, tangents)))
     }
 
-    /// The direction of the state, and of the parameters, that a variable stands for.
+    /// The direction of a variable, in the state and the parameters.
     fn direction<S: Instance + Variational>(
         &self,
         system: &S,
@@ -241,7 +241,7 @@ impl Differentiator<'_> {
         }
     }
 
-    /// The same from positions and velocities, of which one changes.
+    /// As `direction`, from positions and velocities of which one changes.
     fn composed<S: Instance + Variational>(
         &self,
         system: &S,
@@ -278,7 +278,7 @@ impl Differentiator<'_> {
         }
         if let Variable::Velocity(coordinate) = variable {
             let reached = system.velocities(&parameters, Dual::of(0.0), &state)?;
-            // A velocity that the constraints give is not changed by itself.
+            // A velocity that the constraints determine is not free.
             if (reached.as_slice()[coordinate].slopes()[0] - 1.0).abs() > 1e-9 {
                 return Err(VariationError::Dependent { coordinate });
             }
@@ -287,7 +287,7 @@ impl Differentiator<'_> {
     }
 }
 
-/// Numbers that do not change.
+/// Constants: numbers with derivative 0.
 fn constant<R: Row<Dual>>(values: &[f64]) -> R {
     let mut row = R::zeros(values.len());
     for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
@@ -296,13 +296,13 @@ fn constant<R: Row<Dual>>(values: &[f64]) -> R {
     row
 }
 
-/// Lets one number change at rate 1.
+/// Sets the derivative of one number to 1.
 fn change<R: Row<Dual>>(row: &mut R, index: usize) {
     let entry = &mut row.as_mut_slice()[index];
     *entry = Dual::new(entry.value, [1.0, 0.0, 0.0, 0.0]);
 }
 
-/// The parameters as they change along a direction.
+/// The parameters, with their derivatives along a direction.
 fn parameters_along<S: Variational>(system: &S, tangent: &Tangent<S>) -> S::Parameters<Dual> {
     let values = TaylorField::parameters(system);
     let mut row = constant::<S::Parameters<Dual>>(values.as_slice());
@@ -345,7 +345,7 @@ fn derivatives<S: Instance + Variational>(
     Ok(found)
 }
 
-/// Variations of a run that may be given up.
+/// Variations of a run that the caller may give up.
 struct Interruptible<'a, 'b, S: Variational> {
     variations: Variations<'a, S>,
     is_over: &'b mut dyn FnMut() -> bool,
@@ -376,7 +376,7 @@ pub(crate) struct Begun {
 }
 
 impl Begun {
-    /// Of a state of a system.
+    /// The state of a system, with its positions and velocities.
     pub(crate) fn of<S: Instance>(system: &S, state: &S::State) -> Result<Self, StateError> {
         let qdot = system.velocity(0.0, state).map_err(StateError::from)?;
         Ok(Self {

@@ -9,13 +9,13 @@ use crate::refusal::Refusal;
 /// Advice about a state that violates the constraints, in the words of the interface that took it.
 #[derive(Debug, Clone, Copy)]
 pub struct Advice {
-    /// Of velocities.
+    /// Advice about velocities.
     pub off_constraint: &'static str,
-    /// Of positions.
+    /// Advice about positions.
     pub off_position: &'static str,
 }
 
-/// Says in the model's names why a run does not begin.
+/// Explains, in the model's names, why a run does not start.
 pub fn refusal_text(description: &Description, refusal: &Refusal, advice: &Advice) -> String {
     match refusal {
         Refusal::State(error) => state_text(description, error, advice),
@@ -23,7 +23,7 @@ pub fn refusal_text(description: &Description, refusal: &Refusal, advice: &Advic
     }
 }
 
-/// Says in the model's names why a state was refused.
+/// Explains, in the model's names, why a state was refused.
 pub fn state_text(description: &Description, error: &StateError, advice: &Advice) -> String {
     match *error {
         StateError::OffConstraint {
@@ -69,7 +69,7 @@ pub fn state_text(description: &Description, error: &StateError, advice: &Advice
     }
 }
 
-/// Says in the model's names what does not exist at a state.
+/// Explains, in the model's names, which quantity does not exist at a state.
 pub fn fault_text(description: &Description, fault: &Fault) -> String {
     match *fault {
         Fault::MetricNotPositive { pivot, value } => format!(
@@ -99,7 +99,7 @@ pub fn fault_text(description: &Description, fault: &Fault) -> String {
     }
 }
 
-/// The kind of a fault in snake case, as outcomes write it.
+/// The kind of a fault in snake case, as in outcomes.
 pub const fn fault_kind(fault: &Fault) -> &'static str {
     match fault {
         Fault::MetricNotPositive { .. } => "metric_not_positive",

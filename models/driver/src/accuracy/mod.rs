@@ -1,11 +1,12 @@
-//! What accuracy costs: the measured error of integrators over tolerances, with the work and the time they take, and
-//! which of them is the cheapest for an error that is wanted.
+//! The cost of accuracy: measured errors of integrators over tolerances, with work and time, and the choice of the
+//! cheapest integrator for a wanted error.
 //!
-//! An error is measured, never estimated: it is the largest difference of a position from a reference run at
-//! [`TIMES`] equally spaced times and at the end, as a share of the largest absolute value that this coordinate takes
-//! there (of an angle, at least one radian). The reference is a run of Taylor series at [`FINEST`]; a second one with
-//! other steps shows how far it can be trusted, which is the [`Study::floor`]. Both are audited ([`dalembert::audit`]): that they
-//! miss no impact is shown without the search that finds impacts. Nothing is measured by a reference that is not confirmed.
+//! Errors are measured, never estimated. The error of a run is the largest difference of a position from a reference
+//! run, compared at [`TIMES`] equally spaced times and at the end. It is relative to the largest absolute value that
+//! the coordinate takes there (for an angle, at least one radian). The reference is a run of Taylor series at
+//! [`FINEST`]; a second run with other steps bounds its accuracy ([`Study::floor`]). Both are audited
+//! ([`dalembert::audit`]): the audit proves, independently of event location, that they miss no impact. Without a
+//! confirmed reference nothing is measured.
 //!
 //! ```
 //! use dalembert::{System};
@@ -52,23 +53,23 @@ pub const TIMES: u64 = 64;
 /// The tolerances of the two reference runs: below rounding, so that their steps differ and nothing else does.
 pub const FINEST: [f64; 2] = [1e-16, 1e-18];
 
-/// What is measured.
+/// Plan of the measurements.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// How long the runs are, from `t = 0`.
+    /// The end time of the runs, which start at `t = 0`.
     pub until: f64,
     /// The integrators.
     pub integrators: Vec<Integrator>,
-    /// The tolerances, from loose to tight. An integrator of fixed step takes the step that suits one where the run
-    /// starts.
+    /// The tolerances, from loose to tight. A fixed-step integrator takes a step that suits the tolerance at the start
+    /// of the run.
     pub tolerances: Vec<f64>,
-    /// How often each case is timed; the cases take turns, so that a slow moment of the machine meets all of them.
+    /// Number of timings of each case. The cases take turns, so that a slow moment of the machine affects all of them.
     pub rounds: u32,
-    /// The least time of one timing: shorter runs are repeated.
+    /// The shortest time of one timing: shorter runs are repeated.
     pub least: Duration,
-    /// A run that takes longer is the last of its integrator: tighter tolerances take longer still.
+    /// Longest time of a run. An integrator that exceeds it is not run at tighter tolerances, which take longer still.
     pub patience: Duration,
-    /// So is one whose error is at most this, if that is enough.
+    /// An error that is small enough: an integrator that reaches it is not run at tighter tolerances.
     pub enough: Option<f64>,
 }
 
@@ -92,22 +93,22 @@ fn power_of_ten(decade: u32) -> f64 {
     format!("1e-{decade}").parse().unwrap_or(f64::NAN)
 }
 
-/// An integrator at a tolerance, and what it reached.
+/// An integrator at a tolerance, with its measured error, work and time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// The integrator.
     pub integrator: Integrator,
     /// The tolerance.
     pub tol: f64,
-    /// Its step, if it keeps one.
+    /// Its step, for an integrator of fixed step.
     pub step: Option<f64>,
     /// The measured error.
     pub error: f64,
-    /// True if it met the same surfaces as the reference, and ended as it did.
+    /// True if it meets the same surfaces as the reference and ends for the same reason.
     pub agrees: bool,
-    /// How it ended.
+    /// The outcome of its run.
     pub outcome: Outcome,
-    /// When.
+    /// The time at its end.
     pub t: f64,
     /// The work.
     pub counters: Counters,
@@ -115,55 +116,55 @@ pub struct Sample {
     pub microseconds: f64,
 }
 
-/// What was measured.
+/// Results of the measurements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
-    /// How long the runs were meant to be.
+    /// The requested end time of the runs.
     pub until: f64,
-    /// What two reference runs differ by: smaller errors are not told from 0.
+    /// Difference between the two reference runs: errors below it cannot be distinguished from 0.
     pub floor: f64,
-    /// Why the impacts of the reference are not confirmed, in words; there are no cases then.
+    /// The reason, in words, for which the impacts of the reference are not confirmed; there are no cases then.
     pub doubt: Option<String>,
-    /// How the reference ended.
+    /// The outcome of the reference.
     pub outcome: Outcome,
     /// The impacts of the reference.
     pub impacts: u64,
     /// The cases, by integrator and from loose to tight.
     pub samples: Vec<Sample>,
-    /// Integrators that were left out, and why.
+    /// Integrators that were left out, each with the reason.
     pub absent: Vec<(Integrator, String)>,
 }
 
-/// Why there is no choice.
+/// Reasons for which no case can be chosen.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoChoice {
     /// The runs did not begin.
     #[error(transparent)]
     Start(#[from] Refusal),
-    /// There is no reference to measure errors by.
+    /// No reference is confirmed, so errors cannot be measured.
     #[error("the reference is not confirmed: {0}")]
     Unconfirmed(String),
-    /// Nothing that was measured is as accurate.
+    /// No measured case is accurate enough.
     #[error(
         "no run has an error below {wanted:e}; the least is {least:e}, and the reference is known to {floor:e}"
     )]
     OutOfReach {
-        /// What was wanted.
+        /// The wanted error.
         wanted: f64,
         /// The least error of all.
         least: f64,
-        /// How far the reference can be trusted.
+        /// Accuracy of the reference ([`Study::floor`]).
         floor: f64,
     },
 }
 
 impl Study {
-    /// The fastest of the cases that reach an error, and end as the reference does.
+    /// The fastest case that reaches an error and ends as the reference does.
     ///
     /// # Errors
-    /// [`NoChoice::OutOfReach`] if there is none, or the reference itself is not known as well as that;
-    /// [`NoChoice::Unconfirmed`] without a reference.
+    /// [`NoChoice::OutOfReach`] if no case reaches the error, or if the reference is less accurate than that;
+    /// [`NoChoice::Unconfirmed`] without a confirmed reference.
     pub fn choose(&self, wanted: f64) -> Result<&Sample, NoChoice> {
         if let Some(doubt) = &self.doubt {
             return Err(NoChoice::Unconfirmed(doubt.clone()));
@@ -184,7 +185,7 @@ impl Study {
             })
     }
 
-    /// The fastest case of each decade of errors that one reaches, from loose to tight.
+    /// The fastest case for each decade of errors that a case reaches, from loose to tight.
     pub fn cheapest(&self) -> Vec<(f64, &Sample)> {
         let decades = (1..=16).map(power_of_ten);
         decades
@@ -193,12 +194,12 @@ impl Study {
     }
 }
 
-/// The integrator and the tolerance to take for a wanted error over a horizon, by measuring all of them.
+/// Chooses integrator and tolerance for a wanted error over a horizon by measuring all of them.
 ///
-/// The state is one of the scene; both stay as they are.
+/// The state is one of the scene. Scene and state are not changed.
 ///
 /// # Errors
-/// [`NoChoice`].
+/// [`NoChoice`] if the runs do not start, the reference is not confirmed, or no case reaches the error.
 pub fn choose<M: Model>(
     scene: &M,
     state: &M::State,
@@ -213,10 +214,10 @@ pub fn choose<M: Model>(
     study.choose(wanted).copied()
 }
 
-/// Measures what a plan asks for.
+/// Makes the measurements of a plan.
 ///
 /// # Errors
-/// Why the reference does not begin.
+/// [`Refusal`] if the reference does not start.
 pub fn measure<M: Model>(scene: &M, state: &M::State, plan: &Plan) -> Result<Study, Refusal> {
     let base = Settings {
         form: Form::Reduced,
@@ -242,7 +243,8 @@ struct Case {
     times: Vec<f64>,
 }
 
-/// Measures, with everything but integrator and tolerance taken from `base`; tells what it is about to do.
+/// Makes the measurements of a plan with all settings but integrator and tolerance from `base`; calls `tell` before
+/// each one.
 pub(crate) fn study<M: Model>(
     model: &M,
     state: &M::State,
@@ -298,7 +300,8 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// Makes them, up to the first that is accurate enough or takes too long; why there are no more.
+    /// Runs the cases, up to the first that is accurate enough or takes too long. The error explains why tighter
+    /// tolerances are left out.
     fn climb<M: Model>(
         &mut self,
         model: &M,
@@ -317,7 +320,7 @@ impl<'a> Ladder<'a> {
             let begun = Instant::now();
             let track = track(model, state, &settings).map_err(|refusal| refusal.to_string())?;
             let once = begun.elapsed();
-            // Steps are halved or doubled to suit a tolerance: two of them may suit the same.
+            // Steps are halved or doubled to suit a tolerance, so two tolerances may have the same step.
             let last = self.cases.last().and_then(|case| case.sample.step);
             if track.step.is_some() && track.step == last {
                 continue;
@@ -376,7 +379,7 @@ impl Case {
             std::hint::black_box(solved.run.state);
         }
         let seconds = begun.elapsed().as_secs_f64() / f64::from(self.repeats);
-        // Of a run that ends where it begins, the time of the run.
+        // A run of length 0 counts as one unit of time.
         let length = if self.sample.t > 0.0 {
             self.sample.t
         } else {
@@ -396,11 +399,11 @@ impl Case {
     }
 }
 
-/// A run that others are measured by.
+/// The run against which the others are measured.
 struct Reference {
     track: Track,
     floor: f64,
-    /// Why its impacts are not confirmed.
+    /// The reason for which its impacts are not confirmed.
     doubt: Option<String>,
 }
 
@@ -438,7 +441,7 @@ fn track<M: Model>(model: &M, state: &M::State, settings: &Settings) -> Result<T
     Ok(probe.track(&solved, Audited::Not))
 }
 
-/// The track of a run, with positions up to a time, under an audit of its impacts.
+/// Runs a model under an audit of its impacts; the track has positions up to the time `until`.
 fn audited<M: Model>(
     model: &M,
     state: &M::State,

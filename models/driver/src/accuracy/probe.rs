@@ -1,4 +1,4 @@
-//! What a run leaves behind to be compared: its positions at given times, and how it ended.
+//! Record of a run for comparisons: its positions at given times, its impacts and its end.
 
 use std::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + u
     description.surfaces.iter().map(|surface| surface.name)
 }
 
-/// Impacts of a run that are kept to be compared; of later ones only the number is.
+/// Largest number of impacts that are kept for comparison; later impacts are only counted.
 const KEPT: usize = 1 << 20;
 
 /// Keeps positions at equally spaced times, and the sequence of impacts.
@@ -28,7 +28,7 @@ pub struct Probe<'a, M> {
     impacts: Vec<Met>,
 }
 
-/// An impact: when, and the index of the surface.
+/// An impact: its time, and the index of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Met {
     pub t: f64,
@@ -36,7 +36,7 @@ pub struct Met {
 }
 
 impl<'a, M: Model> Probe<'a, M> {
-    /// For a run from 0 to `until`.
+    /// A probe of a run from 0 to `until`.
     pub fn new(model: &'a M, until: f64) -> Self {
         Self {
             model,
@@ -53,7 +53,7 @@ impl<'a, M: Model> Probe<'a, M> {
         self.times.time(self.positions.len() as u64)
     }
 
-    /// The track of the run that was watched, and audited with this result.
+    /// The track of the run that this probe has watched, with the result of its audit.
     pub fn track(self, solved: &Solved<M::State>, audit: Audited) -> Track {
         let last = self.model.position(&solved.run.state);
         Track {
@@ -103,12 +103,12 @@ pub enum Audited {
     Impossible,
     /// No surface is met between impacts.
     Confirmed,
-    /// One may be, or something else is wrong.
+    /// A surface may be met between impacts, or the audit found another defect.
     Doubted(Finding),
 }
 
 impl Audited {
-    /// Why the events of a run are not confirmed.
+    /// The reason for which the events of a run are not confirmed.
     fn doubt(self, description: &Description) -> Option<String> {
         let surface = |index| surfaces(description).nth(index).unwrap_or_default();
         match self {
@@ -135,22 +135,22 @@ impl Audited {
 
 /// The first difference between two runs.
 enum Difference {
-    /// An impact; `None` where a run has no more.
+    /// An impact; `None` for the run without another impact.
     Impact([Option<Met>; 2]),
     /// The kinds of their ends.
     End,
 }
 
-/// A run in a few numbers.
+/// Samples of a run.
 #[derive(Debug, Clone)]
 pub struct Track {
     description: Description,
-    /// At each time that was reached.
+    /// Positions at each time that the run reached.
     positions: Vec<Vec<f64>>,
-    /// The first impacts, in order.
+    /// The first impacts, in order of time.
     impacts: Vec<Met>,
     audit: Audited,
-    /// At the end.
+    /// Positions at the end.
     last: Vec<f64>,
     pub outcome: Outcome,
     pub t: f64,
@@ -164,7 +164,7 @@ impl Track {
         self.difference(other).is_none()
     }
 
-    /// The first difference between the events of both; a text calls the runs by these names.
+    /// Describes the first difference between the events of both runs, under these names of the runs.
     pub fn difference_from(&self, other: &Self, names: [&str; 2]) -> Option<String> {
         let [own, others] = names;
         match self.difference(other)? {
@@ -198,7 +198,7 @@ impl Track {
         (ends(self) != ends(other)).then_some(Difference::End)
     }
 
-    /// An impact in words.
+    /// Describes an impact.
     fn told(&self, met: Option<Met>) -> String {
         match met {
             None => "meets nothing more".to_owned(),
@@ -209,12 +209,14 @@ impl Track {
         }
     }
 
-    /// Why the events of the run are not confirmed independently of the search that found them; `None` if they are.
+    /// The reason for which the events of the run are not confirmed independently of event location; `None` if they
+    /// are.
     pub fn doubt(&self) -> Option<String> {
         self.audit.doubt(&self.description)
     }
 
-    /// True if this is the run that ended so, to the last digit. Coordinates that a mode does not have are not compared.
+    /// True if the run that ended with `ending` is the same to the last digit. Coordinates that the mode does not have
+    /// are not compared.
     pub fn is_run_of(&self, ending: &Ending) -> bool {
         let mut pairs = self.last.iter().zip(&ending.last.q);
         self.t == ending.t
@@ -222,8 +224,8 @@ impl Track {
             && pairs.all(|(own, right)| own == right || right.is_nan())
     }
 
-    /// The largest difference of a position, or of the times at the end, as a share of what `reference` has there.
-    /// Infinite where a position is not a number.
+    /// The largest relative difference of a position or of the time at the end, with respect to `reference`. Infinite
+    /// if a position is not a number.
     pub fn distance(&self, reference: &Self) -> f64 {
         let scales: Vec<f64> = (0..self.description.coordinates.len())
             .map(|i| reference.scale(i))
@@ -235,13 +237,13 @@ impl Track {
             components.map(|((own, right), scale)| (own - right).abs() / scale)
         });
         let late = (self.t - reference.t).abs();
-        // A run that ends where it begins has no length to compare with.
+        // Two runs of length 0 have equal ends.
         let end = if late == 0.0 { 0.0 } else { late / reference.t };
         let number = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
         differences.map(number).fold(number(end), f64::max)
     }
 
-    /// The largest absolute value of a coordinate; at least 1 for an angle, and 1 for what stays at 0.
+    /// The largest absolute value of a coordinate; at least 1 for an angle, and 1 for a coordinate that stays at 0.
     fn scale(&self, coordinate: usize) -> f64 {
         let positions = self.positions.iter().chain([&self.last]);
         let values = positions.map(|position| position[coordinate].abs());

@@ -1,35 +1,35 @@
-//! The verdict on a run: its measured error, or why nothing is known of it.
+//! Verification of a run: its measured error, or the reason for which it cannot be measured.
 //!
-//! The run is made again, bit by bit the same, and the reference twice. All of them are audited, and all have to meet the same
-//! surfaces in the same order: no error is given where an impact may have been missed, be it by all of them.
+//! The run is repeated bit for bit, and the reference is run twice. All three are audited, and all must meet the same
+//! surfaces in the same order: no error is reported if an impact may have been missed, even by all of them.
 
 use super::{Model, Settings, audited, reference};
 use crate::refusal::Refusal;
 use crate::run::Ending;
 
-/// The verdict on a run.
+/// Result of a verification.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verified {
     /// The error was measured.
     Measured {
         /// The largest error of a position, as a share.
         error: f64,
-        /// How far the reference is known.
+        /// Accuracy of the reference.
         floor: f64,
     },
-    /// Nothing.
+    /// The error could not be measured.
     Doubted {
-        /// Why, in words.
+        /// The reason, in words.
         reason: String,
-        /// True if the reference meets the same surfaces and ends alike.
+        /// True if the reference meets the same surfaces and ends for the same reason.
         agrees: bool,
     },
 }
 
-/// Makes a run again that ended so, and measures its error.
+/// Repeats the run with this ending, and measures its error.
 ///
 /// # Errors
-/// Why the run does not begin.
+/// [`Refusal`] if the run or the reference does not start.
 pub(crate) fn verify<M: Model>(
     model: &M,
     state: &M::State,
@@ -37,8 +37,8 @@ pub(crate) fn verify<M: Model>(
     ending: &Ending,
 ) -> Result<Verified, Refusal> {
     let until = match settings.impacts {
-        // The horizon is far beyond the last impact that was asked for; positions are compared on the way to it, and
-        // a little later, where other runs may have it.
+        // The horizon lies far beyond the last requested impact. Positions are compared up to a time slightly after it,
+        // since the last impact of other runs may come later.
         Some(_) => ending.t * 1.01,
         None => settings.until,
     };

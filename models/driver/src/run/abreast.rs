@@ -1,4 +1,4 @@
-//! Many runs of one model abreast.
+//! Many runs of one model in SIMD lanes.
 
 use dalembert::lanes::{Member, run_abreast};
 use dalembert::simulation::STEP_BUDGET;
@@ -8,7 +8,7 @@ use super::{Bridge, Ending, Settings, Solved, Watch, effects, ending};
 use crate::refusal::Refusal;
 use crate::typed::{Model, point};
 
-/// One of many runs: the model with its parameters, the state it begins with, and who watches it.
+/// One of many runs: the model with its parameters, the initial state and the observer.
 pub(crate) struct Abreast<'w, M: Model> {
     pub model: M,
     pub state: M::State,
@@ -21,7 +21,8 @@ fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, Refusal> {
     Ok(limited!(Taylor::new(tolerance), settings))
 }
 
-/// As [`simulate`](super::simulate), with Taylor series, of several at once; the results in the order of the runs.
+/// Makes several runs as [`simulate`](super::simulate) does, at once and with Taylor series; returns the results in the
+/// order of the runs.
 pub(crate) fn simulate_abreast<M: Model>(
     runs: Vec<Abreast<'_, M>>,
     settings: &Settings,

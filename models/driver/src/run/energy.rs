@@ -1,38 +1,40 @@
-//! How far the energy of a run with steps of one size is off: such steps estimate no error, and this one tells of it.
+//! Energy balance of a run with steps of fixed size. Such steps have no error estimate; the balance reveals large
+//! errors.
 //!
-//! Along smooth motion the energy changes by its power, the derivative of the energy along the motion: 0 where nothing works on the
-//! system. What it changes by besides is an error. The power is integrated by the trapezoidal rule, whose own error does not grow
-//! with the number of steps.
+//! Along smooth motion the energy changes at the rate of the power, its derivative along the motion, which is 0 unless
+//! a force works on the system. Any other change is an error. The power is integrated by the trapezoidal rule, whose
+//! error does not grow with the number of steps.
 
 use dalembert::{Segment, StateVector, System};
 
-/// The part of its size by which the energy may be off before it is told.
+/// Relative energy error above which a warning is given.
 const TOLD: f64 = 1e-2;
 
-/// The largest kinetic energy counts as a thousandth of it in the size of an energy, so that one that is 0 but for rounding has a
-/// size.
+/// Fraction of the largest kinetic energy below which the reference energy never falls, so that an energy that is 0 up
+/// to rounding has a scale.
 const SWING: f64 = 1e-3;
 
-/// The part of a step over which the power is a difference of energies: rounding takes a `1e-11` of the energy from it in every step.
+/// Fraction of a step over which the power is a difference quotient of energies: rounding adds a relative error of
+/// `1e-11` of the energy in every step.
 const PART: f64 = 1e-5;
 
-/// The energy along smooth motion; impacts are left out, and motion that a surface holds.
+/// The energy balance along smooth motion; impacts and motion held by a surface are left out.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Balance {
-    /// The absolute value of the energy at the start, or the kinetic energy there if that is more.
+    /// The absolute value of the energy at the start, or the kinetic energy there if that is larger.
     size: f64,
     /// The largest kinetic energy.
     swing: f64,
-    /// The work, without regard to its sign.
+    /// The sum of the absolute values of the work.
     work: f64,
     /// The error so far.
     error: f64,
     /// The largest error, and its time.
     largest: f64,
     at: f64,
-    /// What is known at the end of the last step, unless something happened there.
+    /// Energy and power at the end of the last step, unless an event happened there.
     last: Option<Known>,
-    /// Surfaces that hold the motion.
+    /// Number of surfaces that hold the motion.
     holds: usize,
 }
 
@@ -44,7 +46,7 @@ struct Known {
 }
 
 impl Balance {
-    /// Of a run that begins in this state; `None` where it has no energy.
+    /// The balance of a run that starts in this state; `None` if the energy does not exist there.
     pub(super) fn of<M: System>(model: &M, t: f64, state: &M::State) -> Option<Self> {
         let energy = model.energy(t, state).ok().filter(|it| it.is_finite())?;
         let kinetic = kinetic(model, t, state);
@@ -60,7 +62,7 @@ impl Balance {
         })
     }
 
-    /// Takes in a stretch of motion.
+    /// Adds a stretch of motion.
     pub(super) fn follow<M: System>(&mut self, model: &M, segment: &Segment<'_, M::State>) {
         if self.holds > 0 {
             return;
@@ -74,7 +76,7 @@ impl Balance {
         self.last = Some(after);
         let work = 0.5 * length * (before.power + after.power);
         let error = after.energy - before.energy - work;
-        // Where a power does not exist, nothing is known of the step.
+        // Without a finite power the step is skipped.
         if !error.is_finite() {
             return;
         }
@@ -86,12 +88,12 @@ impl Balance {
         }
     }
 
-    /// The state was changed.
+    /// Notes that an event changed the state.
     pub(super) fn jump(&mut self) {
         self.last = None;
     }
 
-    /// A surface begins or ceases to hold the motion.
+    /// Notes that a surface begins or ceases to hold the motion.
     pub(super) fn hold(&mut self, begins: bool) {
         self.last = None;
         self.holds = match begins {
@@ -100,7 +102,7 @@ impl Balance {
         };
     }
 
-    /// The largest error, its time, and its part of the size of the energy, where it is large.
+    /// The largest error, its time, and its fraction of the energy scale; `None` if that fraction is at most [`TOLD`].
     pub(super) fn told(&self) -> Option<(f64, f64, f64)> {
         let size = self.size.max(self.work).max(SWING * self.swing);
         let part = self.largest / size;

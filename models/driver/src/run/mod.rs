@@ -1,6 +1,6 @@
-//! Drives one model through one run, and shows the run to a [`Watch`] that knows nothing of the model's type.
+//! Runs of a typed model, reported to a [`Watch`] that does not depend on the model's type.
 
-/// An integrator that chooses its steps, with the largest one of the settings; a refusal leaves the function.
+/// Builds an adaptive integrator with the largest step of the settings; returns from the function on a refusal.
 macro_rules! limited {
     ($stepper:expr, $settings:expr) => {
         $stepper.with_max_step($settings.max_step.unwrap_or(f64::INFINITY))?
@@ -31,7 +31,7 @@ use crate::typed::{Model, point};
 pub(crate) use abreast::{Abreast, simulate_abreast};
 use energy::Balance;
 
-/// How a run is to be made.
+/// Settings of a run.
 #[derive(Debug, Clone)]
 pub struct Settings {
     /// The form of the equations.
@@ -40,9 +40,9 @@ pub struct Settings {
     pub integrator: Integrator,
     /// The tolerance, relative and absolute.
     pub tol: f64,
-    /// The step of an integrator of fixed step, where the flags say.
+    /// The step of a fixed-step integrator, if one is set.
     pub step: Option<f64>,
-    /// The largest step of an integrator that chooses its steps.
+    /// The largest step of an adaptive integrator.
     pub max_step: Option<f64>,
     /// Stop after this many steps.
     pub steps: Option<u64>,
@@ -50,41 +50,41 @@ pub struct Settings {
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
-    /// Laws by index of the surface, instead of the declared ones; a later one counts.
+    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
     pub laws: Vec<(usize, Law)>,
-    /// What impacts do where a law alone does not tell how to go on.
+    /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
-    /// Whether to project on the constraints, where the flags say.
+    /// Projection on the constraints after each step, if set; by default as the scene declares.
     pub projection: Option<bool>,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Debug, Clone)]
 pub struct Ending {
-    /// Why.
+    /// The outcome.
     pub outcome: Outcome,
-    /// When.
+    /// The time at the end.
     pub t: f64,
-    /// The state it began with.
+    /// The initial state.
     pub first: Point,
-    /// The state it ended in.
+    /// The last state.
     pub last: Point,
     /// The work.
     pub counters: Counters,
-    /// The step that the integrator kept, if it keeps one.
+    /// The step of a fixed-step integrator.
     pub step: Option<f64>,
     /// The law in force on each surface.
     pub laws: Vec<Option<Law>>,
-    /// Whether the requested time or number of impacts was reached.
+    /// True if the run reached the requested time or number of impacts.
     pub reached: bool,
-    /// Where the integrator was out of its depth, in words.
+    /// Warnings about the accuracy of a fixed-step integrator.
     pub warnings: Vec<String>,
 }
 
 /// An impact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Impact {
-    /// When.
+    /// The time.
     pub t: f64,
     /// The index of the surface.
     pub surface: usize,
@@ -92,24 +92,24 @@ pub struct Impact {
     pub before: Point,
     /// The state after.
     pub after: Point,
-    /// Whether another surface was hit at the same time.
+    /// True if another surface was hit at the same time.
     pub simultaneous: bool,
-    /// Whether the surface was touched so lightly that rounding may have decided it.
+    /// True for a grazing impact, so light that rounding may have decided it.
     pub graze: bool,
 }
 
 /// A surface begins or ceases to hold the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// When.
+    /// The time.
     pub t: f64,
     /// The index of the surface.
     pub surface: usize,
     /// The state.
     pub at: Point,
-    /// True where it begins.
+    /// True if it begins to hold the motion.
     pub begins: bool,
-    /// Where impacts accumulate, if that is how it begins.
+    /// The time at which impacts accumulate, if the contact begins with an accumulation.
     pub accumulation: Option<f64>,
 }
 
@@ -133,30 +133,30 @@ pub trait Watch {
     /// A surface begins or ceases to hold the motion.
     fn contact(&mut self, contact: Contact);
 
-    /// Whether to look for errors that an integrator of fixed step does not estimate, which takes time.
+    /// True if the watch wants warnings about errors that a fixed-step integrator does not estimate. They take time.
     fn wants_warnings(&self) -> bool {
         false
     }
 
-    /// Whether nobody wants to see more: the run ends then.
+    /// True once the watch needs no more: the run then ends.
     fn is_over(&self) -> bool {
         false
     }
 }
 
-/// A run that has ended, in the model's own type.
+/// A run that has ended, in the types of the model.
 pub(crate) struct Solved<S> {
     pub run: Run<S>,
-    /// The step that the integrator kept, if it keeps one.
+    /// The step of a fixed-step integrator.
     pub step: Option<f64>,
     /// The law in force on each surface.
     pub laws: Vec<Option<Law>>,
 }
 
-/// Runs a model from `t = 0`, and shows the run to a watch.
+/// Runs a model from `t = 0`, observed by a watch.
 ///
 /// # Errors
-/// Why the runtime refuses to start.
+/// [`Refusal`] if the runtime refuses to start.
 pub(crate) fn simulate<M: Model>(
     model: &M,
     state: M::State,
@@ -179,7 +179,7 @@ pub(crate) fn simulate<M: Model>(
     })
 }
 
-/// Where an integrator of fixed step was out of its depth.
+/// Warnings about the accuracy of a fixed-step integrator.
 fn warnings<S>(settings: &Settings, solved: &Solved<S>, balance: Option<Balance>) -> Vec<String> {
     let Some(step) = solved.step else {
         return Vec::new();
@@ -202,7 +202,7 @@ fn warnings<S>(settings: &Settings, solved: &Solved<S>, balance: Option<Balance>
     warnings
 }
 
-/// What is told of a run that has ended.
+/// The ending of a run in the names and types of the driver.
 fn ending<M: Model>(
     model: &M,
     first: Point,
@@ -224,10 +224,10 @@ fn ending<M: Model>(
     }
 }
 
-/// Runs a model from `t = 0`.
+/// Runs a model from `t = 0`, observed in the types of the model.
 ///
 /// # Errors
-/// As [`simulate`].
+/// [`Refusal`] as of [`simulate`].
 pub(crate) fn solve<M: Model>(
     model: &M,
     state: &M::State,
@@ -253,7 +253,7 @@ pub(crate) fn solve<M: Model>(
     }
 }
 
-/// An integrator of fixed step with the step of the flags, if they say.
+/// A fixed-step integrator with the step of the settings, if one is set.
 fn stepping<S: StateVector, M: Method>(
     integrator: FixedStep<S, M>,
     settings: &Settings,
@@ -264,8 +264,7 @@ fn stepping<S: StateVector, M: Method>(
     }
 }
 
-/// NOTE: of the integrator and of the observer nothing but their traits are known, so that what watches impacts is compiled once
-/// for a model.
+/// NOTE: integrator and observer are trait objects, so that the code that watches impacts is compiled once per model.
 fn run<M: Model>(
     model: &M,
     stepper: Chosen<'_, M>,
@@ -284,7 +283,7 @@ fn run<M: Model>(
     })
 }
 
-/// The effects of a scene as the settings want them, and the law in force on each surface.
+/// The effects of a scene with the laws and policies of the settings, and the law in force on each surface.
 pub(crate) fn effects<M: Instance + Scene>(
     model: &M,
     settings: &Settings,
@@ -306,11 +305,11 @@ pub(crate) fn effects<M: Instance + Scene>(
     (effects, laws)
 }
 
-/// Shows the runtime's segments and events to a [`Watch`].
+/// Forwards segments and events of the runtime to a [`Watch`].
 struct Bridge<'a, M> {
     model: &'a M,
     watch: &'a mut dyn Watch,
-    /// The energy along steps of one size, where errors are to be told.
+    /// The energy balance, if the watch wants warnings about a fixed-step integrator.
     balance: Option<Balance>,
 }
 
@@ -365,7 +364,7 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
     }
 }
 
-/// A segment of a run. Looking inside one makes its dense output ready, hence the cell.
+/// A segment of a run. A query inside it prepares the dense output, hence the cell.
 struct SegmentPiece<'a, 'b, M: Model> {
     model: &'a M,
     segment: RefCell<&'a mut Segment<'b, M::State>>,
