@@ -1,7 +1,7 @@
 //! The shipped models as texts, for the `dalembert` command, and the [`figures`] of the papers that they come from.
 //!
-//! No model is compiled: a command loads the text of the model that it names. With the feature `inlined` the models are compiled, and their
-//! functions inlined into the code that runs them.
+//! No model is compiled: a command loads the text of its model. With the feature `inlined` the models are compiled, and
+//! their functions are inlined into the code that runs them.
 
 pub mod figures;
 
@@ -31,7 +31,7 @@ fn entries() -> Vec<Entry> {
         .collect()
 }
 
-/// Every shipped model, for the command line. A text is loaded once in a process.
+/// Every shipped model, for the command line. Each text is loaded at most once per process.
 pub fn all() -> Vec<Entry> {
     static MODELS: OnceLock<Vec<Entry>> = OnceLock::new();
     MODELS.get_or_init(entries).clone()

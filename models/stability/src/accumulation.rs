@@ -1,4 +1,4 @@
-//! Section B, second part: accumulations that are elastic, faster than geometric, or algebraic, and sliding.
+//! Section B, second part: accumulations that are elastic, faster than geometric or algebraic, and sliding.
 
 use core::ops::ControlFlow;
 
@@ -12,7 +12,7 @@ use super::course::{Course, U, location};
 use super::text::{Model, Text, shipped};
 use super::zeno::accumulates;
 
-/// A point between a wall at rest and a piston that closes in.
+/// A point between a wall at rest and a piston that approaches it.
 pub static PISTON: Text = Text::new(
     "Piston {
         coordinates { x; }
@@ -22,10 +22,11 @@ pub static PISTON: Text = Text::new(
     }",
 );
 
-/// The surface of its piston.
+/// Index of the piston's surface.
 const STROKE: usize = 1;
 
-/// A point thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`, horizontal where it meets them.
+/// A point thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`; the treads are horizontal at each
+/// impact.
 static TREADS: Text = Text::new(
     "Treads {
         coordinates { x; y; }
@@ -115,7 +116,7 @@ fn treads(setting: Setting, report: &mut Report) {
         accumulates(report, &format!("a = {a}"), &end, 1.0 / k, bound);
         let late = |(n, hit): (usize, &super::course::Hit)| {
             let speed = r.powi(n as i32 + 1);
-            // Gravity 1 makes of an error of the time one of the speed; each flight takes over those before it.
+            // With gravity 1, an error of the time is an equal error of the speed; errors add up over flights.
             let bound = location(hit.t, end.eta(2.0), (1.0 + k) * speed, 1.0) * (n + 1) as f64;
             (hit.after[1] - speed).abs() / bound
         };
@@ -160,13 +161,13 @@ fn below_the_treads(setting: Setting, report: &mut Report) {
     );
 }
 
-/// The height over the curve of B06 for `v0 = 1`.
+/// Height above the curve of B06 for `v0 = 1`.
 fn rising<L: Numbers>(a: f64, [x, y]: [L; 2]) -> L {
     let b = L::of(a * a);
     y - b * x * (L::of(2.0_f64.sqrt()) - b * x)
 }
 
-/// The factor of B08.
+/// Normal factor of B08.
 const AL: f64 = 1.25;
 
 /// The strip with this tangential factor.
@@ -204,7 +205,7 @@ fn super_elastic_impacts(setting: Setting, report: &mut Report) {
     }
 }
 
-/// `x = tan t` between walls at 0 and 1.
+/// Spasmodic motion `x = tan t` between walls at 0 and 1.
 fn escape(setting: Setting, report: &mut Report) {
     let system = shipped("spasmodic_hamiltonian").model();
     let end = Course::new(&system, &[0.0, 0.5, 1.0, 1.0], &[0.0; 4], 2.0).run(setting);
@@ -216,7 +217,7 @@ fn escape(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Counts impacts on the piston up to a number, and keeps where the last was.
+/// Counts impacts on the piston down from a number, and keeps the position of the last one.
 struct Strokes<'a> {
     system: &'a Model,
     left: u64,
@@ -256,7 +257,7 @@ fn piston_to_the_end(setting: Setting, report: &mut Report) {
     report.near("time", limit(&end.outcome), 2.0, 1e-8);
 }
 
-/// Where impacts accumulate.
+/// The time at which impacts accumulate.
 fn limit(outcome: &Outcome) -> f64 {
     match outcome {
         Outcome::Spasmodic { t, .. } => *t,

@@ -1,4 +1,4 @@
-//! Section E, second part: the arithmetic of what is generated.
+//! Section E, second part: arithmetic of generated code.
 
 use dalembert::{Impacting, Instance, StateVector, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting, notes, refusal};
@@ -7,7 +7,7 @@ use super::course::{Course, Random, U, vector};
 use super::tables::elliptic_table;
 use super::text::{Text, shipped, value};
 
-/// A rotor, and functions of its angle that lose digits.
+/// A rotor with functions of its angle that lose digits.
 static ROTOR: Text = Text::new(
     "Rotor {
         coordinates { theta; }
@@ -22,13 +22,13 @@ static ROTOR: Text = Text::new(
     }",
 );
 
-/// Places of its outputs.
+/// Indices of its outputs.
 const COSINE: usize = 0;
 const CANCELS: usize = 1;
 const KEPT: usize = 3;
 const ROOT_KEPT: usize = 4;
 
-/// A potential that has a value at 0 only as a limit.
+/// A potential with a removable singularity at 0.
 static REMOVABLE: Text = Text::new(
     "Removable {
         coordinates { x; }
@@ -101,7 +101,7 @@ fn large_angle(setting: Setting, report: &mut Report) {
     );
 }
 
-/// An output of the rotor at an angle.
+/// An output of the rotor, by index, at an angle.
 fn output(theta: f64, index: usize) -> f64 {
     let rotor = ROTOR.model();
     let state = rotor

@@ -1,4 +1,4 @@
-//! A point of mass 1 in the plane, written by hand: surfaces and resets that a declaration does not offer.
+//! A point of mass 1 in the plane, written by hand, with surfaces and resets that a declaration does not offer.
 
 use dalembert::jet::LENGTH;
 use dalembert::law::{Contact, Law};
@@ -20,10 +20,10 @@ pub struct Gap {
     pub along: fn([TaylorModel; 2]) -> TaylorModel,
 }
 
-/// What an impact makes of a velocity.
+/// The velocity after an impact, as a function of the velocity before it.
 pub type Reset = fn([f64; 2]) -> [f64; 2];
 
-/// The point, under a constant acceleration, between surfaces that have a reset each.
+/// The point, under a constant acceleration, between surfaces with a reset each.
 #[derive(Clone)]
 pub struct Point<const S: usize> {
     /// The acceleration.
@@ -148,7 +148,7 @@ impl<const S: usize> Impacting for Point<S> {
         Ok(Self::Gaps::from_fn(rate))
     }
 
-    /// The law whose impulse is `-2 constrained_rate / constrained_compliance`, which the contact makes 1.
+    /// The impulse of the law is `-2 constrained_rate / constrained_compliance`; the contact makes its value 1.
     fn law(&self, _surface: usize) -> Law {
         Law::Elastic
     }

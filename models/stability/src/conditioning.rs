@@ -1,4 +1,5 @@
-//! Section D, second part: constraints that are nearly dependent, metrics that fail, inertias and stiffnesses far apart.
+//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of very different
+//! size.
 
 use dalembert::{StateError, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -276,7 +277,7 @@ fn light_bob(setting: Setting, report: &mut Report) {
         .tol(1e-13)
         .run(setting);
     report.class(&end.outcome, "done");
-    // Upright after five and a quarter periods, at the rate of the lowest point.
+    // After five and a quarter periods the pendulum passes its lowest point, at this rate.
     let rate = 2.0 * (g / length).sqrt() * (0.5 * start).sin();
     report.error(
         "time of the passage over the period",

@@ -1,11 +1,11 @@
-//! Section D, first part: motions under constraints against closed forms.
+//! Section D, first part: motions under constraints, compared with closed forms.
 
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
 use super::course::Course;
 use super::text::{Large, Model, Text, shipped, value};
 
-/// A skate on an incline that falls along x, and a wall at x = 0 or y = 0 for those who ask.
+/// A skate on an incline that falls along x. The walls at x = -far and y = -low are out of reach by default.
 pub static SKATE: Text = Text::new(
     "Skate {
         coordinates { x; y; theta: angle; }
@@ -121,7 +121,7 @@ fn skate_on_incline(setting: Setting, report: &mut Report) {
 /// The radius of [`wide_disk`].
 pub const RADIUS: f64 = 0.5;
 
-/// A vertical disk on a table that never ends.
+/// A vertical disk on a table without an edge.
 pub fn wide_disk() -> Model {
     shipped("rolling_disk").with([
         ("m", 1.0),
@@ -133,7 +133,7 @@ pub fn wide_disk() -> Model {
     ])
 }
 
-/// Where [`wide_disk`] is that starts at the origin, and what way it has made.
+/// Position at time `t` and path length of a [`wide_disk`] that starts at the origin.
 pub fn disk_at([roll, turn, phi]: [f64; 3], t: f64) -> [f64; 3] {
     let radius = RADIUS * roll / turn;
     let after = phi + turn * t;
@@ -202,15 +202,15 @@ fn free_sleigh(setting: Setting, report: &mut Report) {
     report.near("angle", theta, turned, 1e-11);
 }
 
-/// The rates of Euler angles of a body with its axis at `theta` that turns about a horizontal axis at rate 1, such that
-/// it will pass the vertical at the angle `least`.
+/// Rates of Euler angles of a body with its axis at `theta` that turns about a horizontal axis at rate 1, chosen so
+/// that it will pass the vertical at the angle `least`.
 fn towards_the_pole(theta: f64, least: f64) -> [f64; 3] {
     let phi = least.sin() / theta.sin().powi(2);
     let tilt = -(1.0 - (theta.sin() * phi).powi(2)).sqrt();
     [phi, tilt, -phi * theta.cos()]
 }
 
-/// Velocities of the ball with these rates at `psi`, rolling.
+/// Velocities of the rolling ball with these rates at `at = [theta, psi]`.
 fn rolling(ball: &Large, [phi, theta, psi]: [f64; 3], at: [f64; 2]) -> [f64; 5] {
     let (sin, cos) = at[1].sin_cos();
     let omega = [

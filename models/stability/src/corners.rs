@@ -5,7 +5,7 @@ use dalembert_cli::suite::{Case, Report, Run, Setting};
 use super::course::{Course, End, U};
 use super::text::{Model, Text};
 
-/// A free point in a corner of this angle at the origin.
+/// A free point in a corner with angle `angle` at the origin.
 static CORNER: Text = Text::new(
     "Corner {
         coordinates { x; y; }
@@ -15,7 +15,7 @@ static CORNER: Text = Text::new(
     }",
 );
 
-/// The same corner, declared in the other order.
+/// The same corner, with its surfaces declared in the other order.
 static CORNER_AGAIN: Text = Text::new(
     "CornerAgain {
         coordinates { x; y; }
@@ -131,7 +131,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn right_angle(setting: Setting, report: &mut Report) {
-    // The corner at the origin of `x >= 0`, `y >= 0`: its second surface is `x - cos(pi/2) y`.
+    // The corner at the origin of `x >= 0`, `y >= 0`; its second surface is `x - cos(pi/2) y`.
     let system = CORNER.with([("angle", core::f64::consts::FRAC_PI_2)]);
     let end = Course::new(&system, &[1.0, 1.0], &[-1.0, -1.0], 2.0).run(setting);
     report.class(&end.outcome, "done");
@@ -157,7 +157,7 @@ fn right_angle_missed(setting: Setting, report: &mut Report) {
     }
 }
 
-/// A point sent to the vertex of a corner from distance 1 at part `at` of its angle; 2 units of time.
+/// A point sent to the vertex of a corner from distance 1, at the fraction `at` of its angle, for 2 units of time.
 fn sent(system: &Model, angle: f64, at: f64, setting: Setting) -> End {
     let (sin, cos) = (at * angle).sin_cos();
     Course::new(system, &[cos, sin], &[-cos, -sin], 2.0).run(setting)
@@ -216,7 +216,7 @@ fn digits_of_pi(setting: Setting, report: &mut Report, powers: core::ops::RangeI
     for power in powers {
         let mass = 100.0_f64.powi(power);
         let count = (core::f64::consts::PI / 10.0_f64.powi(-power).atan()).ceil() as u64 - 1;
-        // The block is far out again, and the small mass slower than it, well before this time.
+        // Well before this time the block is far out again, and the small mass is slower than the block.
         let end = Course::new(
             &BLOCK_AND_WALL.with([("M", mass)]),
             &[1.0, 2.0],

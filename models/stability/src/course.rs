@@ -1,4 +1,4 @@
-//! How a case makes its runs: a system, a start and an end, under the setting it is given.
+//! Runs of a case: a system, a start and an end, under a given setting.
 
 use core::mem;
 use core::ops::ControlFlow;
@@ -20,7 +20,7 @@ use super::text::{Large, Model};
 /// Half a unit in the last place of 1.
 pub const U: f64 = f64::EPSILON / 2.0;
 
-/// A run to be made.
+/// Specification of a run.
 pub struct Course<'a, M: Driven> {
     system: &'a M,
     t0: f64,
@@ -36,63 +36,63 @@ pub struct Course<'a, M: Driven> {
 /// An impact.
 #[derive(Debug, Clone)]
 pub struct Hit {
-    /// When.
+    /// The time.
     pub t: f64,
-    /// On which surface.
+    /// Index of the surface.
     pub surface: usize,
-    /// Where.
+    /// Positions.
     pub q: Vec<f64>,
-    /// Velocities before.
+    /// Velocities before it.
     pub before: Vec<f64>,
-    /// Velocities after.
+    /// Velocities after it.
     pub after: Vec<f64>,
-    /// Whether with another one.
+    /// True if another surface was hit at the same time.
     pub simultaneous: bool,
-    /// Whether flagged as a graze.
+    /// True if flagged as a grazing impact.
     pub graze: bool,
 }
 
-/// Where a surface begins or ceases to hold the motion.
+/// An event at which a surface begins or ceases to hold the motion.
 #[derive(Debug, Clone)]
 pub struct Held {
-    /// When.
+    /// The time.
     pub t: f64,
-    /// Which surface.
+    /// Index of the surface.
     pub surface: usize,
-    /// Where.
+    /// Positions.
     pub q: Vec<f64>,
-    /// Whether it begins.
+    /// True if it begins to hold the motion.
     pub begins: bool,
-    /// Where impacts accumulate, if that is how it begins.
+    /// The time at which impacts accumulate, if the contact begins with an accumulation.
     pub accumulation: Option<f64>,
 }
 
-/// Where a run ended.
+/// End of a run.
 #[derive(Debug, Clone)]
 pub struct End {
-    /// Why.
+    /// The outcome.
     pub outcome: Outcome,
-    /// When.
+    /// The time.
     pub t: f64,
-    /// Positions.
+    /// Positions at the end.
     pub q: Vec<f64>,
-    /// Velocities; none where the metric is singular.
+    /// Velocities at the end; empty if the metric is singular.
     pub qdot: Vec<f64>,
-    /// Kinetic plus potential energy.
+    /// Kinetic plus potential energy at the end.
     pub energy: f64,
     /// The impacts.
     pub hits: Vec<Hit>,
-    /// Where surfaces begin and cease to hold the motion.
+    /// The events at which surfaces begin or cease to hold the motion.
     pub holds: Vec<Held>,
-    /// The work done.
+    /// Counts of work.
     pub counters: Counters,
 }
 
 impl<'a, M: Driven> Course<'a, M> {
-    /// From these positions and velocities at time 0 to `until`; velocities off the constraints are projected.
+    /// A run from these positions and velocities at time 0 to `until`; velocities off the constraints are projected.
     ///
     /// # Panics
-    /// When the system refuses the start: no case is about that but those that say so.
+    /// If the system refuses the start; cases about refused starts do not use this function.
     pub fn new(system: &'a M, q: &[f64], qdot: &[f64], until: f64) -> Self {
         let state = system
             .state_projected(0.0, &vector(q), &vector(qdot))
@@ -100,7 +100,7 @@ impl<'a, M: Driven> Course<'a, M> {
         Self::from_state(system, state, until)
     }
 
-    /// From a state at time 0.
+    /// A run from a state at time 0.
     pub fn from_state(system: &'a M, state: M::State, until: f64) -> Self {
         Self {
             system,
@@ -115,59 +115,59 @@ impl<'a, M: Driven> Course<'a, M> {
         }
     }
 
-    /// The state it begins with.
+    /// The initial state.
     pub fn start(&self) -> &M::State {
         &self.state
     }
 
-    /// From another time on.
+    /// Sets the initial time.
     pub fn at(mut self, t0: f64) -> Self {
         self.t0 = t0;
         self
     }
 
-    /// With this tolerance instead of `1e-12`.
+    /// Sets the tolerance, `1e-12` by default.
     pub fn tol(self, tol: f64) -> Self {
         self.tols(tol, tol)
     }
 
-    /// With a relative and an absolute tolerance.
+    /// Sets a relative and an absolute tolerance.
     pub fn tols(mut self, relative: f64, absolute: f64) -> Self {
         self.tolerance = [relative, absolute];
         self
     }
 
-    /// With steps of this length; with none longer, by an integrator that chooses its steps.
+    /// Sets the length of steps; for an adaptive integrator the largest length.
     pub fn step(mut self, length: f64) -> Self {
         self.step = Some(length);
         self
     }
 
-    /// With power series of this order instead of the one of least work.
+    /// Sets the order of power series, instead of the order of least work.
     pub fn order(mut self, order: usize) -> Self {
         self.order = Some(order);
         self
     }
 
-    /// With another law on a surface.
+    /// Sets the law of a surface.
     pub fn law(mut self, surface: usize, law: Law) -> Self {
         self.effects.set_law(surface, law);
         self
     }
 
-    /// Up to this many impacts.
+    /// Ends the run after this many impacts.
     pub fn impacts(mut self, budget: u64) -> Self {
         self.effects.set_impact_budget(Some(budget));
         self
     }
 
-    /// Up to this many steps.
+    /// Ends the run after this many steps.
     pub fn steps(mut self, budget: u64) -> Self {
         self.steps = budget;
         self
     }
 
-    /// Going on along surfaces instead of ending there.
+    /// Continues along surfaces that hold the motion, instead of ending there.
     pub fn resting(self) -> Self {
         self.policies(Policies {
             rest: Rest::Contact,
@@ -175,25 +175,25 @@ impl<'a, M: Driven> Course<'a, M> {
         })
     }
 
-    /// With these policies.
+    /// Sets the policies.
     pub fn policies(mut self, policies: Policies) -> Self {
         self.effects.set_policies(policies);
         self
     }
 
-    /// With or without projection on the constraints.
+    /// Sets projection on the constraints on or off.
     pub fn projection(mut self, on: bool) -> Self {
         self.effects.set_projection(on);
         self
     }
 
-    /// With these effects instead of those of its scene, and of what was set before.
+    /// Replaces the effects of the scene, and any that were set before.
     pub fn effects(mut self, effects: M::Effects) -> Self {
         self.effects = effects;
         self
     }
 
-    /// Without effects: nothing is hit, and nothing projected.
+    /// Removes all effects: no impacts and no projection.
     pub fn alone(self) -> Self
     where
         M::Effects: Default,
@@ -201,7 +201,7 @@ impl<'a, M: Driven> Course<'a, M> {
         self.effects(M::Effects::default())
     }
 
-    /// Makes the run, and keeps every impact.
+    /// Makes the run; the end has all impacts.
     pub fn run(self, setting: Setting) -> End {
         let mut log = Log {
             system: self.system,
@@ -213,7 +213,7 @@ impl<'a, M: Driven> Course<'a, M> {
         end
     }
 
-    /// Makes the run, and shows it to an observer; the end has no impacts.
+    /// Makes the run with an observer; the end has no impacts.
     pub fn follow(self, setting: Setting, observer: &mut dyn Observer<M>) -> End {
         let system = self.system;
         let run = system.drive(&mut self.under(setting), observer);
@@ -232,12 +232,12 @@ impl<'a, M: Driven> Course<'a, M> {
         }
     }
 
-    /// Makes the run by an integrator, and shows it to an observer: as [`Simulation::run`] gives it.
+    /// Makes the run by an integrator with an observer, and returns the result of [`Simulation::run`].
     pub fn observed(self, integrator: Integrator, observer: &mut dyn Observer<M>) -> Run<M::State> {
         self.with_effects(integrator, observer).0
     }
 
-    /// As [`Course::observed`], with the effects as the run leaves them.
+    /// Makes the run as [`Course::observed`] does, and returns the effects after the run as well.
     pub fn with_effects(
         self,
         integrator: Integrator,
@@ -249,7 +249,7 @@ impl<'a, M: Driven> Course<'a, M> {
         (run, drive.effects)
     }
 
-    /// What is run under a setting.
+    /// The drive of this run under a setting.
     pub fn under(self, setting: Setting) -> Drive<M> {
         let [relative, absolute] = self.tolerance;
         Drive {
@@ -272,10 +272,10 @@ impl<'a, M: Driven> Course<'a, M> {
 }
 
 impl<'a, M: Driven + Instance> Course<'a, M> {
-    /// From the declared start at time 0.
+    /// A run from the declared start at time 0.
     ///
     /// # Panics
-    /// When the system has none.
+    /// If the system declares no start.
     pub fn declared(system: &'a M, until: f64) -> Self {
         Self::from_state(system, declared(system), until)
     }
@@ -284,7 +284,7 @@ impl<'a, M: Driven + Instance> Course<'a, M> {
 /// The declared start of a system.
 ///
 /// # Panics
-/// When it has none.
+/// If it declares none.
 pub fn declared<M: Instance>(system: &M) -> M::State {
     let start = system.initial();
     let q = system
@@ -296,36 +296,36 @@ pub fn declared<M: Instance>(system: &M) -> M::State {
     system.state(0.0, &q, &qdot).expect("a state")
 }
 
-/// The state of these positions and velocities at time 0.
+/// The state with these positions and velocities at time 0.
 ///
 /// # Panics
-/// When they are refused.
+/// If they are refused.
 pub fn state<M: System>(system: &M, q: &[f64], qdot: &[f64]) -> M::State {
     let state = system.state(0.0, &vector(q), &vector(qdot));
     state.expect("an admissible start")
 }
 
-/// Runs of a system, compiled in this crate: a case, or a test, only calls them.
+/// Systems whose runs are compiled in this crate, so that a case or a test only calls them.
 pub trait Driven: Scene + TaylorField {
-    /// Makes a run, and shows it to an observer; leaves the effects as they are in the end.
+    /// Makes a run with an observer; `drive` has the effects after the run.
     fn drive(&self, drive: &mut Drive<Self>, observer: &mut dyn Observer<Self>)
     -> Run<Self::State>;
 }
 
-/// What a run is made of, besides its system.
+/// Data of a run besides its system.
 #[derive(Debug)]
 pub struct Drive<M: Scene> {
-    /// How it is made.
+    /// The setting.
     pub setting: Setting,
-    /// How accurately.
+    /// The tolerance.
     pub tolerance: Tolerance,
-    /// The length of steps, at most for an integrator that chooses them.
+    /// The length of steps; for an adaptive integrator the largest length.
     pub step: Option<f64>,
     /// The order of power series.
     pub order: Option<usize>,
-    /// The most steps.
+    /// The largest number of steps.
     pub steps: u64,
-    /// What happens on the way.
+    /// The effects: impacts, projection.
     pub effects: M::Effects,
     /// The first time.
     pub t0: f64,
@@ -335,7 +335,7 @@ pub struct Drive<M: Scene> {
     pub until: f64,
 }
 
-/// Implements [`Driven`] of a type of system, with the integrators that a function of [`Drive`] has.
+/// Implements [`Driven`] for types of systems, each with a function of [`Drive`] that selects its integrators.
 macro_rules! driven {
     ($(impl[$($generics:tt)*] $system:ty: $integrators:ident),*) => {$(
         impl<$($generics)*> Driven for $system {
@@ -351,7 +351,7 @@ macro_rules! driven {
 }
 driven!(impl[] Model: every, impl[] Large: every, impl[const S: usize] Point<S>: adaptive);
 
-/// Runs with an integrator.
+/// Runs a drive with an integrator.
 macro_rules! run {
     ($drive:ident, $stepper:expr, $system:ident, $observer:ident) => {{
         let mut stepper = $stepper;
@@ -360,9 +360,9 @@ macro_rules! run {
 }
 
 impl<M: Scene + TaylorField + Lagrangian> Drive<M> {
-    /// With any integrator.
+    /// Runs with any integrator.
     fn every(&mut self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
-        // An infinite length is as good as none.
+        // An infinite length sets no limit.
         let (tolerance, step) = (self.tolerance, self.step.unwrap_or(f64::INFINITY));
         macro_rules! fixed {
             ($stepper:ident) => {
@@ -386,7 +386,7 @@ impl<M: Scene + TaylorField + Lagrangian> Drive<M> {
 }
 
 impl<M: Scene + TaylorField> Drive<M> {
-    /// With an integrator that chooses its steps.
+    /// Runs with an adaptive integrator.
     fn adaptive(&mut self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
         let (tolerance, setting) = (self.tolerance, self.setting);
         let longest = setting.max_step.or(self.step).unwrap_or(f64::INFINITY);
@@ -429,8 +429,8 @@ impl<M: Scene + TaylorField> Drive<M> {
     }
 }
 
-/// Whether an integrator follows the discrete principle of Lagrange and d'Alembert, which first-order systems and
-/// constraints that are not linear have none of.
+/// True for an integrator of the discrete Lagrange-d'Alembert principle. It does not apply to first-order systems and
+/// to constraints that are not linear.
 pub const fn is_discrete(integrator: Integrator) -> bool {
     matches!(integrator, Integrator::Dla2 | Integrator::Dla4)
 }
@@ -477,7 +477,7 @@ impl<M: Scene + TaylorField> Observer<M> for Log<'_, M> {
     }
 }
 
-/// Reads the dense output in every step, if asked to, before it passes the step on.
+/// An observer that reads the dense output in every step, if the setting asks for it, before it forwards the step.
 struct Reader<'a, M: Scene> {
     dense: bool,
     observer: &'a mut dyn Observer<M>,
@@ -509,15 +509,15 @@ impl End {
         self.hits.iter().map(|hit| hit.t).collect()
     }
 
-    /// The size of the rounding errors of a gap: `32 u` times the sum of the absolute values of the terms it is made
-    /// of, and one unit of it per step, which rounding of the state may have added up to.
+    /// Bound on the rounding errors of a gap: `32 u` times `terms`, the sum of the absolute values of its terms, and
+    /// `u` times `terms` per step, which rounding of the state may add.
     pub fn eta(&self, terms: f64) -> f64 {
         U * terms * (32.0 + self.counters.accepted as f64)
     }
 }
 
-/// The error allowed in the time of an impact at which the gap has rounding errors `eta`, rate `rate` and second
-/// derivative `bend`; and the four units in the last place of the time itself.
+/// Bound on the error in the time of an impact at which the gap has rounding errors `eta`, rate `rate` and second
+/// derivative `bend`, plus four units in the last place of the time.
 pub fn location(t: f64, eta: f64, rate: f64, bend: f64) -> f64 {
     let clear = rate * rate >= 2.0 * bend.abs() * eta;
     let own = if clear {
@@ -528,16 +528,16 @@ pub fn location(t: f64, eta: f64, rate: f64, bend: f64) -> f64 {
     own + 4.0 * U * t.abs()
 }
 
-/// Numbers that look random and are the same in every run: splitmix64.
+/// A deterministic sequence of pseudorandom numbers: splitmix64.
 pub struct Random(u64);
 
 impl Random {
-    /// Numbers that belong to a seed.
+    /// The sequence of a seed.
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The next number, uniform between two.
+    /// The next number, uniform between `low` and `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;

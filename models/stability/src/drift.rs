@@ -1,4 +1,4 @@
-//! Section D, third part: what drifts away from the constraints and from closed forms.
+//! Section D, third part: drift from the constraints and from closed forms.
 
 use core::ops::ControlFlow;
 

@@ -13,10 +13,10 @@ use super::text::{Model, shipped, value};
 const WALK: &str = "rounding errors that add up like a random walk";
 const BOUND: &str = "root mean square below 16 u sqrt(n); exponent at most 0.6";
 
-/// The integrator whose steps are as exact as their rounding.
+/// Power series, whose steps are exact up to rounding.
 const SERIES: &[Integrator] = &[Integrator::Taylor];
 
-/// Those with tables.
+/// Runge-Kutta methods of tables.
 const TABLES: &[Integrator] = &[Integrator::Dop853, Integrator::Dopri5];
 
 /// The cases.
@@ -63,10 +63,10 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Runs that are started.
+/// Number of runs.
 const STARTS: u32 = 32;
 
-/// Impacts before which a random walk has not begun to look like one.
+/// Number of impacts from which the exponent of the random walk is fitted.
 const FIRST: f64 = 64.0;
 
 fn balls(setting: Setting, report: &mut Report, doublings: u32) {
@@ -83,7 +83,7 @@ fn balls(setting: Setting, report: &mut Report, doublings: u32) {
 
 fn disks(setting: Setting, report: &mut Report, doublings: u32) {
     let mut walk = Walk::new(doublings);
-    // In the middle of the table, rolling and turning.
+    // The disk rolls and turns in the middle of the table.
     let (disk, upright) = (
         shipped("rolling_disk").model(),
         core::f64::consts::FRAC_PI_2,
@@ -145,7 +145,7 @@ impl Walk {
             .iter()
             .map(|[n, error]| error / (16.0 * U * n.sqrt()));
         report.error("worst drift over its bound", share.fold(0.0, f64::max), 1.0);
-        // Where nothing was lost at all, there is nothing that grows.
+        // Errors of exactly 0 have no logarithm, and no growth.
         let is_late = |[n, error]: &[f64; 2]| *n >= FIRST && *error != 0.0;
         let late: Vec<[f64; 2]> = points.iter().copied().filter(is_late).collect();
         let exponent = dalembert_cli::suite::exponent(&late).unwrap_or(0.0);

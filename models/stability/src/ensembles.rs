@@ -38,7 +38,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// The rows of an ensemble of balls that start at these heights, as the command line writes them, and its exit.
+/// The rows of an ensemble of balls that start at these heights, as the command line writes them, and its exit status.
 fn rows(heights: &[f64]) -> (Vec<String>, Exit) {
     let heights = heights.iter().map(|height| format!("{height}\n"));
     let table: String = std::iter::once("x\n".to_owned()).chain(heights).collect();
@@ -76,7 +76,7 @@ pub fn one_bad_member(report: &mut Report) {
     report.equal("done", done, 9999);
 }
 
-/// The bits of the last states of an ensemble, made by this many threads, folded in order of the members.
+/// Hash of the bits of the last states of an ensemble that this many threads run, combined in the order of the members.
 fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {
     const MEMBERS: usize = 16;
     let member = |index: usize| {
@@ -127,7 +127,7 @@ fn threads(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Counts the cells a path is in at equal times.
+/// Counts the visits of a path to cells at equally spaced times.
 struct Cells<'a> {
     system: &'a Model,
     next: f64,
@@ -198,7 +198,7 @@ fn free_areas() -> [f64; 64] {
     areas
 }
 
-/// Pages of memory that the process holds, where the system says so.
+/// Pages of memory that the process holds; `None` if the system does not report them.
 fn resident_pages() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/statm").ok()?;
     text.split_whitespace().nth(1)?.parse().ok()

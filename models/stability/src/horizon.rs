@@ -1,4 +1,4 @@
-//! Section F: how far runs in more than double precision keep their digits where motion is chaotic.
+//! Section F: number of correct bounces of chaotic runs in more than double precision.
 
 use core::ops::ControlFlow;
 
@@ -19,16 +19,16 @@ pub const CASES: &[Case] = &[Case {
     ..Case::QUICK
 }];
 
-/// Bounces of a run: more than 159 bits last for.
+/// Bounces of a run: more than 159 bits keep accurate.
 const BOUNCES: u64 = 220;
 
-/// Starts that horizons are averaged over.
+/// Number of starts over which horizons are averaged.
 const STARTS: u32 = 24;
 
-/// How far a bounce may be from where it is before its digits are gone.
+/// Position error of a bounce at which all its digits count as lost.
 const GONE: f64 = 1e-2;
 
-/// A start beside the disk, the first that of F05.
+/// A start beside the disk; number 0 is the start of F05.
 fn start(number: u32) -> [[f64; 2]; 2] {
     let angle = 0.8_f64.atan2(0.6) + 2.4 * f64::from(number);
     let y = 0.1 + 0.03 * f64::from(number);
@@ -38,7 +38,7 @@ fn start(number: u32) -> [[f64; 2]; 2] {
     }
 }
 
-/// Where a point bounces that is run in so many parts.
+/// Positions of the bounces of a run in numbers of this many doubles.
 fn bounces<const PARTS: usize>([q, v]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     let table = Sinai {};
     let mut places = Vec::new();
@@ -46,7 +46,7 @@ fn bounces<const PARTS: usize>([q, v]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
         return places;
     };
     let effects = Impacts::declared(&table).with_budget(BOUNCES);
-    // Where a run ends early, the number of its bounces tells.
+    // The number of bounces shows if a run ends early.
     let _ = ExtendedSimulation::<_, _, PARTS>::new(&table, effects).run(
         At::of(0.0, &state),
         1e3,
@@ -59,7 +59,7 @@ fn bounces<const PARTS: usize>([q, v]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     places
 }
 
-/// The bounce from which on a run is no more where it is in truth.
+/// Index of the first bounce whose position error exceeds [`GONE`].
 fn horizon(run: &[[f64; 2]], truth: &[[f64; 2]]) -> usize {
     let mut pairs = run.iter().zip(truth);
     let gone = pairs.position(|([x, y], [u, v])| (x - u).hypot(y - v) > GONE);

@@ -264,7 +264,7 @@ impl<M: System> Observer<M> for Fails {
             return ControlFlow::Continue(());
         }
         if self.panics {
-            // As a panic, but without its message on the terminal.
+            // As a panic, but without a message on the terminal.
             std::panic::resume_unwind(Box::new("an observer that fails"));
         }
         ControlFlow::Break(())
@@ -313,7 +313,7 @@ fn observers(report: &mut Report) {
     );
 }
 
-/// Stops after a number of steps, and keeps where.
+/// Stops after a number of steps, and keeps the last state.
 struct StopsAfter<S> {
     left: u32,
     last: Option<(f64, S)>,

@@ -82,7 +82,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// All laws, and the factor `c` by which each takes from the gap rate.
+/// All laws, each with its factor `c`: the gap rate after the impact is `1 - c` times the rate before.
 fn factors<V: StateVector>(contact: &Contact<V>) -> [(Law, f64); 6] {
     let rho = contact.rho();
     [
@@ -95,7 +95,7 @@ fn factors<V: StateVector>(contact: &Contact<V>) -> [(Law, f64); 6] {
     ]
 }
 
-/// The laws at 64 random states of a model with linear constraints, or none, and surfaces at rest.
+/// Checks the laws at 64 random states of a model with linear or no constraints, and with surfaces at rest.
 fn laws_of<M: Scene + Impacting>(
     system: &M,
     name: &str,
@@ -135,7 +135,7 @@ fn laws_of<M: Scene + Impacting>(
     report.error(format!("residual, {name}"), residual, 1e-12);
 }
 
-/// The largest constraint residual as a share of the sum of its terms.
+/// The largest constraint residual, relative to the sum of the absolute values of its terms.
 fn residual<M: Constrained>(system: &M, state: &M::State) -> f64 {
     let (q, qdot) = (system.position(state), system.velocity(0.0, state));
     let (residuals, scales) = system.residuals(0.0, &q, &qdot.expect("a velocity"));
@@ -189,14 +189,14 @@ fn at_wall(system: &Model, phi: f64) -> <Model as VectorField>::State {
         .expect("a state")
 }
 
-/// The inertia `mR^2` of its way, and that with `I`.
+/// The inertia `m R^2` of the rolling motion, and its sum with `I`.
 fn inertias(system: &Model) -> (f64, f64) {
     let [m, radius, axis] = ["m", "R", "I"].map(|name| value(system, name));
     let rolled = m * radius * radius;
     (rolled, axis + rolled)
 }
 
-/// Velocities after one impact by a law.
+/// Velocities after one impact with a law.
 fn struck(system: &Model, state: &mut <Model as VectorField>::State, law: Law) -> [f64; 4] {
     let contact = system.contact(0, 0.0, state).expect("a contact");
     system.kick(state, contact.impulse(law), &contact.direction);

@@ -1,11 +1,11 @@
-//! Section A, first part: impacts at starts, ends and in grazes.
+//! Section A, first part: impacts at the start, at the end and in grazes.
 
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, End, U, location};
 use super::text::Text;
 
-/// A point that falls on a floor, or rises from it.
+/// A point that falls on a floor or rises from it.
 pub static FALL: Text = Text::new(
     "Fall {
         coordinates { x; }
@@ -99,7 +99,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Impacts at these times of a point thrown up or down from the floor.
+/// Checks the impact times of a point thrown up or down from the floor against `times`.
 fn thrown(setting: Setting, report: &mut Report, speed: f64, times: &[f64]) {
     let end = Course::new(&FALL.model(), &[0.0], &[speed], 5.0).run(setting);
     report.class(&end.outcome, "done");
@@ -133,7 +133,7 @@ fn pulled_away(setting: Setting, report: &mut Report) {
     report.near("x", end.q[0], 2.0, 2.0 * U * (8.0 + steps));
 }
 
-/// `h'' = 2`, `h(0) = 1 - eps`, `h'(0) = -2`, to t = 3.
+/// A run with `h'' = 2`, `h(0) = 1 - eps`, `h'(0) = -2` up to t = 3.
 fn parabola(setting: Setting, eps: f64) -> End {
     let system = FALL.with([("g", -2.0)]);
     Course::new(&system, &[1.0 - eps], &[-2.0], 3.0).run(setting)
@@ -141,13 +141,13 @@ fn parabola(setting: Setting, eps: f64) -> End {
 
 fn near_grazes(setting: Setting, report: &mut Report) {
     for eps in [1e-2, 1e-4, 1e-8, 1e-12] {
-        // The number 1 - eps, not eps, is what the start holds.
+        // The start stores the rounded number 1 - eps; `held` is its exact distance from 1.
         let held: f64 = 1.0 - (1.0 - eps);
         let root = held.sqrt();
         let end = parabola(setting, eps);
         report.class(&end.outcome, "done");
         report.equal(format!("impacts, eps = {eps:e}"), end.hits.len(), 1);
-        // The terms of the motion 1 - eps - 2 t + t^2 that the gap is made of.
+        // The absolute values of the terms of the gap 1 - eps - 2 t + t^2 add up to 4 near t = 1.
         let eta = end.eta(4.0);
         for hit in &end.hits {
             let bound = location(1.0, eta, 2.0 * root, 2.0);

@@ -103,11 +103,11 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Watches impacts of a planar model through their positions and velocities after them.
+/// Calls a function with the position and velocity after each impact of a planar model.
 struct Bounces<'a, F> {
     system: &'a Model,
     count: u64,
-    /// Number of the bounce, time, position and velocity after it.
+    /// Receives the index of the bounce, its time, and position and velocity after it.
     see: F,
 }
 
@@ -161,13 +161,13 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
     let walk = 16.0 * U * (bounces as f64).sqrt();
     report.error("energy", last[0].abs(), walk);
     report.error("angular momentum", last[1].abs(), walk);
-    // Impacts on one side only would be a bias, with which angles drift.
+    // Impacts on one side only would be a bias that makes angles drift.
     let lean = inwards.abs() / (bounces as f64 * squares).sqrt();
     report.error("mean gap over its root mean square", lean, 0.25);
     report.curve("position", ["bounce", "largest error"], marks);
 }
 
-/// The product of the angular momenta about the foci of the ellipse with half axes 2 and 1.
+/// Product of the angular momenta about the foci of the ellipse with half axes 2 and 1.
 fn about_foci([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
     let focus = 3.0_f64.sqrt();
     ((x - focus) * v - y * u) * ((x + focus) * v - y * u)
@@ -200,7 +200,7 @@ fn ellipse(setting: Setting, report: &mut Report) {
     );
 }
 
-/// Where a point in `[0, length]` is, from where it is without walls.
+/// Folds an unbounded coordinate into `[0, length]` by reflections at both walls.
 fn folded(x: f64, length: f64) -> f64 {
     let at = x.rem_euclid(2.0 * length);
     if at > length { 2.0 * length - at } else { at }
@@ -231,7 +231,7 @@ fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
     report.curve("position", ["bounce", "error"], marks);
 }
 
-/// A chaotic run: one bit that differs anywhere is seen in all that follow. The hash is that of Fowler, Noll and Vo, 64 bits.
+/// A chaotic run: a difference of one bit changes all later states. The hash is the 64-bit hash of Fowler, Noll and Vo.
 fn same_bits(setting: Setting, report: &mut Report) {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let table = SINAI.model();
@@ -324,7 +324,7 @@ fn order_across_impacts(setting: Setting, report: &mut Report) {
             max_step: Some(step),
             ..setting
         };
-        // A tolerance that never asks for shorter steps.
+        // A tolerance that never shortens a step.
         let end = Course::new(&system, &[1.0], &[0.3], 15.0)
             .tol(1e3)
             .run(forced);
@@ -334,7 +334,7 @@ fn order_across_impacts(setting: Setting, report: &mut Report) {
         .tol(1e-14)
         .run(Setting::free(Integrator::Dop853));
     let Some(order) = setting.integrator.order() else {
-        // The order belongs to the tolerance: what falls is the error, with that.
+        // The order depends on the tolerance, so the error is checked at several tolerances.
         for tol in [1e-6, 1e-9, 1e-12] {
             let end = Course::new(&system, &[1.0], &[0.3], 15.0)
                 .tol(tol)
@@ -362,7 +362,7 @@ fn order_across_impacts(setting: Setting, report: &mut Report) {
     report.curve("error", ["step", "error"], points);
 }
 
-/// The largest errors of an oscillator at ends of steps and between them.
+/// The largest errors of an oscillator at the ends of steps and between them.
 struct Errors<'a> {
     system: &'a Model,
     t1: f64,
@@ -375,7 +375,8 @@ impl Errors<'_> {
         self.system.position(state).as_slice()[0]
     }
 
-    /// Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time to the nearest even one.
+    /// Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time since the nearest even
+    /// multiple.
     fn at(&self, t: f64, x: f64) -> f64 {
         let phase = (t + self.t1).rem_euclid(2.0 * self.t1) - self.t1;
         (x - phase.cos()).abs()

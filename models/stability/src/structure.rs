@@ -1,5 +1,5 @@
-//! Section F, third part: the energy over many steps of fixed length. Integrators that preserve structure keep it near
-//! its value where theory says so; the curves of the last case show where it grows.
+//! Section F, third part: the energy over many steps of fixed length. Structure-preserving integrators keep it near its
+//! initial value in the cases that theory covers; the curves of the last case show its growth in others.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -12,7 +12,7 @@ use dalembert_driver::drift::{Request, Series, follow};
 use super::course::vector;
 use super::text::{Model, Text, shipped};
 
-/// A knife edge in a quadratic potential, steered by a pendulum; `c` couples the steering to the place, `b` is a
+/// A knife edge in a quadratic potential, steered by a pendulum. `c` couples the steering to the position; `b` is a
 /// magnetic field.
 static STEERED_EDGE: Text = Text::new(
     "SteeredEdge {
@@ -33,7 +33,7 @@ static HELD_PARTICLE: Text = Text::new(
     }",
 );
 
-/// Steps of the quick cases and of the long ones.
+/// Numbers of steps of the quick and of the long cases.
 const QUICK: u64 = 20_000;
 const LONG: u64 = 1_000_000;
 
@@ -88,7 +88,7 @@ struct Long<'a> {
 }
 
 impl Long<'_> {
-    /// The energy in a hundred windows; its curve goes into the report.
+    /// The energy in a hundred windows; adds its curve to the report.
     fn energy(
         &mut self,
         system: &Model,
@@ -127,7 +127,7 @@ impl Long<'_> {
             .error(format!("energy, of {bound:.0e}"), series.largest(), bound);
     }
 
-    /// Bounded, and without drift beyond a part of the bound.
+    /// Checks that the energy error is at most `largest`, and in long cases that its drift is at most `drift`.
     fn bounded(&mut self, series: &Series, largest: f64, drift: f64) {
         self.below(series, largest);
         if self.steps == LONG {
@@ -164,7 +164,7 @@ fn symplectic(report: &mut Report, steps: u64) {
     let mut long = Long { report, steps };
     let oscillator = shipped("harmonic_oscillator").model();
     let start: [&[f64]; 2] = [&[1.0], &[0.0]];
-    // A quadratic invariant: nothing but a random walk of rounding errors, 1e-16 each.
+    // A quadratic invariant: the only error is a random walk of rounding errors, 1e-16 each.
     let series = energy!(long, Gauss4, 0.1, oscillator, start);
     long.below(&series, 2e-14);
     let series = energy!(long, Gauss6, 0.1, oscillator, start);
@@ -176,10 +176,11 @@ fn symplectic(report: &mut Report, steps: u64) {
     let start: [&[f64]; 2] = [&[0.4, 0.3], &[0.0, 0.0]];
     let series = energy!(long, Gauss4, 0.02, pendulum, start);
     long.bounded(&series, 4e-8, 4e-12);
-    // What drift there is is rounding's: over eight starts 1.4e-14 root mean square, of either sign. The bound is four times that.
+    // All drift is rounding error: over eight starts 1.4e-14 root mean square, of either sign. The bound is four times
+    // that.
     let series = energy!(long, Gauss6, 0.02, pendulum, start);
     long.bounded(&series, 2e-11, 6e-14);
-    // At a quarter of the step the error of the method is that of rounding.
+    // At a quarter of the step, the error of the method equals the rounding error.
     let series = energy!(long, Gauss6, 0.005, pendulum, start);
     long.below(&series, 4e-14);
     let series = energy!(long, Dla2, 0.02, pendulum, start);
@@ -217,14 +218,15 @@ fn growing(report: &mut Report) {
         steps: LONG,
     };
     let start: [&[f64]; 2] = [&[1.0, 0.2, 0.3], &[0.5, 0.0, 0.7]];
-    // Coupled to the place and in a magnetic field the motion is chaotic and not reversible: the energy walks.
+    // Coupled to the position and in a magnetic field, the motion is chaotic and not reversible: the energy performs a
+    // random walk.
     let wild = STEERED_EDGE.with([("c", 0.5), ("b", 0.8)]);
     let second = energy!(long, Dla2, 0.05, wild, start);
     long.grows(&second, 0.3);
     let fourth = energy!(long, Dla4, 0.05, wild, start);
     long.grows(&fourth, 0.2);
-    // In global form Gauss's method leaves D, and the energy goes with it; the effect that returns to D is not
-    // symmetric. The form reduced to D needs no return.
+    // In global form Gauss's method leaves D, and the energy drifts. The effect that projects on D is not symmetric.
+    // The form reduced to D needs no projection.
     let reduced = STEERED_EDGE.model();
     let edge = reduced.global();
     let leaving = energy!(long, Gauss4, 0.05, edge, start);

@@ -19,7 +19,7 @@ pub static RECTANGLE: Text = Text::new(
     }",
 );
 
-// NOTE: the one model that is compiled: nothing that is loaded has kernels over numbers of more than double precision.
+// NOTE: the only compiled model, because loaded models have no kernels over numbers of more than double precision.
 dalembert::model! {
     /// A free point in the square of side 2 with a disk of radius 1/2 in its middle.
     pub Sinai {
@@ -29,7 +29,7 @@ dalembert::model! {
     }
 }
 
-/// The same from its text.
+/// The same model, loaded from its text.
 pub static SINAI: Text = Text::new(Sinai::DESCRIPTION.source);
 
 /// A free point in a stadium: a square of side 2 between two half disks of radius 1.

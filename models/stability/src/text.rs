@@ -1,4 +1,4 @@
-//! Models that are loaded from their texts, so that no case needs a compiler.
+//! Models loaded from their texts, so that no case needs a compiler.
 
 use std::sync::OnceLock;
 
@@ -14,7 +14,7 @@ pub type Model = Erased<8>;
 /// A loaded model whose vectors have at most 32 components.
 pub type Large = Erased<32>;
 
-/// The text of one model, loaded where it is first asked for:
+/// The text of one model, loaded on first use:
 ///
 /// ```
 /// use dalembert_stability::text::Text;
@@ -34,7 +34,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// The model of this text. It is not looked at yet.
+    /// The model of this text; the text is not read yet.
     pub const fn new(text: &'static str) -> Self {
         Self {
             text,
@@ -58,7 +58,7 @@ impl Text {
         self.sized_with(values)
     }
 
-    /// As [`Text::with`], for a model whose vectors are too long for [`Model`].
+    /// The model as of [`Text::with`], for vectors too long for [`Model`].
     ///
     /// # Panics
     /// As [`Text::with`].
@@ -77,7 +77,7 @@ impl Text {
     /// The model with its declared values, in vectors of at most `C` components.
     ///
     /// # Panics
-    /// As [`Text::model`], and if a vector is longer.
+    /// As [`Text::model`], and if a vector has more than `C` components.
     pub fn sized<const C: usize>(&self) -> Erased<C> {
         Erased::of(self.loaded().form).expect("vectors of no more components")
     }
@@ -101,7 +101,7 @@ impl Text {
         Entry::of_text(self.description().name, self.text)
     }
 
-    /// What the model says of itself.
+    /// The description of the model.
     ///
     /// # Panics
     /// As [`Text::model`].
@@ -122,7 +122,7 @@ impl Text {
 /// The shipped model of this name, such as `rolling_disk`.
 ///
 /// # Panics
-/// If there is none.
+/// If no shipped model has this name.
 pub fn shipped(name: &str) -> &'static Text {
     static SHIPPED: OnceLock<Vec<(&str, Text)>> = OnceLock::new();
     let texts = dalembert_command::TEXTS.iter();
@@ -132,7 +132,7 @@ pub fn shipped(name: &str) -> &'static Text {
     text
 }
 
-/// A mode of a model by itself, which knows no other.
+/// A mode of a model as a system of its own, without the other modes.
 ///
 /// # Panics
 /// If there is no such mode.

@@ -1,4 +1,4 @@
-//! First variations: the two-form and the volume of section F, and section G's saltation, traces and grazes.
+//! First variations: the two-form and the volume of section F; saltation, traces and grazes of section G.
 
 use dalembert::variations::Section;
 use dalembert::{
@@ -11,7 +11,7 @@ use super::course::{U, vector};
 use super::tables::elliptic_table;
 use super::text::{Model, Text, shipped, value};
 
-/// Two fields that change at a bent line: `s` says which of them moves the point.
+/// Two fields with a switch between them at a bent line; the coordinate `s` selects the field.
 static SWITCHED: Text = Text::new(
     "Switched {
         coordinates { x; y; s; }
@@ -95,7 +95,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Along each component of the state.
+/// Tangents along each component of the state.
 fn all_components(system: &Model) -> Vec<Tangent<Model>> {
     (0..system.state_len()).map(Tangent::of_component).collect()
 }
@@ -126,7 +126,7 @@ fn vary(
     Some(Varied { run, columns })
 }
 
-/// A run, and the derivative of its end by columns.
+/// A run, and the columns of the derivative of its end.
 type Derived = (Ran<<Model as VectorField>::State>, Vec<Vec<f64>>);
 
 /// The entries of a derivative, or a failure in the report.
@@ -166,7 +166,7 @@ fn symplectic(report: &mut Report) {
     report.near("det", determinant(columns), 1.0, 1e-11);
 }
 
-/// By elimination with pivots.
+/// Determinant by elimination with pivoting.
 fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
     let size = columns.len();
     let mut product = 1.0;
@@ -192,7 +192,7 @@ fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
 }
 
 fn identity_reset(report: &mut Report) {
-    // At the line from the first instant on: the differential is that of the reset alone.
+    // The start lies on the line, so the differential is that of the reset alone.
     let (x, y) = (0.75, 1.0);
     let switched = SWITCHED.model();
     let start: (&[f64], &[f64]) = (&[x, y, 0.0], &[0.0; 3]);
@@ -226,7 +226,7 @@ fn axes_of_an_ellipse(report: &mut Report) {
             continue;
         };
         let sum: f64 = orbit.multipliers.iter().map(|[re, _]| re).sum();
-        // The energy gives a 1 besides.
+        // The conserved energy adds a multiplier 1.
         report.near(format!("trace, {name} axis"), sum - 1.0, trace, 1e-10);
         let columns = orbit.derivative[..orbit.dimension].iter();
         let columns = columns.map(|own| own.as_slice()[..orbit.dimension].to_vec());
@@ -254,7 +254,7 @@ fn dropped(report: &mut Report) {
     };
     let fall = (2.0 * height / g).sqrt();
     let rest = until - fall;
-    // The derivative by the time of the impact.
+    // The derivative with respect to the time of the impact.
     let by_fall = e * g * rest - e * g * fall + g * rest;
     let right = [
         ("e", g * fall * rest),

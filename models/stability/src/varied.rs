@@ -1,4 +1,4 @@
-//! First variations of runs, and sections and their periodic orbits, compiled once for the systems that are loaded.
+//! First variations of runs, sections and periodic orbits, compiled once for loaded systems.
 
 use dalembert::contract::Variational;
 use dalembert::variations::orbit::ITERATIONS;
@@ -13,42 +13,42 @@ use dalembert_cli::suite::Setting;
 use super::course::{Course, Drive, Driven};
 use super::text::{Large, Model};
 
-/// The tolerance of the maps of sections.
+/// The tolerance of section maps.
 const TOLERANCE: f64 = 1e-15;
 
-/// Systems whose runs are varied in this crate: a test only calls them.
+/// Systems whose variations are compiled in this crate, so that a test only calls them.
 pub trait Varied: Driven + Instance + Variational {
-    /// Makes a run, and carries directions along it.
+    /// Makes a run, and transports directions along it.
     fn vary(
         &self,
         drive: &mut Drive<Self>,
         tangents: &mut [Tangent<Self>],
     ) -> (Run<Self::State>, Result<(), Undefined>);
 
-    /// Carries directions across one event.
+    /// Transports directions across one event.
     ///
     /// # Errors
-    /// [`Undefined`].
+    /// [`Undefined`] if the event has no derivative.
     fn cross(
         &self,
         event: &Event<Self::State>,
         tangents: &mut [Tangent<Self>],
     ) -> Result<(), Undefined>;
 
-    /// Goes on from a state to a section (see [`Section::arrive`]).
+    /// Continues from a state to a section (see [`Section::arrive`]).
     ///
     /// # Errors
-    /// [`SectionError`].
+    /// [`SectionError`] if there is no arrival.
     fn arrive(
         returns: &Returns<'_, Self>,
         state: &Self::State,
         tangents: &mut [Tangent<Self>],
     ) -> Result<Arrival<Self::State>, SectionError>;
 
-    /// Looks for a periodic orbit near a point (see [`Section::periodic`]).
+    /// Searches for a periodic orbit near a point (see [`Section::periodic`]).
     ///
     /// # Errors
-    /// [`OrbitError`].
+    /// [`OrbitError`] if none is found.
     fn periodic(returns: &Returns<'_, Self>, near: &Self::State)
     -> Result<Orbit<Self>, OrbitError>;
 }
@@ -96,7 +96,7 @@ macro_rules! varied {
 varied!(Model Large);
 
 impl<M: Varied> Course<'_, M> {
-    /// Makes the run by an integrator, and carries directions along it.
+    /// Makes the run by an integrator, and transports directions along it.
     pub fn vary(
         self,
         integrator: Integrator,
@@ -108,23 +108,23 @@ impl<M: Varied> Course<'_, M> {
     }
 }
 
-/// A surface as a section, mapped by power series.
+/// A surface as a section whose map is computed by power series.
 #[derive(Debug, Clone, Copy)]
 pub struct Returns<'a, M> {
     /// The system.
     pub system: &'a M,
     /// The surface.
     pub surface: usize,
-    /// How many returns are one.
+    /// Number of returns in one application of the map.
     pub count: u32,
-    /// The most time that a return takes.
+    /// Longest time of a return.
     pub horizon: f64,
-    /// Another law on the surface than the declared one.
+    /// The law on the surface, instead of the declared one.
     pub law: Option<Law>,
 }
 
 impl<'a, M: Varied> Returns<'a, M> {
-    /// Single returns to a surface.
+    /// The map of single returns to a surface.
     pub fn new(system: &'a M, surface: usize, horizon: f64) -> Self {
         Self {
             system,
@@ -135,10 +135,10 @@ impl<'a, M: Varied> Returns<'a, M> {
         }
     }
 
-    /// Goes on from a state to the section.
+    /// Continues from a state to the section.
     ///
     /// # Errors
-    /// [`SectionError`].
+    /// [`SectionError`] if there is no arrival.
     pub fn arrive(
         &self,
         state: &M::State,
@@ -147,10 +147,10 @@ impl<'a, M: Varied> Returns<'a, M> {
         M::arrive(self, state, tangents)
     }
 
-    /// Looks for a periodic orbit near a point of the section.
+    /// Searches for a periodic orbit near a point of the section.
     ///
     /// # Errors
-    /// [`OrbitError`].
+    /// [`OrbitError`] if none is found.
     pub fn periodic(&self, near: &M::State) -> Result<Orbit<M>, OrbitError> {
         M::periodic(self, near)
     }

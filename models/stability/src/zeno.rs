@@ -1,4 +1,4 @@
-//! Section B, first part: impacts that accumulate on one surface, and the contact that follows.
+//! Section B, first part: accumulation of impacts on one surface, and the contact that follows.
 
 use dalembert::Outcome;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -27,7 +27,7 @@ pub static SPHERE_TOP: Text = Text::new(
     }",
 );
 
-/// Two balls that do not know of each other.
+/// Two independent balls.
 static TWO_BALLS: Text = Text::new(
     "TwoBalls {
         coordinates { x; y; }
@@ -53,7 +53,7 @@ pub const CASES: &[Case] = &[
         right: "x = 0 for ever",
         bound: "`done`, x = 0 at ten times the Zeno time",
         run: Run::Steps(|setting, report| {
-            // Steps that are forced are two million of them there: `B01c`.
+            // Forced steps would be two million there; see `B01c`.
             let is_forced = setting.max_step.is_some();
             let restitutions = if is_forced {
                 &[0.1, 0.5, 0.9][..]
@@ -122,7 +122,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// The time of accumulation that a run ended with, which must be near this one.
+/// Checks that a run ended with an accumulation near the time `t`.
 pub fn accumulates(report: &mut Report, name: &str, end: &End, t: f64, bound: f64) {
     report.class(&end.outcome, "zeno");
     if let Outcome::Zeno { t: found, .. } = end.outcome {
@@ -142,7 +142,7 @@ fn geometric(setting: Setting, report: &mut Report) {
         let late = |(n, hit): (usize, &super::course::Hit)| {
             let power = e.powi(n as i32 + 1);
             let t = limit * (1.0 - power);
-            // A relative error of every flight, and the gap's rounding at the height of the last one.
+            // A relative error of every flight, and the rounding error of the gap at the height of the last one.
             let spread = 16.0 * U * t * (n as f64 + 1.0);
             let height = 0.5 * (power / e).powi(2);
             (hit.t - t).abs()
@@ -187,19 +187,19 @@ fn slow_loss(setting: Setting, report: &mut Report) {
 }
 
 fn tiny_hops(setting: Setting, report: &mut Report) {
-    // The 50 000th impact is at the horizon itself; a part in 1e5 after it, none is.
+    // Impact number 50 000 is at the horizon itself; the run ends 1e-5 of that time later, before the next impact.
     let end = Course::new(&FALL.model(), &[0.0], &[1e-8], 1.00001e-3).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 50_000);
 }
 
-/// Distance along the plane from rest at speed `s1`.
+/// Distance along the plane after time `t`, with initial speed `s1`.
 fn slid(system: &Model, s1: f64, t: f64) -> f64 {
     let [g, slope] = ["g", "slope"].map(|name| value(system, name));
     s1 * t + 0.5 * g * slope.sin() * t * t
 }
 
-/// When hops at first of speed 1 accumulate.
+/// Time of accumulation of hops whose initial speed is 1.
 fn accumulation(system: &Model) -> f64 {
     let [g, slope, e] = ["g", "slope", "e"].map(|name| value(system, name));
     2.0 / (g * slope.cos() * (1.0 - e))

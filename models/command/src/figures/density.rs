@@ -1,8 +1,8 @@
-//! Where billiards of rigid bodies are in the long run: W. Clark and A. Bloch, Figures 7 and 8.
+//! Long-run densities of billiards of rigid bodies: W. Clark and A. Bloch, Figures 7 and 8.
 
 use dalembert_cli::gallery::{Density, Figure, Panel, Picture};
 
-/// The paper takes a million positions, one in a unit of time, after a thousand that are left out.
+/// The paper takes a million positions, one per unit of time, after discarding a thousand.
 const EVERY: f64 = 1.0;
 const POSITIONS: u64 = 1_000_000;
 const DISCARDED: u64 = 1000;

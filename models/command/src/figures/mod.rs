@@ -1,7 +1,7 @@
-//! Figures of the papers that the models come from, drawn anew: what `dalembert gallery` shows besides every model's own
-//! motion.
+//! Reproductions of figures from the papers that the models come from; `dalembert gallery` shows them besides the
+//! motion of every model.
 //!
-//! The papers do not state every parameter; what was chosen here is said in the captions.
+//! The papers do not state every parameter; captions name the values chosen here.
 
 mod density;
 mod rolling_disk;
@@ -10,11 +10,11 @@ mod zeno;
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
-/// Widths of pictures of which three or four stand beside each other.
+/// Width of a picture of which three or four stand side by side.
 const THIRD: &str = "--plot-width 480";
 const QUARTER: &str = "--plot-width 400";
 
-/// All of them, in the order of the models.
+/// All figures, in the order of the models.
 pub fn all() -> Vec<Figure> {
     let mut figures = rolling_disk::figures();
     figures.extend([
@@ -26,7 +26,7 @@ pub fn all() -> Vec<Figure> {
     figures
 }
 
-/// A picture that `simulate` draws from these flags.
+/// A picture that `simulate` draws with these flags.
 fn simulated(name: &str, title: impl Into<String>, flags: &str) -> Panel {
     Panel {
         name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! What accuracy costs, measured where the gallery is made.
+//! Work-precision diagrams, measured on the machine that makes the gallery.
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
