@@ -1,5 +1,5 @@
-//! The command line's grammar. What it accepts is an interface; values are checked where they are used,
-//! because only there is it known which names the model has.
+//! Grammar of the command line. What it accepts is a public interface. Values are checked where they are used, because
+//! only there the names of the model are known.
 
 mod certify;
 mod choice;
@@ -84,7 +84,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// The model that it names, if it names one that is read once.
+    /// The argument that names the model of the command, for commands that read one model once.
     pub fn model(&mut self) -> Option<&mut String> {
         match self {
             Self::Derive(args) => Some(&mut args.model),
@@ -93,7 +93,7 @@ impl Command {
         }
     }
 
-    /// The model that it runs, if it runs one.
+    /// The model arguments of the command, if it runs a model.
     fn model_to_run(&mut self) -> Option<&mut ModelArgs> {
         match self {
             Self::Simulate(args) => Some(&mut args.run.model),
@@ -105,7 +105,7 @@ impl Command {
         }
     }
 
-    /// Are the claims of a model of a file left alone?
+    /// True if the claims of a model of a file are not examined.
     pub fn skips_claims(&mut self) -> bool {
         self.model_to_run().is_some_and(|args| args.no_claims)
     }
@@ -357,7 +357,7 @@ impl PolicyArgs {
     }
 }
 
-/// What `--law` takes.
+/// Help text of `--law`.
 fn law_help() -> String {
     let laws = Law::NAMES.map(|(name, takes_coefficient)| match takes_coefficient {
         true => format!("{name}:E"),

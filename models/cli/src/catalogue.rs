@@ -1,4 +1,4 @@
-//! What a command line works on.
+//! The models, cases and figures of a command line.
 
 use crate::entry::Entry;
 use crate::gallery::Figure;
@@ -13,7 +13,8 @@ pub struct Catalogue {
 }
 
 impl Catalogue {
-    /// Models, as made by [`models!`](crate::models), no cases, and no figures but those that every model has.
+    /// A catalogue of models, as made by [`models!`](crate::models), without cases, and with the figures that every
+    /// model has.
     pub fn of(models: Vec<Entry>) -> Self {
         Self {
             models,
@@ -22,21 +23,21 @@ impl Catalogue {
         }
     }
 
-    /// With these cases.
+    /// Sets the hard cases.
     #[must_use]
     pub fn with_suite(mut self, suite: Vec<Case>) -> Self {
         self.suite = suite;
         self
     }
 
-    /// With these figures, after those that every model has.
+    /// Sets the figures that follow those that every model has.
     #[must_use]
     pub fn with_figures(mut self, figures: Vec<Figure>) -> Self {
         self.figures = figures;
         self
     }
 
-    /// With these models before the others, which may have the same names.
+    /// The catalogue with these models before the others; names may occur twice.
     pub(crate) fn with_models(&self, mut models: Vec<Entry>) -> Self {
         models.extend(self.models.iter().cloned());
         Self {
@@ -55,7 +56,7 @@ impl Catalogue {
         &self.suite
     }
 
-    /// The figures that were added.
+    /// The added figures.
     pub fn figures(&self) -> &[Figure] {
         &self.figures
     }

@@ -1,6 +1,6 @@
-//! The models of the command line: types, and texts that are loaded where they are asked for.
+//! The models of the command line: types, and texts that are loaded on first use.
 //!
-//! A model is run behind [`AnyModel`], whatever it comes from.
+//! Every model is run behind [`AnyModel`].
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,19 +13,19 @@ use dalembert_jit::Loaded;
 
 use crate::error::CliError;
 
-/// One model of the list handed to [`run`](crate::run), with its scenes.
+/// One model in the list of [`run`](crate::run), with its scenes.
 #[derive(Clone)]
 pub struct Entry {
     name: &'static str,
     source: Source,
 }
 
-/// Where a model comes from.
+/// Source of a model.
 #[derive(Clone)]
 enum Source {
     /// A type, or a text that was loaded.
     Known(Box<Known>),
-    /// A text that is loaded where the model is first asked for. Clones of the entry share it.
+    /// A text that is loaded on first use. Clones of the entry share the loaded model.
     Text {
         text: &'static str,
         known: Arc<OnceLock<Known>>,
@@ -42,16 +42,16 @@ struct Known {
 /// A maker of a model with declared defaults.
 #[derive(Debug, Clone, Copy)]
 enum Build {
-    /// A form that was compiled, which the systems of all forms run.
+    /// A compiled form, run by the systems of all forms.
     Erased(&'static Form),
-    /// A form that was loaded from a text.
+    /// A form loaded from a text.
     Loaded(&'static Form),
-    /// A type, which everything that runs a model is compiled for.
+    /// A type for which all code that runs it is compiled.
     Typed(fn() -> Box<dyn AnyModel>),
 }
 
 impl Build {
-    // NOTE: evaluated while compiling, so that nothing but kernels is compiled of a type that has a form.
+    // NOTE: evaluated at compile time, so that only kernels are compiled for a type that has a form.
     const fn of<M: Model + Described>() -> Self {
         match M::FORM {
             Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),
@@ -68,13 +68,13 @@ impl Build {
     }
 }
 
-/// The model of a form that there is room for.
+/// The model of a form, which must fit the largest capacity.
 fn erased(form: &'static Form, code: Code) -> Box<dyn AnyModel> {
     of_form(form, code).expect("a form that there is a capacity for")
 }
 
 impl Entry {
-    /// The entry of a model type with its scenes; the model itself is the scene `all`.
+    /// The entry of a model type with its scenes; the scene `all` is the model itself.
     pub fn of<M: Model + Described>() -> Self {
         let mut known = Known {
             description: M::DESCRIPTION,
@@ -84,11 +84,12 @@ impl Entry {
         Self::known_by(known)
     }
 
-    /// The entry of the model of this name that a text declares, such as `rolling_disk` of `RollingDisk { .. }`. The text is loaded once, where
-    /// something besides the name is first asked for.
+    /// The entry of the model with this name that a text declares, such as `rolling_disk` for `RollingDisk { .. }`. The
+    /// text is loaded once, when a property other than the name is first used.
     ///
     /// # Panics
-    /// Loading panics if the text does not declare exactly one model, of this name, that can be run without being compiled.
+    /// Loading panics unless the text declares exactly one model, with this name, that can be run without being
+    /// compiled.
     pub fn of_text(name: &'static str, text: &'static str) -> Self {
         let known = Arc::default();
         Self {
@@ -97,7 +98,7 @@ impl Entry {
         }
     }
 
-    /// The entry of a model that was loaded from its text.
+    /// The entry of a model loaded from its text.
     pub(crate) fn loaded(model: &Loaded) -> Self {
         Self::known_by(Known::of(model))
     }
@@ -116,20 +117,20 @@ impl Entry {
         }
     }
 
-    /// Refuses a model that there is no system for.
+    /// Refuses a model that exceeds the largest system.
     ///
     /// # Errors
-    /// [`CliError::Large`].
+    /// [`CliError::Large`] for such a model.
     pub(crate) fn check_size(&self) -> Result<(), CliError> {
         self.known().check_size()
     }
 
-    /// The name of the model, that of its description.
+    /// The name of the model, as in its description.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// What the model says of itself.
+    /// The description of the model.
     pub fn description(&self) -> &Description {
         &self.known().description
     }

@@ -1,4 +1,4 @@
-//! What the command line refuses, and how it says so: the flag, what was given, what is accepted.
+//! Errors of the command line: the flag, the given value, the accepted values.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub enum CliError {
     Unknown {
         /// The flag or argument.
         place: String,
-        /// The name, and those there are.
+        /// The name, and the accepted ones.
         unknown: Unknown,
     },
     /// A value of the wrong kind.
@@ -27,9 +27,9 @@ pub enum CliError {
     Value {
         /// The flag or argument.
         place: String,
-        /// What was written.
+        /// The given text.
         given: String,
-        /// What is accepted.
+        /// A description of accepted values.
         expected: String,
     },
     /// The wrong number of values.
@@ -39,13 +39,13 @@ pub enum CliError {
         place: String,
         /// One name per expected number.
         names: Vec<&'static str>,
-        /// How many were given.
+        /// Number of given values.
         got: usize,
     },
     /// Mistakes in the text of a model.
     #[error("{0}")]
     Declaration(dalembert_jit::Refused),
-    /// A model that is too large to be run without a compiler.
+    /// A model that is too large to run without a compiler.
     #[error(
         "MODEL: `{model}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate with `dalembert::model!`"
     )]
@@ -53,7 +53,7 @@ pub enum CliError {
         /// The model.
         model: &'static str,
     },
-    /// The reduced form of a model that has none.
+    /// The reduced form, requested for a model without one.
     #[error("--form reduced: `{model}` has no form reduced to D; `derive {model}` says why")]
     Unreduced {
         /// The model.
@@ -62,19 +62,19 @@ pub enum CliError {
     /// A law that cannot be used.
     #[error("--law: {0}")]
     Law(LawError),
-    /// Variations of a scene that was declared without them.
+    /// Variations, requested for a scene declared without them.
     #[error("--scene: `{scene}` was declared without `variations`; add it to what the scene uses")]
     Invariable {
         /// The scene.
         scene: String,
     },
-    /// A model that no motion is certified of.
+    /// A model whose motion cannot be certified.
     #[error("--certify: {0}")]
     Uncertified(Uncertified),
-    /// Flags that do not go together, or one that needs another.
+    /// Incompatible flags, or a flag that needs another.
     #[error("{0}")]
     Usage(&'static str),
-    /// A parameter against its declaration.
+    /// A parameter with a value that its declaration rules out.
     #[error(
         "parameter `{name}` is {value}, but must be {expected}; change it with --set {name}=VALUE"
     )]
@@ -83,7 +83,7 @@ pub enum CliError {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What the declaration asks for.
+        /// The declared assumption.
         expected: Assumption,
     },
     /// A parameter that has no default and was not set.
@@ -93,26 +93,26 @@ pub enum CliError {
     Unset {
         /// Its name.
         name: &'static str,
-        /// What the declaration asks for.
+        /// The declared assumption.
         expected: Assumption,
     },
     /// A state that the system refuses.
     #[error("{place}: {reason}")]
     State {
-        /// Where the state came from.
+        /// The origin of the state.
         place: String,
-        /// Why, in the model's names.
+        /// The reason, in the model's names.
         reason: String,
     },
     /// A run that the runtime refuses to start.
     #[error("simulate: {0}")]
     Start(String),
-    /// Input that is not the JSON it should be.
+    /// Input that is not valid JSON or has the wrong structure.
     #[error("{place}: {reason}")]
     Input {
-        /// The file or stream, and the place in it.
+        /// The file or stream, and the position in it.
         place: String,
-        /// What is wrong and what is expected.
+        /// The defect, and what is expected.
         reason: String,
     },
     /// A file that cannot be read or written.
@@ -122,7 +122,7 @@ pub enum CliError {
         flag: &'static str,
         /// Its path.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// A file that another run, or another flag of the same run, is writing.
@@ -139,7 +139,7 @@ pub enum CliError {
     /// The standard output or input failed.
     #[error("standard streams: {0}")]
     Stream(#[from] std::io::Error),
-    /// The generator refused the model's own source.
+    /// The generator refused the source of the model.
     #[error("derive: {0}")]
     Derive(String),
     /// A picture that could not be drawn.
@@ -147,9 +147,9 @@ pub enum CliError {
     Plot {
         /// The flag that asked for it.
         flag: &'static str,
-        /// Where it should have gone.
+        /// Its intended path.
         path: PathBuf,
-        /// What went wrong.
+        /// The reason.
         reason: String,
     },
 }
@@ -177,7 +177,7 @@ impl CliError {
         }
     }
 
-    /// Why a state was refused, in the model's names.
+    /// The error for a refused state, in the model's names.
     pub fn state(place: &str, description: &Description, error: StateError) -> Self {
         if let StateError::Parameter(error) = error {
             let (name, expected) = (error.name, error.expected);
@@ -196,7 +196,7 @@ impl CliError {
         }
     }
 
-    /// A run that does not begin.
+    /// The error for a run that does not start.
     pub fn refused(model: &dyn AnyModel, refusal: &Refusal) -> Self {
         Self::Start(refusal_text(&model.description(), refusal))
     }
@@ -210,12 +210,12 @@ const ADVICE: Advice = Advice {
          --off-constraint project (allowed positions near by) or --off-constraint keep (as it is)",
 };
 
-/// Says in the model's names why a run does not begin.
+/// Explains, in the model's names, why a run does not start.
 pub fn refusal_text(description: &Description, refusal: &Refusal) -> String {
     words::refusal_text(description, refusal, &ADVICE)
 }
 
-/// Says in the model's names why a state was refused.
+/// Explains, in the model's names, why a state was refused.
 pub fn state_text(description: &Description, error: &StateError) -> String {
     words::state_text(description, error, &ADVICE)
 }

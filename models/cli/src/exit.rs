@@ -1,8 +1,8 @@
-//! Exit statuses, an interface.
+//! Exit statuses, a public interface.
 
 use std::process::ExitCode;
 
-/// How a command ended.
+/// Result of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
     /// 0: the requested end was reached.
@@ -14,7 +14,7 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// The status a process ends with.
+    /// The exit status of the process.
     pub const fn code(self) -> u8 {
         match self {
             Self::Reached => 0,

@@ -1,5 +1,5 @@
-//! JSON as the command line writes it: keys in the order of the interface, one row per line, numbers that read
-//! back to the same `f64`, `null` for what is infinite or not a number.
+//! JSON of the command line: keys in the order of the interface, one row per line, numbers that parse to the same
+//! `f64`, `null` for infinities and NaN.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -9,15 +9,15 @@ use serde_json::{Map, Value};
 
 use crate::spool::Spool;
 
-/// The value of a text in JSON, every key of an object at most once.
+/// Parses JSON whose objects have every key at most once.
 ///
 /// # Errors
-/// A text that is no JSON, or a key that is there twice, with its place.
+/// A text that is not JSON, or a duplicate key, with its position.
 pub fn parse(text: &[u8]) -> serde_json::Result<Value> {
     serde_json::from_slice(text).map(|Unique(value)| value)
 }
 
-/// A value in whose objects every key is there once: of two, [`Value`] silently takes the last.
+/// A value whose objects have unique keys; [`Value`] silently takes the last of two equal keys.
 struct Unique(Value);
 
 impl<'de> Deserialize<'de> for Unique {
@@ -110,13 +110,13 @@ pub fn named<'a>(names: impl Iterator<Item = &'a str>, values: &[f64]) -> Value 
 /// Writes an array with one element per line.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write_array(output: &mut dyn Write, rows: impl Iterator<Item = Value>) -> io::Result<()> {
     write_rows(output, rows)?;
     writeln!(output)
 }
 
-/// An object written key by key, one per line, so that long arrays need not be held as values.
+/// An object that is written key by key, one per line, so that long arrays need not be kept as values.
 pub struct Document<'a> {
     output: &'a mut dyn Write,
     empty: bool,
@@ -126,7 +126,7 @@ impl<'a> Document<'a> {
     /// Opens the object.
     ///
     /// # Errors
-    /// Whatever the stream says; so for every method.
+    /// An I/O error of the stream, as for every method.
     pub fn begin(output: &'a mut dyn Write) -> io::Result<Self> {
         write!(output, "{{")?;
         Ok(Self {
@@ -147,7 +147,7 @@ impl<'a> Document<'a> {
         write_rows(self.output, rows)
     }
 
-    /// Writes a key with an array of rows that were kept.
+    /// Writes a key with an array of kept rows.
     pub fn spooled(&mut self, key: &str, rows: &Spool) -> io::Result<()> {
         self.key(key)?;
         rows.write(self.output)

@@ -1,7 +1,7 @@
 //! The dalembert command line over any list of models.
 //!
-//! The shipped `dalembert` binary is this crate over the texts of the shipped models; a crate of one's own gets the same
-//! commands for its own models:
+//! The shipped `dalembert` binary is this crate over the texts of the shipped models. Another crate gets the same
+//! commands for its models:
 //!
 //! ```no_run
 //! dalembert::model! {
@@ -60,7 +60,7 @@ pub use entry::Entry;
 use error::CliError;
 pub use exit::Exit;
 
-/// Where a command reads and writes.
+/// Streams of a command.
 pub struct Streams<'a> {
     /// The standard input.
     pub input: &'a mut dyn Read,
@@ -68,7 +68,7 @@ pub struct Streams<'a> {
     pub output: &'a mut dyn Write,
     /// The standard error: messages.
     pub errors: &'a mut dyn Write,
-    /// Whether to show progress on the process's own standard error.
+    /// True to show progress on the standard error of the process.
     pub terminal: bool,
 }
 
@@ -78,7 +78,7 @@ pub fn run(models: Vec<Entry>) -> ExitCode {
     Catalogue::of(models).run()
 }
 
-/// Runs one command line, program name included, over a list of models, with streams of the caller's.
+/// Runs one command line, program name included, over a list of models, with the caller's streams.
 pub fn run_with<A>(
     args: impl IntoIterator<Item = A>,
     models: &[Entry],
@@ -103,7 +103,7 @@ impl Catalogue {
         self.run_with(std::env::args_os(), &mut streams).into()
     }
 
-    /// Runs one command line, program name included, with streams of the caller's.
+    /// Runs one command line, program name included, with the caller's streams.
     pub fn run_with<A>(&self, args: impl IntoIterator<Item = A>, streams: &mut Streams<'_>) -> Exit
     where
         A: Into<OsString> + Clone,
@@ -115,10 +115,10 @@ impl Catalogue {
         let done = with_files(&mut line, self, streams)
             .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
         done.unwrap_or_else(|error| match error {
-            // A reader that has seen enough, such as `head`, needs no message.
+            // A reader that closes its end early, such as `head`, needs no message.
             CliError::Stream(source) if source.kind() == io::ErrorKind::BrokenPipe => Exit::Other,
             error => {
-                // Nothing is left to report to if the standard error fails.
+                // If the standard error fails, no stream is left for a report.
                 let _ = writeln!(streams.errors, "error: {error}");
                 Exit::Refused
             }
@@ -126,7 +126,7 @@ impl Catalogue {
     }
 }
 
-/// Carries out a command; a model that it names by a file is read first.
+/// Carries out a command; reads its model first if the model is in a file.
 fn with_files(
     line: &mut CommandLine,
     catalogue: &Catalogue,
@@ -165,10 +165,10 @@ fn dispatch(
     }
 }
 
-/// Help goes to the standard output; anything else is a refusal.
+/// Writes help to the standard output; any other error of `clap` is a refusal.
 fn explain(error: &clap::Error, streams: &mut Streams<'_>) -> Exit {
     let text = error.to_string();
-    // Nothing is left to report to if a standard stream fails here.
+    // If a standard stream fails here, no stream is left for a report.
     if error.use_stderr() {
         let _ = write!(streams.errors, "{text}");
         Exit::Refused

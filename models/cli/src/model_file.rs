@@ -1,4 +1,4 @@
-//! Models of files: a model argument that names a file stands for the model in it.
+//! Models in files: a model argument that names a file selects the model in it.
 
 use std::fs::File;
 use std::io::{Read, Take};
@@ -8,23 +8,23 @@ use crate::entry::Entry;
 use crate::error::CliError;
 use crate::names;
 
-/// The ending of the names of files with models.
+/// The file name extension of files with models.
 pub(crate) const EXTENSION: &str = "dal";
 
-/// The name of the standard input.
+/// The argument that means the standard input.
 const INPUT: &str = "-";
 
-/// The longest text that is read, in bytes.
+/// The longest accepted text, in bytes.
 const LONGEST: u64 = 1 << 20;
 
-/// The file that an argument names, unless that is the standard input.
+/// The file of an argument; `None` for the standard input and for a model name.
 pub(crate) fn path(given: &str) -> Option<&Path> {
     let (file, _) = split(given)?;
     (file != INPUT).then_some(Path::new(file))
 }
 
-/// The models of the file that an argument names, and the name of the one that is meant: `disk.dal`, or `systems.dal:disk` where there are
-/// several. `None` if it names no file.
+/// The models in the file that an argument names, and the name of the selected one: `disk.dal`, or `systems.dal:disk`
+/// for a file with several models. `None` if the argument names no file.
 ///
 /// # Errors
 /// A file that cannot be read, every mistake in it, an unknown or missing name.
@@ -64,7 +64,7 @@ pub(crate) fn read(
     Ok(Some((entries, name)))
 }
 
-/// The file that an argument names, and the model in it.
+/// The file that an argument names, and the name of the model in it, if given.
 fn split(given: &str) -> Option<(&str, Option<&str>)> {
     let is_file = |name: &str| {
         let path = Path::new(name);
@@ -82,7 +82,7 @@ fn split(given: &str) -> Option<(&str, Option<&str>)> {
 /// The text of a file, or of the standard input.
 ///
 /// # Errors
-/// A file that cannot be read, or is too long.
+/// A file that cannot be read or is too long.
 pub(crate) fn text(file: &str, input: &mut dyn Read) -> Result<String, CliError> {
     let failed = |source| CliError::File {
         flag: "MODEL",

@@ -1,4 +1,4 @@
-//! Finding what a flag names: models, parameters, coordinates and their velocities, surfaces, scenes.
+//! Lookup of names given by flags: models, parameters, coordinates and their velocities, surfaces, scenes.
 
 use dalembert::describe::Description;
 use dalembert_driver::names;
@@ -9,7 +9,7 @@ use crate::error::CliError;
 /// The position of `given` among `accepted`.
 ///
 /// # Errors
-/// [`CliError::Unknown`] with the nearest name and all of them.
+/// [`CliError::Unknown`], with the nearest accepted name and all of them.
 pub fn find<'a>(
     place: &str,
     what: &'static str,
@@ -25,7 +25,7 @@ pub fn find<'a>(
 /// `name=value`, split at the first equals sign.
 ///
 /// # Errors
-/// [`CliError::Value`] without one.
+/// [`CliError::Value`] if there is no equals sign.
 pub fn assignment<'a>(
     place: &str,
     text: &'a str,

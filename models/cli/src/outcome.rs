@@ -1,4 +1,4 @@
-//! Ends of runs and of searches for orbits, in the names of the model.
+//! Outcomes of runs and of searches for orbits, in the names of the model.
 
 use dalembert::Outcome;
 use dalembert::describe::Description;
@@ -9,13 +9,13 @@ use serde_json::Value;
 
 use crate::{json, names};
 
-/// Facts that go with a kind, by name.
+/// Details of an outcome, by name.
 pub type Details = Vec<(&'static str, Value)>;
 
-/// A kind, and what it says besides.
+/// The kind of an outcome, and its details.
 pub type Told = (&'static str, Details);
 
-/// The facts of an outcome besides its kind and its time, in the model's names.
+/// The details of an outcome besides its kind and its time, in the model's names.
 pub fn details(description: &Description, outcome: &Outcome) -> Details {
     let facts = outcome::details(description, outcome).into_iter();
     facts.map(|(name, fact)| (name, value(fact))).collect()
@@ -30,7 +30,7 @@ fn value(fact: Fact) -> Value {
     }
 }
 
-/// The kind of an orbit that was not found, and what it says besides, by name.
+/// The kind of a failed search for an orbit, and its details by name.
 pub fn missed(description: &Description, error: &OrbitError) -> Told {
     match error {
         OrbitError::Section(SectionError::Ended(Outcome::Done)) => ("no_return", Vec::new()),
@@ -55,7 +55,7 @@ pub fn missed(description: &Description, error: &OrbitError) -> Told {
     }
 }
 
-/// Where a run has no derivative.
+/// Details of the event at which a run has no derivative.
 fn place(description: &Description, undefined: &Undefined) -> Details {
     match *undefined {
         Undefined::Graze { t, surface }

@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Steps between two looks at the clock.
+/// Steps between two readings of the clock.
 const STRIDE: u32 = 256;
 
-/// Parts of the bar.
+/// Resolution of the bar.
 const PARTS: u64 = 1000;
 
-/// How far a run has come.
+/// Progress bar of a run.
 pub struct Progress {
     end: f64,
     steps: u32,
@@ -29,7 +29,7 @@ impl Progress {
         }
     }
 
-    /// Notes that the run has reached `t`.
+    /// Notes that the run has reached time `t`.
     pub fn at(&mut self, t: f64) {
         let Some(started) = self.started else { return };
         self.steps = self.steps.wrapping_add(1);
@@ -49,20 +49,20 @@ impl Progress {
     }
 }
 
-/// How many of a number of things are done; shown from the start, because one may take long.
+/// Progress bar of a number of tasks; shown from the start, because one task may take long.
 pub struct Steps {
     bar: Option<ProgressBar>,
 }
 
 impl Steps {
-    /// Progress through `count` things; shown only if `terminal`.
+    /// Progress through `count` tasks; shown only if `terminal`.
     pub fn new(count: usize, terminal: bool) -> Self {
         Self {
             bar: terminal.then(|| new_bar(count as u64)),
         }
     }
 
-    /// The next one begins.
+    /// Notes the start of the next task.
     pub fn begin(&mut self, what: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(what.to_owned());
@@ -70,7 +70,7 @@ impl Steps {
         }
     }
 
-    /// One is done, and says so on the same terminal.
+    /// Completes a task; `write` prints its result on the same terminal.
     pub fn aside<T>(&mut self, write: impl FnOnce() -> T) -> T {
         match &self.bar {
             Some(bar) => {
@@ -90,12 +90,12 @@ impl Steps {
     }
 }
 
-/// How many members of an ensemble are done; shown from the start, because one may take long.
+/// Progress bar of an ensemble's members; shown from the start, because one member may take long.
 pub struct Count {
     done: u64,
     members: u64,
     started: Instant,
-    /// Time from the start at which the words are changed next.
+    /// Time from the start to the next change of the message.
     next: Duration,
     bar: Option<ProgressBar>,
 }
@@ -104,7 +104,7 @@ pub struct Count {
 const TICK: Duration = Duration::from_millis(200);
 
 impl Count {
-    /// Progress through so many members; shown only if `terminal`.
+    /// Progress through this number of members; shown only if `terminal`.
     pub fn new(members: u64, terminal: bool) -> Self {
         let bar = terminal.then(|| new_bar(members));
         if let Some(bar) = &bar {
@@ -119,7 +119,7 @@ impl Count {
         }
     }
 
-    /// One more is done; so many of all did not reach their end.
+    /// Completes one more member; `strayed` is the number of members that did not reach their end.
     pub fn done(&mut self, strayed: u64) {
         self.done += 1;
         let Some(bar) = &self.bar else { return };
@@ -147,7 +147,7 @@ impl Count {
 
 fn new_bar(parts: u64) -> ProgressBar {
     let bar = ProgressBar::new(parts);
-    // The template is a constant; should indicatif refuse it, its default style does as well.
+    // The template is a constant. If indicatif refuses it, the default style serves as well.
     if let Ok(style) = ProgressStyle::with_template("[{elapsed}] {bar:40} {percent}% {msg}") {
         bar.set_style(style);
     }

@@ -1,6 +1,6 @@
-//! What is kept of a run: states at equally spaced times, the impacts, and the trace for a picture.
+//! Records of a run: states at equally spaced times, the impacts, and the trace of a picture.
 //!
-//! Samples, impacts and contacts are handed on while the run goes on; only a picture keeps impacts in memory.
+//! Samples, impacts and contacts are forwarded during the run; only a picture keeps impacts in memory.
 
 use std::io;
 
@@ -10,19 +10,19 @@ use crate::error::CliError;
 use crate::plot::trace::Trace;
 use crate::progress::Progress;
 
-/// What to keep of a run.
+/// Requested records of a run.
 pub struct Wanted<'a> {
     /// The times of the samples.
     pub grid: Grid,
     /// The empty trace of a picture.
     pub trace: Option<Trace>,
-    /// What samples, impacts and contacts are handed to, in order of time.
+    /// Receivers of samples, impacts and contacts, in order of time.
     pub keeps: Vec<&'a mut dyn Keep>,
 }
 
-/// Takes what a run shows. The first error ends the run.
+/// Receiver of the data of a run. The first error ends the run.
 pub trait Keep {
-    /// The state at a time of the grid. An impact at that very instant came before.
+    /// The state at a time of the grid; an impact at the same instant comes first.
     fn sample(&mut self, t: f64, point: &Point) -> io::Result<()>;
 
     /// An impact was carried out.
@@ -31,27 +31,27 @@ pub trait Keep {
     /// A surface begins or ceases to hold the motion.
     fn contact(&mut self, contact: &Contact) -> io::Result<()>;
 
-    /// What is said of an error.
+    /// Converts an error of this receiver.
     fn failed(&self, error: io::Error) -> CliError;
 }
 
-/// How many impacts there were.
+/// Numbers of impacts.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tally {
     /// On each surface.
     pub per_surface: Vec<u64>,
-    /// So light that rounding may have decided them.
+    /// Impacts so light that rounding may have decided them.
     pub grazing: u64,
-    /// At the same time as another.
+    /// Impacts at the same time as another.
     pub simultaneous: u64,
-    /// Times that a surface began to hold the motion.
+    /// Number of times that a surface began to hold the motion.
     pub contacts: u64,
 }
 
-/// Keeps what was asked for while a run goes on.
+/// Makes the requested records during a run.
 pub struct Recorder<'a> {
     grid: Grid,
-    /// Samples taken so far.
+    /// Number of samples taken so far.
     taken: u64,
     keeps: Vec<&'a mut dyn Keep>,
     failure: Option<CliError>,
@@ -59,13 +59,13 @@ pub struct Recorder<'a> {
     progress: Progress,
 }
 
-/// What is known of a run that has ended.
+/// Records of a finished run.
 pub struct Record {
-    /// Impacts, in order of time, if there is a picture.
+    /// The impacts in order of time, if there is a picture.
     pub impacts: Vec<Impact>,
-    /// The trace, if a picture was asked for.
+    /// The trace, if a picture was requested.
     pub trace: Option<Trace>,
-    /// The number of impacts, kept or not.
+    /// The number of impacts, with or without a picture.
     pub tally: Tally,
 }
 
@@ -80,19 +80,19 @@ impl Tally {
         self.simultaneous += u64::from(impact.simultaneous);
     }
 
-    /// The impacts on one surface.
+    /// The number of impacts on one surface.
     pub fn on(&self, surface: usize) -> u64 {
         self.per_surface.get(surface).copied().unwrap_or(0)
     }
 
-    /// All impacts.
+    /// The number of all impacts.
     pub fn total(&self) -> u64 {
         self.per_surface.iter().sum()
     }
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder that has seen nothing.
+    /// A recorder before the start of a run.
     pub fn new(wanted: Wanted<'a>, progress: Progress) -> Self {
         Self {
             grid: wanted.grid,
@@ -108,10 +108,10 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Takes the sample at the run's last instant, if the grid has one there.
+    /// Takes the sample at the last instant of the run, if the grid has one there.
     ///
     /// # Errors
-    /// The first of what the run was handed to.
+    /// The first error of a receiver.
     pub fn finish(mut self, t: f64, last: &Point) -> Result<Record, CliError> {
         while let Some(time) = self.next_time().filter(|&time| time <= t) {
             self.sample(time, last);
@@ -135,7 +135,7 @@ impl<'a> Recorder<'a> {
         self.hand_on(|keep| keep.sample(t, point));
     }
 
-    /// Hands something on, until that fails once.
+    /// Forwards data to all receivers, until one fails.
     fn hand_on(&mut self, mut give: impl FnMut(&mut dyn Keep) -> io::Result<()>) {
         if self.failure.is_some() {
             return;
@@ -150,7 +150,7 @@ impl<'a> Recorder<'a> {
 }
 
 impl Watch for Recorder<'_> {
-    /// The step's last instant is left to the next step: at an impact, a sample shows the state after it.
+    /// The last instant of a step is left to the next step: at an impact, a sample shows the state after it.
     fn step(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(time) = self.next_time().filter(|&time| time < end) {

@@ -1,4 +1,4 @@
-//! From the flags that `simulate`, `ensemble` and `accuracy` share to the settings of a run.
+//! Converts the common flags of `simulate`, `ensemble` and `accuracy` to the settings of a run.
 
 use dalembert::describe::Description;
 use dalembert::law::Law;
@@ -12,7 +12,7 @@ use crate::error::CliError;
 use crate::sink::is_stdout;
 use crate::{names, scalar};
 
-/// Refuses a picture that is no SVG.
+/// Refuses a picture path that does not end in `.svg`.
 pub fn check_plot(path: Option<&Path>) -> Result<(), CliError> {
     if let Some(path) = path
         && path
@@ -41,12 +41,12 @@ pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Whether a table or a document goes to the standard output, which then holds nothing else.
+/// True if a table or a document is written to the standard output, which then has no other content.
 pub fn uses_stdout(paths: [&Option<PathBuf>; 2]) -> bool {
     paths.into_iter().flatten().any(|path| is_stdout(path))
 }
 
-/// How a run is to be made by the integrator of the flags, until the end they say.
+/// The settings of a run with the integrator, the steps and the end of the flags.
 pub fn course(
     model: &dyn AnyModel,
     run: &RunArgs,
@@ -73,8 +73,7 @@ pub fn course(
     })
 }
 
-/// How a run is to be made: by this integrator at this tolerance, until the time or the number of impacts that is asked
-/// for.
+/// The settings of a run by this integrator at this tolerance, up to the requested time or number of impacts.
 pub fn settings(
     model: &dyn AnyModel,
     args: &RunArgs,
@@ -101,7 +100,7 @@ pub fn settings(
     })
 }
 
-/// The form of the equations: as asked for, else reduced where that can hold the state and what is asked of it.
+/// The form of the equations: as requested; by default reduced if the model and the flags allow it.
 fn form(description: &Description, args: &RunArgs) -> Result<Form, CliError> {
     let needs_global =
         args.state.off_constraint == OffConstraint::Keep || args.projection.is_some();
@@ -123,7 +122,7 @@ fn horizon(
     ))
 }
 
-/// The laws of `--law`, in order: a later one counts.
+/// The laws of `--law`, in order; of two for one surface the later counts.
 pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
     let description = &model.description();
     let mut laws = Vec::new();
@@ -141,7 +140,7 @@ pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize,
     Ok(laws)
 }
 
-/// `LAW[:E]`
+/// Parses `LAW[:E]`.
 fn parse_law(text: &str) -> Result<Law, CliError> {
     let (name, coefficient) = match text.split_once(':') {
         Some((name, coefficient)) => (name.trim(), Some(coefficient.trim())),
@@ -177,6 +176,6 @@ fn parse_law(text: &str) -> Result<Law, CliError> {
         }
         (false, None) => 0.0,
     };
-    // The name is among the law's own names, so this is never `None`.
+    // The name is one of the law's names, so this is never `None`.
     Law::from_name(name, e).ok_or_else(|| CliError::value("--law", text, "an impact law"))
 }

@@ -1,17 +1,17 @@
-//! Numbers as people write them on the command line: decimals and multiples of pi.
+//! Numbers on the command line: decimals and multiples of pi.
 //!
-//! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Evaluated from left to
-//! right in `f64`; a lone decimal is the nearest `f64`.
+//! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Evaluated from left to right
+//! in `f64`; a single decimal is the nearest `f64`.
 
 use std::f64::consts::PI;
 
-/// What [`parse`] accepts, for messages.
+/// Description of the numbers that [`parse`] accepts, for messages.
 pub const EXPECTED: &str = "a finite number such as -1.5, 2e-3, pi/2 or -3*pi/4";
 
-/// The number `text` stands for.
+/// Parses a number.
 ///
 /// # Errors
-/// [`EXPECTED`] where `text` is anything else, an infinity or a NaN included.
+/// [`EXPECTED`] if `text` is anything else, an infinity or NaN included.
 pub fn parse(text: &str) -> Result<f64, &'static str> {
     let text = text.trim();
     let (sign, mut rest) = match text.strip_prefix('-') {
@@ -50,32 +50,32 @@ fn factor(text: &str) -> Option<f64> {
     }
 }
 
-/// An unsigned decimal; the standard library's signs, `inf` and `nan` are left out.
+/// Parses an unsigned decimal; signs, `inf` and `nan`, which the standard library accepts, are refused.
 fn decimal(text: &str) -> Option<f64> {
     let starts_as_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
     starts_as_number.then(|| text.parse().ok()).flatten()
 }
 
-/// A positive number.
+/// Parses a positive number.
 ///
 /// # Errors
-/// What is expected.
+/// A description of the accepted numbers.
 pub fn positive(text: &str) -> Result<f64, String> {
     within(text, |value| value > 0.0, "a positive number")
 }
 
-/// A number that is not negative.
+/// Parses a number that is not negative.
 ///
 /// # Errors
-/// What is expected.
+/// A description of the accepted numbers.
 pub fn nonnegative(text: &str) -> Result<f64, String> {
     within(text, |value| value >= 0.0, "a number that is not negative")
 }
 
-/// An error tolerance.
+/// Parses an error tolerance.
 ///
 /// # Errors
-/// What is expected.
+/// A description of the accepted numbers.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -84,10 +84,10 @@ pub fn tolerance(text: &str) -> Result<f64, String> {
     )
 }
 
-/// A coefficient of restitution.
+/// Parses a coefficient of restitution.
 ///
 /// # Errors
-/// What is expected.
+/// A description of the accepted numbers.
 pub fn coefficient(text: &str) -> Result<f64, String> {
     within(
         text,

@@ -1,4 +1,4 @@
-//! Files that commands write, or the standard output in their place.
+//! Output files of commands, or the standard output in their place.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
@@ -7,13 +7,12 @@ use std::path::{Path, PathBuf};
 use crate::Streams;
 use crate::error::CliError;
 
-/// Whether the path means the standard output.
+/// True if the path means the standard output.
 pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Opens a file that no other run is writing, with `options`; what it holds stays. Until it is closed, other runs are
-/// refused in the same way.
+/// Opens and locks a file with `options`; its content is kept. Other runs are refused until the file is closed.
 ///
 /// # Errors
 /// The file cannot be written, or another run is writing it.
@@ -29,7 +28,7 @@ pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Resu
         .truncate(false)
         .open(path)
         .map_err(failed)?;
-    // A device or a pipe may be written by many.
+    // Devices and pipes may have several writers.
     if !file.metadata().map_err(failed)?.is_file() {
         return Ok(file);
     }
@@ -62,7 +61,7 @@ fn claim_empty(flag: &'static str, path: &Path) -> Result<File, CliError> {
     }
 }
 
-/// Where a file goes.
+/// Destination of an output.
 pub enum Sink {
     /// To the standard output.
     Stdout,
@@ -72,13 +71,13 @@ pub enum Sink {
         flag: &'static str,
         /// Its path.
         path: PathBuf,
-        /// The file, open.
+        /// The open file.
         file: File,
     },
 }
 
 impl Sink {
-    /// Opens it, before anything is computed: a path that cannot be written is better known at once.
+    /// Opens the file before any computation, so that a path that cannot be written is reported at once.
     ///
     /// # Errors
     /// The file cannot be written, or another run is writing it.
@@ -101,7 +100,7 @@ impl Sink {
         path.map(|path| Self::open(flag, path)).transpose()
     }
 
-    /// Opens a file of a folder, which is made if it does not exist, if the file is wanted.
+    /// Opens a file in a folder, if the file is wanted; creates the folder if it does not exist.
     ///
     /// # Errors
     /// The folder or the file cannot be written.
@@ -124,7 +123,7 @@ impl Sink {
         }
     }
 
-    /// What is written goes there; `output` is the standard output.
+    /// The stream of this destination; `output` is the standard output.
     pub fn stream<'a>(self, output: &'a mut dyn Write) -> Stream<'a> {
         match self {
             Self::Stdout => Stream {
@@ -138,10 +137,10 @@ impl Sink {
         }
     }
 
-    /// Writes it.
+    /// Writes the output with a function.
     ///
     /// # Errors
-    /// Whatever the file or stream says.
+    /// An I/O error of the file or stream.
     pub fn write(
         self,
         streams: &mut Streams<'_>,
@@ -153,7 +152,7 @@ impl Sink {
     }
 }
 
-/// A file or the standard output, while it is written.
+/// A file or the standard output, open for writing.
 pub struct Stream<'a> {
     output: Box<dyn Write + 'a>,
     /// The flag that named the file, and its path.
@@ -161,7 +160,7 @@ pub struct Stream<'a> {
 }
 
 impl Stream<'_> {
-    /// What is said of a failure.
+    /// The error for a failed write.
     pub fn failed(&self, source: io::Error) -> CliError {
         match &self.file {
             None => CliError::Stream(source),

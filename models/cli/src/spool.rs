@@ -1,5 +1,5 @@
-//! Rows of a JSON array that are kept until it is their turn: a document says how a run ended before it says what happened in
-//! it. A few are kept in memory, many in a temporary file.
+//! Buffered rows of a JSON array: a document states the end of a run before its events. A few rows are kept in memory,
+//! many in a temporary file.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, Write};
@@ -8,23 +8,23 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde_json::Value;
 
-/// Bytes that are kept in memory.
+/// Size of the buffer in memory, in bytes.
 const ROOM: usize = 1 << 20;
 
-/// Names of temporary files that are tried.
+/// Number of names tried for a temporary file.
 const NAMES: u32 = 1000;
 
-/// Rows, as text.
+/// Buffered rows, as text.
 pub struct Spool {
-    /// The last of the text.
+    /// The last part of the text.
     text: Vec<u8>,
-    /// What came before it.
+    /// The text before it.
     file: Option<Temporary>,
     room: usize,
 }
 
 impl Spool {
-    /// No row.
+    /// An empty buffer.
     pub fn new() -> Self {
         Self::with_room(ROOM)
     }
@@ -58,7 +58,7 @@ impl Spool {
     /// Writes the array.
     ///
     /// # Errors
-    /// Whatever the stream or the temporary file says.
+    /// An I/O error of the stream or the temporary file.
     pub fn write(&self, output: &mut dyn Write) -> io::Result<()> {
         write!(output, "[")?;
         if let Some(Temporary { file, .. }) = &self.file {
@@ -72,7 +72,7 @@ impl Spool {
     }
 }
 
-/// A file without a name, or one that is removed at the end where files in use have one.
+/// A temporary file: without a name, or removed at the end on systems where open files keep their names.
 struct Temporary {
     file: File,
     path: Option<PathBuf>,
@@ -103,7 +103,7 @@ impl Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         if let Some(path) = &self.path {
-            // A file that stays harms nobody.
+            // A file that cannot be removed does no harm.
             let _ = fs::remove_file(path);
         }
     }

@@ -1,4 +1,4 @@
-//! From flags to a model with its parameters, and to the state a run starts from.
+//! Converts flags to a model with its parameters, and to the initial state of a run.
 
 use dalembert_driver::{AnyModel, Beginning, Component, OffConstraint, Origin, Rates};
 
@@ -11,16 +11,16 @@ use crate::scalar;
 /// The position of the model of this name in the list.
 ///
 /// # Errors
-/// [`CliError::Unknown`].
+/// [`CliError::Unknown`] if no model has this name.
 pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliError> {
     let names = models.iter().map(Entry::name);
     Ok(&models[names::find("MODEL", "model", name, names)?])
 }
 
-/// The model a command names, in its scene, with `--set` carried out and every parameter checked.
+/// The model that a command names, in its scene, with `--set` applied and every parameter checked.
 ///
 /// # Errors
-/// An unknown name, a value that is not a number or is against the parameter's declaration.
+/// An unknown name, a value that is not a number, a value that contradicts the parameter's declaration.
 pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyModel>, CliError> {
     let entry = find_model(models, &args.model)?;
     let scene = names::find("--scene", "scene", &args.scene, entry.scenes())?;
@@ -41,10 +41,10 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
     Ok(model)
 }
 
-/// The model of a run, with its inputs held as the flags say.
+/// The model of a run, with its inputs held at the values of the flags.
 ///
 /// # Errors
-/// As [`build_model`]; an unknown input, or a value that is no number.
+/// The errors of [`build_model`]; an unknown input, or a value that is not a number.
 pub fn build_run(models: &[Entry], args: &RunArgs) -> Result<Box<dyn AnyModel>, CliError> {
     let mut model = build_model(models, &args.model)?;
     for text in &args.input {
@@ -77,7 +77,7 @@ fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     }
 }
 
-/// An input that is held through a run.
+/// Holds an input at a value through a run.
 fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     const HELD: &str = "a number that is held, such as 0.5 or -pi/2; inputs that depend on time or state are given in Rust, by                         `with_inputs`";
     let (name, value) = names::assignment("--input", text, "NAME=VALUE")?;
@@ -99,15 +99,15 @@ fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
 /// The state that the flags describe, at `t = 0`.
 ///
 /// # Errors
-/// Anything about the flags, or why the system refuses the state.
+/// An error of the flags, or a state that the system refuses.
 pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Origin, CliError> {
     initial_state_with(model, args, |_| Ok(()))
 }
 
-/// The state that the flags describe, with changes.
+/// The state that the flags describe, with changes by `changes`.
 ///
 /// # Errors
-/// As [`initial_state`]; why there is no such change.
+/// The errors of [`initial_state`], and those of `changes`.
 pub fn initial_state_with(
     model: &dyn AnyModel,
     args: &StateArgs,
@@ -119,23 +119,23 @@ pub fn initial_state_with(
     beginning.settle(model, args.off_constraint).map_err(refuse)
 }
 
-/// The model's own `initial`; what it does not name follows from the constraints.
+/// The model's `initial`; the constraints determine the components that it does not name.
 ///
 /// # Errors
-/// Why the system refuses the state.
+/// A state that the system refuses.
 pub fn declared_state(model: &dyn AnyModel) -> Result<Origin, CliError> {
     Beginning::Named(model.initial())
         .settle(model, OffConstraint::Error)
         .map_err(|error| CliError::state(DECLARED, &model.description(), error))
 }
 
-/// Where a state without flags comes from.
+/// Origin of a state without flags, for messages.
 const DECLARED: &str = "the model's `initial`";
 
-/// The state that the flags say, before it is checked.
+/// The state that the flags describe, before its checks.
 ///
 /// # Errors
-/// Anything about the flags.
+/// An error of the flags.
 pub fn beginning(model: &dyn AnyModel, args: &StateArgs) -> Result<Beginning, CliError> {
     let vector = |flag: &str, text: &str| numbers(model, flag, text);
     if model.description().is_first_order {
@@ -154,7 +154,7 @@ pub fn beginning(model: &dyn AnyModel, args: &StateArgs) -> Result<Beginning, Cl
     Ok(Beginning::Given { q, rates })
 }
 
-/// The same of a first-order system: its rates follow from the positions.
+/// The state of a first-order system: its rates follow from the positions.
 fn beginning_of_first_order(model: &dyn AnyModel, args: &StateArgs) -> Result<Beginning, CliError> {
     if args.qdot.is_some() || args.p.is_some() {
         let text = "--qdot and --p: a first-order system has rates that follow from --q alone";
@@ -196,7 +196,7 @@ fn place(beginning: &Beginning, args: &StateArgs) -> &'static str {
     }
 }
 
-/// Carries out one `name=value` of `--initial`.
+/// Applies one `name=value` of `--initial`.
 fn apply_change(
     model: &dyn AnyModel,
     beginning: &mut Beginning,
@@ -214,7 +214,7 @@ fn apply_change(
     Ok(())
 }
 
-/// A comma-separated list of one number per coordinate.
+/// Parses a comma-separated list of one number per coordinate.
 fn numbers(model: &dyn AnyModel, flag: &str, text: &str) -> Result<Vec<f64>, CliError> {
     let names: Vec<_> = names::coordinates(&model.description()).collect();
     let given: Vec<_> = match text.trim() {

@@ -1,5 +1,5 @@
-//! Tables as CSV; that of a run has samples and impacts: `t`, coordinates, velocities, `energy` (but of first-order systems),
-//! outputs, `event`.
+//! Tables as CSV. The table of a run has samples and impacts, with the columns `t`, coordinates, velocities, `energy`
+//! (except for first-order systems), outputs, `event`.
 
 use std::io::{self, Write};
 
@@ -11,8 +11,8 @@ use crate::names;
 use crate::record::Keep;
 use crate::sink::Stream;
 
-/// The table of a run, written while the run goes on. The row of an impact shows the state after it and names the
-/// surface in the column `event`; a sample at that very instant follows it.
+/// The table of a run, written during the run. The row of an impact shows the state after it and names the surface in
+/// the column `event`; a sample at the same instant follows it.
 pub struct RunTable<'a> {
     description: Description,
     writer: csv::Writer<Stream<'a>>,
@@ -20,7 +20,7 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// A table of which nothing is written, the header neither.
+    /// A table without any rows or header yet.
     pub fn new(description: Description, stream: Stream<'a>) -> Self {
         Self {
             description,
@@ -29,16 +29,16 @@ impl<'a> RunTable<'a> {
         }
     }
 
-    /// Writes what is not written yet.
+    /// Writes the remaining output.
     ///
     /// # Errors
-    /// Whatever the file or stream says.
+    /// An I/O error of the file or stream.
     pub fn finish(mut self) -> Result<(), CliError> {
         let finished = self.head().and_then(|()| self.writer.flush());
         finished.map_err(|source| self.failed(source))
     }
 
-    /// The header, before anything else.
+    /// Writes the header before the first row.
     fn head(&mut self) -> io::Result<()> {
         if self.has_header {
             return Ok(());
@@ -74,10 +74,10 @@ impl Keep for RunTable<'_> {
     }
 }
 
-/// Writes rows of CSV, to the end.
+/// Writes all rows of a CSV table.
 ///
 /// # Errors
-/// Whatever the stream says, or that a row has another length than the first.
+/// An I/O error of the stream, or a row whose length differs from that of the first.
 pub fn write_rows(
     output: &mut dyn Write,
     rows: impl FnOnce(&mut csv::Writer<&mut dyn Write>) -> csv::Result<()>,
@@ -105,7 +105,7 @@ fn header(description: &Description) -> Vec<String> {
     header
 }
 
-/// Something where there is an energy.
+/// `Some` for a model with an energy.
 fn energy(description: &Description) -> Option<()> {
     (!description.is_first_order).then_some(())
 }
@@ -117,11 +117,11 @@ fn row(description: &Description, t: f64, point: &Point, event: &str) -> Vec<Str
     let numbers = numbers
         .chain(energy(description).map(|()| point.energy))
         .chain(point.outputs.iter().copied());
-    // `Debug` writes the shortest decimal that reads back to the same number, with an exponent where that is short.
+    // `Debug` writes the shortest decimal that parses to the same number, with an exponent if that is shorter.
     let has_modes = !description.modes.is_empty();
     numbers
         .map(|number| match has_modes && number.is_nan() {
-            // What the mode does not have.
+            // The mode lacks this quantity.
             true => String::new(),
             false => format!("{number:?}"),
         })

@@ -112,7 +112,7 @@ impl Subject<'_> {
         })
     }
 
-    /// As `certify`, on the stack of the current thread.
+    /// Follows the motion on the stack of the current thread.
     fn certify_here(
         &self,
         request: &Certification,

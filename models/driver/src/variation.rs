@@ -241,7 +241,7 @@ impl Differentiator<'_> {
         }
     }
 
-    /// As `direction`, from positions and velocities of which one changes.
+    /// The direction of a variable in the state that is composed of positions and velocities.
     fn composed<S: Instance + Variational>(
         &self,
         system: &S,

@@ -264,7 +264,7 @@ impl<M: System> Observer<M> for Fails {
             return ControlFlow::Continue(());
         }
         if self.panics {
-            // As a panic, but without a message on the terminal.
+            // A panic without a message on the terminal.
             std::panic::resume_unwind(Box::new("an observer that fails"));
         }
         ControlFlow::Break(())

@@ -53,7 +53,7 @@ impl Text {
     /// The model with these values for some of its parameters, by name.
     ///
     /// # Panics
-    /// As [`Text::model`], and if there is no such parameter.
+    /// The panics of [`Text::model`], and if there is no such parameter.
     pub fn with<const K: usize>(&self, values: [(&str, f64); K]) -> Model {
         self.sized_with(values)
     }
@@ -61,7 +61,7 @@ impl Text {
     /// The model as of [`Text::with`], for vectors too long for [`Model`].
     ///
     /// # Panics
-    /// As [`Text::with`].
+    /// The panics of [`Text::with`].
     pub fn large<const K: usize>(&self, values: [(&str, f64); K]) -> Large {
         self.sized_with(values)
     }
@@ -77,7 +77,7 @@ impl Text {
     /// The model with its declared values, in vectors of at most `C` components.
     ///
     /// # Panics
-    /// As [`Text::model`], and if a vector has more than `C` components.
+    /// The panics of [`Text::model`], and if a vector has more than `C` components.
     pub fn sized<const C: usize>(&self) -> Erased<C> {
         Erased::of(self.loaded().form).expect("vectors of no more components")
     }
@@ -85,7 +85,7 @@ impl Text {
     /// The scene of this name with its declared values.
     ///
     /// # Panics
-    /// As [`Text::model`], and if there is no such scene.
+    /// The panics of [`Text::model`], and if there is no such scene.
     pub fn scene(&self, name: &str) -> Model {
         let mut scenes = self.loaded().scenes.iter();
         let scene = scenes.find(|(scene, _)| *scene == name);
@@ -96,7 +96,7 @@ impl Text {
     /// The model for the command line.
     ///
     /// # Panics
-    /// As [`Text::model`].
+    /// The panics of [`Text::model`].
     pub fn entry(&self) -> Entry {
         Entry::of_text(self.description().name, self.text)
     }
@@ -104,7 +104,7 @@ impl Text {
     /// The description of the model.
     ///
     /// # Panics
-    /// As [`Text::model`].
+    /// The panics of [`Text::model`].
     pub fn description(&self) -> &'static Description {
         &self.loaded().form.documentation.description
     }

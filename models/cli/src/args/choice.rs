@@ -1,4 +1,4 @@
-//! Flags whose values are those of an enumeration of the driver, by name.
+//! Parsers of flags whose values are names of an enumeration of the driver.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use dalembert_driver::{Form, Integrator, OffConstraint};
@@ -59,7 +59,7 @@ pub fn off_constraint() -> ValueParser {
     }))
 }
 
-/// A parser of values that have a name and a help each.
+/// A parser of values, each with a name and a help text.
 fn one_of<T: Copy + Send + Sync + 'static>(
     choices: impl IntoIterator<Item = (T, &'static str, &'static str)>,
 ) -> ValueParser {

@@ -8,7 +8,7 @@ use clap::builder::ValueParser;
 use super::{CourseArgs, RunArgs};
 use crate::scalar;
 
-/// What `ensemble --help` ends with.
+/// The end of `ensemble --help`.
 pub const EXAMPLES: &str = "--vary names a coordinate, a velocity or a parameter; where several are varied, every value of one meets every
 value of the others, the last one running fastest. Member k is the same whatever the number of threads and whatever the
 shard. The rows of --csv come in order of members: columns `member`, `in.NAME` for what is varied, `outcome`, `t`,

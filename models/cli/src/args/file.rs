@@ -1,4 +1,4 @@
-//! `new`, `watch` and `build`: commands about files with declarations.
+//! Flags of `new`, `watch` and `build`, the commands for files with declarations.
 
 use std::path::PathBuf;
 

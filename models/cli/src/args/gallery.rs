@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-/// What `gallery --help` ends with.
+/// The end of `gallery --help`.
 pub const EXAMPLES: &str = "Writes index.html, which needs no other file, each picture as NAME.svg, and manifest.json: what
 was drawn by which command, how the run ended, how long it took. But for manifest.json and
 diagrams of measured times two runs write the same bytes. Exit status: 0 every picture was made,

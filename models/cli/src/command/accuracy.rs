@@ -1,4 +1,4 @@
-//! `accuracy`: what accuracy costs, as a table for people, as CSV, JSON and a work-precision diagram.
+//! `accuracy`: the cost of accuracy, as a table for people, as CSV, JSON and a work-precision diagram.
 
 mod document;
 mod spreadsheet;
@@ -19,7 +19,7 @@ use crate::sink::Sink;
 use crate::state_input::{build_run, initial_state};
 use crate::{Streams, run_request};
 
-/// A study with what the files say of it.
+/// A finished study, with the data that its files name.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
@@ -28,10 +28,10 @@ struct Finished<'a> {
     wanted: Option<f64>,
 }
 
-/// The picture that `accuracy` would write with these flags.
+/// The picture that `accuracy` writes with these flags.
 ///
 /// # Errors
-/// As [`run`], but for files.
+/// The errors of [`run`] except those of files.
 pub fn draw(models: &[Entry], args: &AccuracyArgs) -> Result<Drawn, CliError> {
     let model = build_run(models, &args.run)?;
     let finished = measure(model.as_ref(), prepare(model.as_ref(), args)?, args, false)?;
@@ -44,8 +44,8 @@ pub fn draw(models: &[Entry], args: &AccuracyArgs) -> Result<Drawn, CliError> {
 /// Carries out `accuracy`.
 ///
 /// # Errors
-/// Bad flags, a state that is refused, a file that cannot be written. A wanted error that nothing reaches is not an error
-/// but an [`Exit`], and so is a reference that is not confirmed.
+/// Invalid flags, a state that is refused, a file that cannot be written. A wanted error that no integrator reaches is
+/// not an error but an [`Exit`], and so is a reference that is not confirmed.
 pub fn run(
     models: &[Entry],
     args: &AccuracyArgs,
@@ -81,7 +81,7 @@ pub fn run(
     })
 }
 
-/// Everything that can be refused before the runs.
+/// Makes settings and start, and refuses invalid requests before the runs.
 fn prepare(model: &dyn AnyModel, args: &AccuracyArgs) -> Result<(Settings, Origin), CliError> {
     let finest = (Integrator::Taylor, FINEST[0]);
     let settings = run_request::settings(model, &args.run, None, finest)?;
@@ -152,13 +152,13 @@ impl Finished<'_> {
             .map_err(|reason| CliError::picture(&args.plot, reason))
     }
 
-    /// The answer to what is wanted.
+    /// The fastest case for the wanted error, if one is wanted.
     fn choice(&self) -> Option<Result<&Sample, NoChoice>> {
         self.wanted.map(|wanted| self.study.choose(wanted))
     }
 }
 
-/// The table, and the answer.
+/// Writes the table and the answer.
 fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let study = &finished.study;
     writeln!(output, "{}", finished.title())?;
@@ -222,7 +222,7 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     }
 }
 
-/// What is to be used.
+/// The recommendation: the fastest case.
 fn answer(finished: &Finished<'_>, best: &Sample) -> String {
     format!(
         "for an error of {:e}: --integrator {} --tol {:e}; it erred by {:.1e} and took {:.3} us per unit of time here",
@@ -234,7 +234,7 @@ fn answer(finished: &Finished<'_>, best: &Sample) -> String {
     )
 }
 
-/// Evaluations of the rate; for series, their coefficients.
+/// Number of evaluations of the rate; for power series, of their coefficients.
 fn evaluations(sample: &Sample) -> u64 {
     match sample.integrator {
         Integrator::Taylor => sample.counters.coefficients,

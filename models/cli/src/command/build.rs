@@ -13,7 +13,7 @@ use crate::{Streams, model_file};
 /// Carries out `build`.
 ///
 /// # Errors
-/// A file that cannot be read, mistakes in it, a folder that is not empty or cannot be written.
+/// A file that cannot be read or has mistakes, a folder that is not empty or cannot be written.
 pub fn run(args: &BuildArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     let given = args.file.display().to_string();
     let text = model_file::text(&given, streams.input)?;
@@ -52,7 +52,7 @@ fn is_package_name(name: &str) -> bool {
 /// The folder of the library.
 ///
 /// # Errors
-/// There is no library there.
+/// A folder without the library.
 pub(crate) fn library(given: Option<&Path>) -> Result<PathBuf, CliError> {
     let built_from = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let folder = given.unwrap_or(Path::new(built_from));
@@ -74,7 +74,7 @@ pub(crate) struct Package<'a> {
 }
 
 impl Package<'_> {
-    /// Writes the crate into a folder that does not exist yet or is empty.
+    /// Writes the crate into a folder that is new or empty.
     pub(crate) fn write(
         &self,
         flag: &'static str,

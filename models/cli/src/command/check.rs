@@ -1,4 +1,4 @@
-//! `check`: what a model declares, what became of its claims, and whether its defaults and its initial state hold up.
+//! `check`: the declarations of a model, the verdicts on its claims, and tests of its defaults and its initial state.
 
 mod certificate;
 
@@ -23,16 +23,16 @@ use crate::names;
 use crate::sink::Sink;
 use crate::state_input::{declared_state, find_model};
 
-/// One thing that was looked at: what, and what is wrong with it.
+/// A test of the model: its name, and the defect that it found.
 struct Check {
     subject: &'static str,
     failure: Option<String>,
 }
 
-/// Everything that was looked at.
+/// Everything that was examined.
 struct Examined {
     checks: Vec<Check>,
-    /// With the scene that they are about.
+    /// Findings, each with the scene of its claim.
     claims: Vec<(&'static str, Finding)>,
     notes: Vec<String>,
 }
@@ -50,7 +50,7 @@ pub fn run(
     let model = find_model(models, &args.model)?.with_defaults(0);
     let model = model.as_ref();
     let mut checks = checks(model);
-    // A system that is written by hand has no declaration, and no claims.
+    // A system written by hand has no declaration and no claims.
     let source = Some(model.description().source).filter(|source| !source.is_empty());
     let derived = source.map(report::report).transpose();
     if source.is_some() {
@@ -89,7 +89,7 @@ fn findings(model: &dyn AnyModel, report: report::Report) -> Vec<(&'static str, 
         .collect()
 }
 
-/// Defaults against assumptions, then the initial state, as far as the defaults allow.
+/// Tests the defaults against the assumptions, then the initial state if the defaults are complete.
 fn checks(model: &dyn AnyModel) -> Vec<Check> {
     let description = model.description();
     let refused = defaults_against_assumptions(model);
@@ -97,7 +97,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
         subject: "declared defaults satisfy their assumptions",
         failure: refused,
     }];
-    // Without a default there is nothing to form the initial state with.
+    // Parameters without a default leave the initial state undefined.
     if model.check_parameters().is_err() {
         return checks;
     }
@@ -126,7 +126,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     checks
 }
 
-/// The surface that a state lies behind, if there is one: a first step says so.
+/// The name of a surface with a negative gap at this state, if there is one; the first step of a run reports it.
 fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
     let settings = Settings {
         form: Form::Global,
@@ -168,7 +168,7 @@ fn defaults_against_assumptions(model: &dyn AnyModel) -> Option<String> {
     (!bad.is_empty()).then(|| bad.join("; "))
 }
 
-/// Remarks a person should see.
+/// Remarks for the user.
 fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
     let description = model.description();
     let mut notes = Vec::new();
@@ -203,7 +203,7 @@ fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
     notes
 }
 
-/// What the generator remarks on the declaration: velocity-linear terms, integrable constraints, unused parameters.
+/// Remarks of the generator on the declaration: velocity-linear terms, integrable constraints, unused parameters.
 fn remarks(report: &report::Report) -> Vec<String> {
     let sections = report.sections.iter();
     let remarks = sections.filter(|section| section.title == Section::NOTES);
@@ -266,7 +266,7 @@ fn write_text(
     Ok(())
 }
 
-/// The verdict, then the claim as written, and below it what was found.
+/// Writes the verdict, the claim as written, and the finding below it.
 fn write_claim(output: &mut dyn Write, scene: &str, finding: &Finding) -> Result<(), CliError> {
     let about = match scene {
         "all" => String::new(),
@@ -283,7 +283,7 @@ fn write_claim(output: &mut dyn Write, scene: &str, finding: &Finding) -> Result
     Ok(())
 }
 
-/// What is declared besides parameters: a title and the entries under it.
+/// Declarations besides parameters: titles, each with its entries.
 fn declarations(description: &Description) -> [(&'static str, Vec<String>); 6] {
     let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     let coordinates = description.coordinates.iter();
@@ -419,7 +419,7 @@ fn topology_json(topology: Topology) -> Value {
     }
 }
 
-/// Takes a report without keeping anything: only whether it could be made matters.
+/// A report that keeps nothing, to test if a state can be inspected.
 struct Silent;
 
 impl Watch for Silent {

@@ -1,4 +1,4 @@
-//! `derive`: the derivation of a model, made again from its source by the generator.
+//! `derive`: the derivation of a model, repeated from its source by the generator.
 
 use std::io::Write;
 
@@ -15,7 +15,7 @@ use crate::state_input::find_model;
 /// Carries out `derive`.
 ///
 /// # Errors
-/// An unknown model, or whatever the generator says of its source.
+/// An unknown model, or an error of the generator on its source.
 pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
     let entry = find_model(models, &args.model)?;
     let scenes = entry.description().scenes.iter().copied();

@@ -1,4 +1,4 @@
-//! `ensemble`: many members of one scene, as rows, as what they have in common, and as a density.
+//! `ensemble`: many members of one scene, as rows, as a summary and as a density.
 
 mod cells;
 mod document;
@@ -24,15 +24,15 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::{self, build_model};
 use crate::{Streams, plot, run_request};
 
-/// An ensemble that has been run, with what the files say of it.
+/// A finished ensemble, with the data that its files name.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     settings: &'a Settings,
     metadata: &'a Map<String, Value>,
     tally: Tally,
-    /// The density, its counts, and how they converged.
+    /// The density, its counts, and their convergence.
     density: Option<(&'a Density, Counts, Vec<Checkpoint>)>,
-    /// Members that an earlier run left.
+    /// Number of members taken over from an earlier run.
     kept: u64,
     threads: u64,
     elapsed: Duration,
@@ -41,8 +41,8 @@ struct Finished<'a> {
 /// Carries out `ensemble`.
 ///
 /// # Errors
-/// Bad flags, a file that cannot be written or continued. A member that does not reach its end is not an error but an
-/// [`Exit`].
+/// Invalid flags, a file that cannot be written or continued. A member that does not reach its end is not an error but
+/// an [`Exit`].
 pub fn run(
     models: &[Entry],
     args: &EnsembleArgs,
@@ -79,7 +79,7 @@ pub fn run(
         metadata: &metadata,
         columns: &columns,
     };
-    // Opened before the runs: a path that cannot be written is better known at once.
+    // Opened before the runs, so that a path that cannot be written is reported at once.
     let cells = Sink::open_given("--cells", args.cells.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
@@ -140,7 +140,7 @@ fn execute(
     Ok(summary)
 }
 
-/// Writes what is known of the whole.
+/// Writes the files about the whole ensemble.
 fn write_files(
     args: &EnsembleArgs,
     finished: &Finished<'_>,
@@ -175,7 +175,7 @@ fn write_files(
     Ok(summary::write(streams.output, finished)?)
 }
 
-/// Refuses flags that do not go together, before anything else.
+/// Refuses incompatible flags, before any other step.
 fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
     run_request::check_plot(args.plot.as_deref())?;
     let outputs = [
@@ -220,7 +220,7 @@ fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The file that rows are appended to: that of `--csv`, or one beside that of `--parquet` while members are run.
+/// The file to which rows are appended: that of `--csv`, or a file next to that of `--parquet` during the run.
 fn row_file(args: &EnsembleArgs) -> Option<(&'static str, PathBuf)> {
     match (&args.csv, &args.parquet) {
         (Some(csv), _) => (!is_stdout(csv)).then(|| ("--csv", csv.clone())),

@@ -1,4 +1,4 @@
-//! `eval`: everything that is derived, evaluated by the emitted code at given states.
+//! `eval`: all derived quantities, evaluated by the emitted code at given states.
 
 mod impact;
 mod input;
@@ -24,8 +24,8 @@ use impact::Moment;
 use input::Given;
 use report::Collected;
 
-/// What is printed first of a state, in this order; `null` where a model has no such quantity. Whatever else a model
-/// reports follows, then its impacts.
+/// Keys that are printed first for a state, in this order; `null` if a model has no such quantity. The other reported
+/// quantities follow, then the impacts.
 const KEYS: [&str; 15] = [
     "q",
     "qdot",
@@ -47,8 +47,8 @@ const KEYS: [&str; 15] = [
 /// Carries out `eval`.
 ///
 /// # Errors
-/// Bad flags, or input that is not an array of states of this model. A state at which something does not exist
-/// is not an error: it is reported in its place, and the exit is [`Exit::Other`].
+/// Invalid flags, or input that is not an array of states of this model. A state at which a quantity does not exist is
+/// not an error: it is reported in place of its values, and the exit is [`Exit::Other`].
 pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     let mut model = build_model(models, &args.model)?;
     let description = model.description();
@@ -79,7 +79,7 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
     Ok(exit)
 }
 
-/// The impulses without a coefficient, and those whose coefficient was given.
+/// The impulsive laws without a coefficient, and those with a given coefficient.
 fn laws(args: &EvalArgs) -> Vec<Law> {
     let plain = Law::NAMES
         .iter()

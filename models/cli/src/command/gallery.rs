@@ -1,4 +1,4 @@
-//! `gallery`: figures of the models as one page, with each picture as a file and a manifest.
+//! `gallery`: figures of the models on one page, with each picture as a file, and a manifest.
 
 use std::fs;
 use std::io::Write;
@@ -19,8 +19,7 @@ use crate::{Catalogue, Streams, names};
 /// Carries out `gallery`.
 ///
 /// # Errors
-/// Names that do not exist, a folder that cannot be written. Pictures that cannot be made are not an error but an
-/// [`Exit`].
+/// Unknown names, a folder that cannot be written. Pictures that cannot be made are not an error but an [`Exit`].
 pub fn run(
     catalogue: &Catalogue,
     args: &GalleryArgs,
@@ -39,7 +38,7 @@ pub fn run(
             return Ok(Exit::Reached);
         }
     };
-    // Opened before anything is drawn: a folder that cannot be written is better known at once.
+    // Opened before any picture is drawn, so that a folder that cannot be written is reported at once.
     let page = Sink::open_within(folder, "index.html", args.picture.is_empty())?;
     let manifest = Sink::open_within(folder, "manifest.json", args.picture.is_empty())?;
 
@@ -66,7 +65,8 @@ pub fn run(
     })
 }
 
-/// The figures of the models of these names, or of all: model by model, first those that every model has.
+/// The figures of the models with these names, or of all models. Figures that every model has come first for each
+/// model.
 fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliError> {
     let models = catalogue.models().iter();
     for name in wanted {
@@ -82,7 +82,7 @@ fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliE
     Ok(figures)
 }
 
-/// The pictures of these names, or all.
+/// The pictures with these names, or all pictures.
 fn chosen<'a>(plates: Vec<Plate<'a>>, wanted: &[String]) -> Result<Vec<Plate<'a>>, CliError> {
     let known: Vec<String> = plates.iter().map(Plate::name).collect();
     for name in wanted {
@@ -109,7 +109,7 @@ fn list(output: &mut dyn Write, plates: &[Plate<'_>]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Makes pictures on all processors, then those that are timed, one by one.
+/// Makes untimed pictures on all processors, then timed pictures one by one.
 fn make_all(
     plates: &[Plate<'_>],
     models: &[Entry],
@@ -128,7 +128,7 @@ fn make_all(
                 let (sender, next, indices) = (sender.clone(), &next, &indices);
                 scope.spawn(move || {
                     while let Some(&index) = indices.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        // The receiver lives until all senders are gone.
+                        // The receiver lives longer than all senders.
                         let _ = sender.send((index, plates[index].make(models)));
                     }
                 });

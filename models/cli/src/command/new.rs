@@ -1,4 +1,4 @@
-//! `new`: a declaration to begin with, as a file or in a crate.
+//! `new`: a declaration as a starting point, in a file or in a crate.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -10,13 +10,13 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::model_file::EXTENSION;
 
-/// The declaration, with `NAME` and `FILE` for the name of the model and of the file.
+/// The declaration, with `NAME` and `FILE` as placeholders for the names of the model and of the file.
 const TEMPLATE: &str = include_str!("new.dal");
 
 /// Carries out `new`.
 ///
 /// # Errors
-/// A name that is none, a file that exists, a folder that cannot be written.
+/// An invalid name, a file that exists, a folder that cannot be written.
 pub fn run(args: &NewArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     let stem = args.name.file_stem().and_then(|name| name.to_str());
     let (Some(stem), true) = (stem, is_ending_right(args)) else {
@@ -66,7 +66,7 @@ fn refused(args: &NewArgs) -> CliError {
     CliError::value("NAME", given, expected)
 }
 
-/// The name of the model of a file: `InclinedSkate` for `inclined_skate`.
+/// The name of the model in a file: `InclinedSkate` for `inclined_skate`.
 fn model_name(stem: &str) -> Option<String> {
     let is_name = stem.starts_with(|c: char| c.is_ascii_lowercase())
         && stem

@@ -14,10 +14,10 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::{build_model, initial_state};
 use crate::{Streams, names, run_request};
 
-/// The time that a return may take, unless the model's own `until` is longer.
+/// Longest time of a return, unless the model's own `until` is longer.
 const HORIZON: f64 = 3600.0;
 
-/// What was looked for, and what was found.
+/// A finished search: the request and its result.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
@@ -28,8 +28,8 @@ struct Finished<'a> {
 /// Carries out `orbit`.
 ///
 /// # Errors
-/// Bad flags, a scene without variations, a state that is refused, a file that cannot be written. That no orbit is found is
-/// not an error but [`Exit::Other`].
+/// Invalid flags, a scene without variations, a state that is refused, a file that cannot be written. If no orbit is
+/// found, the result is not an error but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &OrbitArgs,
@@ -61,7 +61,7 @@ pub fn run(
     })
 }
 
-/// Why there are no variations.
+/// The error that explains why there are no variations.
 fn invariable(model: &dyn AnyModel, args: &OrbitArgs) -> CliError {
     match model.description().modes.is_empty() {
         true => CliError::Invariable {

@@ -1,4 +1,4 @@
-//! `simulate`: a run from a state to its end, kept as a summary, a table, a document and a picture.
+//! `simulate`: a run from a state to its end, as a summary, a table, a document and a picture.
 
 mod certify;
 mod document;
@@ -20,31 +20,31 @@ use crate::state_input::{build_run, initial_state};
 use crate::table::RunTable;
 use crate::{Streams, run_request};
 
-/// A run that has ended, with what the files say of it.
+/// A finished run, with the data that its files name.
 pub(crate) struct Finished<'a> {
     pub model: &'a dyn AnyModel,
     pub scene: &'a str,
     pub settings: Settings,
     pub record: Record,
     pub ending: Ending,
-    /// Its measured error, if that was asked for.
+    /// Its measured error, if requested.
     pub verified: Option<Verified>,
 }
 
-/// What a run needs to begin.
+/// Model, start and settings of a run.
 #[derive(Clone)]
 pub struct Prepared {
     pub settings: Settings,
     pub origin: Origin,
-    /// What its picture shows, if there is to be one.
+    /// The source of the curve of its picture, if a picture is requested.
     pub source: Option<Source>,
 }
 
 /// Carries out `simulate`.
 ///
 /// # Errors
-/// Bad flags, a state that is refused, a file that cannot be written. Any outcome of the run itself is not an
-/// error but an [`Exit`].
+/// Invalid flags, a state that is refused, a file that cannot be written. No outcome of the run is an error: it is an
+/// [`Exit`].
 pub fn run(
     models: &[Entry],
     args: &SimulateArgs,
@@ -56,7 +56,7 @@ pub fn run(
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
     let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
-    // Opened before the run: a path that cannot be written is better known at once.
+    // Opened before the run, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
@@ -83,7 +83,7 @@ pub fn run(
     })
 }
 
-/// Makes the run. The table is written while it goes on; of a document the rows are kept.
+/// Makes the run. The table is written during the run; the rows of a document are kept until its end.
 fn write_as_it_goes<'a>(
     model: &'a dyn AnyModel,
     prepared: Prepared,
@@ -106,10 +106,10 @@ fn write_as_it_goes<'a>(
     Ok((finished, rows))
 }
 
-/// The picture that `simulate` would write with these flags.
+/// The picture that `simulate` writes with these flags.
 ///
 /// # Errors
-/// As [`run`], but for files.
+/// The errors of [`run`] except those of files.
 pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
     let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
@@ -120,10 +120,10 @@ pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
     })
 }
 
-/// Everything that can be refused before the run.
+/// Makes model, start and settings, and refuses invalid requests before the run.
 ///
 /// # Errors
-/// Bad flags, a state that is refused.
+/// Invalid flags, a state that is refused.
 pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, CliError> {
     let description = model.description();
     let source = match (&args.plot, &args.axes) {
@@ -143,7 +143,7 @@ pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, Cl
     })
 }
 
-/// Makes the run, and measures its error if that is asked for.
+/// Makes the run, and measures its error if requested.
 fn finish<'a>(
     model: &'a dyn AnyModel,
     prepared: Prepared,
@@ -173,8 +173,8 @@ fn finish<'a>(
     })
 }
 
-/// Makes the run. Where the end time is not known beforehand the same run is made twice, first to find the end
-/// and then to sample it: runs are deterministic, and nothing has to be kept that is not asked for.
+/// Makes the run. If the end time is not known beforehand, the same run is made twice: first to find the end, then to
+/// sample it. Runs are deterministic, so only requested data is kept.
 fn carry_out(
     model: &dyn AnyModel,
     Prepared {

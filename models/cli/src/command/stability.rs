@@ -1,4 +1,4 @@
-//! `stability`: the hard cases of the catalogue, each with what is right, what was measured and a verdict.
+//! `stability`: the hard cases of the catalogue, each with its correct result, its measurement and a verdict.
 
 mod document;
 mod page;
@@ -20,8 +20,8 @@ use crate::suite::{self, Case, Finding, Verdict};
 /// Carries out `stability`.
 ///
 /// # Errors
-/// Names that do not exist, a catalogue without cases, a file that cannot be written. Cases that fail are not an error
-/// but an [`Exit`].
+/// Unknown names, a catalogue without cases, a file that cannot be written. Cases that fail are not an error but an
+/// [`Exit`].
 pub fn run(
     suite: &[Case],
     args: &StabilityArgs,
@@ -85,7 +85,7 @@ pub fn run(
     Ok(if fails { Exit::Other } else { Exit::Reached })
 }
 
-/// The cases asked for, in the order of the suite.
+/// The requested cases, in the order of the suite.
 fn selected<'a>(suite: &'a [Case], args: &StabilityArgs) -> Result<Vec<&'a Case>, CliError> {
     if suite.is_empty() {
         return Err(CliError::Usage(
@@ -150,7 +150,7 @@ fn write_finding(output: &mut dyn Write, finding: &Finding) -> std::io::Result<(
     }
 }
 
-/// ` (dop853, steps of 0.25)`, where the setting matters.
+/// The setting in parentheses, such as ` (dop853, steps of 0.25)`, if the case depends on it.
 fn setting_words(finding: &Finding) -> String {
     match (finding.case.run, finding.setting) {
         (suite::Run::Once(_), _) | (_, None) => String::new(),

@@ -1,4 +1,4 @@
-//! `watch`: a model of a file runs again whenever the file is saved.
+//! `watch`: runs a model of a file again whenever the file is saved.
 
 use std::path::Path;
 use std::thread;
@@ -11,13 +11,13 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::{Streams, model_file};
 
-/// The time between two looks at the file.
+/// Time between two checks of the file.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Carries out `watch`.
 ///
 /// # Errors
-/// A model that is in no file, streams that fail. Everything else is shown, and the file is watched on.
+/// A model that is not in a file, streams that fail. Other errors are printed, and the file remains watched.
 pub fn run(
     catalogue: &Catalogue,
     args: &mut WatchArgs,
@@ -64,7 +64,7 @@ fn simulate_once(
     simulate::run(&models, &args.simulate, streams)
 }
 
-/// What is seen of a file without reading it; nothing of one that does not exist.
+/// State of a file that can be read without its content; empty for a file that does not exist.
 #[derive(Debug, PartialEq, Eq)]
 struct Stamp(Option<(SystemTime, u64)>);
 
@@ -76,7 +76,7 @@ impl Stamp {
         Self(seen.ok())
     }
 
-    /// Waits until the file is there and looks otherwise.
+    /// Waits until the file exists and its state differs from this one.
     fn wait_for_another(&self, file: &Path) {
         loop {
             thread::sleep(PAUSE);

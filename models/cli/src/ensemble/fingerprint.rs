@@ -1,5 +1,5 @@
-//! A short name for bytes, to see whether two are the same: FNV-1a of 64 bits. Bytes that differ in one place have different
-//! names. It does not withstand intent.
+//! A short hash of bytes for comparisons: FNV-1a with 64 bits. Bytes that differ in one place have different hashes.
+//! The hash does not protect against forgery.
 
 /// The hash.
 pub fn hash(bytes: &[u8]) -> u64 {

@@ -1,15 +1,15 @@
-//! The file that rows are appended to while members are run, and from which a run that was cut off goes on.
+//! The file to which rows are appended during a run, and from which an interrupted run continues.
 //!
 //! | beside `FILE` | |
 //! |---|---|
-//! | `FILE.meta.json` | of what ensemble the rows are |
-//! | `FILE.sums` | a line for every row: its checksum, [`fingerprint`] of the row with the end of its line |
-//! | `FILE.counts` | while a density is counted: the counts of the first so many members, and their checksum |
+//! | `FILE.meta.json` | metadata of the ensemble of the rows |
+//! | `FILE.sums` | a line for every row: its checksum, the [`fingerprint`] of the row with its line end |
+//! | `FILE.counts` | with a density: the counts of the first members, their number, and a checksum |
 //!
-//! What is kept after a cut are the rows that are complete, of which counts are known. A row that is not the one that was
-//! written is an error. Checksums are written before their rows, so that every row that is there has one.
+//! After an interruption, complete rows whose counts are known are kept. A row that was changed since it was written is
+//! an error. Checksums are written before their rows, so that every complete row has one.
 //!
-//! `FILE` is locked while it is written.
+//! `FILE` is locked during the run.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -24,28 +24,28 @@ use super::row::{Columns, Field, Row};
 use crate::error::CliError;
 use crate::sink;
 
-/// Least time between two writings of counts.
+/// Shortest time between two saves of counts.
 const SAVE: Duration = Duration::from_secs(1);
 
-/// Writing counts takes one part in so many of the time at most.
+/// Saves of counts take at most the reciprocal of this number as a fraction of the time.
 const SAVING: u32 = 20;
 
-/// Bytes of a line of `FILE.sums`.
+/// Length of a line of `FILE.sums`, in bytes.
 const SUM: usize = 17;
 
-/// The file, open and locked.
+/// The open and locked file.
 pub struct Journal {
     flag: &'static str,
     path: PathBuf,
     file: File,
-    /// Checksums of the rows, once the file is begun.
+    /// Checksums of the rows, after the file is begun or resumed.
     sums: Option<File>,
     saved: Instant,
-    /// Time between two writings of counts.
+    /// Time between two saves of counts.
     patience: Duration,
 }
 
-/// The path with something appended to its name.
+/// The path with an ending appended to its name.
 fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
@@ -53,10 +53,10 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
 }
 
 impl Journal {
-    /// Opens a file, which keeps what it holds until [`begin`](Self::begin).
+    /// Opens a file; its content is kept until [`begin`](Self::begin).
     ///
     /// # Errors
-    /// It cannot be written, or another run is writing it.
+    /// A file that cannot be written, or that another run is writing.
     pub fn open(flag: &'static str, path: &Path) -> Result<Self, CliError> {
         let file = sink::claim(flag, path, OpenOptions::new().read(true))?;
         Ok(Self {
@@ -72,7 +72,7 @@ impl Journal {
     /// Begins the file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// A file that cannot be written.
     pub fn begin(
         &mut self,
         columns: &Columns,
@@ -93,11 +93,11 @@ impl Journal {
         self.file.write_all(&columns.header())
     }
 
-    /// Goes on with a file that was begun: shows `see` the rows that are kept, and says how many they are. `None` where there
-    /// is nothing to keep; rows that were shown then do not count.
+    /// Continues a file that was begun: passes the kept rows to `see`, and returns their number. `None` if no row can
+    /// be kept; the caller must then discard rows that `see` has received.
     ///
     /// # Errors
-    /// It cannot be read or written, is of another ensemble, or was altered.
+    /// A file that cannot be read or written, that belongs to another ensemble, or that was altered.
     pub fn resume(
         &mut self,
         columns: &Columns,
@@ -107,7 +107,7 @@ impl Journal {
     ) -> Result<Option<u64>, CliError> {
         let (flag, path) = (self.flag, self.path.clone());
         let whole = |source| failed(flag, &path, source);
-        // A file that is empty was begun just now: what stands beside it may be of another ensemble.
+        // An empty file was begun just now; the files next to it may belong to another ensemble.
         if self.file.metadata().map_err(whole)?.len() == 0 {
             return Ok(None);
         }
@@ -124,7 +124,7 @@ impl Journal {
             Found::Complete(complete) => complete,
             Found::Altered { line } => return Err(altered(&path, line)),
         };
-        // Counts cannot be taken back: where rows were lost that they know of, both begin anew.
+        // Counts cannot be subtracted: if rows of counted members were lost, both start anew.
         let is_short = counted != u64::MAX && complete.rows < counted;
         if complete.length == 0 || is_short {
             return Ok(None);
@@ -135,10 +135,10 @@ impl Journal {
         Ok(Some(complete.rows))
     }
 
-    /// Appends lines, after which `members` are in the file and counted in `counts`.
+    /// Appends lines; `members` is the number of members in the file and in `counts` afterwards.
     ///
     /// # Errors
-    /// Whatever the file says.
+    /// An I/O error of the file.
     pub fn append(
         &mut self,
         lines: &[u8],
@@ -173,10 +173,10 @@ impl Journal {
         }
     }
 
-    /// Ends the file, which then is complete.
+    /// Completes the file.
     ///
     /// # Errors
-    /// Whatever the file says.
+    /// An I/O error of the file.
     pub fn finish(self, members: u64, counts: Option<&Counts>) -> Result<(), CliError> {
         let finished = match counts {
             Some(counts) => save(&beside(&self.path, ".counts"), members, counts),
@@ -194,10 +194,10 @@ fn failed(flag: &'static str, path: &Path, source: io::Error) -> CliError {
     }
 }
 
-/// Shows all rows of a complete file.
+/// Passes all rows of a complete file to a function.
 ///
 /// # Errors
-/// Whatever the file says.
+/// An I/O error of the file.
 #[cfg(feature = "parquet")]
 pub fn read_rows(
     path: &Path,
@@ -211,10 +211,10 @@ pub fn read_rows(
         .map(drop)
 }
 
-/// Removes a journal that was not asked for, and what stands beside it.
+/// Removes a journal that was not requested, and the files next to it.
 ///
 /// # Errors
-/// Whatever the system says.
+/// An I/O error of the file system.
 pub fn discard(path: &Path) -> io::Result<()> {
     remove(path)?;
     remove(&beside(path, ".meta.json"))?;
@@ -222,7 +222,8 @@ pub fn discard(path: &Path) -> io::Result<()> {
     remove(&beside(path, ".counts"))
 }
 
-/// Refuses to go on with another ensemble. A key that is absent counts as `null`: the flag did not exist then.
+/// Refuses to continue the file of another ensemble. An absent key counts as `null`, because older files lack keys of
+/// newer flags.
 fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
     let place = beside(path, ".meta.json");
     let invalid = |reason: String| CliError::Input {
@@ -249,7 +250,7 @@ fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
     }
 }
 
-/// The checksums of a file that was begun.
+/// Opens the checksums of a file that was begun.
 fn open_sums(path: &Path) -> Result<File, CliError> {
     let opened = OpenOptions::new().read(true).write(true).open(path);
     opened.map_err(|error| match error.kind() {
@@ -262,7 +263,7 @@ fn open_sums(path: &Path) -> Result<File, CliError> {
     })
 }
 
-/// Refuses to go on after a line that is not the one that was written.
+/// The error for a line that was altered since it was written.
 fn altered(path: &Path, line: u64) -> CliError {
     let (what, help) = match line {
         1 => ("header", ""),
@@ -279,7 +280,7 @@ fn altered(path: &Path, line: u64) -> CliError {
     }
 }
 
-/// Shortens a file, and goes to its end.
+/// Shortens a file, and moves to its end.
 fn cut(file: &mut File, length: u64) -> io::Result<()> {
     file.set_len(length)?;
     file.seek(SeekFrom::End(0)).map(drop)
@@ -288,21 +289,21 @@ fn cut(file: &mut File, length: u64) -> io::Result<()> {
 /// The complete rows at the beginning of a file.
 struct Scan<'a> {
     reader: BufReader<&'a mut File>,
-    /// The checksums of the rows; without them no row is compared.
+    /// The checksums of the rows; without them rows are not compared.
     sums: Option<BufReader<&'a mut File>>,
     columns: &'a Columns,
     first_member: u64,
 }
 
-/// What a file holds.
+/// Result of a scan.
 enum Found {
-    /// Rows as they were written.
+    /// All complete rows are unaltered.
     Complete(Complete),
-    /// A line that is not the one that was written, counted from 1.
+    /// A line was altered; lines are counted from 1.
     Altered { line: u64 },
 }
 
-/// How much of a file is complete.
+/// Length of the complete beginning of a file, in rows and bytes.
 struct Complete {
     rows: u64,
     length: u64,
@@ -318,7 +319,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Reads up to so many rows; a last one that was cut off is none, nor is one without a checksum.
+    /// Reads at most `most` rows. Stops before a last row that is incomplete or has no checksum.
     fn run(&mut self, most: u64, see: &mut dyn FnMut(&Row)) -> io::Result<Found> {
         let mut complete = Complete { rows: 0, length: 0 };
         let mut line = Vec::new();
@@ -348,7 +349,7 @@ impl<'a> Scan<'a> {
         Ok(Found::Complete(complete))
     }
 
-    /// Whether a row has the next checksum; `None` where there is none.
+    /// True if a row has the next checksum; `None` if there is no further checksum.
     fn compare(&mut self, line: &[u8]) -> io::Result<Option<bool>> {
         let Some(sums) = &mut self.sums else {
             return Ok(Some(true));
@@ -361,7 +362,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Whether there is another line with an end.
+    /// Reads a line; true if it has a line end.
     fn next_line(&mut self, line: &mut Vec<u8>) -> io::Result<bool> {
         line.clear();
         self.reader.read_until(b'\n', line)?;
@@ -369,7 +370,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file atomically.
 fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     let new = beside(path, ".new");
     fs::write(&new, content)?;
@@ -390,7 +391,7 @@ fn save(path: &Path, members: u64, counts: &Counts) -> io::Result<()> {
     replace(path, &content)
 }
 
-/// How many members the counts are of; 0 where there are none.
+/// Loads counts, and returns the number of members that they count; 0 if there are none.
 fn load(path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
     let content = match fs::read(path) {
         Ok(content) => content,
@@ -405,7 +406,7 @@ fn load(path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
     })
 }
 
-/// Reads what [`save`] wrote; `None` where it is something else.
+/// Parses the output of [`save`]; `None` for anything else.
 fn members_of(content: &[u8], counts: &mut Counts) -> Option<u64> {
     let (content, sum) = content.split_last_chunk()?;
     let (members, mut rest) = content.split_first_chunk()?;
@@ -436,7 +437,7 @@ mod tests {
         }
     }
 
-    /// The rows that are kept of a file of members 7, 8 and 9, of which so many are counted.
+    /// The kept rows of a file of members 7, 8 and 9, with this number of counted members.
     fn kept(name: &str, counted: Option<u64>) -> Option<(u64, u64)> {
         let path = std::env::temp_dir().join(format!("dalembert-{name}-{}", std::process::id()));
         let columns = Columns::unnamed(&[Kind::Integer, Kind::Number]);

@@ -1,4 +1,4 @@
-//! Members from a table, one a row.
+//! Members from a table, one per row.
 
 use std::cell::Cell;
 use std::fs::File;
@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::scalar;
 use crate::sink::is_stdout;
 
-/// What columns of the tables that this command line writes are called besides what members can differ in.
+/// Names of the fixed columns of the tables that this command line writes.
 const OTHERS: [&str; 7] = [
     "t",
     "energy",
@@ -24,15 +24,15 @@ const OTHERS: [&str; 7] = [
     "reason",
 ];
 
-/// Beginning of the names of columns that `ensemble --csv` writes for what was varied.
+/// Prefix of the names of columns in which `ensemble --csv` writes varied quantities.
 pub const INPUT: &str = "in.";
 
-/// How much a table may hold: what is read is kept in memory.
+/// Limits on the size of a table, which is kept in memory.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
-    /// Bytes of a row, with what is passed over before it.
+    /// Largest size of a row in bytes, with skipped input before it.
     row: usize,
-    /// Rows.
+    /// Largest number of rows.
     members: usize,
 }
 
@@ -41,11 +41,11 @@ const LIMITS: Limits = Limits {
     members: 10_000_000,
 };
 
-/// Reads the members. In a table that `ensemble` wrote they are the columns `in.NAME`.
+/// Reads the members. In a table written by `ensemble` they are the columns `in.NAME`.
 ///
 /// # Errors
-/// A file that cannot be read, a column that a model does not have, a field that is no number, a row of more than a mebibyte, more
-/// than ten million rows.
+/// A file that cannot be read, a column that the model does not have, a field that is not a number, a row of more than
+/// a mebibyte, more than ten million rows.
 pub fn read(
     path: &Path,
     stdin: &mut dyn Read,
@@ -65,7 +65,7 @@ pub fn read(
     parse(&place, file, description, LIMITS)
 }
 
-/// The members of a table.
+/// Parses the members of a table.
 fn parse(
     place: &str,
     file: impl Read,
@@ -119,10 +119,10 @@ fn parse(
     Ok(Members::listed(named.collect(), rows))
 }
 
-/// A file that is read no further than a limit past the last row that was taken.
+/// A reader that stops at a limit of bytes after the last accepted row.
 struct Bounded<'a, R> {
     file: R,
-    /// Bytes read since the last row was taken.
+    /// Bytes read since the last accepted row.
     since_row: &'a Cell<usize>,
     most: usize,
 }
@@ -142,7 +142,7 @@ impl<R: Read> Read for Bounded<'_, R> {
     }
 }
 
-/// The columns that members are made of: index, name and quantity.
+/// The columns of varied quantities: index, name and quantity.
 fn columns(
     place: &str,
     header: &csv::StringRecord,

@@ -1,4 +1,4 @@
-//! The members of an ensemble: what each of them starts with.
+//! The members of an ensemble, with the values of their varied quantities.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use super::fingerprint::fingerprint;
 use super::vary::{self, Asked, Draw, Quantity, Values, Varied};
 use crate::error::CliError;
 
-/// All members, of every shard.
+/// All members of the ensemble, over every shard.
 #[derive(Debug, Clone)]
 pub struct Members {
     names: Vec<String>,
@@ -20,12 +20,12 @@ pub struct Members {
 
 #[derive(Debug, Clone)]
 enum Source {
-    /// Every value of one meets every value of the others; the last runs fastest.
+    /// Cartesian product of the values of all quantities; the last runs fastest.
     Product {
         values: Vec<Values>,
         seed: Option<u64>,
     },
-    /// Rows one after the other.
+    /// Values row by row.
     Listed(Vec<f64>),
 }
 
@@ -33,7 +33,7 @@ impl Members {
     /// The members of `--vary`, `--members` and `--random`.
     ///
     /// # Errors
-    /// What is wrong with a flag.
+    /// An error of one of the flags.
     pub fn varied(
         flags: &[String],
         members: Option<u64>,
@@ -72,7 +72,7 @@ impl Members {
         })
     }
 
-    /// Members that are listed, a row of values for each.
+    /// Members from a list, with a row of values for each.
     pub fn listed(named: Vec<(String, Quantity)>, rows: Vec<f64>) -> Self {
         let count = (rows.len() / named.len().max(1)) as u64;
         let (names, quantities) = named.into_iter().unzip();
@@ -84,17 +84,17 @@ impl Members {
         }
     }
 
-    /// How many there are.
+    /// Number of members.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The names of what differs.
+    /// The names of the varied quantities.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// What differs.
+    /// The varied quantities.
     pub fn quantities(&self) -> &[Quantity] {
         &self.quantities
     }
@@ -129,7 +129,7 @@ impl Members {
         }
     }
 
-    /// What tells these members from others.
+    /// Data that identify these members.
     pub fn metadata(&self) -> Value {
         match &self.source {
             Source::Listed(rows) => {
@@ -145,7 +145,7 @@ impl Members {
     }
 }
 
-/// How many members the flags ask for.
+/// Number of members that the flags specify.
 fn count(varied: &[Varied], asked: Asked) -> Result<u64, CliError> {
     let mut factors = varied.iter().map(|(.., values)| values.count());
     let product = factors.try_fold(1_u64, u64::checked_mul);
@@ -179,23 +179,23 @@ fn spell(name: &str, values: &Values) -> Value {
     }
 }
 
-/// A block of members.
+/// A shard: a block of members.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// Which, from 1.
+    /// Its index, from 1.
     pub index: u64,
-    /// Of how many.
+    /// Number of shards.
     pub of: u64,
 }
 
 impl Shard {
-    /// All members in one.
+    /// The only shard, with all members.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// `I/N`
+    /// Parses `I/N`.
     ///
     /// # Errors
-    /// Anything else.
+    /// [`CliError::Value`] if the text is not `I/N`, or I is not in 1..=N.
     pub fn parse(text: &str) -> Result<Self, CliError> {
         let parsed = text.split_once('/').and_then(|(index, of)| {
             Some(Self {
@@ -208,7 +208,7 @@ impl Shard {
             .ok_or_else(|| CliError::value("--shard", text, "I/N with I from 1 to N, such as 3/8"))
     }
 
-    /// Its members: blocks differ in length by one at most.
+    /// Its members; lengths of shards differ by one at most.
     pub fn range(self, count: u64) -> Range<u64> {
         let bound =
             |index: u64| (u128::from(count) * u128::from(index) / u128::from(self.of)) as u64;

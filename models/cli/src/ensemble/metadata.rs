@@ -1,4 +1,4 @@
-//! What tells an ensemble from another, in files.
+//! Data that identify an ensemble, in its files.
 
 use clap::ValueEnum;
 use dalembert::describe::Description;
@@ -14,10 +14,10 @@ use crate::json::{named, number};
 use crate::names;
 use crate::state_input;
 
-/// Everything that rows and counts depend on. Keys are the same whatever the flags; what was not asked for is `null`.
+/// All inputs on which rows and counts depend. Keys are the same for all flags; flags that were not given are `null`.
 ///
 /// # Errors
-/// What is wrong with the flags of the state.
+/// An error of the flags of the state.
 pub fn metadata(
     model: &dyn AnyModel,
     shared: &Shared<'_>,
@@ -80,7 +80,7 @@ pub fn metadata(
     }
 }
 
-/// What members start with but for what is varied.
+/// The common start of the members, without varied quantities.
 fn start(
     model: &dyn AnyModel,
     description: &Description,
@@ -101,7 +101,7 @@ fn start(
         Rates::Velocities(qdot) => ("qdot", qdot),
         Rates::Momenta(p) => ("p", p),
     };
-    // Velocities that nobody names follow from the constraints.
+    // Velocities without a name in the start follow from the constraints.
     let known = coordinates().zip(&rates).zip(given);
     let known = known
         .filter(|(_, given)| *given)
@@ -113,7 +113,7 @@ fn start(
     }))
 }
 
-/// A value of a flag as it is written.
+/// A value of a flag as it is written on the command line.
 fn word(value: impl ValueEnum) -> Option<String> {
     let value = value.to_possible_value()?;
     Some(value.get_name().to_owned())

@@ -2,15 +2,15 @@
 //!
 //! | file | |
 //! |---|---|
-//! | `vary`, `random`, `members`, `listed` | what each member starts with, by its index alone |
-//! | `runner` | runs one member and makes a row of it, whatever happens |
-//! | `pool` | runs them on threads and gives the rows back in order |
+//! | `vary`, `random`, `members`, `listed` | the start of each member, as a function of its index |
+//! | `runner` | runs one member and makes its row, also after a refusal or a panic |
+//! | `pool` | runs members on threads and returns the rows in order |
 //! | `row`, `journal`, `parquet` | the rows, the file they are appended to and continued from, the same as Parquet |
-//! | `tally`, `density` | what is known of all together |
-//! | `metadata` | what tells an ensemble from another |
+//! | `tally`, `density` | sums over all members |
+//! | `metadata` | data that identify an ensemble |
 //!
-//! A row depends on its member alone, and everything that is summed is summed in order of members or in whole numbers:
-//! no file depends on threads, and the rows of shards, one after the other, are those of the whole.
+//! A row depends on its member alone, and sums are formed in the order of members or in integers. Files therefore do
+//! not depend on threads, and the concatenated rows of all shards are those of the whole ensemble.
 
 pub mod density;
 mod fingerprint;
@@ -48,27 +48,27 @@ use pool::Division;
 use row::csv_line;
 use runner::{Done, Runner};
 
-/// The most members that a thread takes at one time.
+/// Largest number of members in a block of a thread.
 const BLOCK: u64 = 64;
 
-/// The most visits that the members a thread takes at one time may have.
+/// Largest number of visits of the members in a block.
 const VISITS: u64 = 1 << 16;
 
-/// What is to be run.
+/// Plan of an ensemble.
 pub struct Plan<'a> {
-    /// What all members share.
+    /// Data common to all members.
     pub shared: Shared<'a>,
-    /// Those of the shard.
+    /// The members of the shard.
     pub range: Range<u64>,
-    /// Threads.
+    /// Number of threads.
     pub threads: u64,
-    /// What tells the ensemble from others.
+    /// Data that identify the ensemble.
     pub metadata: &'a Map<String, Value>,
-    /// The columns of its rows.
+    /// The columns of the rows.
     pub columns: &'a Columns,
 }
 
-/// Where rows go.
+/// Destination of the rows.
 pub enum Rows<'a> {
     /// Nowhere.
     Nowhere,
@@ -80,22 +80,22 @@ pub enum Rows<'a> {
         flag: &'static str,
         /// The file.
         path: &'a Path,
-        /// Whether to go on with what is there.
+        /// True to continue an existing file.
         resume: bool,
     },
 }
 
-/// What is known once all members are run.
+/// Results over all members.
 pub struct Summary {
-    /// Of the rows.
+    /// Sums over the rows.
     pub tally: Tally,
-    /// Of the density.
+    /// Counts of the density.
     pub counts: Option<Counts>,
-    /// Members that an earlier run left.
+    /// Number of members taken over from an earlier run.
     pub kept: u64,
 }
 
-/// Whether an outcome is the end that was asked for.
+/// True if an outcome is the requested end.
 pub fn is_reached(outcome: &str, settings: &Settings) -> bool {
     outcome == "done" || (outcome == "impact_budget" && settings.impacts.is_some())
 }
@@ -103,7 +103,8 @@ pub fn is_reached(outcome: &str, settings: &Settings) -> bool {
 /// Runs the members.
 ///
 /// # Errors
-/// A file that cannot be written, that another run is writing, or that is of another ensemble. Whatever happens to a member is in its row.
+/// A file that cannot be written, that another run is writing, or that belongs to another ensemble. Failures of a
+/// member are in its row, not errors.
 pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summary, CliError> {
     let Plan { shared, range, .. } = plan;
     let reached = |outcome: &str| is_reached(outcome, shared.settings);
@@ -150,21 +151,21 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
     Ok(summary)
 }
 
-/// How many members a thread takes at one time: what they visit is held in memory.
+/// Number of members in a block: their visits are held in memory.
 fn block(density: Option<&Density>) -> u64 {
     density.map_or(BLOCK, |density| {
         (VISITS / density.samples.max(1)).clamp(1, BLOCK)
     })
 }
 
-/// Where rows go, open.
+/// Open destination of the rows.
 enum Output<'a> {
     Nowhere,
     Stream(&'a mut dyn Write),
     Journal(Journal),
 }
 
-/// Opens what rows go to, and takes over what an earlier run left.
+/// Opens the destination of the rows, and takes over the rows of an earlier run.
 fn begin<'a>(plan: &Plan<'_>, rows: Rows<'a>) -> Result<(Summary, Output<'a>), CliError> {
     let Plan {
         shared,

@@ -1,5 +1,4 @@
-//! The rows of a finished journal as Parquet: a column for a column, values as they are, uncompressed, in groups of
-//! [`GROUP`] rows.
+//! The rows of a finished journal as Parquet: the same columns and values, uncompressed, in groups of [`GROUP`] rows.
 
 use std::fs::File;
 use std::path::Path;
@@ -17,13 +16,13 @@ use serde_json::{Map, Value};
 use super::journal;
 use super::row::{Columns, Field, Kind, Row};
 
-/// Rows of a group: what is held in memory at one time.
+/// Number of rows in a group, which is held in memory.
 const GROUP: usize = 1 << 14;
 
 /// Writes the rows of a journal.
 ///
 /// # Errors
-/// Whatever the files say.
+/// An I/O error of one of the files.
 pub fn write(
     path: &Path,
     rows: &Path,
@@ -32,7 +31,7 @@ pub fn write(
     first_member: u64,
 ) -> Result<()> {
     let entries = metadata.iter().map(|(key, value)| {
-        // A text is its own; anything else is JSON.
+        // A string is written as it is; any other value as JSON.
         let value = value
             .as_str()
             .map_or_else(|| value.to_string(), str::to_owned);

@@ -1,5 +1,5 @@
-//! Ranges for a density that does not give them: those of a few members, run for a while. They depend on the whole
-//! ensemble, not on the shard.
+//! Ranges of a density without given ranges, from short runs of a few members. They depend on the whole ensemble, not
+//! on the shard.
 
 use dalembert_driver::{Contact, Impact, Piece, Settings, Watch};
 
@@ -8,19 +8,19 @@ use super::runner::{Runner, Shared};
 use crate::error::CliError;
 use crate::plot::style;
 
-/// Members that are run.
+/// Number of members that are run.
 const MEMBERS: u64 = 16;
 
-/// Samples of each.
+/// Number of samples of each member.
 const SAMPLES: f64 = 256.0;
 
-/// Room beyond what they visited, as a share of it.
+/// Margin beyond the visited range, as a fraction of it.
 const ROOM: f64 = 0.05;
 
-/// The density that is wished for, with its ranges.
+/// The requested density, with its ranges.
 ///
 /// # Errors
-/// There is no time to count in; what is wrong with the flags of the model.
+/// No time to count in, or an error of the flags of the model.
 pub fn density(
     wish: Wish,
     shared: Shared<'_>,
@@ -58,7 +58,7 @@ pub fn density(
     })
 }
 
-/// The ranges of what axes show, over members from the whole of the ensemble.
+/// The ranges of the axes' quantities, over members from the whole ensemble.
 fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 2]; 2], CliError> {
     let mut seen = Seen {
         axes,
@@ -70,7 +70,7 @@ fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 
     let some = MEMBERS.min(count);
     for index in 0..some {
         let member = u128::from(index) * u128::from(count) / u128::from(some);
-        // How it ends does not matter here: its row will tell.
+        // The outcome does not matter here: the member's row reports it.
         let _ = runner.watched(member as u64, &mut seen);
     }
     Ok(seen
@@ -78,10 +78,10 @@ fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 
         .map(|values| rounded(style::padded(values.into_iter(), ROOM))))
 }
 
-/// The range with ends of few digits, a little wider.
+/// A slightly wider range whose ends have few digits.
 fn rounded([low, high]: [f64; 2]) -> [f64; 2] {
     let decade = (high - low).log10().floor() as i32 - 1;
-    // Quotients of whole numbers are the nearest to decimals; products with 0.01 are not.
+    // Quotients of integers round to the nearest decimals; products with 0.01 do not.
     let (digit, part) = (10f64.powi(decade.max(0)), 10f64.powi((-decade).max(0)));
     [
         (low / digit * part).floor() * digit / part,
@@ -89,11 +89,11 @@ fn rounded([low, high]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Keeps the least and the greatest value at the ends of steps.
+/// Keeps the least and the greatest value over the ends of steps.
 struct Seen<'a> {
     axes: &'a [Axis; 2],
     discard: f64,
-    /// Nothing yet, or both.
+    /// Empty, or both extremes of each axis.
     extremes: [Vec<f64>; 2],
 }
 

@@ -1,7 +1,7 @@
-//! Work on threads whose results come in order.
+//! Parallel work whose results arrive in order.
 //!
-//! Threads take blocks of items as they become free; results that come too early wait. How far threads may run ahead of
-//! the first result that is missing is bounded, and with it what waits.
+//! Threads take blocks of items as they become free; early results wait. The distance of threads from the first missing
+//! result is bounded, and thereby the number of waiting results.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -9,23 +9,23 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// Blocks that each thread may be ahead.
+/// Number of blocks per thread that may be ahead.
 const AHEAD: u64 = 8;
 
-/// Items that go well together, where every thread gets as many: runs abreast fill the lanes of a vector.
+/// Preferred number of items in a block, if every thread gets as many: runs abreast fill SIMD lanes.
 const TOGETHER: u64 = 8;
 
-/// How the work is divided.
+/// Division of the work.
 #[derive(Debug, Clone, Copy)]
 pub struct Division {
-    /// Threads.
+    /// Number of threads.
     pub threads: u64,
-    /// Items of a block.
+    /// Items in a block.
     pub block: u64,
 }
 
 impl Division {
-    /// Blocks of at most `largest` items, of which every thread gets many if there are enough.
+    /// Blocks of at most `largest` items, small enough that every thread gets many if there are enough items.
     pub fn new(items: u64, threads: u64, largest: u64) -> Self {
         let threads = threads.clamp(1, items.max(1));
         let least = items.div_ceil(threads).min(TOGETHER);
@@ -34,8 +34,8 @@ impl Division {
     }
 }
 
-/// Works on all items. `prepare` is called once on every thread, `work` for every block, `take` on the calling thread with
-/// the first item of every block and the results of the block, one for every item, in the order of the items.
+/// Works on all items. Every thread calls `prepare` once and `work` for every block. The calling thread calls `take`,
+/// in the order of the items, with the first item of every block and the block's results, one per item.
 ///
 /// # Errors
 /// The first error of `take`, which ends the work.
@@ -48,7 +48,7 @@ pub fn in_order<W, T: Send, E>(
 ) -> Result<(), E> {
     let gate = Gate::new(items.clone(), division);
     thread::scope(|scope| {
-        // Dropped at the end, also of an error: nothing waits for results that nobody takes.
+        // Dropped at the end, also after an error, so that no thread waits for results to be taken.
         let _closing = Closing(&gate);
         let (sender, receiver) = mpsc::channel();
         for _ in 0..division.threads {
@@ -71,7 +71,7 @@ pub fn in_order<W, T: Send, E>(
     })
 }
 
-/// Takes results in order until no thread is left.
+/// Takes results in order until all threads have ended.
 fn collect<T, E>(
     first: u64,
     receiver: &Receiver<(u64, Vec<T>)>,
@@ -92,22 +92,22 @@ fn collect<T, E>(
     Ok(())
 }
 
-/// Gives out blocks.
+/// Hands out blocks.
 struct Gate {
     state: Mutex<State>,
     moved: Condvar,
     end: u64,
     block: u64,
-    /// Items that may be given out before they are taken.
+    /// Number of items that may be handed out before their results are taken.
     ahead: u64,
 }
 
 struct State {
-    /// The first item that was not given out.
+    /// The first item that was not handed out.
     next: u64,
     /// The first item whose result was not taken.
     taken: u64,
-    /// Threads that work, and the one that takes.
+    /// True once a thread, or the taker of results, has left.
     is_closed: bool,
 }
 
@@ -127,7 +127,7 @@ impl Gate {
         }
     }
 
-    /// The next block, once it is not too far ahead.
+    /// The next block, once it is not too far ahead; `None` at the end.
     fn next(&self) -> Option<Range<u64>> {
         let too_early = |state: &mut State| {
             !state.is_closed && state.next < self.end && state.next - state.taken >= self.ahead
@@ -152,13 +152,13 @@ impl Gate {
         self.moved.notify_all();
     }
 
-    /// The state is whole whenever the lock is free, whoever panicked.
+    /// Locks the state, which is consistent whenever the lock is free, even after a panic.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Ends the work of all when one of them leaves: it has panicked, or there is nothing left to give out.
+/// Ends all work when one thread leaves, after a panic or at the end of the items.
 struct Closing<'a>(&'a Gate);
 
 impl Drop for Closing<'_> {

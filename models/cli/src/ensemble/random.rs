@@ -1,5 +1,6 @@
-//! Random numbers that belong to a place, not to an order: the generator Philox 4x32-10 (Salmon, Moraes, Dror and Shaw,
-//! "Parallel random numbers: as easy as 1, 2, 3", 2011), whose key is the seed and whose counter is member and quantity.
+//! Random numbers as a function of their index, independent of the order of use: the generator Philox 4x32-10 (Salmon,
+//! Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011), with the seed as key, and member and
+//! quantity as counter.
 
 use dalembert::math;
 
@@ -22,12 +23,12 @@ fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     counter
 }
 
-/// Two independent numbers, uniform in (0, 1), of a member's quantity.
+/// Two independent random numbers, uniform in (0, 1), for a quantity of a member.
 fn uniform_pair(seed: u64, member: u64, quantity: u32) -> [f64; 2] {
     let halves = |value: u64| [value as u32, (value >> 32) as u32];
     let [low, high] = halves(member);
     let words = philox([low, high, quantity, 0], halves(seed));
-    // The middles of 2^52 equal intervals: neither 0 nor 1.
+    // The midpoints of 2^52 equal intervals, so neither 0 nor 1.
     [0, 2].map(|i| {
         let bits = u64::from(words[i]) | (u64::from(words[i + 1]) << 32);
         ((bits >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
@@ -82,7 +83,7 @@ mod tests {
             let square = draws.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
             (mean, square / count as f64)
         };
-        // Bounds at four standard errors.
+        // Bounds of four standard errors.
         let (mean, variance) = moments(uniform);
         assert!((mean - 0.5).abs() < 0.0082 && (variance - 1.0 / 12.0).abs() < 0.0022);
         let (mean, variance) = moments(normal);

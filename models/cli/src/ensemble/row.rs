@@ -1,4 +1,4 @@
-//! The table of an ensemble: its columns, a row for a member, and rows as lines of CSV.
+//! The table of an ensemble: its columns, one row per member, and rows as lines of CSV.
 
 use std::borrow::Cow;
 
@@ -9,14 +9,14 @@ use super::listed::INPUT;
 use super::members::Members;
 use crate::{names, outcome};
 
-/// What a column holds.
+/// Type of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A count or an index.
     Integer,
-    /// A number; NaN where there is none.
+    /// A number; NaN for a missing one.
     Number,
-    /// Words.
+    /// A text.
     Text,
 }
 
@@ -25,9 +25,9 @@ pub enum Kind {
 pub enum Field {
     /// A count or an index.
     Integer(u64),
-    /// A number; NaN where there is none.
+    /// A number; NaN for a missing one.
     Number(f64),
-    /// Words.
+    /// A text.
     Text(Cow<'static, str>),
 }
 
@@ -41,7 +41,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Of these members of a model.
+    /// The columns for these members of a model.
     pub fn of(description: &Description, members: &Members) -> Self {
         let coordinates = names::coordinates(description);
         let velocities = coordinates.clone().map(names::velocity);
@@ -80,7 +80,7 @@ impl Columns {
         Self { columns }
     }
 
-    /// Columns of these kinds, for tests.
+    /// Unnamed columns of these types, for tests.
     #[cfg(test)]
     pub fn unnamed(kinds: &[Kind]) -> Self {
         let columns = kinds.iter().map(|&kind| ("c".to_owned(), kind));
@@ -89,7 +89,7 @@ impl Columns {
         }
     }
 
-    /// Names and kinds.
+    /// Names and types.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, Kind)> {
         self.columns
             .iter()
@@ -110,7 +110,7 @@ impl Columns {
         )
     }
 
-    /// The row that a line of CSV holds.
+    /// Parses a line of CSV as a row.
     pub fn parse(&self, line: &[u8]) -> Option<Row> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
@@ -131,11 +131,11 @@ impl Columns {
     }
 }
 
-/// A row as a line of CSV. No field holds the end of a line.
+/// A row as a line of CSV. No field contains a line end.
 pub fn csv_line(row: &Row) -> Vec<u8> {
     line(row.iter().map(|field| match field {
         Field::Integer(value) => Cow::Owned(value.to_string()),
-        // The shortest decimal that reads back to the same number.
+        // The shortest decimal that parses to the same number.
         Field::Number(value) => Cow::Owned(format!("{value:?}")),
         Field::Text(text) => Cow::Borrowed(text.as_ref()),
     }))

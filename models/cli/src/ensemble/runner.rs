@@ -1,4 +1,4 @@
-//! Runs members: whatever happens to one of them is a row of its own.
+//! Runs members; every member has a row, also after a refusal or a panic.
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -23,13 +23,13 @@ use crate::outcome;
 use crate::record::Tally;
 use crate::state_input::{self, build_model};
 
-/// The outcome of a member that the system does not let begin.
+/// The outcome of a member whose start the system refuses.
 const REFUSED: &str = "refused";
 
-/// The outcome of a member in whose run the program failed.
+/// The outcome of a member whose run panicked.
 const PANICKED: &str = "panicked";
 
-/// What the runs of all members share.
+/// Data common to the runs of all members.
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
     pub models: &'a [Entry],
@@ -39,10 +39,10 @@ pub struct Shared<'a> {
     pub density: Option<&'a Density>,
 }
 
-/// A member that has been run.
+/// A finished member.
 pub struct Done {
     pub row: Row,
-    /// What it visited, if that was asked for.
+    /// Its visits, if a density is counted.
     pub visits: Option<Visits>,
 }
 
@@ -53,17 +53,17 @@ pub struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    /// One that has run nothing.
+    /// A runner.
     ///
     /// # Errors
-    /// What is wrong with the flags of the model.
+    /// An error of the flags of the model.
     pub fn new(shared: Shared<'a>) -> Result<Self, CliError> {
         let model = build_model(shared.models, &shared.run.model)?;
         Ok(Self { shared, model })
     }
 
-    /// Runs members, abreast where the integrator can: every row is what it is alone. Should the program fail in one of
-    /// them, all are run one after the other.
+    /// Runs members, in SIMD lanes if the integrator supports it; every row is the same as from a run alone. If a run
+    /// panics, all members of the block are run one by one.
     pub fn run(&mut self, members: Range<u64>) -> Vec<Done> {
         let is_taylor = self.shared.settings.integrator == Integrator::Taylor;
         if is_taylor && members.end - members.start > 1 {
@@ -76,7 +76,7 @@ impl<'a> Runner<'a> {
         members.map(|member| self.alone(member)).collect()
     }
 
-    /// Runs members abreast.
+    /// Runs members in SIMD lanes.
     fn abreast(&mut self, members: Range<u64>) -> Vec<Done> {
         let mut seen: Vec<Seen<'_>> = members.clone().map(|_| self.unseen()).collect();
         let (mut runs, mut refused) = (Vec::new(), Vec::new());
@@ -150,15 +150,15 @@ impl<'a> Runner<'a> {
             .collect()
     }
 
-    /// What a panic leaves behind is not used again; a model that was built once can be built again.
+    /// Rebuilds the model after a panic, which may have left it inconsistent.
     fn renew(&mut self) {
         if let Ok(model) = build_model(self.shared.models, &self.shared.run.model) {
             self.model = model;
         }
     }
 
-    /// Runs a member before a watch. A member that cannot begin or in whose run the program fails has an outcome and a
-    /// reason.
+    /// Runs a member observed by a watch. A member whose start is refused or whose run panics has an outcome and a
+    /// reason instead of an ending.
     pub fn watched(
         &mut self,
         member: u64,
@@ -174,19 +174,20 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Why a member cannot begin, as text.
+    /// Runs a member; the error explains, as text, why it does not start.
     fn attempt(&mut self, member: u64, watch: &mut dyn Watch) -> Result<Ending, String> {
         let origin = self.origin(member)?;
         let ended = self.model.simulate(&origin, self.shared.settings, watch);
         ended.map_err(|refusal| self.told(&refusal))
     }
 
-    /// Why a member cannot begin, in the model's names.
+    /// Explains, in the model's names, why a member does not start.
     fn told(&self, refusal: &Refusal) -> String {
         refusal_text(&self.model.description(), refusal)
     }
 
-    /// Gives the model a member's parameters; its state, or why there is none.
+    /// Sets the model's parameters to those of a member, and returns its initial state; the error explains why there is
+    /// none.
     fn origin(&mut self, member: u64) -> Result<Origin, String> {
         let Shared { members, run, .. } = self.shared;
         let values = members.values(member);
@@ -250,7 +251,7 @@ impl<'a> Runner<'a> {
     }
 }
 
-/// What an outcome says besides its kind.
+/// The details of an outcome, as text.
 fn details(description: &Description, outcome: &Outcome) -> String {
     let details = outcome::details(description, outcome);
     let details: Vec<String> = details
@@ -263,14 +264,14 @@ fn details(description: &Description, outcome: &Outcome) -> String {
     details.join(", ")
 }
 
-/// What a panic says.
+/// The message of a panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
     text.unwrap_or("without a message").to_owned()
 }
 
-/// What is kept of a run.
+/// Observes a run for the member's row.
 struct Seen<'a> {
     tally: Tally,
     sampler: Option<Sampler<'a>>,

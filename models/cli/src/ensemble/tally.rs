@@ -1,10 +1,10 @@
-//! What is known of all members together.
+//! Sums over all members.
 
 use std::collections::BTreeMap;
 
 use super::row::{Columns, Field, Row};
 
-/// Members that did not reach their end and are told by name.
+/// Largest number of members without the requested end that are listed.
 const TOLD: usize = 5;
 
 /// A member that did not reach its end.
@@ -14,7 +14,7 @@ pub struct Strayed {
     pub member: u64,
     /// Its outcome.
     pub outcome: String,
-    /// What the outcome says besides.
+    /// The details of the outcome.
     pub reason: String,
 }
 
@@ -22,23 +22,23 @@ pub struct Strayed {
 #[derive(Debug, Clone)]
 pub struct Tally {
     places: Places,
-    /// Members.
+    /// Number of members.
     pub members: u64,
-    /// How many of them ended how.
+    /// Number of members by outcome.
     pub outcomes: BTreeMap<String, u64>,
-    /// Impacts on each surface.
+    /// Number of impacts on each surface.
     pub impacts: Vec<u64>,
-    /// The largest absolute change of an energy.
+    /// The largest absolute change of the energy.
     pub energy_change: f64,
-    /// The largest as a share of the energy at the start.
+    /// The largest change of the energy, relative to its value at the start.
     pub relative_change: f64,
-    /// How many did not reach their end.
+    /// Number of members that did not reach their end.
     pub strayed: u64,
-    /// The first of them.
+    /// The first of these members.
     pub first_strayed: Vec<Strayed>,
 }
 
-/// Where in a row things stand.
+/// Positions of values in a row.
 #[derive(Debug, Clone)]
 struct Places {
     outcome: Option<usize>,
@@ -48,7 +48,7 @@ struct Places {
 }
 
 impl Tally {
-    /// Of rows with these columns; none yet.
+    /// An empty tally for rows with these columns.
     pub fn new(columns: &Columns) -> Self {
         let named = columns.iter().enumerate();
         let impacts = named.filter(|(_, (name, _))| name.starts_with("impacts."));
@@ -70,7 +70,7 @@ impl Tally {
         }
     }
 
-    /// Adds a row; `reached` says which outcomes are those that were asked for.
+    /// Adds a row; `reached` is true for requested outcomes.
     pub fn add(&mut self, row: &Row, reached: impl Fn(&str) -> bool) {
         let text = |place: Option<usize>| match place.and_then(|place| row.get(place)) {
             Some(Field::Text(text)) => text.as_ref(),
@@ -95,7 +95,7 @@ impl Tally {
         }
         if let Some(place) = self.places.energy {
             let (energy, change) = (number(place), number(place + 1));
-            // The largest of numbers; what is not a number is not among them.
+            // The maximum ignores NaN.
             self.energy_change = self.energy_change.max(change.abs());
             let relative = (change / (energy - change)).abs();
             if relative.is_finite() {

@@ -1,4 +1,4 @@
-//! What members differ in: quantities by name, and the values they take.
+//! Varied quantities of members, by name, and their values.
 
 use dalembert::describe::Description;
 
@@ -6,7 +6,7 @@ use super::random;
 use crate::error::CliError;
 use crate::{names, scalar};
 
-/// What may differ between members, by index.
+/// A quantity that may be varied between members, by index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A coordinate at the start.
@@ -18,7 +18,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All of a model with their names: coordinates, velocities, parameters.
+    /// All quantities of a model with their names: coordinates, velocities, parameters.
     pub fn all(description: &Description) -> Vec<(String, Self)> {
         let coordinates = names::coordinates(description).enumerate();
         let positions = coordinates
@@ -31,10 +31,10 @@ impl Quantity {
         positions.chain(velocities).chain(parameters).collect()
     }
 
-    /// The one of this name.
+    /// The quantity of this name.
     ///
     /// # Errors
-    /// [`CliError::Unknown`].
+    /// [`CliError::Unknown`] if no quantity has this name.
     pub fn find(place: &str, name: &str, description: &Description) -> Result<Self, CliError> {
         let all = Self::all(description);
         let accepted = all.iter().map(|(name, _)| name.as_str());
@@ -48,12 +48,12 @@ impl Quantity {
 pub enum Values {
     /// Equally spaced, both ends included.
     Spaced {
-        /// The first and the last.
+        /// The first and the last value.
         ends: [f64; 2],
-        /// How many.
+        /// Number of values.
         count: u64,
     },
-    /// These.
+    /// Listed values.
     List(Vec<f64>),
     /// Drawn uniformly between these ends.
     Uniform([f64; 2]),
@@ -67,7 +67,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// How many there are; 1 where every member draws its own.
+    /// Number of values; 1 if every member draws its value.
     pub fn count(&self) -> u64 {
         match self {
             Self::Spaced { count, .. } => *count,
@@ -76,7 +76,7 @@ impl Values {
         }
     }
 
-    /// The value of this index, below [`count`](Self::count); of a drawn one that of the member.
+    /// The value of this index, below [`count`](Self::count); for drawn values, the value of the member.
     pub fn value(&self, index: u64, draw: Draw) -> f64 {
         let Draw {
             seed,
@@ -97,32 +97,32 @@ impl Values {
     }
 }
 
-/// Whose random number it is.
+/// Key of a random number.
 #[derive(Debug, Clone, Copy)]
 pub struct Draw {
-    /// The seed of all.
+    /// The seed of the ensemble.
     pub seed: u64,
     /// The member.
     pub member: u64,
-    /// Which of the quantities that are varied.
+    /// Index of the varied quantity.
     pub quantity: u32,
 }
 
 fn spaced([first, last]: [f64; 2], index: u64, count: u64) -> f64 {
     match count.saturating_sub(1) {
         0 => first,
-        // Ends are met exactly, and a constant stays one.
+        // The last value is exact, and a constant stays constant.
         gaps if index == gaps => last,
         gaps => first + (last - first) * (index as f64 / gaps as f64),
     }
 }
 
-/// How the flags ask for members.
+/// Number of members and their kind, as given by the flags.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
-    /// Their number.
+    /// Number of members, if given.
     pub members: Option<u64>,
-    /// Whether they are drawn.
+    /// True if the values are drawn.
     pub random: bool,
 }
 
@@ -132,10 +132,10 @@ const EXPECTED: &str =
 /// A quantity with its name and its values.
 pub type Varied = (String, Quantity, Values);
 
-/// One `--vary`.
+/// Parses one `--vary`.
 ///
 /// # Errors
-/// A name that the model does not have, or values that are none.
+/// A name that the model does not have, or invalid values.
 pub fn parse(text: &str, description: &Description, asked: Asked) -> Result<Varied, CliError> {
     let (name, values) = names::assignment("--vary", text, EXPECTED)?;
     let quantity = Quantity::find("--vary", name, description)?;

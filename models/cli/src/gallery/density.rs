@@ -1,7 +1,7 @@
-//! How often a run is where: positions at equally spaced times, counted in boxes.
+//! Long-run densities: positions of a run at equally spaced times, counted in boxes.
 //!
-//! For a set A of the plane of the declared view, `rho(A)` is the share of the times `k T` at which the position lies in A
-//! (W. Clark and A. Bloch, equation (27)).
+//! For a set A in the plane of the declared view, `rho(A)` is the fraction of the times `k T` at which the position
+//! lies in A (W. Clark and A. Bloch, equation (27)).
 
 use dalembert_driver::{Contact, Impact, Piece, Watch};
 
@@ -17,7 +17,7 @@ use crate::state_input::build_run;
 /// Makes the run and draws its density.
 ///
 /// # Errors
-/// Bad flags, a state that is refused, a model without a view of two coordinates with a region.
+/// Invalid flags, a state that is refused, a model without a view of two coordinates with a region.
 pub fn draw(
     models: &[Entry],
     args: &SimulateArgs,
@@ -55,7 +55,7 @@ pub fn draw(
 }
 
 impl Density {
-    /// The same with a fiftieth of the positions.
+    /// A copy with a fiftieth of the positions.
     pub(super) fn quick(&self) -> Self {
         Self {
             positions: (self.positions / 50).max(1),
@@ -64,23 +64,23 @@ impl Density {
         }
     }
 
-    /// When the last position counts.
+    /// The time of the last position.
     pub(super) fn until(&self) -> f64 {
         self.every * (self.discarded + self.positions) as f64
     }
 }
 
-/// Counts positions while a run goes on.
+/// Counts positions during a run.
 struct Census {
     every: f64,
     /// The index of the next time.
     next: u64,
     discarded: u64,
-    /// The index from which on positions belong to the second half.
+    /// The last index of the first half.
     half: u64,
     window: Window,
     boxes: usize,
-    /// Counts of both halves, row by row from below.
+    /// Counts of both halves, row by row from the bottom.
     counts: [Vec<u32>; 2],
 }
 
@@ -101,7 +101,7 @@ impl Census {
     fn count(&mut self, [x, y]: [f64; 2]) {
         let place = |value: f64, [low, high]: [f64; 2]| {
             let share = (value - low) / (high - low);
-            // What lies on the rim belongs to the last box; a cast of what lies before it gives 0.
+            // A point on the upper edge belongs to the last box; the cast of a negative number is 0.
             ((share * self.boxes as f64) as usize).min(self.boxes - 1)
         };
         let index = place(y, self.window.y) * self.boxes + place(x, self.window.x);
@@ -114,8 +114,8 @@ impl Census {
         all.map(|&count| u64::from(count)).sum()
     }
 
-    /// Half the sum of the differences between the shares of both halves: 0 where they agree, 1 where they have no box in
-    /// common.
+    /// Half the sum of the absolute differences between the normalised counts of both halves: 0 if they agree, 1 if
+    /// they have no box in common.
     fn variation(&self) -> f64 {
         let total = |counts: &[u32]| counts.iter().map(|&count| f64::from(count)).sum::<f64>();
         let [first, second] = &self.counts;
@@ -126,7 +126,7 @@ impl Census {
             .sum::<f64>()
     }
 
-    /// Positions per unit of area, of all that were counted.
+    /// Positions per unit of area, relative to all counted positions.
     fn densities(&self) -> Vec<f64> {
         let Window { x, y } = self.window;
         let area = (x[1] - x[0]) * (y[1] - y[0]) / (self.boxes * self.boxes) as f64;
@@ -181,7 +181,7 @@ mod tests {
         Census::new(&density, UNIT)
     }
 
-    /// Runs along the diagonal of the square of side 1, over and over, once in a unit of time.
+    /// Moves along the diagonal of the square of side 1 repeatedly, once per unit of time.
     struct Diagonal(f64, f64);
 
     impl Piece for Diagonal {
@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(census.counted(), 256);
         let densities = census.densities();
         for (index, density) in densities.iter().enumerate() {
-            // Four boxes of area 1/16 hold a quarter each.
+            // Four boxes of area 1/16 hold a quarter of the positions each.
             let expected = if index % 5 == 0 { 4.0 } else { 0.0 };
             assert_eq!(*density, expected, "{index}");
         }

@@ -1,4 +1,4 @@
-//! What a gallery drew, for programs.
+//! Manifest of a gallery's pictures, for programs.
 
 use std::io::{self, Write};
 
@@ -8,10 +8,10 @@ use super::{Plate, Print};
 use crate::error::CliError;
 use crate::json::{Document, number};
 
-/// Writes the manifest: a row for each picture.
+/// Writes the manifest, with a row for each picture.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(
     output: &mut dyn Write,
     plates: &[Plate<'_>],

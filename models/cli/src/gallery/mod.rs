@@ -1,8 +1,8 @@
-//! Galleries: figures of models as one page, as `dalembert gallery` makes them.
+//! Galleries: figures of models on one page, as made by `dalembert gallery`.
 //!
-//! Every model has figures of its motion. A [`Catalogue`](crate::Catalogue) may add others, such as those of the papers its
-//! models come from: [`Catalogue::with_figures`](crate::Catalogue::with_figures). What a picture shows is said by flags of
-//! `simulate` or `accuracy`, so that its caption can name the command that draws it alone.
+//! Every model has figures of its motion. A [`Catalogue`](crate::Catalogue) may add others, such as those of the papers
+//! its models come from: [`Catalogue::with_figures`](crate::Catalogue::with_figures). A picture is specified by flags
+//! of `simulate` or `accuracy`, so that its caption can give the command that draws it.
 
 mod density;
 mod manifest;
@@ -21,66 +21,66 @@ pub(crate) use standard::figure as standard_figure;
 pub struct Figure {
     /// The model, by its name on the command line.
     pub model: &'static str,
-    /// A word for it; files are called by the model and this word.
+    /// A word for the figure; file names consist of the model and this word.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// Its title, one line.
     pub title: &'static str,
-    /// What it shows, and where that was chosen here because the source does not say.
+    /// Its content, with values chosen here because the source does not state them.
     pub caption: String,
-    /// The figure it reproduces.
+    /// The reproduced figure.
     pub source: Option<&'static str>,
-    /// Its pictures, in the order of reading.
+    /// Its pictures, in reading order.
     pub panels: Vec<Panel>,
 }
 
 /// One picture of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// A word for it, which ends the name of its file; empty where it is the only one.
+    /// A word for the picture, which ends its file name; empty for an only picture.
     pub name: String,
-    /// What it is, in a line.
+    /// Its title, one line.
     pub title: String,
-    /// What it shows.
+    /// Its content.
     pub picture: Picture,
 }
 
-/// What a picture shows. Flags are those that follow the model's name, without `--plot`.
+/// Content of a picture. Flags follow the model's name, without `--plot`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Picture {
-    /// What `simulate` draws with these flags.
+    /// The picture that `simulate` draws with these flags.
     Simulate(String),
-    /// What `accuracy` draws with these flags: it holds measured times.
+    /// The picture that `accuracy` draws with these flags; it contains measured times.
     Accuracy(String),
-    /// Where many runs are at one time.
+    /// Positions of many runs at one time.
     Starts(Starts),
-    /// How often a long run is where.
+    /// Long-run density of a run.
     Density(Density),
 }
 
-/// Runs that start near each other, and where the declared view shows them at one time.
+/// Runs that start near each other, with their positions in the declared view at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Starts {
     /// Flags of `simulate`, with `--until` for the time.
     pub flags: String,
-    /// How many runs.
+    /// Number of runs.
     pub members: u32,
-    /// What is scattered: the name of a coordinate or velocity, the middle, and the largest deviation.
+    /// The scattered quantities: name of a coordinate or velocity, central value, and largest deviation.
     pub scatter: Vec<(&'static str, f64, f64)>,
-    /// Which random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// How often a run is in each box of the plane of the declared view, at equally spaced times.
+/// Density of a run in boxes of the plane of the declared view, from positions at equally spaced times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Density {
     /// Flags of `simulate`, without `--until`.
     pub flags: String,
     /// The time between two positions.
     pub every: f64,
-    /// How many positions count.
+    /// Number of counted positions.
     pub positions: u64,
-    /// How many are left out before.
+    /// Number of discarded positions before them.
     pub discarded: u64,
-    /// Boxes along each side of the region.
+    /// Number of boxes along each side of the region.
     pub boxes: usize,
 }

@@ -1,4 +1,4 @@
-//! A gallery as one page that needs nothing else: pictures inside it, no scripts, light and dark.
+//! A gallery as one self-contained page: embedded pictures, no scripts, light and dark.
 
 use std::fmt::Write as _;
 
@@ -61,7 +61,7 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
 /// A picture of a figure, made or not.
 type Drawn<'a> = (&'a Plate<'a>, &'a Result<Print, CliError>);
 
-/// Models in their order, each with its figures in theirs, each of these with its pictures.
+/// Models in order, each with its figures in order, each with its pictures.
 type Sections<'a> = Vec<(&'a str, Vec<&'a [Drawn<'a>]>)>;
 
 fn sections<'a>(drawn: &'a [Drawn<'a>]) -> Sections<'a> {
@@ -138,12 +138,12 @@ fn panel(plate: &Plate<'_>, print: &Result<Print, CliError>) -> String {
     )
 }
 
-/// The same page where dark pages are preferred: its own colours, and those of the pictures.
+/// Style rules for dark mode: colours of the page and of the pictures.
 fn dark() -> String {
     let mut rules = "@media (prefers-color-scheme:dark){\n\
         :root{--paper:#16181b;--ink:#dcdde0;--faint:#9b9fa6;--line:#33373d;--code:#202327;--link:#6cb8ea}\n"
         .to_owned();
-    // Attributes of an SVG yield to rules of a page.
+    // Style rules of a page override attributes of an SVG.
     for (light, dark) in style::DARK {
         let (light, dark) = (style::hex(light), style::hex(dark));
         let _ = writeln!(
@@ -154,7 +154,7 @@ fn dark() -> String {
     rules + "}\n"
 }
 
-/// A command that is broken between its flags, not between a flag and its value or at hyphens.
+/// A command that breaks between flags only, not between a flag and its value or at hyphens.
 fn words(command: &str) -> String {
     let mut groups: Vec<String> = Vec::new();
     for word in command.split(' ') {
@@ -173,7 +173,7 @@ fn words(command: &str) -> String {
     groups.collect::<Vec<_>>().join(" ")
 }
 
-/// Text of a documentation comment, with what stands in backticks as code.
+/// Text of a documentation comment, with backticks as code.
 fn documented(text: &str) -> String {
     let mut parts = text.split('`').map(escaped);
     let mut page = parts.next().unwrap_or_default();

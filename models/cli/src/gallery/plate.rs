@@ -1,4 +1,4 @@
-//! One picture to be made: its name, its command, and making it.
+//! One picture of a gallery: its name, its command, and its production.
 
 use std::time::Instant;
 
@@ -11,38 +11,38 @@ use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::Drawn;
 
-/// How much is spent on pictures of long runs.
+/// Effort spent on pictures of long runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
-    /// What the captions promise.
+    /// The effort that the captions state.
     Full,
-    /// A fiftieth of the positions of densities, and nothing that has to be timed.
+    /// A fiftieth of the positions of densities, and no timed pictures.
     Quick,
 }
 
-/// A picture of a figure that is to be made.
+/// A picture of a figure, to be made.
 #[derive(Debug, Clone, Copy)]
 pub struct Plate<'a> {
     /// Its figure.
     pub figure: &'a Figure,
-    /// Its place there.
+    /// Its panel in the figure.
     pub panel: &'a Panel,
-    /// How it is to be made.
+    /// The effort.
     pub effort: Effort,
 }
 
-/// A picture that was made.
+/// A finished picture.
 pub struct Print {
     /// The picture.
     pub svg: String,
-    /// How the run ended.
+    /// The outcome of the run, in words.
     pub outcome: String,
-    /// Seconds it took.
+    /// Seconds taken to make it.
     pub seconds: f64,
 }
 
 impl<'a> Plate<'a> {
-    /// The pictures of figures. What has to be timed is no quick picture.
+    /// The pictures of figures; a quick gallery has no timed pictures.
     pub fn all(figures: &'a [Figure], effort: Effort) -> Vec<Self> {
         let plates = figures.iter().flat_map(|figure| {
             figure.panels.iter().map(move |panel| Plate {
@@ -56,7 +56,7 @@ impl<'a> Plate<'a> {
             .collect()
     }
 
-    /// Its name, that of its file without the ending.
+    /// Its name: the file name without the ending.
     pub fn name(&self) -> String {
         let Figure { model, name, .. } = self.figure;
         match self.panel.name.as_str() {
@@ -65,17 +65,17 @@ impl<'a> Plate<'a> {
         }
     }
 
-    /// The name of its file.
+    /// Its file name.
     pub fn file(&self) -> String {
         format!("{}.svg", self.name())
     }
 
-    /// Whether it shows measured times, so that nothing else may run beside it.
+    /// True if it shows measured times, so that no other work may run at the same time.
     pub fn is_timed(&self) -> bool {
         matches!(self.panel.picture, Picture::Accuracy(_))
     }
 
-    /// The command that draws it alone, into the folder one is in.
+    /// The command that draws this picture, into the current folder.
     pub fn command(&self) -> String {
         match &self.panel.picture {
             Picture::Simulate(flags) => self.drawing("simulate", flags),

@@ -1,4 +1,4 @@
-//! The figure that every model has: its motion from the declared start.
+//! The figure of every model: its motion from the declared start.
 
 use dalembert::describe::Description;
 
@@ -25,7 +25,7 @@ pub fn figure(description: &Description) -> Figure {
         add("energy", title, "--axes t,energy_error ".to_owned());
     }
 
-    // Three stand beside each other on a page, or four that are smaller.
+    // Three pictures fit side by side on a page, or four smaller ones.
     let width = if flags.len() > 3 { 400 } else { 480 };
     let panels = flags.into_iter().map(|(name, title, axes)| Panel {
         name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! Where runs that start near each other are at one time, in the plane of the declared view.
+//! Positions at one time of runs that start near each other, in the plane of the declared view.
 
 use dalembert_driver::{AnyModel, Contact, Impact, OffConstraint, Piece, Watch};
 
@@ -10,10 +10,10 @@ use crate::error::CliError;
 use crate::plot::{self, Drawn, cloud};
 use crate::state_input::{build_run, initial_state};
 
-/// Makes the runs and draws where they are.
+/// Makes the runs and draws their positions.
 ///
 /// # Errors
-/// Bad flags, a state that is refused, a model without a view of two coordinates with a region.
+/// Invalid flags, a state that is refused, a model without a view of two coordinates with a region.
 pub fn draw(
     models: &[Entry],
     args: &SimulateArgs,
@@ -60,7 +60,7 @@ pub fn draw(
     })
 }
 
-/// Where the view shows a run at its end; nowhere if it ends before.
+/// The position in the view at the end of a run; `None` if the run ends early.
 fn final_position(model: &dyn AnyModel, prepared: &Prepared) -> Result<Option<[f64; 2]>, CliError> {
     let ending = model
         .simulate(&prepared.origin, &prepared.settings, &mut Unwatched)
@@ -77,7 +77,7 @@ impl Watch for Unwatched {
 }
 
 impl Starts {
-    /// The start of a member, as `--initial` takes it.
+    /// The start of a member, in the syntax of `--initial`.
     fn changes(&self, member: u32) -> Vec<String> {
         let scattered = self.scatter.iter().enumerate();
         scattered
@@ -129,7 +129,7 @@ mod tests {
                 sums[index] += (value - middle) / deviation;
             }
         }
-        // The mean of 1000 has a standard deviation of 0.018.
+        // The mean of 1000 such numbers has a standard deviation of 0.018.
         assert!(
             sums.iter().all(|sum| (sum / 1000.0).abs() < 0.06),
             "{sums:?}"

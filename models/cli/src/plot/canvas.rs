@@ -1,7 +1,7 @@
-//! The sheet a picture is drawn on.
+//! The sheet of a picture.
 //!
 //! The drawing library works in whole pixels, which shows as steps in a smooth curve. A sheet is therefore drawn
-//! [`SUBPIXELS`] times as large, and the finished SVG is told to be shown at its intended size.
+//! [`SUBPIXELS`] times as large, and the finished SVG is scaled to its intended size.
 
 use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, IntoDrawingArea, SVGBackend, WHITE};
@@ -30,7 +30,7 @@ pub fn text(size: f64, colour: RGBColor) -> TextStyle<'static> {
     ("sans-serif", px(size)).into_font().color(&colour)
 }
 
-/// About how wide a text is, in pixels. There is no font here to measure it with.
+/// Approximate width of a text in pixels; no font is available for a measurement.
 pub fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
@@ -44,7 +44,7 @@ pub const INDENT: f64 = 20.0;
 /// Draws a sheet of this size in pixels, with a title, and returns it as SVG.
 ///
 /// # Errors
-/// What the drawing library or `content` says.
+/// An error of the drawing library or of `content`.
 pub fn sheet(
     size: (f64, f64),
     title: &str,
@@ -71,7 +71,7 @@ pub fn sheet(
     Ok(svg.replacen(&drawn, &shown, 1))
 }
 
-/// The text, cut off with an ellipsis where it would be wider than `room` pixels.
+/// The text, shortened with an ellipsis if it is wider than `room` pixels.
 pub fn shortened(text: &str, room: f64, size: f64) -> String {
     if text_width(text, size) <= room {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! Points on a table.
+//! Points on a table: a scatter plot over the region of a view.
 
 use super::Table;
 use super::canvas::message;
@@ -10,9 +10,9 @@ use super::style;
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 400.0;
 
-/// Points to draw.
+/// Points to be drawn.
 pub struct Cloud<'a> {
-    /// Where they are.
+    /// The table under the points.
     pub table: &'a Table<'a>,
     /// First line of the title.
     pub title: &'a str,
@@ -20,14 +20,14 @@ pub struct Cloud<'a> {
     pub subtitle: &'a str,
     /// The points.
     pub points: &'a [[f64; 2]],
-    /// The one they lie about.
+    /// The central point of the scatter.
     pub middle: Option<[f64; 2]>,
 }
 
-/// Draws them.
+/// Draws the points.
 ///
 /// # Errors
-/// What the drawing library says, or that the model has no region in a plane.
+/// An error of the drawing library, or a model without a region in a plane.
 pub fn draw(cloud: &Cloud<'_>) -> Result<String, String> {
     let (plane, boundary) = cloud.table.plane(WIDTH)?;
     let items = vec![

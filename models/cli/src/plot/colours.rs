@@ -1,9 +1,9 @@
-//! Colours that stand for numbers, from dark to light.
+//! Colour map, from dark to light.
 
 use plotters::style::RGBColor;
 
-/// Those of the map viridis (S. van der Walt and N. Smith, public domain) at equal distances: colour-blind people can tell
-/// them apart, and they keep their order in grey.
+/// Colours of the map viridis (S. van der Walt and N. Smith, public domain) at equal distances: colour-blind people can
+/// distinguish them, and their order is kept in grey.
 const COLOURS: [RGBColor; 9] = [
     RGBColor(68, 1, 84),
     RGBColor(71, 45, 123),
@@ -16,7 +16,7 @@ const COLOURS: [RGBColor; 9] = [
     RGBColor(253, 231, 37),
 ];
 
-/// The colour at a share from low to high.
+/// The colour of a fraction between low (0) and high (1).
 pub fn colour(share: f64) -> RGBColor {
     let place = share * (COLOURS.len() - 1) as f64;
     let index = (place as usize).min(COLOURS.len() - 2);

@@ -1,8 +1,8 @@
 //! Contours of a function on a rectangle by marching squares.
 //!
-//! The function is sampled on a grid and taken as negative all around it, so that the boundary of the region
-//! where it is positive consists of closed polygons. They are oriented with the positive side on the left
-//! (in axes where y points up), so that a counterclockwise one has the region inside.
+//! The function is sampled on a grid and counts as negative outside it, so that the boundary of the region of positive
+//! values consists of closed polygons. They are oriented with the positive side on the left (in axes with y upward): a
+//! counterclockwise polygon has the region inside.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ impl Window {
         ]
     }
 
-    /// Grown about its middle by a part of its size on each side.
+    /// The rectangle extended on each side by a fraction of its size.
     pub fn grown(&self, part: f64) -> Self {
         let [low, high] = [self.at(-part, -part), self.at(1.0 + part, 1.0 + part)];
         Self {
@@ -56,12 +56,12 @@ impl Window {
 pub struct Contour {
     /// Its corners; the last is joined to the first.
     pub points: Vec<[f64; 2]>,
-    /// Whether the side from this corner to the next runs along the rectangle rather than inside it.
+    /// True for a side, from this corner to the next, that runs along the rectangle instead of inside it.
     pub on_frame: Vec<bool>,
 }
 
 impl Contour {
-    /// Area, positive where the region is inside.
+    /// The area, positive if the region is inside.
     pub fn signed_area(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);
         0.5 * self
@@ -87,8 +87,8 @@ struct Grid {
     values: Vec<f64>,
 }
 
-/// The boundary of the region where `function` is positive, on a grid of `cells` by `cells` squares.
-/// Undefined values count as negative.
+/// The boundary of the region of positive values of `function`, on a grid of `cells` by `cells` squares. Undefined
+/// values count as negative.
 pub fn contours(window: Window, cells: usize, function: impl Fn([f64; 2]) -> f64) -> Vec<Contour> {
     let grid = Grid::sample(window, cells, function);
     let mut following = BTreeMap::new();
@@ -148,8 +148,8 @@ impl Grid {
             Side::Horizontal(column, row + 1),
             Side::Vertical(column, row),
         ];
-        // Going around counterclockwise, side k leads from corner k to corner k + 1. A segment starts where the
-        // sign turns from positive to negative and ends where it turns back.
+        // Counterclockwise, side k leads from corner k to corner k + 1. A segment starts on a side with a change from
+        // positive to negative, and ends on one with a change back.
         let starts: Vec<usize> = (0..4)
             .filter(|&k| positive[k] && !positive[(k + 1) % 4])
             .collect();
@@ -184,7 +184,7 @@ impl Grid {
         }
     }
 
-    /// Where the function vanishes on a side, by linear interpolation, and whether that is the rectangle's rim.
+    /// The zero of the function on a side, by linear interpolation; true if the side touches the rectangle's rim.
     fn crossing(&self, side: Side) -> ([f64; 2], bool) {
         let ((column, row), (i, j)) = match side {
             Side::Horizontal(column, row) => ((column, row), (1, 0)),

@@ -1,4 +1,4 @@
-//! A density as a map of colours with axes and a colour bar.
+//! A density as a colour map with axes and a colour bar.
 
 use plotters::element::{PathElement, Rectangle};
 use plotters::prelude::ChartBuilder;
@@ -26,13 +26,13 @@ const ABOVE: f64 = 10.0;
 /// Width of the colour bar, in pixels.
 const BAR_WIDTH: f64 = 16.0;
 
-/// Colours that are told apart.
+/// Number of distinct colours.
 const LEVELS: usize = 64;
 
 /// Draws the counts of all cells as a density, under a title and a subtitle. Cells without a count stay white.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(
     density: &Density,
     counts: &[u64],
@@ -41,7 +41,7 @@ pub fn draw(
     let [x, y] = &density.axes;
     let span = |range: [f64; 2]| range[1] - range[0];
     let room = WIDTH - EDGE - LEFT - BAR;
-    // Equal scales where the sides are of one size; what is not alike fills the sheet.
+    // Sides of similar length have equal scales; other sides fill the sheet.
     let ratio = span(y.range) / span(x.range);
     let is_alike = (0.2..=5.0).contains(&ratio);
     let height = match is_alike {
@@ -62,24 +62,24 @@ pub fn draw(
         bar(&body, &scale, [EDGE + LEFT + width, height])?;
         frame(&mut chart, density)
     })?;
-    // NOTE: one path for each colour, as text: the drawing library would write an element of a hundred bytes for every
-    // cell.
+    // NOTE: one path per colour, as text: the drawing library would write an element of a hundred bytes for every cell.
     let end = svg.rfind("</svg>").unwrap_or(svg.len());
     Ok(format!("{}{cells}{}", &svg[..end], &svg[end..]))
 }
 
-/// From densities to colours.
+/// Scale of colours for densities.
 struct Scale {
-    /// The density that takes the last colour.
+    /// The density of the last colour.
     top: f64,
-    /// Whether there are greater ones.
+    /// True if some densities exceed it.
     is_clipped: bool,
     /// The density of one count.
     unit: f64,
 }
 
 impl Scale {
-    /// Up to the largest density; where few cells stand out beyond measure, up to what all but one in 200 have.
+    /// A scale up to the largest density. If a few cells far exceed the others, up to the density that 199 of 200
+    /// non-empty cells do not exceed.
     fn of(density: &Density, counts: &[u64]) -> Self {
         let all: u64 = counts.iter().sum();
         let unit = 1.0 / (all.max(1) as f64 * density.cell_area());
@@ -129,7 +129,7 @@ fn axes<'a, 'b>(
     Ok(chart)
 }
 
-/// A line around the map.
+/// Draws a line around the map.
 fn frame(chart: &mut Chart<'_, '_>, density: &Density) -> Result<(), String> {
     let [[left, right], [bottom, top]] = density.axes.each_ref().map(|axis| axis.range);
     let line = vec![(left, top), (right, top), (right, bottom)];
@@ -137,7 +137,7 @@ fn frame(chart: &mut Chart<'_, '_>, density: &Density) -> Result<(), String> {
     chart.draw_series([element]).map_err(message).map(drop)
 }
 
-/// The cells as paths of SVG, one for each colour; neighbours along x of the same colour are one rectangle.
+/// The cells as SVG paths, one per colour; neighbours of the same colour along x form one rectangle.
 fn paths(chart: &Chart<'_, '_>, density: &Density, counts: &[u64], scale: &Scale) -> String {
     let [x, y] = &density.axes;
     let mut levels = vec![String::new(); LEVELS];
@@ -174,7 +174,7 @@ fn bar(area: &Area<'_>, scale: &Scale, [left, height]: [f64; 2]) -> Result<(), S
     let left = left + 18.0;
     let at = |x: f64, part: f64| (px(left + x), px(ABOVE + height * (1.0 - part)));
     for level in 0..LEVELS {
-        // Up to the top, where the next is painted over it: no seam shows between them.
+        // Every stripe extends to the top and the next is painted over it, which avoids visible seams.
         let corners = [at(0.0, 1.0), at(BAR_WIDTH, level as f64 / LEVELS as f64)];
         area.draw(&Rectangle::new(corners, colour(level).filled()))
             .map_err(message)?;

@@ -1,4 +1,4 @@
-//! A density on a table: boxes in colours that stand for its values.
+//! A density on a table: boxes coloured by value.
 
 use plotters::element::Rectangle;
 use plotters::style::{Color, RGBColor};
@@ -17,27 +17,27 @@ const WIDTH: f64 = 440.0;
 /// Height of the colour bar with its numbers, in pixels.
 const BAR: f64 = 40.0;
 
-/// How many colours a picture uses besides the transparent one.
+/// Number of colours besides the transparent one.
 const SHADES: usize = 255;
 
-/// How many stripes the colour bar consists of.
+/// Number of stripes of the colour bar.
 const STRIPES: usize = 64;
 
-/// The share of the boxes with something in them whose values have a colour of their own; what is above has the last.
+/// Fraction of the non-empty boxes below the value of the last colour; larger values share that colour.
 const SHOWN: f64 = 0.995;
 
-/// Marks the place of the boxes until they are put there; no picture has this colour.
+/// Colour of the placeholder of the boxes; no picture has this colour.
 const PLACE: RGBColor = RGBColor(1, 2, 3);
 
-/// A density to draw.
+/// A density to be drawn.
 pub struct Map<'a> {
-    /// Where it is.
+    /// The table under the density.
     pub table: &'a Table<'a>,
     /// First line of the title.
     pub title: &'a str,
     /// Second line of the title.
     pub subtitle: &'a str,
-    /// What the boxes cover.
+    /// The rectangle covered by the boxes.
     pub window: Window,
     /// Boxes along each side.
     pub boxes: usize,
@@ -45,10 +45,10 @@ pub struct Map<'a> {
     pub densities: &'a [f64],
 }
 
-/// Draws it.
+/// Draws the density.
 ///
 /// # Errors
-/// What the drawing library says, or that the model has no region in a plane.
+/// An error of the drawing library, or a model without a region in a plane.
 pub fn draw(map: &Map<'_>) -> Result<String, String> {
     let (plane, boundary) = map.table.plane(WIDTH)?;
     let most = map.most();
@@ -72,7 +72,7 @@ pub fn draw(map: &Map<'_>) -> Result<String, String> {
 }
 
 impl Map<'_> {
-    /// The value that has the last colour.
+    /// The value of the last colour.
     fn most(&self) -> f64 {
         let positive = self.densities.iter().copied().filter(|value| *value > 0.0);
         let mut values: Vec<f64> = positive.collect();
@@ -82,7 +82,7 @@ impl Map<'_> {
         most.copied().unwrap_or(1.0)
     }
 
-    /// The boxes as the address of an image.
+    /// The boxes as the data address of an image.
     fn image(&self, most: f64) -> Result<String, String> {
         let shade = |value: f64| match value {
             0.0 => 0,
@@ -102,7 +102,7 @@ fn palette() -> Vec<RGBColor> {
         .collect()
 }
 
-/// Replaces the rectangle that keeps the place by the image. The drawing library can only draw boxes one by one.
+/// Replaces the placeholder rectangle by the image, since the drawing library can only draw boxes one by one.
 fn put_image(svg: &str, address: &str) -> Option<String> {
     let mark = format!("fill=\"{}\"", style::hex(PLACE));
     let middle = svg.find(&mark)?;
@@ -115,7 +115,7 @@ fn put_image(svg: &str, address: &str) -> Option<String> {
     Some([&svg[..start], &image, &svg[end..]].concat())
 }
 
-/// What the colours stand for.
+/// The colour bar.
 struct Bar {
     most: f64,
 }
@@ -134,7 +134,7 @@ impl Head for Bar {
             .map_err(message)?;
         let at = |share: f64| left + share * (right - left);
         for index in 0..STRIPES {
-            // Each reaches under those to its right, so that no seam shows between them.
+            // Each stripe extends below those to its right, which avoids visible seams.
             let share = index as f64 / STRIPES as f64;
             let corners = [(px(at(share)), px(4.0)), (px(right), px(18.0))];
             let fill = colour(share).filled();

@@ -1,5 +1,5 @@
-//! Quantities against time, impacts as vertical lines. Without a choice these are all coordinates, and outputs in a second
-//! panel.
+//! Quantities against time, with impacts as vertical lines. By default these are all coordinates, and the outputs in a
+//! second panel.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;
@@ -15,7 +15,7 @@ use super::thin::thinned;
 use super::trace::Source;
 use crate::names;
 
-/// Height of a panel's plot, as a part of the picture's width, and at least, in pixels.
+/// Height of a panel's plot as a fraction of the picture's width, and least height in pixels.
 const HEIGHT: f64 = 0.32;
 const LEAST_HEIGHT: f64 = 240.0;
 
@@ -26,13 +26,13 @@ const EDGE: f64 = 12.0;
 const RIGHT: f64 = 28.0;
 const ABOVE: f64 = 8.0;
 
-/// Up to this many impacts have a line each over the whole height.
+/// Largest number of impacts that are drawn as lines over the whole height.
 const FEW_IMPACTS: usize = 120;
 
-/// What lies nearer to a drawn line than this many pixels needs no point of its own.
+/// Tolerance in pixels for omitted points of a line.
 const NEAR: f64 = 0.12;
 
-/// Several curves over the same time.
+/// Several curves over a common time axis.
 struct Panel {
     names: Vec<String>,
     /// Index of the first curve among a mark's values.
@@ -63,10 +63,10 @@ fn plot_height(width: f64) -> f64 {
     (HEIGHT * width).max(LEAST_HEIGHT).round()
 }
 
-/// Draws the histories.
+/// Draws the panels.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
     let (panels, width) = (panels(picture), picture.width);
     let heights = panels.iter().map(|panel| panel.height(width));
@@ -161,7 +161,7 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
             .into_iter()
             .map(|kept| (marks[kept].t, marks[kept].values[curve]))
             .collect();
-        // A mode need not have the quantity.
+        // A mode may lack the quantity.
         let pieces = points.split(|(_, value)| !value.is_finite());
         let lines = pieces.map(|piece| {
             PathElement::new(
@@ -174,7 +174,7 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
     Ok(())
 }
 
-/// Impacts as lines behind the curves; where they are many, as marks along the lower edge.
+/// Draws impacts as lines behind the curves; many impacts as marks along the lower edge.
 fn impact_lines(
     picture: &Picture<'_>,
     range: [f64; 2],

@@ -1,15 +1,15 @@
-//! Small pictures of indexed colours in the address of an image.
+//! Small images with indexed colours, as data addresses.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use plotters::style::RGBColor;
 use png::{BitDepth, ColorType, Encoder};
 
-/// The picture as `data:image/png;base64,..`: an index into the palette for each pixel, row by row from above. The first
+/// The image as `data:image/png;base64,..`, from a palette index for each pixel, row by row from the top. The first
 /// colour of the palette is transparent.
 ///
 /// # Errors
-/// What the encoder says of a picture without pixels.
+/// An error of the encoder, such as for an image without pixels.
 pub fn data_address(width: usize, palette: &[RGBColor], pixels: &[u8]) -> Result<String, String> {
     let height = pixels.len() / width.max(1);
     let mut file = Vec::new();

@@ -1,4 +1,4 @@
-//! A strip of legend entries that flow into as many lines as they need.
+//! A legend: entries that flow into as many lines as they need.
 
 use plotters::element::{Circle, PathElement, Rectangle};
 use plotters::style::{Color, RGBColor};
@@ -18,7 +18,7 @@ const SYMBOL: f64 = 24.0;
 /// Room between entries, in pixels.
 const GAP: f64 = 18.0;
 
-/// What stands before an entry's text.
+/// Symbol before the text of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Symbol {
     /// A curve.
@@ -33,7 +33,7 @@ pub enum Symbol {
     Square,
 }
 
-/// An entry.
+/// An entry of a legend.
 #[derive(Debug, Clone)]
 pub struct Item {
     /// Its symbol.
@@ -45,7 +45,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// An entry.
+    /// An entry with this symbol, colour and text.
     pub fn new(symbol: Symbol, colour: RGBColor, label: impl Into<String>) -> Self {
         Self {
             symbol,
@@ -55,7 +55,7 @@ impl Item {
     }
 }
 
-/// An entry with the place of its left edge and its line.
+/// An entry with its left edge and the index of its line.
 type Placed<'a> = (f64, usize, &'a Item);
 
 /// Height in pixels of the legend at this width.
@@ -68,7 +68,7 @@ pub fn height(items: &[Item], width: f64) -> f64 {
 /// Draws the legend at the top of an area.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(area: &Area<'_>, items: &[Item], width: f64) -> Result<(), String> {
     for (left, line, item) in place(items, width) {
         let middle = LINE * (line as f64 + 0.5);

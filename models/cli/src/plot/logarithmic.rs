@@ -1,4 +1,4 @@
-//! Curves on two logarithmic axes, where powers are straight lines; each with the exponent fitted to it.
+//! Curves on two logarithmic axes, on which powers are straight lines, each with its fitted exponent.
 
 use plotters::element::{Circle, PathElement};
 use plotters::prelude::{ChartBuilder, IntoLogRange};
@@ -17,10 +17,10 @@ const HEIGHT: f64 = 300.0;
 const LABELS: f64 = 64.0;
 const EDGE: f64 = 14.0;
 
-/// Draws curves that have the same axes, each with its exponent.
+/// Draws curves with common axes, each with its exponent.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(title: &str, subtitle: &str, curves: &[Curve]) -> Result<String, String> {
     let labels: Vec<String> = curves
         .iter()
@@ -29,10 +29,10 @@ pub fn draw(title: &str, subtitle: &str, curves: &[Curve]) -> Result<String, Str
     draw_labelled((title, subtitle), curves, &labels, &[])
 }
 
-/// Draws curves that have the same axes under these labels, with rings around some points.
+/// Draws curves with common axes under these labels, with rings around some points.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw_labelled(
     (title, subtitle): (&str, &str),
     curves: &[Curve],
@@ -92,7 +92,7 @@ pub fn draw_labelled(
     })
 }
 
-/// The points that logarithms exist of.
+/// The points with logarithms: those with positive coordinates.
 fn drawable(curve: &Curve) -> Vec<[f64; 2]> {
     let exists = |point: &[f64; 2]| point.iter().all(|value| *value > 0.0 && value.is_finite());
     curve.points.iter().copied().filter(exists).collect()
@@ -105,8 +105,8 @@ fn label(curve: &Curve, points: &[[f64; 2]]) -> String {
     }
 }
 
-/// The exponent of the power that is nearest to positive points, by least squares on their logarithms; `None` for
-/// fewer than three.
+/// The exponent of the power law fitted to positive points by least squares on their logarithms; `None` for fewer than
+/// three points.
 pub fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|point| point[axis].ln()).sum::<f64>() / count;
@@ -119,7 +119,7 @@ pub fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     (points.len() >= 3 && spread > 0.0).then_some(common / spread)
 }
 
-/// Whole decades around the values.
+/// The range of whole decades around the values.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
         (low.min(value), high.max(value))

@@ -30,7 +30,7 @@ use quantity::Quantity;
 pub use table::Table;
 use trace::{Source, Trace};
 
-/// What a picture shows.
+/// Content of a picture.
 pub struct Picture<'a> {
     /// The model.
     pub model: &'a dyn AnyModel,
@@ -42,7 +42,7 @@ pub struct Picture<'a> {
     pub width: f64,
     /// The curve.
     pub trace: &'a Trace,
-    /// The impacts to mark on it.
+    /// The marked impacts.
     pub impacts: &'a [Impact],
     /// The state at the start.
     pub first: &'a Point,
@@ -50,11 +50,11 @@ pub struct Picture<'a> {
     pub last: (f64, &'a Point),
 }
 
-/// A picture that was made by a run.
+/// A picture of a run.
 pub struct Drawn {
     /// The picture.
     pub svg: String,
-    /// How the run ended, in words.
+    /// The outcome of the run, in words.
     pub outcome: String,
 }
 
@@ -77,7 +77,7 @@ impl Picture<'_> {
         items
     }
 
-    /// The surfaces that were hit, each with its index, its name and its number of impacts.
+    /// The surfaces with impacts, each with its index, its name and its number of impacts.
     fn impacts_by_surface(&self) -> impl Iterator<Item = (usize, &'static str, usize)> {
         let surfaces = self.model.description().surfaces.iter().enumerate();
         let counted = surfaces.map(|(index, surface)| {
@@ -89,13 +89,13 @@ impl Picture<'_> {
     }
 }
 
-/// Greatest value that is drawn; the drawing library computes ranges and ticks in the same `f64`.
+/// Largest value that can be drawn; the drawing library computes ranges and ticks in `f64`.
 const LARGEST: f64 = 1e200;
 
 /// Draws the picture.
 ///
 /// # Errors
-/// What the drawing library says, or that there are values too large to draw.
+/// An error of the drawing library, or values too large to draw.
 pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
     let mut values = picture
         .trace

@@ -7,10 +7,10 @@ use super::plane::{self, Plane, Words};
 use super::quantity::Quantity;
 use super::style;
 
-/// Draws the ordinates over the abscissa, the first of the quantities.
+/// Draws the ordinates over the abscissa, which is the first of the quantities.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, String> {
     let description = picture.model.description();
     let names: Vec<String> = quantities

@@ -1,4 +1,4 @@
-//! A plane with two linear axes, and what is drawn on it: paths, impacts, the start and the end.
+//! A plane with two linear axes, and the objects drawn on it: paths, impacts, the start and the end.
 
 use plotters::element::{Circle, EmptyElement, PathElement, Rectangle};
 use plotters::prelude::{Cartesian2d, ChartBuilder, ChartContext, SVGBackend};
@@ -10,10 +10,10 @@ use super::legend::{self, Item};
 use super::style::{self, Axis};
 use super::thin::thinned;
 
-/// Least and greatest height of the plot itself, as parts of the picture's width.
+/// Least and greatest height of the plot itself, as fractions of the picture's width.
 const HEIGHT: [f64; 2] = [0.29, 0.87];
 
-/// Height of a plot whose axes have nothing in common, as a part of the picture's width.
+/// Height of a plot whose axes have different units, as a fraction of the picture's width.
 const FREE_HEIGHT: f64 = 0.6;
 
 /// Room for axis labels, left and below, and the margins around, in pixels.
@@ -23,10 +23,10 @@ const EDGE: f64 = 12.0;
 const RIGHT: f64 = 28.0;
 const ABOVE: f64 = 10.0;
 
-/// What lies nearer to a drawn line than this many pixels needs no point of its own.
+/// Tolerance in pixels for omitted points of a line.
 const NEAR: f64 = 0.12;
 
-/// Pixels for each label on the axes along x and y, at least.
+/// Least distance of the labels on the axes along x and y, in pixels.
 const LABELS: [f64; 2] = [72.0, 48.0];
 
 /// A chart on a plane.
@@ -40,11 +40,11 @@ pub struct Words<'a> {
     pub subtitle: &'a str,
     /// The names of both axes.
     pub axes: [&'a str; 2],
-    /// What stands above the plot.
+    /// The element above the plot.
     pub head: &'a dyn Head,
 }
 
-/// What explains a plot above it.
+/// An element above a plot that explains it.
 pub trait Head {
     /// Its height in pixels, in a picture of this width.
     fn height(&self, width: f64) -> f64;
@@ -52,7 +52,7 @@ pub trait Head {
     /// Draws it at the top of an area.
     ///
     /// # Errors
-    /// What the drawing library says.
+    /// An error of the drawing library.
     fn draw(&self, area: &Area<'_>, width: f64) -> Result<(), String>;
 }
 
@@ -67,10 +67,10 @@ impl Head for Vec<Item> {
     }
 }
 
-/// A window on a plane, and the size at which it is shown.
+/// A window on a plane, and the size of its plot.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane {
-    /// What is shown.
+    /// The visible rectangle.
     pub window: Window,
     /// Width of the picture, in pixels.
     width: f64,
@@ -79,7 +79,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The window and what it takes to have equal scales on both axes, in a picture of this width.
+    /// The window, extended to equal scales on both axes, in a picture of this width.
     pub fn equal_scales(window: Window, width: f64) -> Self {
         let (across, up) = (window.x[1] - window.x[0], window.y[1] - window.y[0]);
         let plot_width = width - EDGE - LEFT - RIGHT;
@@ -96,7 +96,7 @@ impl Plane {
         }
     }
 
-    /// The window on axes that have nothing in common.
+    /// The window on axes with different units.
     pub fn free_scales(window: Window, width: f64) -> Self {
         Self {
             window,
@@ -105,10 +105,10 @@ impl Plane {
         }
     }
 
-    /// Draws a sheet: title, what stands above the plot, what lies behind the grid, grid and axes, and what lies on it.
+    /// Draws a sheet: title, element above the plot, objects behind the grid, grid and axes, objects in front.
     ///
     /// # Errors
-    /// What the drawing library says.
+    /// An error of the drawing library.
     pub fn sheet(
         &self,
         words: &Words<'_>,
@@ -144,7 +144,7 @@ impl Plane {
     /// Draws a path.
     ///
     /// # Errors
-    /// What the drawing library says.
+    /// An error of the drawing library.
     pub fn path(
         &self,
         chart: &mut Chart<'_, '_>,
@@ -171,7 +171,7 @@ impl Plane {
 /// Draws grid, axes and labels.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw_axes(chart: &mut Chart<'_, '_>, names: [&str; 2]) -> Result<(), String> {
     chart
         .configure_mesh()
@@ -187,10 +187,10 @@ pub fn draw_axes(chart: &mut Chart<'_, '_>, names: [&str; 2]) -> Result<(), Stri
         .map_err(message)
 }
 
-/// Draws a dot at each point that has finite coordinates.
+/// Draws a dot at each point with finite coordinates.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn dots(
     chart: &mut Chart<'_, '_>,
     points: impl Iterator<Item = ([f64; 2], RGBColor)>,
@@ -201,10 +201,10 @@ pub fn dots(
     chart.draw_series(dots).map_err(message).map(drop)
 }
 
-/// Draws a ring where a path starts and a square where it ends.
+/// Draws a ring at the start and a square at the end of a path.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn ends(chart: &mut Chart<'_, '_>, first: [f64; 2], last: [f64; 2]) -> Result<(), String> {
     chart.draw_series([ring(first)]).map_err(message)?;
     let square = Rectangle::new(
@@ -220,7 +220,7 @@ pub fn ring([x, y]: [f64; 2]) -> Circle<(f64, f64), i32> {
     Circle::new((x, y), px(4.5), style::INK.stroke_width(stroke(1.6)))
 }
 
-/// The range of this half length about the middle of another.
+/// The range of this half length about the middle of another range.
 pub fn around(range: [f64; 2], half: f64) -> [f64; 2] {
     let middle = 0.5 * (range[0] + range[1]);
     [middle - half, middle + half]

@@ -15,7 +15,7 @@ use super::style;
 /// Draws the view.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
     let points: Vec<[f64; 2]> = picture
         .trace
@@ -55,12 +55,12 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
     )
 }
 
-/// The path's own rectangle; never without width or height.
+/// The bounding rectangle of the path, with positive width and height.
 fn extent(points: &[[f64; 2]]) -> Window {
     let x = style::padded(points.iter().map(|point| point[0]), 0.0);
     let y = style::padded(points.iter().map(|point| point[1]), 0.0);
     let tight = Window::around(points.iter().copied());
-    // A straight path along an axis takes the other side's length, so that it is not magnified into noise.
+    // A straight path along an axis takes the length of the other side, so that rounding noise is not magnified.
     let side = |range: [f64; 2]| range[1] - range[0];
     match tight.map(|tight| (side(tight.x), side(tight.y))) {
         Some((w, h)) if w > 0.0 && h < 1e-6 * w => Window {
@@ -75,10 +75,10 @@ fn extent(points: &[[f64; 2]]) -> Window {
     }
 }
 
-/// Fills the contours from the largest to the smallest: what lies inside one is painted over it.
+/// Fills the contours from the largest to the smallest, so that inner contours are painted over outer ones.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
     let mut sorted: Vec<_> = boundary
         .iter()
@@ -97,10 +97,10 @@ pub fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<()
     chart.draw_series(polygons).map_err(message).map(drop)
 }
 
-/// Strokes contours where they run inside the window.
+/// Strokes the parts of contours inside the window.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw_boundary(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
     let style = style::BOUNDARY.stroke_width(stroke(1.6));
     let elements = boundary
@@ -111,13 +111,13 @@ pub fn draw_boundary(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<
     chart.draw_series(elements).map_err(message).map(drop)
 }
 
-/// The parts of a contour that run inside the window.
+/// The parts of a contour inside the window.
 fn strokes(contour: &Contour) -> Vec<Vec<(f64, f64)>> {
     let corner = |index: usize| {
         let point = contour.points[index % contour.points.len()];
         (point[0], point[1])
     };
-    // Begin after a side on the frame, so that no stroke is cut in two.
+    // Starts after a side on the frame, so that no stroke is cut in two.
     let count = contour.points.len();
     let begin = (0..count)
         .find(|&index| contour.on_frame[index])

@@ -1,4 +1,4 @@
-//! What an axis can show: time, what a state consists of, energies and outputs, by the names that tables use.
+//! Quantities of axes: time, components of a state, energies and outputs, with their names in tables.
 
 use dalembert::describe::Description;
 use dalembert_driver::Point;
@@ -19,18 +19,18 @@ pub enum Quantity {
     Momentum(usize),
     /// `energy`
     Energy,
-    /// `energy_error`: the change of the energy since the start, as a share of what it was there; the change itself if
-    /// that was 0.
+    /// `energy_error`: the change of the energy since the start, relative to its initial value; the absolute change if
+    /// that value is 0.
     EnergyError,
     /// A declared output.
     Output(usize),
 }
 
-/// Groups of quantities, which stand for all of their kind.
+/// Groups of quantities; each name stands for all of its kind.
 const GROUPS: [&str; 4] = ["q", "qdot", "p", "outputs"];
 
 impl Quantity {
-    /// Its value, where the energy was `start` at the start of the run.
+    /// The value of the quantity; `start` is the energy at the start of the run.
     pub fn value(self, t: f64, point: &Point, start: f64) -> f64 {
         let component = |values: &[f64], index: usize| values.get(index).copied();
         let value = match self {
@@ -60,17 +60,17 @@ impl Quantity {
         }
     }
 
-    /// Whether it is smooth along a motion. An energy that is kept is not: what is left of it is rounding.
+    /// True if it is smooth along a motion. A conserved energy is not smooth: its changes are rounding errors.
     pub const fn is_smooth(self) -> bool {
         !matches!(self, Self::Energy | Self::EnergyError)
     }
 }
 
-/// The quantities of `--axes`: the abscissa, and one or more ordinates, where `q`, `qdot`, `p` and `outputs` stand for
-/// all of their kind.
+/// Parses the quantities of `--axes`: the abscissa and one or more ordinates, where `q`, `qdot`, `p` and `outputs`
+/// stand for all of their kind.
 ///
 /// # Errors
-/// A name that is none of them, or fewer than two.
+/// An unknown name, or fewer than two quantities.
 pub fn parse(flag: &str, text: &str, description: &Description) -> Result<Vec<Quantity>, CliError> {
     let everything = everything(description);
     let mut accepted: Vec<String> = everything
@@ -99,7 +99,7 @@ pub fn parse(flag: &str, text: &str, description: &Description) -> Result<Vec<Qu
     }
 }
 
-/// All quantities of a model. A name that is taken twice means the first.
+/// All quantities of a model. Of two quantities with the same name the first is used.
 fn everything(description: &Description) -> Vec<Quantity> {
     let n = description.coordinates.len();
     let outputs = description.outputs.len();

@@ -1,4 +1,4 @@
-//! The declared region behind a path: which part of the plane to show, and the region's boundary in it.
+//! The declared region behind a path: the visible part of the plane, and the region's boundary in it.
 
 use dalembert_driver::{AnyModel, Point};
 
@@ -7,33 +7,33 @@ use super::contour::{Contour, Window, contours};
 /// Grid squares per side for the picture.
 pub const FINE: usize = 240;
 
-/// Grid squares per side while the extent of the region is sought.
+/// Grid squares per side in the search for the extent of the region.
 pub const COARSE: usize = 48;
 
-/// Room around what is shown, as a part of its size.
+/// Margin around the visible objects, as a fraction of their size.
 const ROOM: f64 = 0.06;
 
-/// How often the window may grow, by half of its size on each side, before a region counts as unbounded.
+/// Number of times that the window may grow, by half of its size on each side, before a region counts as unbounded.
 const GROWTHS: usize = 5;
 
 /// The region's function in the plane of two coordinates, positive where motion is allowed.
 pub struct Region<'a> {
     model: &'a dyn AnyModel,
-    /// The position that says what the other coordinates are.
+    /// The position that fixes the other coordinates.
     q: &'a [f64],
     plane: [usize; 2],
 }
 
 impl<'a> Region<'a> {
-    /// The region about a position, if one is declared in a plane of two coordinates.
+    /// The region through a position, if one is declared in a plane of two coordinates.
     pub fn about(model: &'a dyn AnyModel, q: &'a [f64]) -> Option<Self> {
         let view = model.description().view?;
         let plane = view.plane.filter(|_| view.region)?;
         Some(Self { model, q, plane })
     }
 
-    /// The region of a run from its first to its last state, if there is one to draw: declared, in a plane of two
-    /// coordinates, and the same throughout the run.
+    /// The region of a run from its first to its last state; `None` unless it is declared in a plane of two coordinates
+    /// and constant during the run.
     pub fn of(
         model: &'a dyn AnyModel,
         first: &'a Point,
@@ -44,17 +44,17 @@ impl<'a> Region<'a> {
         region.stands_still(last, path).then_some(region)
     }
 
-    /// Where the position lies in the plane.
+    /// The position in the plane.
     pub fn position(&self) -> [f64; 2] {
         self.plane.map(|coordinate| self.q[coordinate])
     }
 
-    /// The boundary of the region inside a window, on a grid of so many squares per side.
+    /// The boundary of the region inside a window, on a grid of `cells` squares per side.
     pub fn contours(&self, window: Window, cells: usize) -> Vec<Contour> {
         contours(window, cells, |point| self.value(point))
     }
 
-    /// The part of the plane to show: the path, and all of the region if it is bounded.
+    /// The visible part of the plane: the path, and the whole region if it is bounded.
     pub fn window(&self, path: Window) -> Window {
         let with_path = |region: Window| {
             let corners = [region, path].map(|window| [window.at(0.0, 0.0), window.at(1.0, 1.0)]);
@@ -63,7 +63,7 @@ impl<'a> Region<'a> {
         let mut window = path.grown(0.5);
         for _ in 0..GROWTHS {
             if let Some(rough) = self.extent(window, COARSE) {
-                // A second look from near sees more.
+                // A finer grid near the region refines its extent.
                 let near = with_path(rough).grown(ROOM);
                 return with_path(self.extent(near, COARSE).unwrap_or(rough)).grown(ROOM);
             }
@@ -72,8 +72,8 @@ impl<'a> Region<'a> {
         path.grown(ROOM)
     }
 
-    /// The smallest rectangle around the region, as far as a grid in a window shows it; `None` where it reaches the rim of
-    /// the window, or lies outside.
+    /// The bounding rectangle of the region, as far as a grid in a window resolves it; `None` if the region reaches the
+    /// rim of the window or lies outside.
     pub fn extent(&self, window: Window, cells: usize) -> Option<Window> {
         let contours = self.contours(window, cells);
         let inside = contours
@@ -95,8 +95,8 @@ impl<'a> Region<'a> {
         self.model.region(t, &q).unwrap_or(f64::NAN)
     }
 
-    /// Whether the region depends on nothing but the plane: compared at the first and the last instant, and
-    /// between, with the other coordinates as they are at both ends.
+    /// True if the region depends on the coordinates of the plane only. The test compares the first and the last
+    /// instant, and two instants between with the other coordinates as they are at either end.
     fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let points =
             [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));

@@ -5,7 +5,8 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::style::{RGBColor, WHITE};
 
-/// Colours that colour-blind people can tell apart (Okabe and Ito), those that are readable on white, and a brown.
+/// Colours that colour-blind people can distinguish (Okabe and Ito, only those that are readable on white), and a
+/// brown.
 pub const PALETTE: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -35,7 +36,7 @@ pub const REGION: RGBColor = RGBColor(240, 244, 249);
 /// The region's boundary.
 pub const BOUNDARY: RGBColor = RGBColor(110, 120, 132);
 
-/// What stands for the colours of a picture where it is shown on a dark page.
+/// Colours of pictures, each with its replacement on a dark page.
 pub const DARK: [(RGBColor, RGBColor); 11] = [
     (WHITE, RGBColor(22, 24, 27)),
     (INK, RGBColor(220, 221, 224)),
@@ -50,12 +51,12 @@ pub const DARK: [(RGBColor, RGBColor); 11] = [
     (PALETTE[7], RGBColor(196, 146, 84)),
 ];
 
-/// A colour as pictures write it.
+/// A colour in hexadecimal notation.
 pub fn hex(colour: RGBColor) -> String {
     format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2)
 }
 
-/// The colour of a curve by its index; after the palette's last comes its first again, lighter.
+/// The colour of a curve by its index; indices past the palette repeat it in lighter colours.
 pub fn curve(index: usize) -> RGBColor {
     let RGBColor(r, g, b) = PALETTE[index % PALETTE.len()];
     let times = index / PALETTE.len() % 3;
@@ -63,12 +64,12 @@ pub fn curve(index: usize) -> RGBColor {
     RGBColor(lighter(r), lighter(g), lighter(b))
 }
 
-/// The colour of a surface's impacts by its index; the first colour is the path's own.
+/// The colour of a surface's impacts by its index; the first colour is reserved for the path.
 pub const fn surface(index: usize) -> RGBColor {
     PALETTE[1 + index % (PALETTE.len() - 1)]
 }
 
-/// An axis: its range, and where its labels are.
+/// An axis: its range, and the distance of its labels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis {
     /// Least and greatest value.
@@ -91,7 +92,7 @@ impl Axis {
         Self { range, step }
     }
 
-    /// The values that have labels.
+    /// The labelled values.
     pub fn ticks(&self) -> Vec<f64> {
         let [first, last] = self.range.map(|end| end / self.step);
         let count = (last.floor() - first.ceil()) as usize + 1;
@@ -100,11 +101,11 @@ impl Axis {
             .collect()
     }
 
-    /// The label of a value: as many decimals as the step needs, or an exponent where there would be many.
+    /// The label of a value: as many decimals as the step needs, or an exponent instead of many decimals.
     pub fn label(&self, value: f64) -> String {
         let largest = self.range[0].abs().max(self.range[1].abs());
         let decimals = (-self.step.log10()).ceil().max(0.0) as usize;
-        // A tick at zero comes out of the arithmetic as a tiny number.
+        // Rounding errors turn a tick at zero into a tiny number.
         let value = if value.abs() < 1e-9 * largest {
             0.0
         } else {
@@ -118,7 +119,7 @@ impl Axis {
     }
 }
 
-/// The drawing library's own axes choose other labels.
+/// Replaces the labels that the drawing library would choose.
 impl Ranged for Axis {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
@@ -157,14 +158,14 @@ fn shortest_exponent(value: f64) -> String {
     }
 }
 
-/// A range that contains the values with some room; one unit about a constant.
+/// A range that contains the values with a margin; one unit around a constant.
 pub fn padded(values: impl Iterator<Item = f64>, room: f64) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });
     let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
     let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
-    // Below this the range is rounding error of a constant, or too small to place ticks in.
+    // A smaller range is rounding error of a constant, or too small for ticks.
     let is_constant = half <= 1e-12 * middle.abs() || half < 1e-200;
     let half = if is_constant {
         0.5 * middle.abs().max(1.0)

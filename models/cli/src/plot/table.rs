@@ -1,4 +1,4 @@
-//! The region of a model's view as a table that something lies on, without a run.
+//! The region of a model's view as a table under other objects, without a run.
 
 use dalembert_driver::AnyModel;
 
@@ -6,18 +6,18 @@ use super::contour::{Contour, Window};
 use super::plane::Plane;
 use super::region::{COARSE, FINE, Region};
 
-/// Half the side of the square that the search for the rim begins with, and how often it may double.
+/// Half the side of the first square of the search for the rim, and the largest number of doublings.
 const LEAST: f64 = 1e-6;
 const DOUBLINGS: i32 = 60;
 
-/// Room around a table, as a part of its size.
+/// Margin around a table, as a fraction of its size.
 const ROOM: f64 = 0.06;
 
-/// A table.
+/// The region of a view, as a background.
 pub struct Table<'a> {
-    /// The model whose view it belongs to.
+    /// The model of the view.
     pub model: &'a dyn AnyModel,
-    /// A position on it.
+    /// A position inside the region.
     pub q: &'a [f64],
 }
 
@@ -28,10 +28,10 @@ impl Table<'_> {
         view.map_or([""; 2], |view| view.labels)
     }
 
-    /// The smallest rectangle that contains it.
+    /// The bounding rectangle of the region.
     ///
     /// # Errors
-    /// That there is none.
+    /// A model without a bounded region.
     pub fn extent(&self) -> Result<Window, String> {
         let region = self.region()?;
         let [x, y] = region.position();
@@ -45,10 +45,10 @@ impl Table<'_> {
             .ok_or_else(|| "the region of the view has no rim all around".to_owned())
     }
 
-    /// The plane it is shown in, in a picture of this width, and its rim.
+    /// The plane of the region, in a picture of this width, and the region's boundary.
     ///
     /// # Errors
-    /// That there is none.
+    /// A model without a bounded region.
     pub fn plane(&self, width: f64) -> Result<(Plane, Vec<Contour>), String> {
         let plane = Plane::equal_scales(self.extent()?.grown(ROOM), width);
         let rim = self.region()?.contours(plane.window, FINE);

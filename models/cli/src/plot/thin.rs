@@ -1,11 +1,11 @@
-//! Polylines with as few points as their shape needs.
+//! Simplification of polylines.
 
-/// Points of a stretch at most. Its ends stay, and its work is at most the square of its points: without stretches that of a
-/// curve that swings to and fro would be the square of all points.
+/// Largest number of points in a stretch. The ends of a stretch are kept, and its work is at most quadratic in its
+/// points. Without stretches, the work for an oscillating curve would be quadratic in all points.
 const STRETCH: usize = 1024;
 
-/// The indices of the points of a polyline without those that lie nearer than `tolerance` to what is drawn without them
-/// (Douglas and Peucker). The first and the last point stay.
+/// The indices of the kept points of a polyline; omitted points lie within `tolerance` of the simplified polyline
+/// (Douglas and Peucker). The first and the last point are kept.
 pub fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     let mut keep = vec![false; points.len()];
     let Some(last) = points.len().checked_sub(1) else {
@@ -33,7 +33,7 @@ pub fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     kept.map(|(index, _)| index).collect()
 }
 
-/// Distance of a point from the stretch between two others.
+/// Distance of a point from the segment between two others.
 fn distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let along = [to[0] - from[0], to[1] - from[1]];
     let out = [point[0] - from[0], point[1] - from[1]];
@@ -61,7 +61,7 @@ mod tests {
         assert!(thinned(&[], 1.0).is_empty());
     }
 
-    /// The work grows with the number of points: each is looked at once for every point that is kept of its stretch.
+    /// The work is proportional to the number of points: each is examined at most once per kept point of its stretch.
     #[test]
     fn a_curve_that_swings_to_and_fro_many_times_is_thinned_at_once() {
         let swings = 50_000_u32;

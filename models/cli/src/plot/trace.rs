@@ -1,29 +1,29 @@
-//! The curve of a picture: points along a run, dense where it bends, with both sides of every impact.
+//! The curve of a picture: points along a run, dense at bends, with both sides of every impact.
 
 use dalembert_driver::{Piece, Point};
 
 use super::quantity::Quantity;
 
-/// Intervals that every step is divided into first.
+/// Intervals into which every step is first divided.
 const INTERVALS: usize = 12;
 
-/// Halvings of such an interval at most.
+/// Largest number of halvings of an interval.
 const DEPTH: u32 = 8;
 
-/// Points from which on steps are no longer subdivided, and at most this many more are kept.
+/// Number of points from which steps are no longer subdivided; at most twice as many are kept.
 const MANY: usize = 100_000;
 
-/// An interval is halved while its middle lies off its chord by more than this part of the curve's extent.
+/// An interval is halved while the distance of its midpoint from its chord exceeds this fraction of the curve's extent.
 const FLATNESS: f64 = 3e-4;
 
-/// What a point of the curve shows.
+/// Components of the points of a curve.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
     /// The declared view's point in the plane.
     View,
     /// All coordinates, then all outputs.
     Coordinates,
-    /// These: the abscissa, then the ordinates.
+    /// Quantities: the abscissa, then the ordinates.
     Quantities(Vec<Quantity>),
 }
 
@@ -39,8 +39,8 @@ impl Source {
         }
     }
 
-    /// Whether there is more to see inside a step than at its ends: not of energies alone, of which only the errors of
-    /// dense output would be seen there.
+    /// True if states inside a step add to the curve. Energies alone do not need them: inside a step they only show
+    /// errors of dense output.
     fn looks_inside(&self) -> bool {
         match self {
             Self::View | Self::Coordinates => true,
@@ -50,7 +50,7 @@ impl Source {
         }
     }
 
-    /// Whether more points make the curve of this value smoother.
+    /// True if more points make the curve of this component smoother.
     fn is_smooth(&self, index: usize) -> bool {
         match self {
             Self::View | Self::Coordinates => true,
@@ -63,7 +63,7 @@ impl Source {
 #[derive(Debug)]
 pub struct Trace {
     source: Source,
-    /// The energy at the start, once it is known.
+    /// The energy at the start, after the first point.
     start: Option<f64>,
     points: Vec<Mark>,
     /// Least and greatest value so far, per component.
@@ -75,9 +75,9 @@ pub struct Trace {
 pub struct Mark {
     /// Its time.
     pub t: f64,
-    /// What the picture shows at that time.
+    /// The values of the components at that time.
     pub values: Vec<f64>,
-    /// Whether it is one side of an impact or an end, never to be left out.
+    /// True for one side of an impact or an end; such points are always kept.
     pub corner: bool,
 }
 
@@ -92,7 +92,7 @@ impl Trace {
         }
     }
 
-    /// What its points show.
+    /// The components of its points.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -112,7 +112,8 @@ impl Trace {
         let marks: Vec<Mark> = (0..=intervals)
             .map(|index| self.mark(time(index), &piece.at(time(index))))
             .collect();
-        // The extent of the whole step first, so that a first small piece is not taken for the whole picture.
+        // The extent is updated for the whole step first, so that flatness is not judged against a small first
+        // interval.
         marks.iter().for_each(|mark| self.widen(mark));
         for pair in marks.windows(2) {
             self.push(pair[0].clone());
@@ -143,7 +144,7 @@ impl Trace {
         }
     }
 
-    /// Adds what lies between two points, without them.
+    /// Adds points between two points, as far as the curve bends.
     fn refine(&mut self, piece: &dyn Piece, left: &Mark, right: &Mark, depth: u32) {
         let t = 0.5 * (left.t + right.t);
         if depth == 0 || t <= left.t || t >= right.t {
@@ -166,7 +167,7 @@ impl Trace {
             .enumerate()
             .filter(|(index, _)| self.source.is_smooth(*index))
             .all(|(_, (((left, right), middle), [low, high]))| {
-                // Written so that an undefined value counts as flat: subdividing does not define it.
+                // Comparison with NaN is false, so an undefined value counts as flat: subdivision would not define it.
                 let deviation = (middle - 0.5 * (left + right)).abs();
                 let bent = deviation > FLATNESS * (high - low);
                 !bent
@@ -192,7 +193,7 @@ impl Trace {
         }
     }
 
-    /// Leaves out every other point once there are too many; corners stay.
+    /// Removes every other point if there are too many; corners are kept.
     fn thin(&mut self) {
         if self.points.len() < 2 * MANY {
             return;
@@ -246,7 +247,7 @@ mod tests {
             trace.points().len()
         };
         assert_eq!(count(&[Quantity::Time, Quantity::EnergyError]), 2);
-        // Beside a straight curve, rounding errors ask for no more points than it does.
+        // Rounding errors do not require more points than a straight curve alone.
         let beside = [Quantity::Time, Quantity::Position(0), Quantity::EnergyError];
         assert_eq!(count(&beside), INTERVALS + 1);
     }

@@ -5,11 +5,11 @@ use dalembert_driver::accuracy::Study;
 use super::logarithmic::draw_labelled;
 use crate::suite::Curve;
 
-/// Draws a study. Runs that end otherwise than the reference are left out; errors below what the reference is known to
-/// stand at that.
+/// Draws a study. Runs that do not end as the reference does are left out. Errors below the accuracy of the reference
+/// are drawn at that accuracy.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn draw(title: &str, subtitle: &str, study: &Study) -> Result<String, String> {
     let floor = study.floor.max(f64::EPSILON / 2.0);
     let mut curves: Vec<Curve> = Vec::new();

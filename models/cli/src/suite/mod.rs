@@ -1,5 +1,5 @@
-//! Suites of hard cases, as `dalembert stability` runs them: each has a right answer that is a closed form, an exact
-//! count or a class of outcome, and a bound that its measured error must keep.
+//! Suites of hard cases, as run by `dalembert stability`: each has a correct result, which is a closed form, an exact
+//! count or a class of outcome, and a bound on its measured error.
 //!
 //! A suite is a list of [`Case`]s, handed to [`Catalogue::with_suite`](crate::Catalogue::with_suite). A case measures
 //! by filling a [`Report`]; [`examine`] runs it under every [`Setting`] that its [`Run`] asks for.
@@ -17,23 +17,23 @@ pub use report::{Check, Curve, Report};
 pub struct Case {
     /// Its number: the letter of a section and two digits, with a suffix for a longer version.
     pub id: &'static str,
-    /// What it is, in a line.
+    /// Its title, one line.
     pub title: &'static str,
-    /// What is right.
+    /// The correct result.
     pub right: &'static str,
-    /// What passes.
+    /// The bound on the error.
     pub bound: &'static str,
-    /// Whether it takes so long that it only runs on request.
+    /// True if it takes so long that it runs only on request.
     pub nightly: bool,
-    /// Why it cannot hold yet. Such a case that holds all the same is reported as a failure, so that the reason is
-    /// taken out.
+    /// The reason for which it cannot hold yet. A case with such a reason that holds is reported as a failure, so that
+    /// the reason is removed.
     pub pending: Option<&'static str>,
-    /// How it is measured.
+    /// The measurement.
     pub run: Run,
 }
 
 impl Case {
-    /// A quick case without contents, to take the rest of one from.
+    /// A quick case with empty fields, as defaults of other cases.
     pub const QUICK: Self = Self {
         id: "",
         title: "",
@@ -44,13 +44,13 @@ impl Case {
         run: Run::Absent,
     };
 
-    /// A long case without contents.
+    /// A long case with empty fields, as defaults of other cases.
     pub const NIGHTLY: Self = Self {
         nightly: true,
         ..Self::QUICK
     };
 
-    /// Whether one of these integrators measures it, or none is needed.
+    /// True if one of these integrators measures it, or if it needs none.
     pub fn is_measured_by(&self, integrators: &[Integrator]) -> bool {
         match self.run {
             Run::Chosen(chosen, _) => chosen.iter().any(|one| integrators.contains(one)),
@@ -64,38 +64,38 @@ impl Case {
     }
 }
 
-/// How a case is measured.
+/// Kind of measurement.
 #[derive(Debug, Clone, Copy)]
 pub enum Run {
     /// Not at all: [`Case::pending`] says why.
     Absent,
     /// Once; nothing is integrated, or the case chooses its integrators itself.
     Once(fn(&mut Report)),
-    /// By every integrator, with steps as long as it likes.
+    /// By every integrator, with steps of any length.
     Integrators(fn(Setting, &mut Report)),
-    /// As [`Run::Integrators`], by these alone.
+    /// By these integrators only, otherwise like [`Run::Integrators`].
     Chosen(&'static [Integrator], fn(Setting, &mut Report)),
-    /// By every integrator with steps of any length, of at most [`FORCED_STEPS`], and with its dense output read in
-    /// every step. The class of the outcome must not change.
+    /// By every integrator: with steps of any length, with steps of at most each of [`FORCED_STEPS`], and with the
+    /// dense output read in every step. The class of the outcome must be the same in all settings.
     Steps(fn(Setting, &mut Report)),
 }
 
 /// Longest steps that [`Run::Steps`] forces.
 pub const FORCED_STEPS: [f64; 2] = [0.25, 1e-3];
 
-/// How the runs of a case are to be made.
+/// Settings for the runs of a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     /// The integrator.
     pub integrator: Integrator,
-    /// Longest step allowed.
+    /// Longest allowed step.
     pub max_step: Option<f64>,
-    /// Whether to read the dense output in every step.
+    /// True to read the dense output in every step.
     pub dense: bool,
 }
 
 impl Setting {
-    /// This integrator with nothing forced.
+    /// This integrator without further settings.
     pub const fn free(integrator: Integrator) -> Self {
         Self {
             integrator,
@@ -115,7 +115,7 @@ impl Setting {
 }
 
 impl Run {
-    /// The settings it is measured under; one for [`Run::Once`], whose setting is not looked at.
+    /// The settings under which it is measured; for [`Run::Once`] one, which is ignored.
     fn settings(&self, integrators: &[Integrator]) -> Vec<Setting> {
         let free = integrators.iter().copied().map(Setting::free);
         match self {
@@ -142,7 +142,7 @@ impl Run {
     }
 }
 
-/// A setting, the same with its dense output read, and with steps forced.
+/// A setting, the same setting with its dense output read, and with forced steps.
 fn forced(free: Setting) -> Vec<Setting> {
     let dense = Setting {
         dense: true,
@@ -155,19 +155,19 @@ fn forced(free: Setting) -> Vec<Setting> {
     [free, dense].into_iter().chain(short).collect()
 }
 
-/// What became of a case.
+/// Verdict on a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Everything measured keeps its bound.
+    /// Every measurement keeps its bound.
     Pass,
-    /// Something does not.
+    /// A measurement exceeds its bound.
     Fail,
-    /// It cannot hold yet, and does not.
+    /// It cannot hold yet, and does not hold.
     Pending,
 }
 
 impl Verdict {
-    /// In a word.
+    /// The verdict as a word.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pass => "pass",
@@ -177,20 +177,20 @@ impl Verdict {
     }
 }
 
-/// What became of a case, and on what grounds.
+/// Result of a case: verdict and measurements.
 #[derive(Debug, Clone)]
 pub struct Finding {
     /// The case.
     pub case: Case,
     /// The verdict.
     pub verdict: Verdict,
-    /// The measurement closest to its bound, or why there is none.
+    /// The measurement closest to its bound, or the reason for which there is none.
     pub measured: String,
-    /// Under which setting that was.
+    /// The setting of that measurement.
     pub setting: Option<Setting>,
-    /// Everything measured, setting by setting.
+    /// All measurements, setting by setting.
     pub reports: Vec<(Setting, Report)>,
-    /// How long it took.
+    /// The time taken.
     pub elapsed: Duration,
 }
 
@@ -225,7 +225,7 @@ pub fn examine(case: &Case, integrators: &[Integrator]) -> Finding {
     }
 }
 
-/// Whether all reports hold, and the worst measurement of all with its setting.
+/// True if all reports hold; and the worst measurement of all with its setting.
 fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
     let worst = reports
         .iter()
@@ -253,14 +253,14 @@ fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
     }
 }
 
-/// What the generator says of a declaration that it refuses.
+/// The error of the generator on a declaration that it refuses.
 pub fn refusal(source: &str) -> Option<String> {
     dalembert_codegen::report::report(source)
         .err()
         .map(|error| error.to_string())
 }
 
-/// The notes of the generator on a declaration, a line each.
+/// The notes of the generator on a declaration, one per line.
 pub fn notes(source: &str) -> String {
     use dalembert_codegen::report::{Item, Section, report};
     let Ok(report) = report(source) else {
@@ -277,7 +277,7 @@ pub fn notes(source: &str) -> String {
     words.collect::<Vec<_>>().join("\n")
 }
 
-/// Every integrator that chooses its steps: cases bound errors by tolerances, which those of fixed step do not know.
+/// All adaptive integrators: cases bound errors by tolerances, which do not apply to fixed-step integrators.
 pub fn every_integrator() -> &'static [Integrator] {
     &[Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor]
 }

@@ -1,42 +1,42 @@
-//! What a case measures: errors against bounds, counts, classes of outcome, curves.
+//! Measurements of a case: errors against bounds, counts, classes of outcome, curves.
 
 use std::fmt::Debug;
 
 use dalembert::Outcome;
 
-/// One thing that was measured.
+/// A measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
-    /// What.
+    /// Its name.
     pub what: String,
-    /// What was found, and what was expected.
+    /// The result and the expected value, in words.
     pub words: String,
-    /// The error found over the error allowed, infinite where there is no number: passes up to 1.
+    /// The error divided by the allowed error; infinite if there is no number. Values up to 1 pass.
     pub share: f64,
 }
 
 impl Check {
-    /// Whether it passes.
+    /// True if it passes.
     pub fn passes(&self) -> bool {
         self.share <= 1.0
     }
 }
 
-/// A curve that shows what was measured, on logarithmic axes.
+/// A curve of measurements, on logarithmic axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Its name.
     pub name: String,
-    /// What runs along the axes.
+    /// The quantities of the axes.
     pub axes: [&'static str; 2],
     /// Its points; only positive numbers can be drawn.
     pub points: Vec<[f64; 2]>,
 }
 
-/// What a case found in one setting.
+/// Results of a case in one setting.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Report {
-    /// What was measured, in order.
+    /// The measurements, in order.
     pub checks: Vec<Check>,
     /// Curves to draw.
     pub curves: Vec<Curve>,
@@ -44,19 +44,19 @@ pub struct Report {
 }
 
 impl Report {
-    /// An error that must not exceed a bound.
+    /// Adds an error that must not exceed a bound.
     pub fn error(&mut self, what: impl Into<String>, error: f64, bound: f64) {
         let share = if error == 0.0 { 0.0 } else { error / bound };
         let words = format!("{error:.2e} of {bound:.2e}");
         self.push(what, words, share);
     }
 
-    /// A number that must lie within `bound` of what is right.
+    /// Adds a number that must lie within `bound` of the correct one.
     pub fn near(&mut self, what: impl Into<String>, found: f64, right: f64, bound: f64) {
         self.error(what, (found - right).abs(), bound);
     }
 
-    /// Something that must be exactly what is right.
+    /// Adds a value that must equal the correct one exactly.
     pub fn equal<T: PartialEq + Debug>(&mut self, what: impl Into<String>, found: T, right: T) {
         let same = found == right;
         let words = match same {
@@ -66,12 +66,12 @@ impl Report {
         self.push(what, words, if same { 0.0 } else { f64::INFINITY });
     }
 
-    /// An outcome that must be of this class.
+    /// Adds an outcome that must be of this class.
     pub fn class(&mut self, outcome: &Outcome, right: &'static str) {
         self.one_of(outcome, &[right]);
     }
 
-    /// An outcome that must be of one of these classes, the same in every setting.
+    /// Adds an outcome that must be of one of these classes, the same in every setting.
     pub fn one_of(&mut self, outcome: &Outcome, right: &[&'static str]) {
         let kind = outcome.kind();
         self.classes.push(kind);
@@ -83,7 +83,7 @@ impl Report {
         self.push("outcome", words, if same { 0.0 } else { f64::INFINITY });
     }
 
-    /// A curve to draw.
+    /// Adds a curve.
     pub fn curve(
         &mut self,
         name: impl Into<String>,
@@ -100,9 +100,9 @@ impl Report {
         self.checks.push(Check { what, words, share });
     }
 
-    /// The check that comes closest to failing, or fails worst.
+    /// The check closest to failing, or the worst failure.
     pub(super) fn worst(&self) -> Option<&Check> {
-        // Of equals the first, which is where a failure begins.
+        // The first of equal checks, at which a failure begins.
         let checks = self.checks.iter().rev();
         checks.max_by(|a, b| a.share.total_cmp(&b.share))
     }

@@ -11,7 +11,7 @@ use crate::json::{Document, named, number};
 /// Writes the document.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let description = finished.model.description();
     let names = description

@@ -25,7 +25,7 @@ const HEAD: [&str; 13] = [
 /// Writes the table.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, study: &Study) -> io::Result<()> {
     write_rows(output, |writer| {
         writer.write_record(HEAD)?;

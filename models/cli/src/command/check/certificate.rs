@@ -1,4 +1,4 @@
-//! The certificate of a model as JSON: what its claims are about and what the verdicts rest on.
+//! The certificate of a model as JSON: the objects of its claims and the grounds of the verdicts.
 
 use std::io::{self, Write};
 
@@ -11,7 +11,7 @@ use crate::json::number;
 /// Writes the certificate: the model itself, then its scenes or modes.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, report: Option<&Report>) -> io::Result<()> {
     let entry = |own: &Report| json!({ "name": own.name, "content": value(&own.certificate) });
     let parts: Vec<Value> = match report {

@@ -1,15 +1,15 @@
-//! A density as CSV: a cell a row.
+//! A density as CSV, one row per cell.
 
 use std::io::{self, Write};
 
 use crate::ensemble::density::{Axis, Counts, Density};
 use crate::table;
 
-/// Writes the middle of every cell, how many states were in it, and the density there: their share of all that were in
-/// any, divided by the area of the cell.
+/// Writes the middle of every cell, its number of states, and the density there: the fraction of all states in cells,
+/// divided by the area of the cell.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, density: &Density, counts: &Counts) -> io::Result<()> {
     let total = counts.total();
     let all = total.iter().sum::<u64>() as f64;

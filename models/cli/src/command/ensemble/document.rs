@@ -1,4 +1,4 @@
-//! What is known of an ensemble as one JSON document.
+//! An ensemble as one JSON document: metadata, totals and density.
 
 use std::io::{self, Write};
 
@@ -9,10 +9,10 @@ use crate::ensemble::density::{Checkpoint, Counts, Density};
 use crate::json::{Document, number};
 use crate::names;
 
-/// Writes the document: everything that tells the ensemble apart, then what came of it.
+/// Writes the document: the metadata of the ensemble, then the results.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let tally = &finished.tally;
     let mut document = Document::begin(output)?;
@@ -44,7 +44,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     document.end()
 }
 
-/// Counts are rows of the grid, from the lowest second coordinate.
+/// Writes the density. Counts are rows of the grid, from the lowest second coordinate on.
 fn write_density(
     document: &mut Document<'_>,
     density: &Density,

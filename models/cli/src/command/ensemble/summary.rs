@@ -10,7 +10,7 @@ use crate::names;
 /// Writes the summary.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let Finished {
         tally, settings, ..
@@ -69,7 +69,7 @@ pub fn title(finished: &Finished<'_>) -> String {
     }
 }
 
-/// What stands under the title of a picture.
+/// The caption under the title of a picture.
 pub fn caption(finished: &Finished<'_>, checkpoints: &[Checkpoint]) -> String {
     let Some((density, counts, _)) = &finished.density else {
         return String::new();

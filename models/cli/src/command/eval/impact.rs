@@ -1,4 +1,4 @@
-//! What impacts on one surface make of a state.
+//! Effects of impacts on one surface on a state.
 
 use dalembert::law::Law;
 use dalembert::{Fault, StateError};
@@ -9,15 +9,15 @@ use super::refusal;
 use super::report::Collected;
 use crate::json;
 
-/// A state, and what the model reports of it.
+/// A state, with the quantities that the model reports there.
 pub struct Moment<'m> {
     pub t: f64,
     pub state: &'m [f64],
     pub collected: &'m Collected,
 }
 
-/// Gap, gap rate and laws of a surface. Where it has instantaneous constraints, the state that satisfies them too, at
-/// which the laws act.
+/// Evaluates gap, gap rate and laws of a surface. If the surface has instantaneous constraints, the laws act at the
+/// state that also satisfies these, which is included.
 pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &[Law]) -> Value {
     let description = model.description();
     let surface = description.surfaces[index].name;
@@ -54,8 +54,8 @@ pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &
     fields.into()
 }
 
-/// The laws of one surface, a declared reset after the impulses. Where no impulse exists (its gradient may vanish away
-/// from the surface) that is said instead; it is no fault of the state.
+/// Evaluates the laws of one surface, and a declared reset after the impulsive laws. If no impulse exists (its gradient
+/// may vanish away from the surface), the result says so; the state is still valid.
 fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws: &[Law]) -> Value {
     let (t, state, collected) = (moment.t, moment.state, moment.collected);
     let description = model.description();
@@ -66,7 +66,7 @@ fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws
     match collected.contact(name) {
         Some(contact) => {
             for &law in laws {
-                // Instantaneous constraints may turn the motion round by themselves.
+                // Instantaneous constraints alone may reverse the motion.
                 let is_left = is_rough && contact.gap_rate >= 0.0;
                 let after = match is_left {
                     true => state.to_vec(),
@@ -101,7 +101,7 @@ fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws
     results.into()
 }
 
-/// What is printed of a state after an impact.
+/// The printed quantities of a state after an impact.
 fn struck(mut after: Collected, surface: &str) -> Map<String, Value> {
     let gap_rate = after.contact_scalar(surface, "gap_rate");
     let fields = [

@@ -1,5 +1,5 @@
-//! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, with `p` for `qdot` if one likes, and
-//! numbers as numbers or as decimal strings. A first-order system takes `q` alone, a model with inputs `inputs: [..]` too.
+//! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, where `p` may replace `qdot`, and numbers are
+//! numbers or decimal strings. A first-order system takes `q` alone; a model with inputs also takes `inputs: [..]`.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 use crate::error::CliError;
 use crate::{json, names, scalar};
 
-/// A state as given.
+/// A state as given in the input.
 #[derive(Debug, PartialEq)]
 pub struct Given {
     /// Time; 0 if it was not given.
@@ -25,13 +25,14 @@ pub struct Given {
     pub inputs: Vec<f64>,
 }
 
-/// The most bytes that are read: states are kept in memory, where they take several times as much.
+/// Largest input, in bytes: states are kept in memory, where they take several times as much.
 const MOST: u64 = 1 << 28;
 
 /// Reads all states from the file, or from `stdin` without one.
 ///
 /// # Errors
-/// [`CliError::File`], [`CliError::Input`] or [`CliError::Length`].
+/// [`CliError::File`] if the input cannot be read, [`CliError::Input`] if it is not an array of states,
+/// [`CliError::Length`] if a state has the wrong number of components.
 pub fn read(
     description: &Description,
     inputs: &[&'static str],
@@ -79,7 +80,7 @@ pub fn read(
         .collect()
 }
 
-/// Up to one byte more than may be read.
+/// Reads at most one byte more than is allowed.
 fn read_bytes(input: &mut dyn Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input.take(MOST + 1).read_to_end(&mut bytes)?;

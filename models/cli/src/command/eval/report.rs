@@ -1,4 +1,4 @@
-//! Collects what a model reports of a state.
+//! Collects the quantities that a model reports at a state.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use crate::json;
 
-/// Everything reported at one state. Names that begin with `impacts.` are data of a surface's contact.
+/// All reported quantities of one state. Names that begin with `impacts.` are data of a surface's contact.
 #[derive(Default)]
 pub struct Collected {
     values: Map<String, Value>,
@@ -18,34 +18,34 @@ pub struct Collected {
 }
 
 impl Collected {
-    /// What the model reports at this state.
+    /// Collects the quantities at this state.
     ///
     /// # Errors
-    /// The [`Fault`] where the equations of motion do not exist.
+    /// [`Fault`] if the equations of motion do not exist there.
     pub fn at(model: &dyn AnyModel, t: f64, state: &[f64]) -> Result<Self, Fault> {
         let mut collected = Self::default();
         model.inspect(t, state, &mut collected)?;
         Ok(collected)
     }
 
-    /// Takes out a value; `null` where the model has none of this name.
+    /// Removes a value and returns it; `null` if the model has none with this name.
     pub fn take(&mut self, name: &str) -> Value {
         self.values.shift_remove(name).unwrap_or_default()
     }
 
-    /// Takes out every value that is left, in the order in which the model reported them.
+    /// Removes all remaining values and returns them, in the order of the model's report.
     pub fn take_others(&mut self) -> Map<String, Value> {
         std::mem::take(&mut self.values)
     }
 
-    /// A number of a surface's contact.
+    /// A scalar of a surface's contact.
     pub fn contact_scalar(&self, surface: &str, name: &str) -> Option<f64> {
         self.contact_scalars
             .get(&format!("impacts.{surface}.{name}"))
             .copied()
     }
 
-    /// The impulse on the momenta after which the instantaneous constraints of a surface hold, if it declares some.
+    /// The impulse on the momenta that enforces the instantaneous constraints of a surface, if it declares some.
     pub fn focus(&self, surface: &str) -> Option<&[f64]> {
         let found = self
             .contact_vectors
@@ -68,7 +68,7 @@ impl Collected {
         })
     }
 
-    /// The contact of a surface, where an impulse can change its gap rate.
+    /// The contact of a surface, if an impulse can change its gap rate.
     pub fn contact(&self, surface: &str) -> Option<Contacted> {
         let scalar = |name| self.contact_scalar(surface, name);
         let vector = |name| {

@@ -56,7 +56,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     writeln!(output, "  multipliers  {}", multipliers.join(", "))
 }
 
-/// What a state consists of.
+/// The names of the components of a state.
 pub(super) fn components(description: &Description) -> Vec<String> {
     let positions = names::coordinates(description).map(str::to_owned);
     if description.is_first_order {

@@ -15,10 +15,10 @@ use crate::outcome;
 use crate::record::Keep;
 use crate::spool::Spool;
 
-/// What a document says of the course of a run, kept until the run has ended.
+/// Samples, impacts and contacts for a document, kept until the run has ended.
 pub struct Rows {
     description: Description,
-    /// The file of the document, for messages.
+    /// The file of the document, for error messages.
     path: PathBuf,
     events: Spool,
     contacts: Spool,
@@ -26,7 +26,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// None yet, of the document in this file.
+    /// No rows, for the document in this file.
     pub fn new(description: Description, path: PathBuf) -> Self {
         Self {
             description,
@@ -112,7 +112,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
     document.end()
 }
 
-/// The measured error, or why there is none.
+/// The measured error, or the reason for which there is none.
 fn error(verified: &Verified) -> Value {
     match verified {
         Verified::Measured { error, floor } => json!({
@@ -131,7 +131,7 @@ fn error(verified: &Verified) -> Value {
     }
 }
 
-/// `kind` and `t`, the details of the kind, and the last state.
+/// The end: `kind` and `t`, the details of the kind, and the last state.
 fn ended(finished: &Finished<'_>) -> Value {
     let ending = &finished.ending;
     let mut ended = Map::new();
@@ -164,14 +164,14 @@ fn event(description: &Description, impact: &Impact) -> Value {
         event["mode_minus"] = before.into();
         event["mode_plus"] = after.into();
     }
-    // A reset of positions.
+    // A reset changed the positions.
     if impact.before.q != impact.after.q {
         event["q_minus"] = vector(&impact.before.q);
     }
     event
 }
 
-/// Where a surface begins or ceases to hold the motion.
+/// An event at which a surface begins or ceases to hold the motion.
 fn hold(description: &Description, contact: &Contact) -> Value {
     json!({
         "t": number(contact.t),

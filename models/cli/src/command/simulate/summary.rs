@@ -40,7 +40,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "  counters    {}", counters.join(", "))
 }
 
-/// The outcome, when, and what it says besides.
+/// The outcome, its time and its details.
 pub fn ended(description: &Description, ending: &Ending) -> String {
     let Ending { outcome, t, .. } = ending;
     format!(
@@ -50,7 +50,7 @@ pub fn ended(description: &Description, ending: &Ending) -> String {
     )
 }
 
-/// The measured error and what it was measured by, or why there is none.
+/// The measured error with the accuracy of the reference, or the reason for which there is none.
 fn error(verified: &Verified) -> String {
     match verified {
         Verified::Measured { error, floor } if error <= floor => {
@@ -92,7 +92,7 @@ pub fn subtitle(finished: &Finished<'_>) -> String {
     parts.join(", ")
 }
 
-/// One text per law: `elastic` where all surfaces share it, `floor: elastic` otherwise.
+/// One text per law: `elastic` if all surfaces share it, else `floor: elastic`.
 fn laws(finished: &Finished<'_>) -> Vec<String> {
     let surfaces = finished.model.description().surfaces;
     let text =
@@ -139,7 +139,7 @@ fn impacts(finished: &Finished<'_>) -> String {
     text
 }
 
-/// The integrator with what decides on its steps.
+/// The integrator, with the parameters that determine its steps.
 fn integrator(ending: &Ending, settings: &Settings) -> String {
     let name = format!(
         "{}, {} form",

@@ -10,7 +10,7 @@ use crate::suite::{Finding, Report, Setting, Verdict};
 /// Writes the document.
 ///
 /// # Errors
-/// Whatever the stream says.
+/// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, findings: &[Finding]) -> io::Result<()> {
     let mut document = Document::begin(output)?;
     let passed = findings

@@ -1,4 +1,4 @@
-//! The findings as one page that needs nothing else.
+//! The findings as one self-contained page.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ border-bottom:1px solid #e2e5e9}th{font-weight:600}.pass{color:#009e73}.fail{col
 /// The page.
 ///
 /// # Errors
-/// What the drawing library says.
+/// An error of the drawing library.
 pub fn page(findings: &[Finding]) -> Result<String, String> {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>dalembert stability</title>\
@@ -59,7 +59,7 @@ fn row(finding: &Finding) -> String {
     )
 }
 
-/// The curves of all settings that have the same axes, in one figure.
+/// Figures of the curves: curves of all settings with the same axes share a figure.
 fn figures(finding: &Finding) -> Result<String, String> {
     let mut groups: Vec<([&str; 2], Vec<Curve>)> = Vec::new();
     for (setting, report) in &finding.reports {

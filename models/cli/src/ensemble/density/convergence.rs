@@ -1,25 +1,25 @@
-//! Whether a density has converged: the total variation distance, half of the sum of absolute differences, between the
+//! Convergence test of a density by the total variation distance, half of the sum of absolute differences, between the
 //! densities of two halves of the states.
 
 use super::Counts;
 use super::counts::CLASSES;
 
-/// The halves of a part of all states.
+/// Distances between the halves of a fraction of all states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Checkpoint {
-    /// The part: 1/16, 1/8, .. 1.
+    /// The fraction: 1/16, 1/8, .. 1.
     pub part: f64,
-    /// How many states are in it.
+    /// Number of states in it.
     pub samples: u64,
-    /// The distance between its earlier and its later half; NaN where one is empty.
+    /// The distance between its earlier and its later half; NaN if one is empty.
     pub over_time: f64,
-    /// The distance between two halves of its members; NaN where one is empty.
+    /// The distance between two halves of its members; NaN if one is empty.
     pub over_members: f64,
-    /// The mean distance between halves of as many states that are independent of each other, with the density of all.
+    /// The expected distance between halves of equally many independent states with the density of all.
     pub independent: f64,
 }
 
-/// The checkpoints, from the smallest part.
+/// The checkpoints, in increasing order of the fraction.
 pub fn convergence(counts: &Counts) -> Vec<Checkpoint> {
     let total = counts.total();
     let all: u64 = total.iter().sum();
@@ -46,7 +46,7 @@ struct Halves {
     distance: f64,
 }
 
-/// A class is the later half of it and all that follow.
+/// Compares a class with all that follow: the later half of its fraction of the states with the earlier half.
 fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     let later = of(class);
     let mut earlier = vec![0; later.len()];
@@ -81,7 +81,7 @@ fn expected(total: &[u64], all: u64, samples: u64) -> f64 {
 fn mean_difference(mean: f64) -> f64 {
     let z = 2.0 * mean;
     if z > 30.0 {
-        // The sum of the asymptotic series of both, which errs by less than 1e-6 here.
+        // The sum of the asymptotic series of both functions; its error is less than 1e-6 here.
         let inverse = 1.0 / z;
         let series = 2.0 - inverse * (0.25 + inverse * (0.046_875 + inverse * 0.029_296_875));
         return z * series / (core::f64::consts::TAU * z).sqrt();
@@ -90,7 +90,7 @@ fn mean_difference(mean: f64) -> f64 {
     let (mut term, mut sum) = (1.0, 0.0);
     for k in 0..200 {
         let k = f64::from(k);
-        // (z/2)^2k/k!^2 of I_0, and the same times (z/2)/(k + 1) of I_1.
+        // The term (z/2)^2k/k!^2 of I_0, and its product with (z/2)/(k + 1) for I_1.
         sum += term * (1.0 + half / (k + 1.0));
         term *= (half / (k + 1.0)).powi(2);
         if term < 1e-17 * sum {

@@ -1,9 +1,9 @@
-//! Counts of states in cells. They are whole numbers, so that no order of adding them matters.
+//! Counts of states in cells. They are integers, so that the order of additions does not matter.
 //!
-//! To see whether a density has converged it is compared with that of half of the states, of a quarter and so on. Every
-//! state therefore belongs to a class by its time, and to another by its member: class 0 is the later half of all, class
-//! 1 the later half of what remains, and so on; the last class is what remains. Members are dealt out, so that the halves
-//! of a grid of members are spread over the whole of it.
+//! A density has converged if it agrees with the densities of half of the states, of a quarter and so on. For this
+//! comparison every state belongs to a class by its time, and to another by its member: class 0 is the later half of
+//! all, class 1 the later half of the rest, and so on; the last class is the remainder. Members are assigned
+//! alternately, so that the halves of a grid of members are spread over the whole grid.
 
 use std::io::{self, Read, Write};
 
@@ -12,7 +12,7 @@ use super::Density;
 /// The number of classes.
 pub const CLASSES: usize = 6;
 
-/// Visits that are kept one by one before equal ones are put together.
+/// Number of visits that are kept individually before equal ones are merged.
 const LOOSE: usize = 1 << 16;
 
 /// The class of the state of this index among `count`.
@@ -26,20 +26,20 @@ fn class_of_member(member: u64) -> usize {
     (member.trailing_zeros() as usize).min(CLASSES - 1)
 }
 
-/// What one member visited.
+/// Visits of one member.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Visits {
     samples: u64,
-    /// Cells with the one outside of all.
+    /// Number of cells, including the one for states outside the grid.
     cells: usize,
-    /// Class of time and cell as one number, and how often.
+    /// Class of time and cell as one number, and the number of visits.
     list: Vec<(usize, u64)>,
-    /// How many entries of the list are put together.
+    /// Number of merged entries at the start of the list.
     folded: usize,
 }
 
 impl Visits {
-    /// None yet.
+    /// No visits.
     pub fn new(density: &Density) -> Self {
         Self {
             samples: density.samples,
@@ -48,7 +48,7 @@ impl Visits {
         }
     }
 
-    /// A visit of a cell by the state of this index.
+    /// Adds a visit of a cell by the state of this index.
     pub fn push(&mut self, index: u64, cell: usize) {
         let class = class_of_time(index, self.samples);
         self.list.push((class * self.cells + cell, 1));
@@ -57,7 +57,7 @@ impl Visits {
         }
     }
 
-    /// Puts equal visits together.
+    /// Merges equal visits.
     pub fn fold(&mut self) {
         self.list.sort_unstable();
         self.list.dedup_by(|next, kept| {
@@ -71,12 +71,12 @@ impl Visits {
     }
 }
 
-/// What all members visited, by classes.
+/// Visits of all members, by class.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Counts {
-    /// Cells with the one outside of all.
+    /// Number of cells, including the one for states outside the grid.
     cells: usize,
-    /// For each class of time the counts of all cells, then for each class of members.
+    /// Counts of all cells for each class of time, then for each class of members.
     counts: Vec<u64>,
 }
 
@@ -99,7 +99,7 @@ impl Counts {
         }
     }
 
-    /// The counts of a class of time, the last being those outside of all cells.
+    /// The counts of a class of time; the last is the count outside the grid.
     pub fn of_time(&self, class: usize) -> &[u64] {
         &self.counts[class * self.cells..][..self.cells]
     }
@@ -109,7 +109,7 @@ impl Counts {
         self.of_time(CLASSES + class)
     }
 
-    /// The counts of all, without those outside of all cells.
+    /// The counts of all states inside the grid.
     pub fn total(&self) -> Vec<u64> {
         let mut total = vec![0; self.cells - 1];
         for class in 0..CLASSES {
@@ -119,26 +119,26 @@ impl Counts {
         total
     }
 
-    /// How many states were outside of all cells.
+    /// Number of states outside the grid.
     pub fn outside(&self) -> u64 {
         (0..CLASSES)
             .map(|class| self.of_time(class)[self.cells - 1])
             .sum()
     }
 
-    /// Writes them.
+    /// Writes the counts.
     ///
     /// # Errors
-    /// Whatever the stream says.
+    /// An I/O error of the stream.
     pub fn write(&self, output: &mut dyn Write) -> io::Result<()> {
         let mut counts = self.counts.iter();
         counts.try_for_each(|count| output.write_all(&count.to_le_bytes()))
     }
 
-    /// Replaces them by those that [`write`](Self::write) wrote of the same density.
+    /// Replaces the counts by those that [`write`](Self::write) wrote for the same density.
     ///
     /// # Errors
-    /// Whatever the stream says.
+    /// An I/O error of the stream.
     pub fn read(&mut self, input: &mut dyn Read) -> io::Result<()> {
         let mut bytes = [0; 8];
         for count in &mut self.counts {

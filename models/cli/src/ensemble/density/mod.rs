@@ -1,6 +1,7 @@
-//! How much time motion spends where: states at equally spaced times, counted on a grid of cells over two quantities.
+//! Long-run densities: states at equally spaced times, counted on a grid of cells over two quantities.
 //!
-//! Those of Clark and Bloch (Figures 7 and 8) are of `x,y:100` and `x,y:200` with `--every 1 --until 1e6`.
+//! The densities of Clark and Bloch (Figures 7 and 8) are those of `x,y:100` and `x,y:200` with `--every 1 --until
+//! 1e6`.
 
 mod convergence;
 mod counts;
@@ -17,7 +18,7 @@ use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
 
-/// What an axis shows.
+/// Quantity of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     /// A coordinate, by index.
@@ -42,23 +43,23 @@ impl Shown {
     }
 }
 
-/// A side of the grid.
+/// Axis of the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// The name of what it shows.
+    /// The name of the quantity.
     pub name: String,
-    /// What it shows.
+    /// The quantity.
     pub shown: Shown,
-    /// Whether values that differ by a full turn are the same.
+    /// True if values that differ by a full turn are the same.
     pub is_circle: bool,
-    /// Its ends; the upper one belongs to no cell.
+    /// Its ends; the upper end belongs to no cell.
     pub range: [f64; 2],
     /// The number of cells along it.
     pub bins: usize,
 }
 
 impl Axis {
-    /// The cell along the axis that a value lies in.
+    /// The cell along the axis that contains a value.
     fn bin(&self, value: f64) -> Option<usize> {
         let [low, high] = self.range;
         let value = match self.is_circle {
@@ -66,13 +67,13 @@ impl Axis {
             false => value,
         };
         let part = (value - low) / (high - low);
-        // Rounding must not lead past the last cell.
+        // Rounding must not yield an index after the last cell.
         (0.0..1.0)
             .contains(&part)
             .then(|| ((part * self.bins as f64) as usize).min(self.bins - 1))
     }
 
-    /// The lower end of a cell; at `bins` the upper end of the last.
+    /// The lower end of a cell; for `bins` the upper end of the last cell.
     pub fn edge(&self, bin: usize) -> f64 {
         let [low, high] = self.range;
         let part = bin as f64 / self.bins as f64;
@@ -80,16 +81,16 @@ impl Axis {
     }
 }
 
-/// A grid, and the times at which a member's state is counted on it.
+/// A grid, and the times at which the state of a member is counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Density {
-    /// Its sides.
+    /// The axes.
     pub axes: [Axis; 2],
     /// Time between two states.
     pub every: f64,
-    /// Time before it begins.
+    /// Time before the first counted state.
     pub discard: f64,
-    /// States of a member that reaches its end.
+    /// Number of states of a member that reaches its end.
     pub samples: u64,
 }
 
@@ -99,7 +100,7 @@ impl Density {
         self.axes[0].bins * self.axes[1].bins
     }
 
-    /// The cell of a state, the first axis running fastest; one past the last for a state outside of all.
+    /// The cell of a state, the first axis running fastest; one past the last cell for a state outside the grid.
     pub fn cell(&self, point: &Point) -> usize {
         let [x, y] = &self.axes;
         let bins = x.bin(x.shown.value(point)).zip(y.bin(y.shown.value(point)));
@@ -113,7 +114,7 @@ impl Density {
         sides[0] * sides[1]
     }
 
-    /// What tells it from others.
+    /// Data that identify the density.
     pub fn metadata(&self) -> Value {
         let axes = self.axes.each_ref();
         let axes =
@@ -122,8 +123,8 @@ impl Density {
     }
 }
 
-/// The number of states at `discard + every`, `discard + 2 every`, .. up to `until`. A quotient that is a whole number
-/// but for rounding is that number.
+/// The number of states at `discard + every`, `discard + 2 every`, .. up to `until`. A quotient within rounding of an
+/// integer counts as that integer.
 pub fn count_samples(discard: f64, every: f64, until: f64) -> u64 {
     let count = (until - discard) / every;
     (count * (1.0 + 4.0 * f64::EPSILON)).floor().max(0.0) as u64

@@ -1,10 +1,10 @@
-//! Takes the states of a run that a density counts.
+//! Samples the states of a run that a density counts.
 
 use dalembert_driver::{Piece, Point};
 
 use super::{Density, Visits};
 
-/// Follows one run.
+/// Sampler of one run.
 pub struct Sampler<'a> {
     density: &'a Density,
     taken: u64,
@@ -12,7 +12,7 @@ pub struct Sampler<'a> {
 }
 
 impl<'a> Sampler<'a> {
-    /// A sampler that has seen nothing.
+    /// A sampler before the start of a run.
     pub fn new(density: &'a Density) -> Self {
         Self {
             density,
@@ -21,8 +21,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Takes the states within a stretch of motion. Its last instant is left to the next: at an impact the state after it
-    /// counts.
+    /// Samples the states within a stretch of motion. Its last instant is left to the next stretch: at an impact the
+    /// state after it counts.
     pub fn follow(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(t) = self.next_time().filter(|&t| t < end) {
@@ -30,9 +30,9 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Takes the state at the last instant, if it is due; gives what was counted.
+    /// Samples the state at the last instant, if it is due; returns all visits.
     pub fn finish(mut self, t: f64, last: &Point) -> Visits {
-        // The last time may be past the end by rounding.
+        // Rounding may put the last sample time after the end.
         let reached = t * (1.0 + 4.0 * f64::EPSILON);
         while self.next_time().is_some_and(|time| time <= reached) {
             self.take(last);

@@ -1,4 +1,4 @@
-//! `--density X[=A..B],Y[=A..B][:BINS[xBINS]]`
+//! Parser of `--density X[=A..B],Y[=A..B][:BINS[xBINS]]`.
 
 use std::f64::consts::PI;
 
@@ -8,10 +8,10 @@ use super::{Axis, Shown};
 use crate::error::CliError;
 use crate::{names, scalar};
 
-/// Cells along an axis unless the flag says.
+/// Default number of cells along an axis.
 const BINS: usize = 100;
 
-/// The most cells along an axis.
+/// Largest number of cells along an axis.
 const MOST: usize = 1000;
 
 const EXPECTED: &str = "two names, such as x,y or x=-1..1,theta:200 or x,y:200x50";
@@ -19,15 +19,15 @@ const EXPECTED: &str = "two names, such as x,y or x=-1..1,theta:200 or x,y:200x5
 /// A grid whose ranges may still be unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wish {
-    /// The sides; the range of one that is not known is NaN.
+    /// The axes; an unknown range is NaN.
     pub axes: [Axis; 2],
 }
 
 impl Wish {
-    /// Reads the flag.
+    /// Parses the flag.
     ///
     /// # Errors
-    /// A name that the model does not have, or a range or number that is none.
+    /// A name that the model does not have, an invalid range, or an invalid number.
     pub fn parse(text: &str, description: &Description) -> Result<Self, CliError> {
         let refuse = || CliError::value("--density", text, EXPECTED);
         let (axes, bins) = match text.rsplit_once(':') {
@@ -106,7 +106,7 @@ fn parse_range(text: &str) -> Result<[f64; 2], CliError> {
     }
 }
 
-/// What an axis can show, by name. A name that is taken twice means the first.
+/// Quantities of axes, by name. Of two quantities with the same name the first is used.
 fn shown(description: &Description) -> Vec<(String, Shown)> {
     let coordinates = names::coordinates(description).enumerate();
     let positions = coordinates

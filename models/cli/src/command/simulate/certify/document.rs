@@ -1,4 +1,4 @@
-//! Certified motion as one JSON document. A range is an array of its two ends, which read back to the same numbers.
+//! Certified motion as one JSON document. A range is an array of its two ends, which parse to the same numbers.
 
 use std::io::{self, Write};
 

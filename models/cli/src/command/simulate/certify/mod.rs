@@ -20,7 +20,7 @@ struct Enclosed<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
     request: &'a Certification,
-    /// Ranges that were given, by the names of what they are of.
+    /// Given ranges, each with the name of its quantity.
     within: Vec<(String, [f64; 2])>,
     strikes: Vec<Strike>,
     certified: Certified,
@@ -29,7 +29,8 @@ struct Enclosed<'a> {
 /// Carries out `simulate --certify`.
 ///
 /// # Errors
-/// Bad flags, a state that is refused, a model that no motion is certified of. Motion that is lost is no error but an [`Exit`].
+/// Invalid flags, a state that is refused, a model whose motion cannot be certified. Motion whose certification is lost
+/// is not an error but an [`Exit`].
 pub(super) fn run(
     models: &[Entry],
     args: &SimulateArgs,

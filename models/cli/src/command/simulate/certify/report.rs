@@ -1,4 +1,4 @@
-//! Certified motion in a few lines of text, and why it is lost in the model's names.
+//! Certified motion in a few lines of text, and the reason for the loss of certification in the model's names.
 
 use std::io::{self, Write};
 
@@ -71,20 +71,20 @@ fn rows(enclosed: &Enclosed<'_>) -> Vec<(String, Interval)> {
     let coordinates = names::coordinates(&description);
     let velocities = coordinates.clone().map(names::velocity);
     let positions = coordinates.map(str::to_owned).zip(last.q.iter().copied());
-    // A mode need not have all coordinates.
+    // A mode may lack some coordinates.
     positions
         .chain(velocities.zip(last.qdot.iter().copied()))
         .filter(|(_, range)| !range.lo.is_nan())
         .collect()
 }
 
-/// Both ends, which read back to the same numbers, and how far they are apart.
+/// Both ends of a range, which parse to the same numbers, and its width.
 fn range(range: Interval) -> String {
     let Interval { lo, hi } = range;
     format!("[{lo:?}, {hi:?}] (width {:.1e})", range.width())
 }
 
-/// Up to when motion is certified, and why no further.
+/// The time up to which motion is certified, and the reason for the end of certification.
 pub(super) fn text(description: &Description, lost: &Lost) -> String {
     let reason = reason(description, lost.reason);
     format!("certified up to t = {} and no further: {reason}", lost.t)
@@ -130,7 +130,7 @@ pub(super) fn reason(description: &Description, reason: Reason) -> String {
     }
 }
 
-/// The reason as a word, and its surface.
+/// The kind of a reason as a word, and its surface.
 pub(super) fn kind(reason: Reason) -> (&'static str, Option<usize>) {
     match reason {
         Reason::NoTube => ("no_tube", None),

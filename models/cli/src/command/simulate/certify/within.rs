@@ -10,25 +10,25 @@ use crate::{names, scalar};
 
 const FLAG: &str = "--certify-within";
 
-/// Largest absolute value of a factor of an end, and the largest of its inverse.
+/// Largest absolute value of a factor of an end, and of its inverse.
 const LARGEST: f64 = 1e30;
 
-/// Ranges by what they are of.
+/// Ranges by the kind of their quantities.
 #[derive(Debug, Default)]
 pub(super) struct Within {
     pub parameters: Vec<(usize, Interval)>,
     pub positions: Vec<(usize, Interval)>,
-    /// Those of velocities, or of quasi-velocities.
+    /// Ranges of velocities or quasi-velocities.
     pub rates: Vec<(usize, Interval)>,
-    /// All of them, in the order of the flags.
+    /// All ranges, in the order of the flags.
     pub named: Vec<(String, [f64; 2])>,
 }
 
 impl Within {
-    /// Reads the ranges. Parameters are set to the middle of theirs.
+    /// Parses the ranges. Sets each parameter to the middle of its range.
     ///
     /// # Errors
-    /// An unknown name, ends that are no numbers, a range against the declaration of a parameter.
+    /// An unknown name, ends that are not numbers, a range that contradicts the declaration of a parameter.
     pub(super) fn parse(
         model: &mut dyn AnyModel,
         form: Form,
@@ -98,10 +98,10 @@ impl Within {
         Ok(())
     }
 
-    /// Puts the middles of the ranges into the start, from which the constraints choose what is not given.
+    /// Sets the start to the middles of the ranges; the constraints determine the components that are not given.
     ///
     /// # Errors
-    /// Ranges of velocities beside momenta.
+    /// Ranges of velocities together with momenta.
     pub(super) fn begin(&self, form: Form, beginning: &mut Beginning) -> Result<(), CliError> {
         for &(index, range) in &self.positions {
             beginning.set_position(index, range.middle());
@@ -121,7 +121,7 @@ impl Within {
     }
 }
 
-/// `LO..HI`, with ends that are moved outward where they are no doubles.
+/// Parses `LO..HI`; ends that are not doubles are moved outward.
 fn range(name: &str, text: &str) -> Result<Interval, CliError> {
     let ends = || {
         let (lo, hi) = text.split_once("..")?;
@@ -135,7 +135,7 @@ fn range(name: &str, text: &str) -> Result<Interval, CliError> {
     })
 }
 
-/// The number of an end, moved further as far as rounding may have moved it back.
+/// Parses the number of an end, and moves it outward as far as rounding may have moved it inward.
 fn end(text: &str, further: fn(f64) -> f64) -> Option<f64> {
     let text = text.trim();
     let value = scalar::parse(text).ok()?;
@@ -146,7 +146,7 @@ fn end(text: &str, further: fn(f64) -> f64) -> Option<f64> {
     }
     let moves = match is_decimal {
         true => 1,
-        // Each factor is rounded, and each product.
+        // Each factor and each product is rounded.
         false => 4 * factors().count(),
     };
     let is_moderate = |factor: &str| {
@@ -163,7 +163,7 @@ fn end(text: &str, further: fn(f64) -> f64) -> Option<f64> {
     moved.is_finite().then_some(moved)
 }
 
-/// Tells if a decimal is a double.
+/// True if a decimal is exactly a double.
 fn is_exact(text: &str, value: f64) -> bool {
     let digits = |text: &str| {
         let text = text.trim_start_matches(['+', '-']);
@@ -171,7 +171,7 @@ fn is_exact(text: &str, value: f64) -> bool {
         let (whole, rest) = (whole.trim_start_matches('0'), rest.trim_end_matches('0'));
         format!("{whole}.{rest}")
     };
-    // The digits of a double end after so many places.
+    // The decimal expansion of a double ends after at most 1074 digits.
     digits(text) == digits(&format!("{value:.1074}"))
 }
 
