@@ -60,7 +60,7 @@ pub(crate) struct Finder<'a> {
 }
 
 impl VariationalVisitor for Finder<'_> {
-    /// The inner error says that there is no orbit, the outer one that no run starts.
+    /// The inner error explains why there is no orbit, the outer one why no run starts.
     type Output = Result<Result<Found, OrbitError>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {

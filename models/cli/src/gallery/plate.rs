@@ -99,7 +99,7 @@ impl<'a> Plate<'a> {
         words.join(" ")
     }
 
-    /// Makes it.
+    /// Makes the picture.
     ///
     /// # Errors
     /// Flags that are not accepted, a state that is refused, a picture that cannot be drawn.
