@@ -785,9 +785,17 @@ def check_conserved(model, claim, source):
 
 def across(model, surface, quantity, state):
     """The quantity before and after an impact at a state near this one."""
+    state, slope, rate = arrived(model, surface, state)
+    return quantity(state), quantity(landed(model, surface, state, slope, rate))
+
+
+def arrived(model, surface, state):
+    """A state near this one that comes to the surface, with the slope of the gap and its rate."""
     gap = model.names.compile(surface["gap"])
-    if surface["otherwise"] or surface["is_transition"] or surface["instantaneous"]:
-        raise NotChecked("surfaces with `otherwise`, transitions and instantaneous constraints are not checked")
+    if surface["is_transition"]:
+        raise NotChecked("what happens at transitions is not checked")
+    if surface["otherwise"] or surface["instantaneous"]:
+        raise NotChecked("surfaces with `otherwise` and instantaneous constraints are not checked")
     gradient = lambda s: [model.derivative(gap, s, model.along(s, 0, model.axis(i))) for i in range(model.n)]
     for _ in range(60):
         value, slope = gap(state), gradient(state)
@@ -803,19 +811,24 @@ def across(model, surface, quantity, state):
     state = model.on_constraints(state)
     if any(model.names.compile(own)(state) <= 0 for own in surface["when"]):
         raise Unsuitable("the surface does not count here")
-    moves = model.derivative(gap, state, model.along(state, 1))
+    velocities = model.velocities(state) if model.rates is None else [own(state) for own in model.rates]
+    rate = dot(slope, velocities) + model.derivative(gap, state, model.along(state, 1))
+    if model.rates is None and rate >= 0:
+        raise Unsuitable("the surface is not approached")
+    return state, slope, rate
+
+
+def landed(model, surface, state, slope, rate):
+    """The state after the impact."""
     if model.rates is not None:
         if surface["reset"] is None:
             raise NotChecked("the law of a first-order system is a reset")
         after = [model.names.compile(own)(state) for own in surface["reset"][:model.n]]
-        return quantity(state), quantity([state[0], *after, *state[1 + model.n:]])
-    rate = dot(slope, model.velocities(state)) + moves
-    if rate >= 0:
-        raise Unsuitable("the surface is not approached")
+        return [state[0], *after, *state[1 + model.n:]]
     if surface["reset"] is not None:
         after = [model.names.compile(own)(state) for own in surface["reset"]]
-        return quantity(state), quantity([state[0], *after, *state[1 + 2 * model.n:]])
-    return quantity(state), quantity(struck(model, surface, slope, rate, state))
+        return [state[0], *after, *state[1 + 2 * model.n:]]
+    return struck(model, surface, slope, rate, state)
 
 
 def struck(model, surface, slope, rate, state):
@@ -837,6 +850,168 @@ def struck(model, surface, slope, rate, state):
     return model.with_velocities(state, moved(model.velocities(state), projected, size))
 
 
+class Crossing:
+    """The derivative of the flow through an impact, in the coordinates t, q and independent velocities of both sides."""
+
+    def __init__(self, model, surface, state):
+        self.model, self.surface = model, surface
+        self.before, slope, self.rate = arrived(model, surface, state)
+        if self.rate == 0:
+            raise Unsuitable("a grazing impact")
+        self.after = landed(model, surface, self.before, slope, self.rate)
+        self.dependent = [[], []] if model.rates else [model.dependent(own) for own in (self.before, self.after)]
+        size = len(self.coordinates(self.before, 0))
+        carried = [self.derivative(i) for i in range(size)]
+        incoming, outgoing = self.motion(self.before, 0), self.motion(self.after, 1)
+        # What the map makes of the motion before is replaced by the motion after.
+        image = [dot(column, incoming) for column in zip(*carried)]
+        gap = model.names.compile(surface["gap"])
+        self.columns = []
+        for i, column in enumerate(carried):
+            share = model.derivative(gap, self.before, self.direction(i)) / self.rate
+            self.columns.append([own + (to - by) * share for own, to, by in zip(column, outgoing, image)])
+
+    def coordinates(self, state, side):
+        independent = [i for i in range(self.model.n) if i not in self.dependent[side]]
+        velocities = [] if self.model.rates else [self.model.velocities(state)[i] for i in independent]
+        return [state[0], *self.model.positions(state), *velocities]
+
+    def at(self, coordinates):
+        """The state before with these coordinates."""
+        n = self.model.n
+        state = [*coordinates[:1 + n], *self.before[1 + n:]]
+        return state if self.model.rates else self.model.completed(state, coordinates[1 + n:], self.dependent[0])
+
+    def direction(self, i):
+        """The tangent of a coordinate."""
+        h, start = self.model.precision.h, self.coordinates(self.before, 0)
+        ends = [self.at([own + (sign * h if k == i else 0) for k, own in enumerate(start)]) for sign in (1, -1)]
+        return [(a - b) / (2 * h) for a, b in zip(*ends)]
+
+    def derivative(self, i):
+        """The derivative of the map by a coordinate, as a formula that is defined near the surface."""
+        h, start, ends = self.model.precision.h, self.coordinates(self.before, 0), []
+        gap = self.model.names.compile(self.surface["gap"])
+        for sign in (1, -1):
+            state = self.at([own + (sign * h if k == i else 0) for k, own in enumerate(start)])
+            slope = [self.model.derivative(gap, state, self.model.along(state, 0, self.model.axis(k)))
+                     for k in range(self.model.n)]
+            velocities = self.model.velocities(state)
+            rate = dot(slope, velocities) + self.model.derivative(gap, state, self.model.along(state, 1))
+            ends.append(self.coordinates(landed(self.model, self.surface, state, slope, rate), 1))
+        return [(a - b) / (2 * h) for a, b in zip(*ends)]
+
+    def motion(self, state, side):
+        if self.model.rates:
+            return [Decimal(1), *(own(state) for own in self.model.rates)]
+        independent = [i for i in range(self.model.n) if i not in self.dependent[side]]
+        acceleration = self.model.acceleration(state)
+        return [Decimal(1), *self.model.velocities(state), *(acceleration[i] for i in independent)]
+
+    def factor(self, density):
+        """By how much the volume of a density is multiplied."""
+        weights = [Decimal(1)] * 2
+        if not self.model.rates:
+            ends = zip((self.before, self.after), self.dependent)
+            weights = [self.model.weight(state, dependent) for state, dependent in ends]
+        ratio = density(self.after) * weights[1] / (density(self.before) * weights[0])
+        return abs(determinant([own[1:] for own in self.columns[1:]]) * ratio)
+
+    def form_defects(self):
+        """The change of `dp dq - dH dt`, without constraints."""
+        before, after = (self.form(own, side) for side, own in enumerate((self.before, self.after)))
+        size, columns = len(self.columns), self.columns
+        value = lambda a, b: sum((a[i] * b[j] * after[i][j] for i in range(size) for j in range(size)), Decimal(0))
+        return [value(columns[i], columns[j]) - before[i][j] for i in range(size) for j in range(i)]
+
+    def form(self, state, side):
+        model = self.model
+        size = 1 + 2 * model.n
+        axes = [[Decimal(int(k == i)) for k in range(len(state))] for i in range(size)]
+        momenta = [model.derivative(model.momentum_at, state, own) for own in axes]
+        energies = [model.derivative(model.energy_at, state, own) for own in axes]
+        del side
+
+        def entry(i, j):
+            place = lambda own, k: Decimal(int(own == 1 + k))
+            pairs = [momenta[i][k] * place(j, k) - momenta[j][k] * place(i, k) for k in range(model.n)]
+            return sum(pairs, Decimal(0)) - energies[i] * int(j == 0) + energies[j] * int(i == 0)
+        return [[entry(i, j) for j in range(size)] for i in range(size)]
+
+
+def density_of(model, text):
+    """The density of a text, 1 without one."""
+    return (lambda state: Decimal(1)) if text is None else model.claimed(text)
+
+
+def check_factor(model, claim, source):
+    surface = model.surfaces[claim["under"]]
+    density, stated = density_of(model, claim["stated"]), model.claimed(claim["value"])
+    if surface["instantaneous"]:
+        return constrained_to_less(model, surface, stated, source)
+
+    def change(state):
+        crossing = Crossing(model, surface, state)
+        return crossing.factor(density) - stated(crossing.before)
+    found = states(model, source, change)
+    return all(is_small(own, 1, 20) for own in found), f"differs by {', '.join(f'{float(own):.1e}' for own in found)}"
+
+
+def constrained_to_less(model, surface, stated, source):
+    """Whether instantaneous constraints hold that the others do not imply: volumes become 0."""
+    def ranks(state):
+        forms, m = model.forms_at(state), len(model.constraints)
+        extra = [[model.names.compile(own)(state) for own in entry["form"]] for entry in surface["instantaneous"]]
+        return len(eliminated([*forms, *extra], model.n)[1]) - m, stated(state)
+    found = states(model, source, ranks)
+    return all(rank > 0 and factor == 0 for rank, factor in found), "instantaneous constraints map states on a line to one"
+
+
+def check_kept(model, claim, source):
+    """One volume of the motion and of all impacts; what transitions do to it is not checked."""
+    closed = claim.get("density")
+    density = density_of(model, claim["stated"]) if closed is None else closed_density(model, closed)
+    holds, text = balanced(model, source, density)
+    is_partial = False
+    for surface in model.surfaces:
+        if surface["is_transition"]:
+            is_partial = True
+            continue
+        found = states(model, source, lambda state: Crossing(model, surface, state).factor(density) - 1)
+        holds = holds and all(is_small(own, 1, 20) for own in found)
+    return (PARTLY if is_partial and holds else holds), text
+
+
+def check_symplectic(model, claim, source):
+    """The forces are closed, and impacts keep `dp dq - dH dt`; what transitions do is not checked."""
+    if model.rates is not None or model.constraints:
+        raise NotChecked("the symplectic form belongs to mechanical systems without constraints")
+    total = lambda state: [sum((own[i](state) for own in model.forces), Decimal(0)) for i in range(model.n)]
+
+    def defects(state):
+        slopes = [model.derivative(total, state, model.along(state, 0, model.axis(i))) for i in range(model.n)]
+        found = [slopes[i][j] - slopes[j][i] for i in range(model.n) for j in range(i)]
+        by_velocity = [model.derivative(total, state, model.along(state, 0, None, model.axis(i))) for i in range(model.n)]
+        return found + [own for row in by_velocity for own in row] + [Decimal(0)]
+    found = [own for state in states(model, source, defects) for own in state]
+    is_partial = False
+    for surface in model.surfaces:
+        if surface["is_transition"]:
+            is_partial = True
+            continue
+        crossings = states(model, source, lambda state: Crossing(model, surface, state).form_defects(), 2)
+        found += [own for defects in crossings for own in defects]
+    holds = all(is_small(own, 1, 20) for own in found)
+    return (PARTLY if is_partial and holds else holds), f"largest defect {float(max(map(abs, found))):.1e}"
+
+
+def check_energy(model, claim, source):
+    surface, energy = model.surfaces[claim["under"]], model.claimed("energy")
+    pairs = states(model, source, lambda state: across(model, surface, energy, state))
+    gains = [after - before for before, after in pairs]
+    return all(own <= 0 or is_small(own, 1) for own in gains), f"gains {', '.join(f'{float(own):.1e}' for own in gains)}"
+
+
 def check_density(model, claim, source):
     stated = model.claimed(claim["value"])
     return balanced(model, source, lambda state: stated(state))
@@ -844,8 +1019,19 @@ def check_density(model, claim, source):
 
 def balanced(model, source, density):
     """Liouville's equation at random states."""
-    if model.rates is not None or model.is_nonlinear:
-        raise NotChecked("densities belong to mechanical systems with linear constraints")
+    if model.is_nonlinear:
+        raise NotChecked("densities belong to systems with linear constraints")
+    if model.rates is not None:
+        def flux(i):
+            return lambda state: density(state) * model.rates[i](state)
+
+        def spread(state):
+            total = model.derivative(density, state, model.along(state, 1))
+            for i in range(model.n):
+                total += model.derivative(flux(i), state, model.along(state, 0, model.axis(i)))
+            return total / density(state)
+        found = states(model, source, spread)
+        return all(is_small(own, 1) for own in found), f"defects {', '.join(f'{float(own):.1e}' for own in found)}"
 
     def defect(state):
         dependent = model.dependent(state)
@@ -855,15 +1041,9 @@ def balanced(model, source, density):
     return all(is_small(own, 1) for own in defects), f"defects {', '.join(f'{float(own):.1e}' for own in defects)}"
 
 
-def check_exact(model, claim, source):
-    closed = claim.get("density")
-    if closed is None:
-        holds, text = check_hull(model, source, exists=True)
-        # The demands are those of a function locally; whether it is one on Q is left.
-        is_local = claim["kind"] == "locally_exact"
-        return (holds if is_local or not holds else PARTLY), f"{text}; no closed form, periods are not checked"
+def closed_density(model, closed):
+    """A density in closed form."""
     terms = [(model.names.compile(own["coefficient"]), own) for own in closed["terms"]]
-    logarithms = []
 
     def density(state):
         total = Decimal(0)
@@ -885,7 +1065,17 @@ def check_exact(model, claim, source):
         g = model.metric_at(state)
         raised_forms = [solve(g, form) for form in forms]
         return ln(abs(determinant([[dot(a, b) for b in raised_forms] for a in forms])))
+    return density
 
+
+def check_exact(model, claim, source):
+    closed = claim.get("density")
+    if closed is None:
+        holds, text = check_hull(model, source, exists=True)
+        # The demands are those of a function locally; whether it is one on Q is left.
+        is_local = claim["kind"] == "locally_exact"
+        return (holds if is_local or not holds else PARTLY), f"{text}; no closed form, periods are not checked"
+    density = closed_density(model, closed)
     holds, text = balanced(model, source, density)
     if claim["kind"] == "exact":
         logarithms = [own["of"] for own in closed["terms"] if own["kind"] == "logarithm"]
@@ -1059,6 +1249,10 @@ CHECKS = {
     "locally_exact": check_exact,
     "no_density": lambda model, claim, source: check_hull(model, source, False, claim.get("at")),
     "symmetry": check_symmetry,
+    "volume_kept": check_kept,
+    "factor": check_factor,
+    "symplectic": check_symplectic,
+    "energy_not_increasing": check_energy,
 }
 
 

@@ -65,8 +65,12 @@ pub fn compile_modes(declared: &spec::Modes) -> Result<CompiledModes, diagnostic
     let graph = model::check_modes(declared)?;
     let mut mistakes = diagnostics::Diagnostics::new();
     let mut modes = Vec::new();
+    let all: Vec<&model::Model> = graph.modes.iter().map(|mode| &mode.model).collect();
     for (written, mode) in declared.modes.iter().zip(&graph.modes) {
-        match compile_checked(&written.spec, mode.model.clone(), claims::examine) {
+        let examine = |model: &mut model::Model, derivation: &mechanics::Derivation| {
+            claims::examine_mode(model, derivation, &all)
+        };
+        match compile_checked(&written.spec, mode.model.clone(), examine) {
             Ok(compiled) => modes.push(compiled),
             Err(others) => mistakes.extend_once(others),
         }
@@ -134,7 +138,7 @@ pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnosti
 fn compile_checked(
     spec: &spec::Spec,
     mut model: model::Model,
-    examine: fn(&mut model::Model, &mechanics::Derivation) -> claims::Examined,
+    examine: impl FnOnce(&mut model::Model, &mechanics::Derivation) -> claims::Examined,
 ) -> Result<Compiled, diagnostics::Diagnostics> {
     let derivation = mechanics::derive(&mut model);
     refuse_exhausted(spec, &model)?;

@@ -28,6 +28,28 @@ impl Pool {
         roots.iter().map(|root| results.get(*root)).collect()
     }
 
+    /// Expressions of another pool in this one, with an expression of this one for each of its symbols; `None` if one of theirs has none.
+    pub fn import(
+        &mut self,
+        from: &Pool,
+        roots: &[ExprId],
+        replacements: &[(SymbolId, ExprId)],
+    ) -> Option<Vec<ExprId>> {
+        let order = from.reachable(roots);
+        let mut results = Rebuilt::new(order.last());
+        for id in order {
+            let result = match from.node(id).clone() {
+                Node::Symbol(symbol) => {
+                    let found = replacements.iter().find(|(key, _)| *key == symbol);
+                    found.map(|(_, replacement)| *replacement)?
+                }
+                other => self.map_operands(other, |operand| results.get(operand)),
+            };
+            results.set(id, result);
+        }
+        Some(roots.iter().map(|root| results.get(*root)).collect())
+    }
+
     /// A node that depends on a replaced symbol, its operands mapped.
     fn rebuild(
         &mut self,
@@ -103,6 +125,23 @@ mod tests {
         let [id, x, y, expected] = fixture.read_all(["x^2 + sin(y)", "x", "y", "y^2 + sin(x)"]);
         let swap = [(fixture.symbol("x"), y), (fixture.symbol("y"), x)];
         assert_eq!(fixture.pool.substitute(id, &swap), expected);
+    }
+
+    #[test]
+    fn expressions_of_another_pool_are_built_anew() {
+        let mut other = Fixture::new();
+        let [_, id] = other.read_all(["x + 7*y", "x^2*cos(y)/3 + sin(x)"]);
+        let symbols = ["x", "y"].map(|name| other.symbol(name));
+        let mut fixture = Fixture::new();
+        let [angle, y, expected] =
+            fixture.read_all(["m + 2", "y", "(m + 2)^2*cos(y)/3 + sin(m + 2)"]);
+        let replacements = [(symbols[0], angle), (symbols[1], y)];
+        let found = fixture.pool.import(&other.pool, &[id], &replacements);
+        assert_eq!(found, Some(vec![expected]));
+        assert_eq!(
+            fixture.pool.import(&other.pool, &[id], &replacements[..1]),
+            None
+        );
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use dalembert_expr::{ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint};
 
+use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
-use super::reset::ResetMap;
+use super::passage::Passage;
 use super::sample::Sample;
 use super::wall::{Place, Wall};
 use crate::model::Model;
@@ -24,6 +25,12 @@ pub(super) trait AtImpact {
         point: &mut P,
         after: &[Number<P>],
     ) -> Option<Vec<Number<P>>>;
+
+    /// Whether a real state with these terms is looked at.
+    fn wants(&self, terms: &[f64]) -> bool {
+        let _ = terms;
+        true
+    }
 
     /// The size of what the terms were computed from.
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64>;
@@ -88,17 +95,18 @@ pub(super) fn value_with<P: ExpansionPoint>(
     Some(values[value.index()])
 }
 
-/// The values of an expression after and before an impact; the point's velocities are those before, as they were.
+/// The values of two expressions, of the first after and of the second before an impact; the point's velocities are those before, as
+/// they were.
 pub(super) fn after_and_before<P: ExpansionPoint>(
     model: &Model,
     point: &mut P,
     after: &[Number<P>],
-    value: ExprId,
+    (later, earlier): (ExprId, ExprId),
 ) -> Option<[Number<P>; 2]> {
     let symbols = model.coordinates.iter().map(|own| own.qdot);
     let before: Vec<_> = symbols.map(|own| point.symbol(&model.pool, own)).collect();
-    let new = value_with(model, point, after, value)?;
-    let old = value_with(model, point, &before, value)?;
+    let new = value_with(model, point, after, later)?;
+    let old = value_with(model, point, &before, earlier)?;
     Some([new, old])
 }
 
@@ -114,7 +122,7 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     fn roots(&self) -> Vec<ExprId> {
         let mut roots = self.dynamics.roots();
         roots.extend(&self.wall.roots);
-        roots.extend(self.wall.reset.iter().flat_map(ResetMap::roots));
+        roots.extend(self.wall.passage.iter().flat_map(Passage::velocity_roots));
         roots.extend([self.wall.gap, self.wall.gap_rate]);
         roots.extend(self.question.roots());
         roots
@@ -130,8 +138,11 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        self.wall
-            .incoming(model, self.dynamics, attempt, self.roots())
+        let found = (self.wall).incoming(model, self.dynamics, attempt, self.roots());
+        found.filter(|(_, point)| {
+            let terms = self.terms(model, &mut point.clone());
+            terms.is_none_or(|terms| self.question.wants(&terms))
+        })
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
@@ -153,5 +164,36 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
 
     fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
         self.question.shown(terms, sum)
+    }
+}
+
+/// An expression of the state before an impact that may vanish, with its name in messages.
+pub(super) struct Vanished {
+    pub(super) change: ExprId,
+    pub(super) shown: String,
+}
+
+impl AtImpact for Vanished {
+    fn roots(&self) -> Vec<ExprId> {
+        vec![self.change]
+    }
+
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        _: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let values = point.values(&model.pool, &model.pool.reachable(&[self.change]))?;
+        Some(vec![values[self.change.index()]])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
+        let largest = after.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+        Some(magnitude(model, point, self.change) + largest)
+    }
+
+    fn shown(&self, terms: &[f64], _: f64) -> Vec<(String, f64)> {
+        vec![(self.shown.clone(), terms[0])]
     }
 }

@@ -5,9 +5,10 @@
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, RangePoint, RealPoint,
+    SymbolId,
 };
 
-use super::conserved::{Quantity, enclosed_on_d, jump, rate_scale, state_on_d};
+use super::conserved::{Quantity, enclosed_on_d, jump, magnitude, rate_scale, state_on_d};
 use super::contraction::contraction;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
@@ -29,11 +30,21 @@ pub(super) fn check_density(
     seed: u64,
 ) -> Verdict {
     let verdict = check_balance(model, problem, dynamics, stated, seed);
+    continuous(model, dynamics, stated.0, verdict, seed)
+}
+
+/// The verdict on the rate of a density, left open if its factors may jump.
+fn continuous(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    value: ExprId,
+    verdict: Verdict,
+    seed: u64,
+) -> Verdict {
     if !matches!(verdict, Verdict::Proved(_)) {
         return verdict;
     }
     // Where a factor is 0 nothing is claimed.
-    let value = stated.0;
     let factors: Vec<ExprId> = match model.pool.node(value) {
         Node::Product(factors) => factors.iter().map(|(base, _)| *base).collect(),
         _ => vec![value],
@@ -75,6 +86,91 @@ pub(super) fn check_balance(
         ],
     };
     evidence(model, &balance, seed).verdict(true, wording, seed)
+}
+
+/// The verdict on `density = value` of a first-order system, whose divergence is `d_i f^i`.
+pub(super) fn check_rates(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    rates: &[ExprId],
+    (value, written): (ExprId, &str),
+    seed: u64,
+) -> Verdict {
+    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+    let slopes = rates
+        .iter()
+        .zip(symbols)
+        .map(|(rate, by)| model.pool.diff(*rate, by));
+    let slopes: Vec<ExprId> = slopes.collect();
+    let balance = RateBalance {
+        divergence: model.pool.sum(&slopes),
+        quantity: Quantity::of(model, value),
+        dynamics,
+        written,
+    };
+    let wording = Wording {
+        vanishes: format!("{written} times dq is invariant where it is not 0"),
+        differs: format!(
+            "{written} times dq is not invariant: the rate of its logarithm and the divergence do not add up to 0"
+        ),
+        help: [
+            "the density is relative to the volume of the coordinates".to_owned(),
+            String::new(),
+        ],
+    };
+    let verdict = evidence(model, &balance, seed).verdict(true, wording, seed);
+    continuous(model, dynamics, value, verdict, seed)
+}
+
+/// `d ln(e)/dt + div` of a first-order system.
+struct RateBalance<'b> {
+    quantity: Quantity,
+    divergence: ExprId,
+    dynamics: &'b Dynamics,
+    written: &'b str,
+}
+
+impl Vanishing for RateBalance<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.dynamics.roots();
+        roots.extend(self.quantity.roots());
+        roots.push(self.divergence);
+        roots
+    }
+
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    }
+
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        state_on_d(model, self.dynamics, &self.roots(), attempt)
+    }
+
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        enclosed_on_d(model, self.dynamics, point)
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        let (value, terms) = self.quantity.terms(model, &motion, point)?;
+        let add = |sum, term: &Number<P>| field.add(sum, *term);
+        let rate = terms.iter().fold(field.integer(0), add);
+        let values = point.values(&model.pool, &model.pool.reachable(&[self.divergence]))?;
+        let divergence = values[self.divergence.index()];
+        Some(vec![field.mul(rate, field.inv(value)?), divergence])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        let (value, _) = self.quantity.terms(model, &motion, point)?;
+        let rate = rate_scale(&self.quantity, model, &motion, point) / value.abs();
+        Some(rate + magnitude(model, point, self.divergence))
+    }
+
+    fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
+        shown(self.written, terms, sum)
+    }
 }
 
 /// `d ln(e)/dt + div`
@@ -147,14 +243,16 @@ impl Vanishing for Balance<'_> {
     }
 
     fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
-        let names = [
-            format!("d/dt(ln({}))", self.written),
-            "divergence".to_owned(),
-        ];
-        let mut shown: Vec<_> = names.into_iter().zip(terms.iter().copied()).collect();
-        if sum.abs() < ALIKE * terms[0].abs() {
-            shown.push(("their sum".to_owned(), sum));
-        }
-        shown
+        shown(self.written, terms, sum)
     }
+}
+
+/// Names and values of the rate of a density and of the divergence.
+fn shown(written: &str, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
+    let names = [format!("d/dt(ln({written}))"), "divergence".to_owned()];
+    let mut shown: Vec<_> = names.into_iter().zip(terms.iter().copied()).collect();
+    if sum.abs() < ALIKE * terms[0].abs() {
+        shown.push(("their sum".to_owned(), sum));
+    }
+    shown
 }

@@ -10,10 +10,11 @@ use super::exactness::{Exactness, decide};
 use super::existence::{self, Decision};
 use super::finding::{self, ClosedForm, Finding, Verdict};
 use super::global::Global;
+use super::hybrid::{self, Density, Effect, Surroundings};
 use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
-use super::{alternatives, conserved, density, hybrid, impact, symmetry};
+use super::{alternatives, conserved, density, energy, impact, jumps, kept, symmetry, symplectic};
 use crate::mechanics::Derivation;
 use crate::model::{Claim, Existence, Model, Statement};
 
@@ -29,6 +30,11 @@ pub struct Examined {
 
 /// The verdicts on all claims about a model itself; without claims nothing is done.
 pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
+    examine_mode(model, derivation, &[])
+}
+
+/// As [`examine()`], for a mode of a model with the modes `others`, in order, itself among them.
+pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model]) -> Examined {
     let claims = model.own_claims();
     if claims.is_empty() {
         return Examined::default();
@@ -39,7 +45,7 @@ pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
             volume: None,
         };
     }
-    let mut examiner = Examiner::of(model, derivation);
+    let mut examiner = Examiner::of(model, derivation, others);
     let has_states = conserved::has_states(examiner.model, &examiner.dynamics);
     let mut findings: Vec<Finding> = claims
         .iter()
@@ -119,7 +125,7 @@ pub fn examine_volume(
         let reason = Undecided::Nonlinear.to_string();
         return (Verdict::Undecided(reason), Vec::new(), None);
     }
-    let mut examiner = Examiner::of(model, derivation);
+    let mut examiner = Examiner::of(model, derivation, &[]);
     if !conserved::has_states(examiner.model, &examiner.dynamics) {
         let reason = Undecided::Stateless.to_string();
         return (Verdict::Undecided(reason), Vec::new(), None);
@@ -158,6 +164,7 @@ fn open(claim: &Claim, reason: Undecided) -> Finding {
 struct Examiner<'e> {
     model: &'e mut Model,
     derivation: &'e Derivation,
+    others: &'e [&'e Model],
     problem: Problem,
     dynamics: Dynamics,
     decision: Option<Decision>,
@@ -165,8 +172,9 @@ struct Examiner<'e> {
 }
 
 impl<'e> Examiner<'e> {
-    fn of(model: &'e mut Model, derivation: &'e Derivation) -> Self {
+    fn of(model: &'e mut Model, derivation: &'e Derivation, others: &'e [&'e Model]) -> Self {
         Self {
+            others,
             seed: finding::seed_of(&model.snake_name),
             problem: Problem::of(model, derivation),
             dynamics: Dynamics::of(model, derivation),
@@ -194,8 +202,26 @@ impl<'e> Examiner<'e> {
                     Vec::new(),
                 )
             }
-            Statement::Symmetry(field) => {
-                symmetry::check_symmetry(self.model, &self.dynamics, field, self.seed)
+            Statement::Symmetry(field) => self.symmetry(field),
+            Statement::VolumeKept => self.volume_kept(),
+            Statement::Factor { value, under } => {
+                let written = claim
+                    .text
+                    .split_once("factor = ")
+                    .map_or("", |(_, own)| own);
+                let value = explicit(self.model, *value);
+                let (model, around) = self.around();
+                let verdict = kept::check_factor(model, &around, *under, (value, written));
+                (verdict, Vec::new())
+            }
+            Statement::Symplectic => {
+                let (model, around) = self.around();
+                (symplectic::check_symplectic(model, &around), Vec::new())
+            }
+            Statement::EnergyNotIncreasing(surface) => {
+                let (model, around) = self.around();
+                let verdict = energy::check_not_increasing(model, &around, *surface);
+                (verdict, Vec::new())
             }
         };
         Finding {
@@ -208,13 +234,27 @@ impl<'e> Examiner<'e> {
         }
     }
 
+    /// The verdict on a symmetry, with what becomes of its momentum along the motion and at surfaces.
+    fn symmetry(&mut self, field: &[ExprId]) -> (Verdict, Vec<String>) {
+        let (verdict, mut remarks) =
+            symmetry::check_symmetry(self.model, &self.dynamics, field, self.seed);
+        if matches!(verdict, Verdict::Proved(_)) {
+            let (model, around) = self.around();
+            remarks.extend(jumps::momentum_at_surfaces(model, &around, field));
+        }
+        (verdict, remarks)
+    }
+
     /// The density that a proof of existence is about, if it has a closed form.
     fn closed_form(&self, statement: &Statement, verdict: &Verdict) -> Option<ClosedForm> {
-        let (Statement::Existence(Existence::Global | Existence::Local), Verdict::Proved(_)) =
-            (statement, verdict)
-        else {
-            return None;
+        let is_found = match statement {
+            Statement::Existence(Existence::Global | Existence::Local) => true,
+            Statement::VolumeKept => stated_density_is_absent(self.model),
+            _ => false,
         };
+        if !is_found || !matches!(verdict, Verdict::Proved(_)) {
+            return None;
+        }
         let exactness = self.decision.as_ref()?.as_ref().ok()?;
         let (potential, _) = exactness.density.as_ref()?;
         Some(ClosedForm {
@@ -223,7 +263,8 @@ impl<'e> Examiner<'e> {
         })
     }
 
-    fn existence(&mut self, existence: Existence) -> (Verdict, Vec<String>) {
+    /// The verdict on a density of the motion between impacts.
+    fn existence_of_the_motion(&mut self, existence: Existence) -> Verdict {
         let decision = match self.decision.take() {
             Some(decision) => decision,
             None => decide(self.model, &self.problem, self.seed),
@@ -247,27 +288,94 @@ impl<'e> Examiner<'e> {
             }
             _ => generic,
         };
-        let is_special = is_generic && !matches!(verdict, Verdict::Proved(_));
-        let remarks = match &decision {
-            Ok(exactness) if !is_special && !matches!(verdict, Verdict::Undecided(_)) => {
-                self.volume_remarks(exactness)
-            }
-            _ => Vec::new(),
-        };
         self.decision = Some(decision);
-        (verdict, remarks)
+        verdict
+    }
+
+    /// The verdict on a claim of existence, with what impacts do to the volume.
+    fn existence(&mut self, existence: Existence) -> (Verdict, Vec<String>) {
+        let verdict = self.existence_of_the_motion(existence);
+        let is_none = existence == Existence::None;
+        let Some(Ok(exactness)) = self.decision.take() else {
+            return (verdict, Vec::new());
+        };
+        // A density for indeterminate parameters alone is none of the declared model.
+        let is_special = match &verdict {
+            Verdict::Proved(_) => false,
+            Verdict::Undecided(_) => true,
+            Verdict::Refuted(_) => !is_none && exactness.global == Some(Global::Exists),
+        };
+        let mut remarks = Vec::new();
+        let mut effects = Vec::new();
+        if !is_special {
+            remarks = self.alternatives(&exactness);
+            if exactness.global.is_some() {
+                let density = self.found_density(&exactness);
+                effects = self.effects(&density);
+            }
+            remarks.extend(self.sentences(&effects));
+        }
+        self.decision = Some(Ok(exactness));
+        (self.qualified(verdict, &effects), remarks)
+    }
+
+    /// A verdict on a density of the motion, with the surfaces that do not keep its volume.
+    fn qualified(&self, verdict: Verdict, effects: &[Effect]) -> Verdict {
+        match verdict {
+            Verdict::Proved(own) => Verdict::Proved(kept::qualified(self.model, own, effects)),
+            other => other,
+        }
     }
 
     fn density(&mut self, value: ExprId, written: &str) -> (Verdict, Vec<String>) {
-        let stated = (explicit(self.model, value), written);
-        let (problem, dynamics) = (&self.problem, &self.dynamics);
-        let generic = density::check_density(self.model, problem, dynamics, stated, self.seed);
-        let verdict = self.stated_at_defaults(stated, generic);
-        let remarks = match verdict {
-            Verdict::Proved(_) => self.impacts(Some(stated)),
+        let value = explicit(self.model, value);
+        let verdict = self.density_of_the_motion((value, written));
+        let effects = match verdict {
+            Verdict::Proved(_) => self.effects(&Density {
+                value: Some(value),
+                written: Some(written.to_owned()),
+                is_found: false,
+            }),
             _ => Vec::new(),
         };
-        (verdict, remarks)
+        (self.qualified(verdict, &effects), self.sentences(&effects))
+    }
+
+    /// The verdict on a stated density of the motion between impacts.
+    fn density_of_the_motion(&mut self, stated: (ExprId, &str)) -> Verdict {
+        let (problem, dynamics) = (&self.problem, &self.dynamics);
+        if let Some(rates) = self.model.field.clone() {
+            return density::check_rates(self.model, dynamics, &rates, stated, self.seed);
+        }
+        let generic = density::check_density(self.model, problem, dynamics, stated, self.seed);
+        self.stated_at_defaults(stated, generic)
+    }
+
+    /// The verdict on one volume that all keep.
+    fn volume_kept(&mut self) -> (Verdict, Vec<String>) {
+        let stated = kept::stated_or_one(self.model);
+        let is_looked_for = stated.written.is_none() && self.model.field.is_none();
+        let (density, flow) = match is_looked_for {
+            true => {
+                let flow = self.existence_of_the_motion(Existence::Global);
+                let density = match &self.decision {
+                    Some(Ok(exactness)) => {
+                        let potential = exactness.density.as_ref().map(|(own, _)| own.clone());
+                        kept::of_potential(&mut self.model.pool, potential.as_ref())
+                    }
+                    _ => stated,
+                };
+                (density, flow)
+            }
+            false => {
+                let value = stated.value.unwrap_or_else(|| self.model.pool.one());
+                let written = stated.written.clone().unwrap_or_else(|| "1".to_owned());
+                let flow = self.density_of_the_motion((value, &written));
+                (stated, flow)
+            }
+        };
+        let (model, around) = self.around();
+        kept::check_kept(model, &around, &density, flow)
     }
 
     fn conserved(
@@ -276,17 +384,13 @@ impl<'e> Examiner<'e> {
         under: Option<usize>,
         holds: bool,
     ) -> Verdict {
-        let quantity = (explicit(self.model, value), written);
-        let (derivation, dynamics, seed) = (self.derivation, &self.dynamics, self.seed);
-        match under {
-            None => {
-                let parts = std::slice::from_ref(dynamics);
-                conserved::check_conserved(self.model, parts, quantity, holds, seed)
-            }
-            Some(surface) => impact::check_conserved_under(
-                self.model, derivation, dynamics, surface, quantity, holds, seed,
-            ),
-        }
+        let Some(surface) = under else {
+            let quantity = (explicit(self.model, value), written);
+            let parts = std::slice::from_ref(&self.dynamics);
+            return conserved::check_conserved(self.model, parts, quantity, holds, self.seed);
+        };
+        let (model, around) = self.around();
+        impact::check_conserved_under(model, &around, surface, (value, written), holds)
     }
 
     /// The verdict on a stated density, from the one for indeterminate parameters.
@@ -324,25 +428,43 @@ impl<'e> Examiner<'e> {
         Some((defaults, value, dynamics))
     }
 
-    /// What impacts do to the volume where there is one, and what there is instead where there is none.
-    fn volume_remarks(&mut self, exactness: &Exactness) -> Vec<String> {
-        let mut remarks = alternatives::alternatives(
+    /// What there is where there is no density.
+    fn alternatives(&mut self, exactness: &Exactness) -> Vec<String> {
+        alternatives::alternatives(
             self.model,
             self.derivation,
             &self.problem,
             exactness,
             self.seed,
-        );
-        if exactness.global.is_some() {
-            remarks.extend(self.impacts(None));
-        }
-        remarks
+        )
     }
 
-    /// What impacts do to a volume.
-    fn impacts(&mut self, stated: Option<(ExprId, &str)>) -> Vec<String> {
-        let (derivation, dynamics) = (self.derivation, &self.dynamics);
-        hybrid::volume_remarks(self.model, derivation, dynamics, stated, self.seed)
+    /// The density that was found, as far as it is written out.
+    fn found_density(&mut self, exactness: &Exactness) -> Density {
+        let potential = exactness.density.as_ref().map(|(own, _)| own);
+        kept::of_potential(&mut self.model.pool, potential)
+    }
+
+    /// What surfaces do to a volume.
+    fn effects(&mut self, density: &Density) -> Vec<Effect> {
+        let (model, around) = self.around();
+        hybrid::effects(model, &around, density)
+    }
+
+    fn sentences(&self, effects: &[Effect]) -> Vec<String> {
+        let sentence = |own: &Effect| own.sentence(self.model, self.derivation);
+        effects.iter().map(sentence).collect()
+    }
+
+    /// The model, and what is known beside it of impacts.
+    fn around(&mut self) -> (&mut Model, Surroundings<'_>) {
+        let around = Surroundings {
+            derivation: self.derivation,
+            dynamics: &self.dynamics,
+            others: self.others,
+            seed: self.seed,
+        };
+        (self.model, around)
     }
 
     /// What becomes of a density that has no closed form.
@@ -366,6 +488,9 @@ impl<'e> Examiner<'e> {
 
     /// The volume that these statements are about.
     fn volume(&mut self, proved: &[&Statement]) -> Option<Volume> {
+        if self.model.is_first_order() {
+            return None;
+        }
         for statement in proved {
             let Statement::Density(value) = statement else {
                 continue;
@@ -395,21 +520,27 @@ impl<'e> Examiner<'e> {
     }
 }
 
+/// Whether the claims state no density.
+fn stated_density_is_absent(model: &Model) -> bool {
+    let mut claims = model.claims.iter().filter(|own| own.scene.is_none());
+    claims.all(|own| !matches!(own.statement, Statement::Density(_)))
+}
+
 /// The expression with energy and momenta written out.
-fn explicit(model: &mut Model, value: ExprId) -> ExprId {
+pub(super) fn explicit(model: &mut Model, value: ExprId) -> ExprId {
     let whole = model.lagrangian.whole;
     let mut replacements: Vec<(SymbolId, ExprId)> = Vec::new();
     for i in 0..model.coordinates.len() {
         let momentum = model.pool.diff(whole, model.coordinates[i].qdot);
         replacements.push((model.derived.momenta[i], momentum));
     }
-    let energy = energy(model);
-    replacements.push((model.derived.energy, energy));
+    let total = total_energy(model);
+    replacements.push((model.derived.energy, total));
     model.pool.substitute(value, &replacements)
 }
 
 /// `1/2 g(qdot, qdot) + V`
-fn energy(model: &mut Model) -> ExprId {
+fn total_energy(model: &mut Model) -> ExprId {
     let mut terms = vec![model.lagrangian.potential];
     for i in 0..model.coordinates.len() {
         for j in 0..=i {

@@ -1,82 +1,243 @@
-//! What impacts do to an invariant volume `f mu_C`: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`].
+//! What impacts do to a volume `f mu_C`: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`] or [`super::passage`].
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
 
 use super::collision::{AtImpact, after_and_before, evidence_at_impact, with_difference};
 use super::dynamics::{Dynamics, Number};
-use super::evidence::Wording;
-use super::finding::{Verdict, Witness};
+use super::evidence::{Evidence, Wording};
+use super::exactness::decide;
+use super::factor::{closed_form, size_text};
+use super::finding::{Verdict, Witness, digits};
+use super::passage::{Open, Passage};
 use super::potential::factor_text;
-use super::reset::ResetMap;
+use super::problem::Problem;
+use super::side::stated_density;
 use super::wall::Wall;
-use crate::mechanics::Derivation;
+use crate::mechanics::{Derivation, derive};
 use crate::model::{Law, Model};
 
-/// What each surface does to `f mu_C`, one sentence each; `f` is a function of the position unless a stated density is
-/// given with its text.
-pub(super) fn volume_remarks(
-    model: &mut Model,
-    derivation: &Derivation,
-    dynamics: &Dynamics,
-    stated: Option<(ExprId, &str)>,
-    seed: u64,
-) -> Vec<String> {
-    let mut remarks = Vec::new();
-    for surface in 0..model.surfaces.len() {
-        if model.surfaces[surface].law == Law::Transition {
-            let (name, law) = (
-                &model.surfaces[surface].name.display,
-                model.law_text(surface),
-            );
-            remarks.push(format!(
-                "{name} ({law}) leaves this mode, and what it does to a volume is not looked at"
-            ));
-            continue;
-        }
-        if !model.surfaces[surface].instantaneous.is_empty() {
-            let name = &model.surfaces[surface].name.display;
-            // States on a line along the impulses of the constraints become one.
-            remarks.push(format!(
-                "an impact at {name} maps it to 0, as its instantaneous constraints do"
-            ));
-            continue;
-        }
-        let wall = Wall::of(model, derivation, surface);
-        if let Some(reason) = wall.reset.as_ref().and_then(ResetMap::open) {
-            let name = &model.surfaces[surface].name.display;
-            remarks.push(format!("an impact at {name} may change it: {reason}"));
-            continue;
-        }
-        let volume = Volume {
-            wall: &wall,
-            stated,
-        };
-        let found = evidence_at_impact(model, &wall, dynamics, &volume, seed);
-        let effect = match (found.verdict(true, Wording::default(), seed), stated) {
-            (Verdict::Proved(_), _) => "keeps it".to_owned(),
-            (Verdict::Refuted(_), None) => factor(model, surface, &wall),
-            (Verdict::Refuted(witness), Some(_)) => changed(&witness),
-            (Verdict::Undecided(_), None) => {
-                format!("{}, if that is not 1", factor(model, surface, &wall))
-            }
-            (Verdict::Undecided(reason), Some(_)) => format!("may change it: {reason}"),
-        };
-        let declared = &model.surfaces[surface];
-        let moving = match model
-            .pool
-            .is_syntactic_zero(derivation.surfaces[surface].rate)
-        {
-            true => "",
-            false => ", which moves,",
-        };
-        let (name, law) = (&declared.name.display, model.law_text(surface));
-        remarks.push(format!("an impact at {name}{moving} ({law}) {effect}"));
+/// A density of a volume.
+#[derive(Debug, Clone)]
+pub(super) struct Density {
+    /// Its value; `None` for a function of the position that is not written out.
+    pub(super) value: Option<ExprId>,
+    /// Its text, where it was stated.
+    pub(super) written: Option<String>,
+    /// Whether it was looked for: then that of another mode would have to be, too.
+    pub(super) is_found: bool,
+}
+
+/// What happens at a surface to a volume.
+#[derive(Debug)]
+pub(super) struct Effect {
+    /// The surface.
+    pub(super) surface: usize,
+    /// Whether it keeps the volume, with a state where it does not.
+    pub(super) verdict: Verdict,
+    /// What it does, in words.
+    pub(super) text: String,
+}
+
+impl Effect {
+    /// Whether the volume is kept.
+    pub(super) fn keeps(&self) -> bool {
+        matches!(self.verdict, Verdict::Proved(_))
     }
-    remarks
+
+    /// The sentence about the surface.
+    pub(super) fn sentence(&self, model: &Model, derivation: &Derivation) -> String {
+        let own = &model.surfaces[self.surface];
+        let (name, law) = (&own.name.display, model.law_text(self.surface));
+        let stands = (model.pool).is_syntactic_zero(derivation.surfaces[self.surface].rate);
+        let moving = if stands { "" } else { ", which moves," };
+        let what = match own.law {
+            Law::Transition => "the transition",
+            _ => "an impact at",
+        };
+        format!("{what} {name}{moving} ({law}) {}", self.text)
+    }
+}
+
+/// What is known of impacts and volumes beside a model.
+pub(super) struct Surroundings<'s> {
+    pub(super) derivation: &'s Derivation,
+    pub(super) dynamics: &'s Dynamics,
+    /// The modes of the whole, in order.
+    pub(super) others: &'s [&'s Model],
+    pub(super) seed: u64,
+}
+
+/// What each surface does to a volume.
+pub(super) fn effects(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    density: &Density,
+) -> Vec<Effect> {
+    (0..model.surfaces.len())
+        .map(|surface| effect(model, around, density, surface))
+        .collect()
+}
+
+fn effect(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    density: &Density,
+    surface: usize,
+) -> Effect {
+    let (wall, found) = match change_at(model, around, density, surface, None) {
+        Ok(found) => found,
+        Err(unknown) => {
+            let (verdict, text) = unknown.in_words();
+            return Effect {
+                surface,
+                verdict,
+                text,
+            };
+        }
+    };
+    let verdict = found.verdict(true, Wording::default(), around.seed);
+    let is_stated = density.written.is_some();
+    let text = match (&verdict, is_stated) {
+        (Verdict::Proved(_), _) => "keeps it".to_owned(),
+        (Verdict::Refuted(witness), true) => changed(witness),
+        (Verdict::Refuted(_), false) => factor(model, surface, &wall),
+        (Verdict::Undecided(_), false) => {
+            format!("{}, if that is not 1", factor(model, surface, &wall))
+        }
+        (Verdict::Undecided(reason), true) => format!("may change it: {reason}"),
+    };
+    Effect {
+        surface,
+        verdict,
+        text,
+    }
+}
+
+/// Why a change of a volume is not one that is computed.
+pub(super) enum Unknown {
+    /// It is 0, as instantaneous constraints map states on a line to one.
+    Vanishes,
+    /// There is none.
+    Dimensions(usize, usize),
+    /// It is not known.
+    Open(String),
+}
+
+impl Unknown {
+    fn in_words(self) -> (Verdict, String) {
+        let refuted = |reason: String| {
+            Verdict::Refuted(Witness {
+                reason,
+                sample: None,
+                values: Vec::new(),
+                help: String::new(),
+            })
+        };
+        match self {
+            Self::Vanishes => {
+                let text = "maps it to 0, as its instantaneous constraints do";
+                (refuted(String::new()), text.to_owned())
+            }
+            Self::Dimensions(before, after) => {
+                let text = Open::Dimensions(before, after).text();
+                (refuted(String::new()), format!("keeps no volume: {text}"))
+            }
+            Self::Open(reason) => (
+                Verdict::Undecided(reason.clone()),
+                format!("may change it: {reason}"),
+            ),
+        }
+    }
+}
+
+/// Evidence on whether a surface multiplies a volume by a factor, 1 if none is given.
+pub(super) fn change_at(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    density: &Density,
+    surface: usize,
+    factor: Option<(ExprId, &str)>,
+) -> Result<(Wall, Evidence), Unknown> {
+    if !model.surfaces[surface].instantaneous.is_empty() {
+        return Err(Unknown::Vanishes);
+    }
+    let mut wall = Wall::of(model, around.derivation, surface, around.others);
+    let is_transition = model.surfaces[surface].law == Law::Transition;
+    if let Some(passage) = &mut wall.passage {
+        match passage.open {
+            Some(Open::Dimensions(before, after)) => {
+                return Err(Unknown::Dimensions(before, after));
+            }
+            Some(reason) => return Err(Unknown::Open(reason.text())),
+            None => {}
+        }
+        if is_transition
+            && density.is_found
+            && !has_plain_densities(model, around, density, surface)
+        {
+            let text =
+                "the densities of both modes are known up to factors; state them, `density = ..`";
+            return Err(Unknown::Open(text.to_owned()));
+        }
+        match density.value {
+            Some(value) => passage.weigh(model, value),
+            None if passage.keeps_positions(model) && !is_transition => {}
+            None => {
+                let text = "the density is not written out, and positions or modes change";
+                return Err(Unknown::Open(text.to_owned()));
+            }
+        }
+    } else if is_transition {
+        let text = "what it does is not looked at: the mode that it leads to is not at hand";
+        return Err(Unknown::Open(text.to_owned()));
+    }
+    let solution = wall.solution();
+    if let (Some(passage), Some(solution)) = (&mut wall.passage, solution) {
+        passage.restrict(&mut model.pool, solution);
+    }
+    let question = Change {
+        wall: &wall,
+        density,
+        factor,
+    };
+    let found = evidence_at_impact(model, &wall, around.dynamics, &question, around.seed);
+    Ok((wall, found))
+}
+
+/// Whether the densities of both sides of a transition are 1, or that of the other mode is stated.
+fn has_plain_densities(
+    model: &Model,
+    around: &Surroundings<'_>,
+    density: &Density,
+    surface: usize,
+) -> bool {
+    let enters = model.surfaces[surface]
+        .transition
+        .as_ref()
+        .map(|own| own.enters);
+    let entered = enters.and_then(|enters| around.others.get(enters));
+    density.value == Some(model.pool.one())
+        && entered.is_some_and(|own| keeps_mu_c(own, around.seed))
+}
+
+/// Whether a mode states a density, or keeps `mu_C` itself.
+fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
+    let mut mode = mode.clone();
+    if mode.is_first_order() || stated_density(&mut mode).is_some() {
+        return true;
+    }
+    if mode.is_nonlinear() {
+        return false;
+    }
+    let derivation = derive(&mut mode);
+    let problem = Problem::of(&mut mode, &derivation);
+    let decision = decide(&mut mode, &problem, seed);
+    let found = decision.ok().and_then(|own| own.density);
+    found.is_some_and(|(potential, _)| potential.terms.is_empty())
 }
 
 /// The Jacobian of a law in words.
-fn factor(model: &Model, surface: usize, wall: &Wall) -> String {
+pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
     const RHO: &str = "rho = dh(pi_D grad h)/dh(grad h)";
     const RATES: &str = "G the gap rate before and after";
     let is_affine = model
@@ -99,15 +260,22 @@ fn factor(model: &Model, surface: usize, wall: &Wall) -> String {
         Law::NonholonomicPlastic => format!("multiplies it by (1 - 2*rho)^2, {RHO}"),
         Law::ImpactPlastic => "maps it to 0".to_owned(),
         Law::TotallyPlastic => format!("multiplies it by (1 - rho)^2, {RHO}"),
-        Law::Transition => "leaves this mode".to_owned(),
-        Law::Reset => match wall
-            .reset
-            .as_ref()
-            .and_then(|own| own.factor_text(&model.pool))
-        {
-            Some(factor) => format!("multiplies it by {factor}"),
-            None => format!("multiplies it by |D*G+/G-|, D the determinant of its reset, {RATES}"),
-        },
+        Law::Transition | Law::Reset => {
+            let passage = wall.passage.as_ref();
+            let slides = passage.is_some_and(Passage::may_slide);
+            match passage.and_then(|own| closed_form(model, own)) {
+                Some(factor) if slides && model.pool.sign(factor).is_nonpositive() => {
+                    "holds the motion, which comes to it from both sides, and maps it to 0"
+                        .to_owned()
+                }
+                Some(factor) if slides => {
+                    format!("multiplies it by {}", factor_text(&model.pool, factor))
+                }
+                Some(factor) if model.pool.is_syntactic_zero(factor) => "maps it to 0".to_owned(),
+                Some(factor) => format!("multiplies it by {}", size_text(&model.pool, factor)),
+                None => "multiplies it by the determinant of its augmented differential".to_owned(),
+            }
+        }
     }
 }
 
@@ -115,7 +283,7 @@ fn changed(witness: &Witness) -> String {
     let values: Vec<String> = witness
         .values
         .iter()
-        .map(|(name, value)| format!("{name} = {}", super::finding::digits(*value)))
+        .map(|(name, value)| format!("{name} = {}", digits(*value)))
         .collect();
     let at = witness
         .sample
@@ -128,17 +296,59 @@ fn changed(witness: &Witness) -> String {
 }
 
 /// The change of a volume in an impact.
-struct Volume<'v> {
+struct Change<'v> {
     wall: &'v Wall,
-    stated: Option<(ExprId, &'v str)>,
+    density: &'v Density,
+    /// What it is claimed to be multiplied by.
+    factor: Option<(ExprId, &'v str)>,
 }
 
-impl AtImpact for Volume<'_> {
-    fn roots(&self) -> Vec<ExprId> {
-        self.stated.iter().map(|(value, _)| *value).collect()
+impl Change<'_> {
+    /// The density after and before.
+    fn densities<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        after: &[Number<P>],
+    ) -> Option<[Number<P>; 2]> {
+        let one = [point.field().integer(1); 2];
+        let Some(value) = self.density.value else {
+            return Some(one);
+        };
+        let Some(passage) = &self.wall.passage else {
+            return match self.density.written {
+                // A function of the position.
+                None => Some(one),
+                Some(_) => after_and_before(model, point, after, (value, value)),
+            };
+        };
+        let both = (passage.after.density, passage.before.density);
+        if passage.computes_velocities() {
+            return after_and_before(model, point, after, both);
+        }
+        let values = point.values(&model.pool, &model.pool.reachable(&[both.0, both.1]))?;
+        Some([values[both.0.index()], values[both.1.index()]])
     }
 
-    /// `(f+ J)^2 - (f-)^2`: both are positive, and squares do not depend on the branch of an absolute value.
+    /// Whether the sign of the Jacobian counts: a motion of first order that does not go on slides along the surface.
+    fn is_signed(&self) -> bool {
+        self.wall.passage.as_ref().is_some_and(Passage::may_slide)
+    }
+}
+
+impl AtImpact for Change<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let factor = self.factor.iter().map(|(value, _)| *value);
+        let passage = self.wall.passage.iter().flat_map(Passage::roots);
+        self.density
+            .value
+            .into_iter()
+            .chain(factor)
+            .chain(passage)
+            .collect()
+    }
+
+    /// `(f+ J)^2 - (E f-)^2`: both are positive, and squares do not depend on the branch of an absolute value.
     fn terms<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -147,15 +357,20 @@ impl AtImpact for Volume<'_> {
     ) -> Option<Vec<Number<P>>> {
         let field = point.field();
         let jacobian = self.wall.jacobian(model, point, after)?;
-        let [new, old] = match self.stated {
-            Some((value, _)) => after_and_before(model, point, after, value)?,
-            None => [field.integer(1); 2],
-        };
+        let [new, old] = self.densities(model, point, after)?;
         let after = field.mul(new, jacobian);
-        Some(vec![
-            field.mul(after, after),
-            field.neg(field.mul(old, old)),
-        ])
+        let before = match self.factor {
+            Some((factor, _)) => {
+                let values = point.values(&model.pool, &model.pool.reachable(&[factor]))?;
+                field.mul(old, values[factor.index()])
+            }
+            None => old,
+        };
+        let power = |own| match self.is_signed() {
+            true => own,
+            false => field.mul(own, own),
+        };
+        Some(vec![power(after), field.neg(power(before))])
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
@@ -164,13 +379,21 @@ impl AtImpact for Volume<'_> {
     }
 
     fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
-        let names = match self.stated {
-            Some((_, written)) => [
+        let factor = self.factor.map(|(_, written)| written);
+        let names = match (&self.density.written, factor) {
+            (Some(written), None) => [
                 format!("{written} after times the Jacobian"),
                 format!("{written} before"),
             ],
-            None => ["Jacobian".to_owned(), "1".to_owned()],
+            (Some(written), Some(factor)) => [
+                format!("{written} after times the Jacobian"),
+                format!("{factor} times {written} before"),
+            ],
+            (None, factor) => ["Jacobian".to_owned(), factor.unwrap_or("1").to_owned()],
         };
+        if self.is_signed() {
+            return with_difference(names, [terms[0], -terms[1]], sum);
+        }
         let sizes = [terms[0].abs().sqrt(), terms[1].abs().sqrt()];
         with_difference(names, sizes, sum / (sizes[0] + sizes[1]))
     }

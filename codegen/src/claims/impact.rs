@@ -6,56 +6,25 @@ use super::collision::{
     AtImpact, after_and_before, evidence_at_impact, value_with, with_difference,
 };
 use super::conserved::magnitude;
-use super::dynamics::{Dynamics, Number};
-use super::evidence::Wording;
+use super::dynamics::Number;
+use super::evidence::{Evidence, Wording};
+use super::examine::explicit;
 use super::finding::Verdict;
+use super::hybrid::Surroundings;
+use super::passage::Passage;
 use super::wall::Wall;
-use crate::mechanics::Derivation;
 use crate::model::Model;
 
 /// The verdict on `conserved under SURFACE: value` or `not conserved under SURFACE: value`.
 pub(super) fn check_conserved_under(
     model: &mut Model,
-    derivation: &Derivation,
-    dynamics: &Dynamics,
+    around: &Surroundings<'_>,
     surface: usize,
-    (value, written): (ExprId, &str),
+    stated: (ExprId, &str),
     holds: bool,
-    seed: u64,
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
-    if !model.surfaces[surface].instantaneous.is_empty() {
-        return Verdict::Undecided(format!(
-            "what impacts at `{name}` with their instantaneous constraints do to a quantity is not examined"
-        ));
-    }
-    let wall = Wall::of(model, derivation, surface);
-    let after = model.surfaces[surface].reset.clone().map(|reset| {
-        let replacements = reset.replacements(&model.coordinates);
-        model.pool.substitute(value, &replacements)
-    });
-    // On the surface, where one of its coordinates follows from the others.
-    let solution = wall.solution();
-    let mut on_surface = |id| match solution {
-        Some(solution) => model.pool.substitute(id, &[solution]),
-        None => id,
-    };
-    let (value, after) = (on_surface(value), after.map(on_surface));
-    let jump = Jump {
-        slopes: model
-            .coordinates
-            .iter()
-            .map(|own| model.pool.diff(value, own.qdot))
-            .collect(),
-        by_position: model
-            .coordinates
-            .iter()
-            .map(|own| (own.q, model.pool.diff(value, own.q)))
-            .collect(),
-        after,
-        value,
-        written,
-    };
+    let written = stated.1;
     let wording = Wording {
         vanishes: format!("`{written}` is the same before and after an impact at `{name}`"),
         differs: format!("`{written}` changes in an impact at `{name}`"),
@@ -64,9 +33,12 @@ pub(super) fn check_conserved_under(
             format!("write `conserved under {name}: {written};`"),
         ],
     };
-    let found = evidence_at_impact(model, &wall, dynamics, &jump, seed);
-    let is_seen = wall.is_solved() || !found.is_real;
-    match found.verdict(holds, wording, seed) {
+    let changes = match changes_at(model, around, surface, stated, Wanted::Any) {
+        Ok(changes) => changes,
+        Err(reason) => return Verdict::Undecided(reason),
+    };
+    let is_seen = changes.is_seen();
+    match changes.together(holds).verdict(holds, wording, around.seed) {
         Verdict::Undecided(_) if !is_seen => Verdict::Undecided(format!(
             "parts of `{name}` may be out of sight: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
              leading coefficient is never 0"
@@ -75,16 +47,138 @@ pub(super) fn check_conserved_under(
     }
 }
 
+/// The changes of a quantity that are looked for at real states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wanted {
+    /// All.
+    Any,
+    /// Those by which it grows.
+    Growth,
+}
+
+/// The evidence on the changes of a quantity at a surface.
+pub(super) struct Changes {
+    /// By the law, the reset or the transition.
+    pub(super) found: Evidence,
+    /// By a reflection, where a transition may be one.
+    reflected: Option<Evidence>,
+    is_solved: bool,
+}
+
+impl Changes {
+    fn is_seen(&self) -> bool {
+        self.is_solved || !self.found.is_real
+    }
+
+    /// The evidence on all: what a reflection changes shows nothing, as it is not known where there is one.
+    pub(super) fn together(self, holds: bool) -> Evidence {
+        match self.reflected {
+            Some(reflected) if holds => {
+                let reflected = Evidence {
+                    witness: None,
+                    is_suspect: reflected.is_suspect || reflected.witness.is_some(),
+                    ..reflected
+                };
+                self.found.and(reflected)
+            }
+            _ => self.found,
+        }
+    }
+}
+
+/// The evidence on whether a quantity, which may name `energy` and momenta, is the same before and after an impact.
+///
+/// # Errors
+/// Why nothing is known of it.
+pub(super) fn changes_at(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    (quantity, written): (ExprId, &str),
+    wanted: Wanted,
+) -> Result<Changes, String> {
+    let own = &model.surfaces[surface];
+    let name = own.name.display.clone();
+    if !own.instantaneous.is_empty() {
+        return Err(format!(
+            "what impacts at `{name}` with their instantaneous constraints do to a quantity is not examined"
+        ));
+    }
+    let enters = own.transition.as_ref().map(|own| own.enters);
+    let wall = Wall::of(model, around.derivation, surface, around.others);
+    let entered = enters.and_then(|enters| around.others.get(enters)).copied();
+    let value = explicit(model, quantity);
+    let after = match &wall.passage {
+        Some(passage) => {
+            let after = passage.quantity_after(model, entered, quantity);
+            after.ok_or_else(|| format!("`{written}` is not known behind `{name}`"))?
+        }
+        None if enters.is_some() => {
+            return Err(format!("the mode that `{name}` leads to is not at hand"));
+        }
+        None => value,
+    };
+    let is_computed = wall
+        .passage
+        .as_ref()
+        .is_none_or(Passage::computes_velocities);
+    let is_refracted = wall.passage.as_ref().is_some_and(Passage::is_refracted);
+    let jump = Jump::of(model, &wall, (value, after, written), is_computed, wanted);
+    let found = evidence_at_impact(model, &wall, around.dynamics, &jump, around.seed);
+    let reflected = is_refracted.then(|| {
+        let wall = Wall::reflecting(model, around.derivation, surface);
+        let jump = Jump::of(model, &wall, (value, value, written), true, wanted);
+        evidence_at_impact(model, &wall, around.dynamics, &jump, around.seed)
+    });
+    Ok(Changes {
+        found,
+        reflected,
+        is_solved: wall.is_solved(),
+    })
+}
+
 /// The change of a quantity in an impact.
 struct Jump<'j> {
     value: ExprId,
-    /// Its value after a reset.
-    after: Option<ExprId>,
+    /// Its value after the impact.
+    after: ExprId,
+    /// Whether that is one of the velocities after the impact in place of those before it.
+    is_computed: bool,
     /// Its derivatives by the velocities.
     slopes: Vec<ExprId>,
     /// The same by the coordinates.
     by_position: Vec<(SymbolId, ExprId)>,
     written: &'j str,
+    wanted: Wanted,
+}
+
+impl<'j> Jump<'j> {
+    /// The change on the surface, where one of its coordinates follows from the others.
+    fn of(
+        model: &mut Model,
+        wall: &Wall,
+        (value, after, written): (ExprId, ExprId, &'j str),
+        is_computed: bool,
+        wanted: Wanted,
+    ) -> Self {
+        let solution = wall.solution();
+        let mut on_surface = |id| match solution {
+            Some(solution) => model.pool.substitute(id, &[solution]),
+            None => id,
+        };
+        let [value, after] = [value, after].map(&mut on_surface);
+        let coordinates = model.coordinates.clone();
+        let mut by = |symbol| model.pool.diff(value, symbol);
+        Self {
+            slopes: coordinates.iter().map(|own| by(own.qdot)).collect(),
+            by_position: coordinates.iter().map(|own| (own.q, by(own.q))).collect(),
+            after,
+            is_computed,
+            value,
+            written,
+            wanted,
+        }
+    }
 }
 
 impl Jump<'_> {
@@ -101,7 +195,11 @@ impl Jump<'_> {
 
 impl AtImpact for Jump<'_> {
     fn roots(&self) -> Vec<ExprId> {
-        self.after.iter().copied().chain([self.value]).collect()
+        vec![self.after, self.value]
+    }
+
+    fn wants(&self, terms: &[f64]) -> bool {
+        self.wanted == Wanted::Any || terms.iter().sum::<f64>() > 0.0
     }
 
     fn terms<P: ExpansionPoint>(
@@ -110,12 +208,12 @@ impl AtImpact for Jump<'_> {
         point: &mut P,
         after: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
-        let [new, old] = match self.after {
-            Some(reset) => {
+        let [new, old] = match self.is_computed {
+            false => {
                 let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
-                [reset, self.value].map(|id| values[id.index()])
+                [self.after, self.value].map(|id| values[id.index()])
             }
-            None => after_and_before(model, point, after, self.value)?,
+            true => after_and_before(model, point, after, (self.after, self.value))?,
         };
         Some(vec![new, point.field().neg(old)])
     }
@@ -126,11 +224,11 @@ impl AtImpact for Jump<'_> {
         let slopes = self.slopes.iter().map(|own| values[own.index()].abs());
         let by_velocity = slopes.sum::<f64>() * largest;
         let before = magnitude(model, point, self.value) + self.slope_by_position(model, point)?;
-        let new = match self.after {
-            Some(reset) => magnitude(model, point, reset),
-            None => {
-                value_with(model, point, after, self.value)?;
-                magnitude(model, point, self.value) + self.slope_by_position(model, point)?
+        let new = match self.is_computed {
+            false => magnitude(model, point, self.after),
+            true => {
+                value_with(model, point, after, self.after)?;
+                magnitude(model, point, self.after) + self.slope_by_position(model, point)?
             }
         };
         Some(before + new + by_velocity)

@@ -4,11 +4,10 @@
 //! What residues and real points refute is refused here. That velocities satisfy the constraints may stay open, as every
 //! run checks it at every impact; that levels are kept must be proved, as no run does.
 
-use dalembert_expr::{ExpansionPoint, ExprId, RealPoint, SymbolId};
+use dalembert_expr::{ExprId, SymbolId};
 
-use super::collision::{AtImpact, evidence_at_impact};
-use super::conserved::magnitude;
-use super::dynamics::{Dynamics, Number};
+use super::collision::{Vanished, evidence_at_impact};
+use super::dynamics::Dynamics;
 use super::evidence::Wording;
 use super::finding::{Verdict, seed_of};
 use super::wall::Wall;
@@ -31,7 +30,7 @@ pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId
         let Some(reset) = model.surfaces[surface].reset.clone() else {
             continue;
         };
-        let wall = Wall::of(model, derivation, surface);
+        let wall = Wall::of(model, derivation, surface, &[]);
         let landing = Landings {
             name: model.surfaces[surface].name.display.clone(),
             reset: &reset,
@@ -132,35 +131,4 @@ fn residual(model: &mut Model, constraint: usize) -> ExprId {
         terms.push(model.pool.mul(entry, velocity));
     }
     model.pool.sum(&terms)
-}
-
-/// Something that vanishes after an impact, as an expression of the state before it.
-struct Vanished {
-    change: ExprId,
-    shown: String,
-}
-
-impl AtImpact for Vanished {
-    fn roots(&self) -> Vec<ExprId> {
-        vec![self.change]
-    }
-
-    fn terms<P: ExpansionPoint>(
-        &self,
-        model: &Model,
-        point: &mut P,
-        _: &[Number<P>],
-    ) -> Option<Vec<Number<P>>> {
-        let values = point.values(&model.pool, &model.pool.reachable(&[self.change]))?;
-        Some(vec![values[self.change.index()]])
-    }
-
-    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
-        let largest = after.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
-        Some(magnitude(model, point, self.change) + largest)
-    }
-
-    fn shown(&self, terms: &[f64], _: f64) -> Vec<(String, f64)> {
-        vec![(self.shown.clone(), terms[0])]
-    }
 }

@@ -15,8 +15,9 @@
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
-//! | `wall.rs`, `reset.rs` | the map of an impact |
-//! | `collision.rs`, `hybrid.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume; do resets keep the constraints? |
+//! | `wall.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
+//! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
+//! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
@@ -25,6 +26,7 @@
 
 mod alternatives;
 mod ansatz;
+mod bounds;
 mod branches;
 mod closure;
 mod collision;
@@ -37,11 +39,13 @@ mod defaults;
 mod density;
 pub mod dynamics;
 mod elimination;
+mod energy;
 mod evidence;
 pub mod exactness;
 mod examine;
 mod exceptional;
 mod existence;
+mod factor;
 mod finding;
 mod fit;
 mod frame;
@@ -53,20 +57,26 @@ mod growth;
 mod hybrid;
 mod hypersurfaces;
 mod impact;
+mod jumps;
+mod kept;
 mod landing;
 mod leaf;
 mod linear;
+mod minors;
 mod momentum;
 mod obstruction;
+mod passage;
 mod polynomial;
 mod potential;
 pub mod problem;
 mod reflection;
+mod refraction;
 mod regularity;
-mod reset;
 mod sample;
+mod side;
 mod smoothness;
 mod symmetry;
+mod symplectic;
 mod trace;
 mod undecided;
 mod volume;
@@ -75,7 +85,7 @@ mod wall;
 pub use conditions::{Condition, Equation, Scan, find_conditions};
 pub use dynamics::{Dynamics, Motion};
 pub use exactness::{Exactness, Local, decide, decide_local};
-pub use examine::{Examined, examine, examine_scene, examine_volume};
+pub use examine::{Examined, examine, examine_mode, examine_scene, examine_volume};
 pub use existence::Decision;
 pub use finding::{Certificate, ClosedForm, Finding, Verdict, Witness};
 pub use fit::Certified;

@@ -9,7 +9,7 @@
 //! totally plastic          eps = -rho G/dh(pi_D grad h)
 //! ```
 //!
-//! A reset ([`super::reset`]) is the map that was declared instead.
+//! Resets and transitions ([`super::passage`]) have maps of their own.
 //!
 //! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
 //! through the surface, `-G+/G-`. The determinant is the factor by which G is multiplied with the other sign, except for
@@ -26,7 +26,7 @@ use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::in_arguments;
 use super::linear::{Matrix, dot, solve};
-use super::reset::ResetMap;
+use super::passage::Passage;
 use super::sample::{Sample, sample, uses};
 use crate::mechanics::Derivation;
 use crate::model::{Beside, Law, Model, Surface};
@@ -40,8 +40,8 @@ pub(super) struct Wall {
     /// Metric (N N), forms (M N), dh (N), d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,
-    /// The map of the law `reset`.
-    pub(super) reset: Option<ResetMap>,
+    /// The map of a reset or of a transition.
+    pub(super) passage: Option<Passage>,
     is_affine: bool,
     pub(super) gap: ExprId,
     pub(super) gap_rate: ExprId,
@@ -128,8 +128,13 @@ fn lists(surface: &Surface) -> (usize, Vec<usize>) {
 }
 
 impl Wall {
-    /// The surface of an index.
-    pub(super) fn of(model: &mut Model, derivation: &Derivation, surface: usize) -> Self {
+    /// The surface of an index; a transition leads into one of the modes `others`, in order.
+    pub(super) fn of(
+        model: &mut Model,
+        derivation: &Derivation,
+        surface: usize,
+        others: &[&Model],
+    ) -> Self {
         let own = &derivation.surfaces[surface];
         let law = model.surfaces[surface].law;
         let coefficient = match law {
@@ -143,7 +148,7 @@ impl Wall {
         roots.extend([own.rate, coefficient]);
         let coordinates: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
         Self {
-            reset: ResetMap::of(model, derivation, surface),
+            passage: Passage::of(model, derivation, surface, others),
             roots,
             law,
             is_affine: derivation
@@ -163,14 +168,24 @@ impl Wall {
         }
     }
 
+    /// The same surface with the law of a reflection.
+    pub(super) fn reflecting(model: &mut Model, derivation: &Derivation, surface: usize) -> Self {
+        let mut wall = Self::of(model, derivation, surface, &[]);
+        wall.law = Law::Elastic;
+        if let Some(coefficient) = wall.roots.last_mut() {
+            *coefficient = model.pool.one();
+        }
+        wall
+    }
+
     /// The velocities after an impact with the point's velocities; `None` at a singular point.
     pub(super) fn after<P: ExpansionPoint>(
         &self,
         model: &Model,
         point: &mut P,
     ) -> Option<Vec<Number<P>>> {
-        if let Some(reset) = &self.reset {
-            return reset.velocities_after(model, point);
+        if let Some(passage) = &self.passage {
+            return passage.velocities_after(model, point);
         }
         let (n, m) = (self.coordinates.len(), self.constraints);
         let field = point.field();
@@ -232,8 +247,8 @@ impl Wall {
         point: &mut P,
         after: &[Number<P>],
     ) -> Option<Number<P>> {
-        if let Some(reset) = &self.reset {
-            return reset.jacobian(model, point, self.gap_rate);
+        if let Some(passage) = &self.passage {
+            return passage.jacobian(model, point);
         }
         let field = point.field();
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
@@ -474,7 +489,7 @@ mod tests {
             impacts { wall: x^2 + y^2 >= 1 => elastic; } }";
         let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
         let mut model = compiled.model;
-        let wall = Wall::of(&mut model, &compiled.derivation, 0);
+        let wall = Wall::of(&mut model, &compiled.derivation, 0, &[]);
         let [first, second] = [0, 1].map(|i| model.coordinates[i].q);
         let mut point = RealPoint::default();
         point.set(first, x);

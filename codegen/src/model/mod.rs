@@ -398,15 +398,59 @@ pub enum Statement {
     },
     /// The flow of this vector field, N components, keeps the Lagrangian and the constraints.
     Symmetry(Vec<ExprId>),
+    /// One invariant volume is kept by the motion and by all that happens at surfaces.
+    VolumeKept,
+    /// What the volume is multiplied by at the surface of an index.
+    Factor {
+        /// The factor.
+        value: ExprId,
+        /// The index of the surface.
+        under: usize,
+    },
+    /// The motion and all that happens at surfaces keep the symplectic form.
+    Symplectic,
+    /// The energy after an impact at the surface of an index is not above that before.
+    EnergyNotIncreasing(usize),
 }
 
 impl Statement {
     /// What it is about.
     pub fn expressions(&self) -> &[ExprId] {
         match self {
-            Self::Existence(_) => &[],
-            Self::Density(value) | Self::Conserved { value, .. } => std::slice::from_ref(value),
+            Self::Existence(_)
+            | Self::VolumeKept
+            | Self::Symplectic
+            | Self::EnergyNotIncreasing(_) => &[],
+            Self::Density(value) | Self::Conserved { value, .. } | Self::Factor { value, .. } => {
+                std::slice::from_ref(value)
+            }
             Self::Symmetry(field) => field,
+        }
+    }
+
+    /// The index of the surface that it names.
+    pub fn surface(&self) -> Option<usize> {
+        match self {
+            Self::Conserved { under, .. } => *under,
+            Self::Factor { under, .. } | Self::EnergyNotIncreasing(under) => Some(*under),
+            _ => None,
+        }
+    }
+
+    /// The same about a surface of another index.
+    pub(crate) fn at_surface(self, surface: usize) -> Self {
+        match self {
+            Self::Conserved { value, holds, .. } => Self::Conserved {
+                value,
+                under: Some(surface),
+                holds,
+            },
+            Self::Factor { value, .. } => Self::Factor {
+                value,
+                under: surface,
+            },
+            Self::EnergyNotIncreasing(_) => Self::EnergyNotIncreasing(surface),
+            other => other,
         }
     }
 }

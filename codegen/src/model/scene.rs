@@ -1,6 +1,6 @@
 //! Scenes: parts of a model that are models of their own.
 
-use super::{Claim, Model, Statement};
+use super::{Claim, Model};
 use crate::diagnostics::listed;
 use crate::spec::ItemId;
 
@@ -110,13 +110,9 @@ impl Claim {
     fn on_surfaces(&self, surfaces: &[usize]) -> Self {
         let mut claim = self.clone();
         claim.scene = None;
-        if let Statement::Conserved {
-            under: Some(surface),
-            ..
-        } = &mut claim.statement
-        {
-            let place = surfaces.iter().position(|own| own == surface);
-            *surface = place.unwrap_or(*surface);
+        if let Some(surface) = claim.statement.surface() {
+            let place = surfaces.iter().position(|own| *own == surface);
+            claim.statement = claim.statement.at_surface(place.unwrap_or(surface));
         }
         claim
     }

@@ -250,11 +250,37 @@ impl Writer<'_> {
                 ),
                 ("holds", Tree::Flag(*holds)),
             ],
+            Statement::VolumeKept => {
+                vec![
+                    ("kind", Tree::text("volume_kept")),
+                    ("stated", self.stated()),
+                ]
+            }
+            Statement::Factor { value, under } => vec![
+                ("kind", Tree::text("factor")),
+                ("stated", self.stated()),
+                ("value", self.expression(*value)),
+                ("under", Tree::Integer(*under as u64)),
+            ],
+            Statement::Symplectic => vec![("kind", Tree::text("symplectic"))],
+            Statement::EnergyNotIncreasing(under) => vec![
+                ("kind", Tree::text("energy_not_increasing")),
+                ("under", Tree::Integer(*under as u64)),
+            ],
             Statement::Symmetry(field) => vec![
                 ("kind", Tree::text("symmetry")),
                 ("field", self.expressions(field)),
             ],
         }
+    }
+
+    /// The density that the claims state.
+    fn stated(&self) -> Tree {
+        let mut claims = self.model.claims.iter().filter(|own| own.scene.is_none());
+        self.optional(claims.find_map(|own| match own.statement {
+            Statement::Density(value) => Some(value),
+            _ => None,
+        }))
     }
 
     /// The terms of G, and the columns whose determinant one of them may name.

@@ -558,6 +558,19 @@ pub enum Statement {
     },
     /// `symmetry: e`, with `partial(x)` for the fields of the coordinates.
     Symmetry(Scalar),
+    /// `volume: kept`
+    VolumeKept,
+    /// `density under surface: factor = e`
+    Factor {
+        /// The surface.
+        under: Declared,
+        /// What the volume is multiplied by.
+        value: Scalar,
+    },
+    /// `symplectic`
+    Symplectic,
+    /// `energy under surface: not increasing`
+    EnergyNotIncreasing(Declared),
 }
 
 /// Where a density that depends on the configuration alone exists.

@@ -3,7 +3,7 @@
 use dalembert_expr::{Assumption as Known, ExprId, Node};
 
 use super::super::resolve::{DerivedNames, Resolver, Scope};
-use super::super::{Claim, Law, Name, Scene, Statement, Surface};
+use super::super::{Claim, Coordinate, Name, Scene, Statement, Surface};
 use crate::diagnostics::listed;
 use crate::spec;
 
@@ -91,11 +91,7 @@ impl Resolver<'_> {
                     Some(declared) => {
                         let surface = self.surface(declared, surfaces)?;
                         let name = &surfaces[surface].name.display;
-                        if surfaces[surface].law == Law::Transition {
-                            let text =
-                                format!("`{name}` leads to another mode, and claims are about one");
-                            return self.refuse(declared.name.at, text, "leave the claim out");
-                        }
+                        self.check_known_behind(value, expr, &surfaces[surface])?;
                         (Some(surface), format!(" under {name}"))
                     }
                     None => (None, String::new()),
@@ -108,6 +104,31 @@ impl Resolver<'_> {
                 };
                 (statement, format!("{not}conserved{across}: {value}"))
             }
+            spec::Statement::VolumeKept => (Statement::VolumeKept, "volume: kept".to_owned()),
+            spec::Statement::Symplectic => (Statement::Symplectic, "symplectic".to_owned()),
+            spec::Statement::Factor { under, value } => {
+                let expr = self.quantity(value)?;
+                self.check_periodic(&[value], &Scope::default(), expr);
+                let surface = self.surface(under, surfaces)?;
+                let is_negative =
+                    !self.pool.is_syntactic_zero(expr) && self.pool.sign(expr).is_nonpositive();
+                if is_negative {
+                    let text = format!("`{value}` is not positive anywhere");
+                    return self.refuse(value.at, text, "volumes are counted without a sign");
+                }
+                let name = &surfaces[surface].name.display;
+                let statement = Statement::Factor {
+                    value: expr,
+                    under: surface,
+                };
+                (statement, format!("density under {name}: factor = {value}"))
+            }
+            spec::Statement::EnergyNotIncreasing(under) => {
+                let surface = self.surface(under, surfaces)?;
+                let name = &surfaces[surface].name.display;
+                let text = format!("energy under {name}: not increasing");
+                (Statement::EnergyNotIncreasing(surface), text)
+            }
             spec::Statement::Symmetry(field) => {
                 let components = self.vector_field(field)?;
                 (
@@ -116,6 +137,36 @@ impl Resolver<'_> {
                 )
             }
         })
+    }
+
+    /// Refuses a quantity that the mode behind a transition has no name for.
+    fn check_known_behind(
+        &mut self,
+        value: &spec::Scalar,
+        expr: ExprId,
+        surface: &Surface,
+    ) -> Option<()> {
+        let Some(transition) = &surface.transition else {
+            return Some(());
+        };
+        let peer = &self.modes[transition.enters];
+        let is_unknown = |(i, own): &(usize, &Coordinate)| {
+            let momentum = self.symbols.derived.momenta.get(*i).copied();
+            let symbols: Vec<_> = [own.q, own.qdot].into_iter().chain(momentum).collect();
+            self.pool.depends_on_any(expr, &symbols)
+                && peer.coordinates.iter().all(|(name, _)| *name != own.name)
+        };
+        let mut coordinates = self.symbols.coordinates.iter().enumerate();
+        let Some((_, unknown)) = coordinates.find(is_unknown) else {
+            return Some(());
+        };
+        let (name, mode) = (&unknown.name.display, &peer.name);
+        let text = format!(
+            "`{name}` is no coordinate of `{mode}`, which `{}` leads to",
+            surface.name.display
+        );
+        let help = "claim a quantity that both modes have";
+        self.refuse(value.at, text, help)
     }
 
     /// A function of time, positions and velocities.
@@ -163,17 +214,13 @@ impl Resolver<'_> {
         scene: &Scene,
         surfaces: &[Surface],
     ) -> bool {
-        let Statement::Conserved {
-            under: Some(surface),
-            ..
-        } = statement
-        else {
+        let Some(surface) = statement.surface() else {
             return true;
         };
-        if scene.parts.surfaces.contains(surface) {
+        if scene.parts.surfaces.contains(&surface) {
             return true;
         }
-        let (scene, surface) = (&scene.name, &surfaces[*surface].name.display);
+        let (scene, surface) = (&scene.name, &surfaces[surface].name.display);
         let text = format!("the scene `{scene}` does not use the surface `{surface}`");
         let help = format!("add `{surface}` to the scene, or leave the claim out");
         let at = self.spec.location(claim.item);
@@ -183,8 +230,14 @@ impl Resolver<'_> {
     /// The surface of a declared name.
     fn surface(&mut self, declared: &spec::Declared, surfaces: &[Surface]) -> Option<usize> {
         let members: Vec<(Name, Scope)> = self.members(declared);
-        let display = &members.first()?.0.display;
-        let found = surfaces.iter().position(|own| own.name.display == *display);
+        let (name, _) = members.first()?;
+        let display = &name.display;
+        // A member of a family of transitions has its number behind its name.
+        let member = name.member.map(|member| format!("{}{member}", name.field));
+        let is_member =
+            |own: &Surface| own.transition.is_some() && member.as_ref() == Some(&own.name.display);
+        let mut all = surfaces.iter();
+        let found = all.position(|own| own.name.display == *display || is_member(own));
         found.or_else(|| {
             let names: Vec<&str> = surfaces
                 .iter()

@@ -114,10 +114,20 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
         }
     }
     for claim in &spec.claims {
-        if !matches!(claim.statement, Statement::Conserved { .. }) {
-            let text = "of a first-order system only conserved quantities are claimed";
-            resolver.refuse::<()>(spec.location(claim.item), text, "write `conserved: ..;`");
-        }
+        let (what, help) = match claim.statement {
+            Statement::Conserved { .. }
+            | Statement::Density(_)
+            | Statement::VolumeKept
+            | Statement::Factor { .. } => continue,
+            Statement::Existence(_) => ("density that is looked for", "state one: `density = ..;`"),
+            Statement::Symmetry(_) => {
+                ("Lagrangian that a symmetry keeps", "write `conserved: ..;`")
+            }
+            Statement::Symplectic => ("symplectic form", "write `volume: kept;`"),
+            Statement::EnergyNotIncreasing(_) => ("`energy`", "leave it out"),
+        };
+        let at = spec.location(claim.item);
+        resolver.refuse::<()>(at, format!("{NONE} {what}"), help);
     }
 }
 

@@ -1,11 +1,20 @@
-//! `claims { density: exact; conserved: energy; symmetry: partial(theta); }`
+//! `claims { density: exact; volume: kept; conserved: energy; symmetry: partial(theta); }`
 
 use super::super::ast::{Claim, Existence, Spec, Statement};
 use super::super::cursor::{Cursor, Read};
 use super::declared;
 use crate::diagnostics::{Location, nearest};
 
-const KINDS: [&str; 5] = ["density", "conserved", "not", "symmetry", "assume"];
+const KINDS: [&str; 8] = [
+    "density",
+    "conserved",
+    "not",
+    "symmetry",
+    "volume",
+    "symplectic",
+    "energy",
+    "assume",
+];
 const EXISTENCE: [(&str, Existence); 3] = [
     ("exact", Existence::Global),
     ("locally_exact", Existence::Local),
@@ -29,6 +38,9 @@ pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
                 "density" => density(cursor)?,
                 "conserved" => conserved(cursor, true)?,
                 "symmetry" => symmetry(cursor)?,
+                "volume" => volume(cursor)?,
+                "symplectic" => Statement::Symplectic,
+                "energy" => energy(cursor)?,
                 unknown => {
                     let help = match nearest(unknown, KINDS) {
                         Some(near) => format!("did you mean `{near}`?"),
@@ -53,8 +65,41 @@ pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     Ok(())
 }
 
-/// `density: exact` or `density = e`
+/// `volume: kept`, after the first word.
+fn volume(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    const FORM: &str = "volume: kept;";
+    cursor.expect_operator(":", FORM)?;
+    expect_word(cursor, "kept", FORM)?;
+    Ok(Statement::VolumeKept)
+}
+
+/// `energy under surface: not increasing`, after the first word.
+fn energy(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    const FORM: &str = "energy under wall: not increasing;";
+    expect_word(cursor, "under", FORM)?;
+    let under = declared(cursor, "the name of a surface")?;
+    cursor.expect_operator(":", FORM)?;
+    expect_word(cursor, "not", FORM)?;
+    expect_word(cursor, "increasing", FORM)?;
+    Ok(Statement::EnergyNotIncreasing(under))
+}
+
+/// `density under surface: factor = e`, after the first two words.
+fn factor(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    const FORM: &str = "density under wall: factor = e^2;";
+    let under = declared(cursor, "the name of a surface")?;
+    cursor.expect_operator(":", FORM)?;
+    expect_word(cursor, "factor", FORM)?;
+    cursor.expect_operator("=", FORM)?;
+    let value = cursor.scalar()?;
+    Ok(Statement::Factor { under, value })
+}
+
+/// `density: exact`, `density = e` or `density under surface: factor = e`
 fn density(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    if cursor.eat_word("under") {
+        return factor(cursor);
+    }
     if cursor.eat_operator("=").is_some() {
         return Ok(Statement::Density(cursor.scalar()?));
     }

@@ -1,10 +1,15 @@
 dalembert::model! {
     Particle {
-        coordinates { x; y; theta: angle; }
-        parameters { m > 0 = 1; k > 0 = 1; }
-        lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);
-        modes { smooth { claims { conserved under enter: energy; } } rough { } }
-        transitions { enter: smooth -> rough when x >= 0; }
+        coordinates { x; y; }
+        modes {
+            smooth {
+                coordinates { z; }
+                lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+                claims { conserved under enter: energy + z; }
+            }
+            rough { lagrangian = (dot(x)^2 + dot(y)^2)/2; }
+        }
+        transitions { enter: smooth -> rough when x >= 0 => reset { y = z; }; }
     }
 }
 

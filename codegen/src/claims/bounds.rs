@@ -1,0 +1,95 @@
+//! Exact bounds of polynomials of parameters that lie between two numbers.
+
+use dalembert_expr::{ExprId, Node, Rational, SymbolId};
+
+use crate::model::{Assumption, Model};
+
+/// The largest exponent that is multiplied out.
+const LARGEST: i64 = 16;
+
+/// The least and the greatest value, or bounds of them; `None` if it is no polynomial of bounded parameters.
+pub(super) fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
+    match model.pool.node(id) {
+        Node::Number(value) => Some([value.clone(), value.clone()]),
+        Node::Symbol(symbol) => of_parameter(model, *symbol),
+        Node::Sum { constant, terms } => {
+            let mut sum = [constant.clone(), constant.clone()];
+            for (factor, term) in terms {
+                let [low, high] = bounds(model, *term)?.map(|own| &own * factor);
+                let [low, high] = if low <= high {
+                    [low, high]
+                } else {
+                    [high, low]
+                };
+                sum = [&sum[0] + &low, &sum[1] + &high];
+            }
+            Some(sum)
+        }
+        Node::Product(factors) => {
+            let mut product = [Rational::ONE, Rational::ONE];
+            for (base, exponent) in factors {
+                let exponent = exponent
+                    .to_i64()
+                    .filter(|own| (1..=LARGEST).contains(own))?;
+                product = times(&product, &power(&bounds(model, *base)?, exponent));
+            }
+            Some(product)
+        }
+        _ => None,
+    }
+}
+
+fn of_parameter(model: &Model, symbol: SymbolId) -> Option<[Rational; 2]> {
+    let found = model.parameters.iter().find(|own| own.symbol == symbol)?;
+    match &found.assumption {
+        Assumption::Within { low, high } => Some([low.clone(), high.clone()]),
+        _ => None,
+    }
+}
+
+fn times(a: &[Rational; 2], b: &[Rational; 2]) -> [Rational; 2] {
+    let products = a.iter().flat_map(|x| b.iter().map(move |y| x * y));
+    let mut products: Vec<Rational> = products.collect();
+    products.sort();
+    [products[0].clone(), products[3].clone()]
+}
+
+fn power(base: &[Rational; 2], exponent: i64) -> [Rational; 2] {
+    let [low, high] = base.clone().map(|own| {
+        let factors = (0..exponent).map(|_| own.clone());
+        factors.fold(Rational::ONE, |product, own| &product * &own)
+    });
+    let is_around_zero = base[0] < Rational::ZERO && base[1] > Rational::ZERO;
+    match (exponent % 2, low <= high) {
+        (0, true) if is_around_zero => [Rational::ZERO, high],
+        (0, false) if is_around_zero => [Rational::ZERO, low],
+        (_, true) => [low, high],
+        (_, false) => [high, low],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_exact() {
+        let declaration =
+            "pub P { coordinates { x; } parameters { c in [0, 1]; k in [-2, 1]; m > 0; }
+            lagrangian = dot(x)^2/2 - x*c*k*m; }";
+        let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
+        let mut model = compiled.model;
+        let symbols: Vec<SymbolId> = model.parameters.iter().map(|own| own.symbol).collect();
+        let [c, k, m] = [0, 1, 2].map(|i| model.pool.variable(symbols[i]));
+        let square = |model: &mut Model, id| model.pool.pow(id, Rational::from(2));
+        let [c2, k2] = [c, k].map(|own| square(&mut model, own));
+        let one = model.pool.one();
+        let less = model.pool.sub(c2, one);
+        let range = |low: i64, high: i64| Some([Rational::from(low), Rational::from(high)]);
+        assert_eq!(bounds(&model, less), range(-1, 0));
+        assert_eq!(bounds(&model, k2), range(0, 4));
+        let product = model.pool.mul(c, k);
+        assert_eq!(bounds(&model, product), range(-2, 1));
+        assert_eq!(bounds(&model, m), None);
+    }
+}

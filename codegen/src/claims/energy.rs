@@ -1,0 +1,212 @@
+//! `energy under s: not increasing`: is the energy after an impact at most that before it (Carnot)?
+//!
+//! ```text
+//! walls that stand still, linear constraints   H+ - H- = -(2 - c) c G^2/(2 dh(pi_D grad h)),  G+ = (1 - c) G
+//! ```
+//!
+//! It is not positive for c between 0 and 2. A projection on linear constraints takes energy away, and a refraction keeps it. All other
+//! maps are looked at as functions of the state: equal energies, a quadratic form without positive entries, or a state with more energy.
+//! J. Cortes and A. M. Vinogradov (2006), Theorem 5.7.
+
+use dalembert_expr::{ExprId, Pool, Rational, Sign, SymbolId, Verdict as Zero};
+
+use super::bounds::bounds;
+use super::evidence::Wording;
+use super::examine::explicit;
+use super::finding::{Certificate, Verdict};
+use super::hybrid::Surroundings;
+use super::impact::{Wanted, changes_at};
+use super::passage::{Passage, Velocities};
+use super::regularity::domain;
+use super::wall::Wall;
+use crate::model::{Law, Model};
+
+/// The verdict on `energy under s: not increasing`.
+pub(super) fn check_not_increasing(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+) -> Verdict {
+    let name = model.surfaces[surface].name.display.clone();
+    let wall = Wall::of(model, around.derivation, surface, around.others);
+    if let Some(reason) = known(model, around, surface, &wall) {
+        return proved(&name, reason);
+    }
+    let energy = model.pool.variable(model.derived.energy);
+    if let Some(passage) = &wall.passage
+        && is_never_positive_gain(model, around, surface, passage, &wall)
+    {
+        return proved(
+            &name,
+            "its change is a quadratic form of velocities without positive parts",
+        );
+    }
+    let mut looked_for = |wanted| {
+        let changes = changes_at(model, around, surface, (energy, "energy"), wanted)?;
+        Ok(changes.together(true))
+    };
+    let found = looked_for(Wanted::Any).and_then(|found| match found.shows_that_it_vanishes() {
+        true => Ok(found),
+        false => looked_for(Wanted::Growth),
+    });
+    let found = match found {
+        Ok(found) => found,
+        Err(reason) => return Verdict::Undecided(reason),
+    };
+    let wording = Wording {
+        vanishes: format!("the energy is the same before and after an impact at `{name}`"),
+        differs: format!("the energy grows in an impact at `{name}`"),
+        help: ["leave it out".to_owned(), String::new()],
+    };
+    match found.verdict(true, wording, around.seed) {
+        Verdict::Undecided(_) => Verdict::Undecided(format!(
+            "no state was found at which the energy grows at `{name}`, nor a reason why there is none"
+        )),
+        verdict => verdict,
+    }
+}
+
+fn proved(name: &str, reason: &str) -> Verdict {
+    Verdict::Proved(Certificate {
+        shown: format!("the energy does not grow in an impact at `{name}`: {reason}"),
+        points: 0,
+        primes: Vec::new(),
+        error: 0.0,
+        seed: 0,
+        at: None,
+    })
+}
+
+/// Why the energy does not grow, where the law says so.
+fn known(
+    model: &Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    wall: &Wall,
+) -> Option<&'static str> {
+    let is_zero = |id: &ExprId| model.pool.is_syntactic_zero(*id);
+    let own = &model.surfaces[surface];
+    let stands = is_zero(&around.derivation.surfaces[surface].rate);
+    let constraints = model.constraints.iter().chain(&own.instantaneous);
+    let is_linear = constraints.clone().all(|own| is_zero(&own.affine));
+    if !stands || !is_linear {
+        return None;
+    }
+    match own.law {
+        Law::Elastic => Some("an elastic impact keeps it, and a projection takes of it"),
+        Law::Restitution(e) | Law::Newton(e) => {
+            let ranges = model
+                .pool
+                .enclose(&model.pool.reachable(&[e]), &domain(model, e));
+            let range = ranges[e.index()]?;
+            let is_contraction = -1.0 <= range.lo && range.hi <= 1.0;
+            is_contraction.then_some("the gap rate is multiplied by a number between -1 and 1")
+        }
+        Law::NonholonomicPlastic | Law::ImpactPlastic | Law::TotallyPlastic => {
+            Some("the gap rate is multiplied by a number between -1 and 1")
+        }
+        Law::Transition => {
+            let passage = wall.passage.as_ref()?;
+            let mut affine = passage.after.forms.iter().filter_map(|row| row.last());
+            let is_linear = affine.all(is_zero);
+            match passage.velocities {
+                Velocities::Nearest | Velocities::Refracted if is_linear => Some(
+                    "a refraction keeps it, and the nearest velocity that linear constraints allow has less",
+                ),
+                _ => None,
+            }
+        }
+        Law::Reset => None,
+    }
+}
+
+/// Whether the change of the energy is a constant that is not positive and a diagonal quadratic form of the velocities without positive
+/// entries.
+fn is_never_positive_gain(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    passage: &Passage,
+    wall: &Wall,
+) -> bool {
+    if passage.computes_velocities() || !passage.before.forms.is_empty() {
+        return false;
+    }
+    let enters = model.surfaces[surface]
+        .transition
+        .as_ref()
+        .map(|own| own.enters);
+    let entered = enters.and_then(|enters| around.others.get(enters)).copied();
+    let quantity = model.pool.variable(model.derived.energy);
+    let before = explicit(model, quantity);
+    let Some(after) = passage.quantity_after(model, entered, quantity) else {
+        return false;
+    };
+    let gain = model.pool.sub(after, before);
+    let gain = match wall.solution() {
+        Some(solution) => model.pool.substitute(gain, &[solution]),
+        None => gain,
+    };
+    let gain = model.pool.simplify(gain);
+    let velocities: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    let Some(parts) = diagonal(&mut model.pool, gain, &velocities) else {
+        return false;
+    };
+    let constant = parts.first().copied();
+    let metric: Vec<ExprId> = (0..velocities.len())
+        .map(|i| passage.before.metric[i][i])
+        .collect();
+    let slopes = parts.into_iter().skip(1).zip(metric);
+    let mut ratios: Vec<ExprId> = constant.into_iter().collect();
+    for (part, mass) in slopes {
+        // Relative to the mass, of which only the sign counts.
+        let ratio = model.pool.div(part, mass);
+        let ratio = model.pool.multiply_out(ratio);
+        let is_heavy = model.pool.sign(mass) == Sign::Positive;
+        ratios.push(if is_heavy { ratio } else { part });
+    }
+    ratios
+        .into_iter()
+        .all(|ratio| is_never_positive(model, ratio))
+}
+
+/// Whether a function is certified to be 0 or negative at all states.
+fn is_never_positive(model: &Model, value: ExprId) -> bool {
+    if model.pool.sign(value).is_nonpositive() {
+        return true;
+    }
+    let is_below = bounds(model, value).is_some_and(|[_, high]| high <= Rational::ZERO);
+    let ranges = || {
+        model
+            .pool
+            .enclose(&model.pool.reachable(&[value]), &domain(model, value))
+    };
+    is_below || ranges()[value.index()].is_some_and(|own| own.hi <= 0.0)
+}
+
+/// The constant and the second derivatives of a function that is a constant and a sum of multiples of squares.
+fn diagonal(pool: &mut Pool, gain: ExprId, velocities: &[SymbolId]) -> Option<Vec<ExprId>> {
+    let zero = pool.zero();
+    let at_rest: Vec<_> = velocities.iter().map(|own| (*own, zero)).collect();
+    let mut parts = vec![pool.substitute(gain, &at_rest)];
+    for (i, by) in velocities.iter().enumerate() {
+        let slope = pool.diff(gain, *by);
+        let linear = pool.substitute(slope, &at_rest);
+        if pool.zero_test(linear) != Zero::Proved {
+            return None;
+        }
+        for (j, other) in velocities.iter().enumerate() {
+            let second = pool.diff(slope, *other);
+            if i == j {
+                let second = pool.simplify(second);
+                if pool.depends_on_any(second, velocities) {
+                    return None;
+                }
+                parts.push(second);
+            } else if pool.zero_test(second) != Zero::Proved {
+                return None;
+            }
+        }
+    }
+    Some(parts)
+}

@@ -1,0 +1,123 @@
+//! What surfaces do to a symmetry xi and to its momentum `J = xi^i dL/dqdot^i`. The flow of xi keeps an impact by a law where it keeps the
+//! surface: `xi(h) = 0` where `h = 0`. An impulse `p+ = p + eps pi_D^* dh` changes it by
+//! `eps dh(pi_D xi)` (W. Clark, thesis, chapter VI), `eps dh(xi)` where xi is in D.
+
+use dalembert_expr::{ExprId, Verdict as Zero};
+
+use super::collision::{Vanished, evidence_at_impact};
+use super::evidence::Wording;
+use super::finding::{Verdict, digits};
+use super::hybrid::Surroundings;
+use super::impact::{Wanted, changes_at};
+use super::wall::Wall;
+use crate::model::{Law, Model};
+
+/// A sentence for each surface.
+pub(super) fn momentum_at_surfaces(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    field: &[ExprId],
+) -> Vec<String> {
+    let mut terms = Vec::new();
+    for (component, momentum) in field.iter().zip(model.derived.momenta.clone()) {
+        let momentum = model.pool.variable(momentum);
+        terms.push(model.pool.mul(*component, momentum));
+    }
+    let momentum = model.pool.sum(&terms);
+    (0..model.surfaces.len())
+        .map(|surface| at_surface(model, around, surface, (momentum, field)))
+        .collect()
+}
+
+fn at_surface(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    (momentum, field): (ExprId, &[ExprId]),
+) -> String {
+    let own = &model.surfaces[surface];
+    let what = match own.law {
+        Law::Transition => format!("the transition {}", own.name.display),
+        _ => format!("an impact at {}", own.name.display),
+    };
+    let found = changes_at(model, around, surface, (momentum, "momentum"), Wanted::Any);
+    let found = match found {
+        Ok(found) => found.together(true),
+        Err(reason) => return format!("{what} may change its momentum: {reason}"),
+    };
+    let what = what + surface_is_kept(model, around, surface, field);
+    match found.verdict(true, Wording::default(), around.seed) {
+        Verdict::Proved(_) => format!("{what} keeps its momentum"),
+        Verdict::Undecided(reason) => format!("{what} may change its momentum: {reason}"),
+        Verdict::Refuted(witness) => {
+            let values = witness.values.iter();
+            let values = values.map(|(name, value)| format!("{name} = {}", digits(*value)));
+            let values = values.collect::<Vec<_>>().join(", ");
+            let at = witness
+                .sample
+                .as_ref()
+                .map_or(String::new(), |own| own.text());
+            let jump = jump(model, around, surface, field);
+            format!("{what} changes its momentum{jump}: {values} at {at}")
+        }
+    }
+}
+
+/// Whether the flow keeps a surface with a law, in words; nothing of resets and transitions.
+fn surface_is_kept(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    field: &[ExprId],
+) -> &'static str {
+    if matches!(model.surfaces[surface].law, Law::Reset | Law::Transition) {
+        return "";
+    }
+    let wall = Wall::of(model, around.derivation, surface, around.others);
+    let mut change = along(model, &around.derivation.surfaces[surface].form, field);
+    if let Some(solution) = wall.solution() {
+        change = model.pool.substitute(change, &[solution]);
+    }
+    let question = Vanished {
+        change,
+        shown: "xi(h)".to_owned(),
+    };
+    let found = evidence_at_impact(model, &wall, around.dynamics, &question, around.seed);
+    match found.verdict(true, Wording::default(), around.seed) {
+        Verdict::Proved(_) => " keeps the symmetry and",
+        Verdict::Refuted(_) => " breaks the symmetry and",
+        Verdict::Undecided(_) => "",
+    }
+}
+
+/// The value of a form on the field.
+fn along(model: &mut Model, form: &[ExprId], field: &[ExprId]) -> ExprId {
+    let terms = form.iter().zip(field);
+    let terms: Vec<ExprId> = terms.map(|(a, b)| model.pool.mul(*a, *b)).collect();
+    let sum = model.pool.sum(&terms);
+    model.pool.simplify(sum)
+}
+
+/// The size of the change, of an impulse.
+fn jump(model: &mut Model, around: &Surroundings<'_>, surface: usize, field: &[ExprId]) -> String {
+    if matches!(model.surfaces[surface].law, Law::Reset | Law::Transition) {
+        return String::new();
+    }
+    let forms: Vec<Vec<ExprId>> = model
+        .constraints
+        .iter()
+        .map(|own| own.form.clone())
+        .collect();
+    let is_horizontal = forms.iter().all(|form| {
+        let value = along(model, form, field);
+        model.pool.zero_test(value) == Zero::Proved
+    });
+    let slope = along(model, &around.derivation.surfaces[surface].form, field);
+    match is_horizontal {
+        true => format!(
+            " by eps*({}), eps its impulse along dh",
+            model.pool.text(slope)
+        ),
+        false => " by eps*dh(pi_D xi), eps its impulse along pi_D^* dh".to_owned(),
+    }
+}

@@ -1,0 +1,289 @@
+//! `volume: kept` and `density under s: factor = e`: do the motion and all that happens at surfaces keep one volume, and what does
+//! a surface multiply it by?
+//!
+//! The volume is `f mu_C`, or `f dq` of a first-order system, with the density `f` that the claims state (`density = f`). Where they
+//! state none, `volume: kept` takes the one that the motion is found to keep, and a factor is that of `mu_C`.
+
+use dalembert_expr::{ExprId, Pool};
+
+use super::evidence::Wording;
+use super::finding::{Certificate, Verdict, Witness};
+use super::hybrid::{Density, Effect, Surroundings, Unknown, change_at, effects, factor};
+use super::potential::{Potential, Term};
+use super::regularity::domain;
+use super::side::stated_density;
+use crate::model::{Law, Model};
+
+/// The density that the claims state, else that of `mu_C` itself.
+pub(super) fn stated_or_one(model: &mut Model) -> Density {
+    match stated_density(model) {
+        Some((value, written)) => Density {
+            value: Some(value),
+            written: Some(written),
+            is_found: false,
+        },
+        None => Density {
+            value: Some(model.pool.one()),
+            written: None,
+            is_found: false,
+        },
+    }
+}
+
+/// The density of a potential, as far as it is written out.
+pub(super) fn of_potential(pool: &mut Pool, potential: Option<&Potential>) -> Density {
+    let written = potential.and_then(|own| exponential(pool, own));
+    Density {
+        value: written,
+        written: None,
+        is_found: true,
+    }
+}
+
+/// `exp(G)`, if all its terms are written out.
+fn exponential(pool: &mut Pool, potential: &Potential) -> Option<ExprId> {
+    let mut factors = Vec::new();
+    for (coefficient, term) in &potential.terms {
+        factors.push(match term {
+            Term::Plain(own) => {
+                let exponent = pool.mul(*coefficient, *own);
+                pool.call(dalembert_expr::Function::Exp, exponent)
+            }
+            Term::Logarithm(own) => {
+                let exponent = pool.as_number(*coefficient)?.clone();
+                let size = pool.call(dalembert_expr::Function::Abs, *own);
+                pool.pow(size, exponent)
+            }
+            Term::MassDeterminant | Term::MetricDeterminant | Term::DependentDeterminant => {
+                return None;
+            }
+        });
+    }
+    Some(pool.product(&factors))
+}
+
+/// The verdict on `volume: kept`, given that on the density of the flow, with what each surface does.
+pub(super) fn check_kept(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    density: &Density,
+    flow: Verdict,
+) -> (Verdict, Vec<String>) {
+    let flow = match flow {
+        Verdict::Proved(certificate) => certificate,
+        Verdict::Refuted(witness) => {
+            return (Verdict::Refuted(of_the_motion(witness)), Vec::new());
+        }
+        Verdict::Undecided(reason) => {
+            let text = format!("it is not known whether the motion keeps it: {reason}");
+            return (Verdict::Undecided(text), Vec::new());
+        }
+    };
+    let effects = effects(model, around, density);
+    let sentences = effects
+        .iter()
+        .map(|own| own.sentence(model, around.derivation));
+    let sentences: Vec<String> = sentences.collect();
+    let with_sentences = || effects.iter().zip(&sentences);
+    let refuted = with_sentences().find(|(own, _)| matches!(own.verdict, Verdict::Refuted(_)));
+    if let Some((effect, sentence)) = refuted {
+        let verdict = Verdict::Refuted(of_a_surface(model, effect, sentence.clone()));
+        return (verdict, others(with_sentences(), effect));
+    }
+    let open = with_sentences().find(|(own, _)| !own.keeps());
+    if let Some((effect, sentence)) = open {
+        return (
+            Verdict::Undecided(sentence.clone()),
+            others(with_sentences(), effect),
+        );
+    }
+    let kept = match sentences.is_empty() {
+        true => "there are no impacts".to_owned(),
+        false => format!("{} keep it too", names(model, &effects)),
+    };
+    let mut together = Certificate {
+        shown: format!("{}; {kept}", flow.shown),
+        ..flow
+    };
+    for effect in &effects {
+        if let Verdict::Proved(own) = &effect.verdict {
+            together = with(together, own);
+        }
+    }
+    (Verdict::Proved(together), Vec::new())
+}
+
+/// One certificate of two proofs.
+fn with(mut all: Certificate, other: &Certificate) -> Certificate {
+    all.points += other.points;
+    all.error += other.error;
+    all.primes.extend(&other.primes);
+    all.primes.sort_unstable();
+    all.primes.dedup();
+    all
+}
+
+/// Surfaces and transitions by name: `impacts at floor, wall, transitions up`.
+fn names(model: &Model, effects: &[Effect]) -> String {
+    let of = |is_transition: bool, what: &str| -> Option<String> {
+        let own = effects.iter().map(|own| &model.surfaces[own.surface]);
+        let own = own.filter(|own| (own.law == Law::Transition) == is_transition);
+        let names: Vec<&str> = own.map(|own| own.name.display.as_str()).collect();
+        (!names.is_empty()).then(|| format!("{what} {}", names.join(", ")))
+    };
+    let parts = [of(false, "impacts at"), of(true, "transitions")];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    parts.join(", ")
+}
+
+fn others<'e>(all: impl Iterator<Item = (&'e Effect, &'e String)>, shown: &Effect) -> Vec<String> {
+    let rest = all.filter(|(own, _)| own.surface != shown.surface);
+    rest.map(|(_, sentence)| sentence.clone()).collect()
+}
+
+fn of_the_motion(witness: Witness) -> Witness {
+    Witness {
+        reason: format!("the motion does not keep it: {}", witness.reason),
+        ..witness
+    }
+}
+
+fn of_a_surface(model: &Model, effect: &Effect, sentence: String) -> Witness {
+    let name = &model.surfaces[effect.surface].name.display;
+    let (sample, values) = match &effect.verdict {
+        Verdict::Refuted(witness) => (witness.sample.clone(), witness.values.clone()),
+        _ => (None, Vec::new()),
+    };
+    let help = match model.surfaces[effect.surface].law {
+        Law::Transition => format!(
+            "write `density under {name}: factor = ..;`, or state a density in each mode that makes up for it"
+        ),
+        _ => format!("write `density under {name}: factor = ..;`"),
+    };
+    Witness {
+        reason: sentence,
+        sample,
+        values,
+        help,
+    }
+}
+
+/// The verdict on `density under s: factor = value`.
+pub(super) fn check_factor(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    (value, written): (ExprId, &str),
+) -> Verdict {
+    let density = stated_or_one(model);
+    let name = model.surfaces[surface].name.display.clone();
+    let (wall, found) = match change_at(model, around, &density, surface, Some((value, written))) {
+        Ok(found) => found,
+        Err(unknown) => return without_map(model, unknown, &name, (value, written)),
+    };
+    let volume = match &density.written {
+        Some(stated) => format!("the volume of density {stated}"),
+        None => "the volume".to_owned(),
+    };
+    let help = match density.written {
+        None => format!("`{name}` {}", factor(model, surface, &wall)),
+        Some(_) => "the factor is that of the stated density".to_owned(),
+    };
+    let wording = Wording {
+        vanishes: format!("`{name}` multiplies {volume} by {written}"),
+        differs: format!("`{name}` does not multiply {volume} by {written}"),
+        help: [help, String::new()],
+    };
+    let is_signed = (wall.passage.as_ref()).is_some_and(super::passage::Passage::may_slide);
+    let verdict = found.verdict(true, wording, around.seed);
+    if matches!(verdict, Verdict::Proved(_)) && !is_signed && !is_never_negative(model, value) {
+        return Verdict::Undecided(format!(
+            "`{name}` multiplies {volume} by {written} up to its sign, and `{written}` may be negative; write its size, `abs(..)`"
+        ));
+    }
+    verdict
+}
+
+/// The verdict where there is no map between volumes of one dimension.
+fn without_map(
+    model: &mut Model,
+    unknown: Unknown,
+    name: &str,
+    (value, written): (ExprId, &str),
+) -> Verdict {
+    let refuted = |reason: String, help: &str| {
+        Verdict::Refuted(Witness {
+            reason,
+            sample: None,
+            values: Vec::new(),
+            help: help.to_owned(),
+        })
+    };
+    match unknown {
+        Unknown::Vanishes if model.pool.is_syntactic_zero(value) => Verdict::Proved(Certificate {
+            shown: format!(
+                "instantaneous constraints of `{name}` map states on a line to one: volumes become 0"
+            ),
+            points: 0,
+            primes: Vec::new(),
+            error: 0.0,
+            seed: 0,
+            at: None,
+        }),
+        Unknown::Vanishes => refuted(
+            format!(
+                "instantaneous constraints of `{name}` map states on a line to one: volumes become 0, and are not multiplied by {written}"
+            ),
+            &format!("write `density under {name}: factor = 0;`"),
+        ),
+        Unknown::Dimensions(before, after) => refuted(
+            format!(
+                "`{name}` leads from states of {before} dimensions to states of {after}: no volume is multiplied"
+            ),
+            "leave it out",
+        ),
+        Unknown::Open(reason) => Verdict::Undecided(reason),
+    }
+}
+
+/// Whether a function is certified to be 0 or positive at all states.
+fn is_never_negative(model: &Model, value: ExprId) -> bool {
+    if model.pool.sign(value).is_nonnegative() {
+        return true;
+    }
+    let ranges = model
+        .pool
+        .enclose(&model.pool.reachable(&[value]), &domain(model, value));
+    ranges[value.index()].is_some_and(|own| own.lo >= 0.0)
+}
+
+/// What a proof of a density says where surfaces do not keep its volume: it is one of the motion alone.
+pub(super) fn qualified(
+    model: &Model,
+    certificate: Certificate,
+    effects: &[Effect],
+) -> Certificate {
+    let texts = |wanted: fn(&Verdict) -> bool| -> String {
+        let found = effects.iter().filter(|own| wanted(&own.verdict));
+        let texts =
+            found.map(|own| format!("{} {}", model.surfaces[own.surface].name.display, own.text));
+        texts.collect::<Vec<_>>().join(", ")
+    };
+    let failing = texts(|own| matches!(own, Verdict::Refuted(_)));
+    let open = texts(|own| matches!(own, Verdict::Undecided(_)));
+    let because = match (failing.is_empty(), open.is_empty()) {
+        (true, true) => return certificate,
+        (false, true) => format!("impacts do not keep the volume: {failing}"),
+        (true, false) => format!("impacts are not known to keep the volume: {open}"),
+        (false, false) => {
+            format!("impacts do not keep the volume: {failing}; nor are known to: {open}")
+        }
+    };
+    Certificate {
+        shown: format!(
+            "of the motion between impacts alone ({because}): {}",
+            certificate.shown
+        ),
+        ..certificate
+    }
+}

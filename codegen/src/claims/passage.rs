@@ -1,0 +1,582 @@
+//! The map of a reset or of a transition, and what it does to the volumes of both sides.
+//!
+//! ```text
+//! q+ = psi(t, q)   qdot+ = w(t, q, qdot)      mu_C = det g/|det A_dep| dq du, u the independent velocities
+//! J = rho+/rho- det(du+/du) det[dpsi + (qdot+ - d_t psi - dpsi qdot) dh/G],   G = dh(qdot) + d_t h
+//! ```
+//!
+//! J is the determinant of the augmented differential (W. Clark, thesis, chapter VII): it takes tangent vectors of the surface to
+//! their images and the motion before to the motion after. A first-order system has the volume `dq` and `det(du+/du) = 1`.
+//!
+//! A refraction without constraints has J = 1: along `p + c dh` the energies agree, `(1 + dc(dh)) G+ = G-`, and the first
+//! factor is `det(dp+/dp)`.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, Pool, SymbolId};
+
+use super::dynamics::Number;
+use super::examine::explicit;
+use super::linear::{dot, solve};
+use super::minors::{LARGEST, determinant};
+use super::refraction::refracted;
+use super::side::{Side, quantity_of_mode};
+use crate::mechanics::Derivation;
+use crate::model::Model;
+
+/// A map from the states on a surface to states of the same mode or of another one.
+#[derive(Debug)]
+pub(super) struct Passage {
+    /// The mode that is left.
+    pub(super) before: Side,
+    /// The mode that is entered, at the state after the passage; its velocities are those after it only where they were declared.
+    pub(super) after: Side,
+    /// Positions after it.
+    pub(super) positions: Vec<ExprId>,
+    /// Velocities after it.
+    pub(super) velocities: Velocities,
+    /// The derivatives of the positions by the coordinates, and by time.
+    slopes: Vec<Vec<ExprId>>,
+    rates: Vec<ExprId>,
+    /// `dh` and `d_t h`.
+    gap: (Vec<ExprId>, ExprId),
+    qdot: Vec<SymbolId>,
+    /// Whether another mode is entered, and whether nothing was declared of the state there.
+    leads_to_another_mode: bool,
+    is_kept: bool,
+    /// Why nothing is known of volumes, if nothing is.
+    pub(super) open: Option<Open>,
+}
+
+/// A row of a matrix with its affine part.
+type AffineRow<P> = (Vec<Number<P>>, Number<P>);
+
+/// The velocities after a passage.
+#[derive(Debug)]
+pub(super) enum Velocities {
+    /// Declared ones, with their derivatives by the velocities before.
+    Declared(Vec<ExprId>, Vec<Vec<ExprId>>),
+    /// Those of a first-order system, which follow from the positions.
+    Rates,
+    /// The nearest ones that satisfy the constraints of the mode.
+    Nearest,
+    /// Those of a refraction, or of a reflection where there is none.
+    Refracted,
+}
+
+/// Reasons why the change of a volume is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Open {
+    /// States of other dimensions: no volume of one is one of the other.
+    Dimensions(usize, usize),
+    /// Positions after it depend on velocities.
+    Positions,
+    /// Both modes have as many dimensions in another number of coordinates.
+    Coordinates,
+    /// A refraction within constraints.
+    Refraction,
+    /// More coordinates than determinants are expanded of.
+    Size,
+}
+
+impl Open {
+    pub(super) fn text(self) -> String {
+        match self {
+            Self::Dimensions(before, after) => {
+                format!("it leads from states of {before} dimensions to states of {after}")
+            }
+            Self::Positions => "positions after it depend on velocities".to_owned(),
+            Self::Coordinates => "both modes have other numbers of coordinates".to_owned(),
+            Self::Refraction => "refraction within constraints is not examined".to_owned(),
+            Self::Size => format!("more than {} coordinates are not examined", LARGEST - 1),
+        }
+    }
+}
+
+impl Passage {
+    /// The reset of a surface, or its transition into one of the modes `others`; `None` if it is neither, or the mode is not at hand.
+    pub(super) fn of(
+        model: &mut Model,
+        derivation: &Derivation,
+        surface: usize,
+        others: &[&Model],
+    ) -> Option<Self> {
+        let before = Side::of(model);
+        let own = &model.surfaces[surface];
+        let reset = own.reset.clone();
+        let (transition, q) = (own.transition.clone(), positions(model));
+        let leads_to_another_mode = transition.is_some();
+        let is_kept = transition.as_ref().is_some_and(|own| own.map.is_none());
+        let (after, positions, velocities) = match (reset, transition) {
+            (Some(reset), _) => {
+                let replacements = reset.replacements(&model.coordinates);
+                let kept = |given: &[Option<ExprId>], all: Vec<ExprId>| -> Vec<ExprId> {
+                    let pairs = given.iter().zip(all);
+                    pairs.map(|(given, own)| given.unwrap_or(own)).collect()
+                };
+                let qdot = kept(&reset.qdot, velocities_of(model));
+                let q = kept(&reset.q, q);
+                let after = before.substituted(&mut model.pool, &replacements);
+                (after, q, declared(model, &before, qdot))
+            }
+            (None, Some(transition)) => {
+                let entered = *others.get(transition.enters)?;
+                match transition.map {
+                    Some(map) => {
+                        let after = Side::of_mode(model, entered, (&map.q, &map.qdot))?;
+                        let velocities = declared(model, &after, map.qdot);
+                        (after, map.q, velocities)
+                    }
+                    None => {
+                        let qdot = velocities_of(model);
+                        let after = Side::of_mode(model, entered, (&q, &qdot))?;
+                        let velocities = match (&after.rates, transition.keeps_lagrangian) {
+                            (Some(_), _) => Velocities::Rates,
+                            (None, true) => Velocities::Nearest,
+                            (None, false) => Velocities::Refracted,
+                        };
+                        (after, q, velocities)
+                    }
+                }
+            }
+            (None, None) => return None,
+        };
+        let form = &derivation.surfaces[surface];
+        let gap = (form.form.clone(), form.rate);
+        Some(Self {
+            leads_to_another_mode,
+            is_kept,
+            ..Self::between(model, (before, after), positions, velocities, gap)
+        })
+    }
+
+    fn between(
+        model: &mut Model,
+        (before, after): (Side, Side),
+        positions: Vec<ExprId>,
+        velocities: Velocities,
+        gap: (Vec<ExprId>, ExprId),
+    ) -> Self {
+        let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+        let positions = match before.rates.clone() {
+            Some(rates) => {
+                let motion = model.coordinates.iter().map(|own| own.qdot).zip(rates);
+                let motion: Vec<_> = motion.collect();
+                model.pool.substitute_all(&positions, &motion)
+            }
+            None => positions,
+        };
+        let qdot: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let time = model.time;
+        let slopes = positions
+            .iter()
+            .map(|own| {
+                symbols
+                    .iter()
+                    .map(|by| model.pool.diff(*own, *by))
+                    .collect()
+            })
+            .collect();
+        let rates = positions
+            .iter()
+            .map(|own| model.pool.diff(*own, time))
+            .collect();
+        let moves = |own: &ExprId| model.pool.depends_on_any(*own, &qdot);
+        let is_refracted = matches!(velocities, Velocities::Refracted);
+        let sides = [&before, &after];
+        let [from, to] = sides.map(Side::dimension);
+        let open = if from != to {
+            Some(Open::Dimensions(from, to))
+        } else if before.metric.len() != after.metric.len() {
+            Some(Open::Coordinates)
+        } else if before.rates.is_none() && positions.iter().any(moves) {
+            Some(Open::Positions)
+        } else if is_refracted && sides.iter().any(|own| !own.forms.is_empty()) {
+            Some(Open::Refraction)
+        } else if before.metric.len() >= LARGEST {
+            Some(Open::Size)
+        } else {
+            None
+        };
+        Self {
+            before,
+            after,
+            positions,
+            velocities,
+            slopes,
+            rates,
+            gap,
+            qdot,
+            leads_to_another_mode: false,
+            is_kept: false,
+            open,
+        }
+    }
+
+    /// Gives the mode that is left this density, and that which is entered too where both are one.
+    pub(super) fn weigh(&mut self, model: &mut Model, density: ExprId) {
+        self.before.density = density;
+        if self.leads_to_another_mode {
+            return;
+        }
+        let q = model
+            .coordinates
+            .iter()
+            .map(|own| own.q)
+            .zip(&self.positions);
+        let mut replacements: Vec<_> = q.map(|(own, after)| (own, *after)).collect();
+        if let Velocities::Declared(values, _) = &self.velocities {
+            replacements.extend(self.qdot.iter().copied().zip(values.iter().copied()));
+        }
+        self.after.density = model.pool.substitute(density, &replacements);
+    }
+
+    /// Replaces a coordinate by its value on the surface, in all that is evaluated.
+    pub(super) fn restrict(&mut self, pool: &mut Pool, solution: (SymbolId, ExprId)) {
+        let solution = [solution];
+        for side in [&mut self.before, &mut self.after] {
+            *side = side.substituted(pool, &solution);
+        }
+        let mut on_surface = |row: &mut Vec<ExprId>| *row = pool.substitute_all(row, &solution);
+        self.slopes.iter_mut().for_each(&mut on_surface);
+        [&mut self.positions, &mut self.rates, &mut self.gap.0]
+            .into_iter()
+            .for_each(&mut on_surface);
+        if let Velocities::Declared(values, slopes) = &mut self.velocities {
+            on_surface(values);
+            slopes.iter_mut().for_each(&mut on_surface);
+        }
+        self.gap.1 = pool.substitute(self.gap.1, &solution);
+    }
+
+    /// A quantity, with `energy` and momenta by name, at the state after the passage, of the mode that is entered where it is another one. Where velocities
+    /// after it were not declared, it is one of those of the point.
+    pub(super) fn quantity_after(
+        &self,
+        model: &mut Model,
+        entered: Option<&Model>,
+        quantity: ExprId,
+    ) -> Option<ExprId> {
+        let qdot = match &self.velocities {
+            Velocities::Declared(values, _) => values.clone(),
+            Velocities::Rates => self.after.rates.clone()?,
+            Velocities::Nearest | Velocities::Refracted => velocities_of(model),
+        };
+        match entered {
+            Some(entered) => quantity_of_mode(model, entered, quantity, (&self.positions, &qdot)),
+            None => {
+                let value = explicit(model, quantity);
+                let q = model
+                    .coordinates
+                    .iter()
+                    .map(|own| own.q)
+                    .zip(&self.positions);
+                let mut replacements: Vec<_> = q.map(|(own, after)| (own, *after)).collect();
+                replacements.extend(self.qdot.iter().copied().zip(qdot));
+                Some(model.pool.substitute(value, &replacements))
+            }
+        }
+    }
+
+    /// `dh` and `d_t h`.
+    pub(super) fn gap_form(&self) -> (Vec<ExprId>, ExprId) {
+        self.gap.clone()
+    }
+
+    /// Whether the Lagrangian changes and mechanics says how the motion goes on.
+    pub(super) fn is_refracted(&self) -> bool {
+        matches!(self.velocities, Velocities::Refracted)
+    }
+
+    /// Whether velocities after it are computed, not written out.
+    pub(super) fn computes_velocities(&self) -> bool {
+        matches!(self.velocities, Velocities::Nearest | Velocities::Refracted)
+    }
+
+    /// Whether no position changes.
+    pub(super) fn keeps_positions(&self, model: &Model) -> bool {
+        let mut pairs = self.positions.iter().zip(&model.coordinates);
+        pairs.all(|(after, own)| matches!(model.pool.node(*after), Node::Symbol(symbol) if *symbol == own.q))
+    }
+
+    /// Whether the state of a first-order system stays while the mode changes: where the motion then comes back it slides.
+    pub(super) fn may_slide(&self) -> bool {
+        self.is_kept && self.before.rates.is_some()
+    }
+
+    /// Everything that the velocities after it are made of.
+    pub(super) fn velocity_roots(&self) -> Vec<ExprId> {
+        let of_metric = |side: &Side| side.metric.iter().flatten().copied().collect::<Vec<_>>();
+        match &self.velocities {
+            Velocities::Declared(values, _) => values.clone(),
+            Velocities::Rates => self.after.rates.clone().unwrap_or_default(),
+            Velocities::Nearest => {
+                let forms = self.after.forms.iter().flatten().copied();
+                of_metric(&self.after).into_iter().chain(forms).collect()
+            }
+            Velocities::Refracted => {
+                let sides = [&self.before, &self.after];
+                let forces = sides.iter().flat_map(|own| own.forces());
+                let metrics = sides.iter().flat_map(|own| of_metric(own));
+                let gap = self.gap.0.iter().copied().chain([self.gap.1]);
+                metrics.chain(forces).chain(gap).collect()
+            }
+        }
+    }
+
+    /// Everything that volumes depend on.
+    pub(super) fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.velocity_roots();
+        roots.extend(self.before.roots().chain(self.after.roots()));
+        roots.extend(
+            self.slopes
+                .iter()
+                .flatten()
+                .chain(&self.rates)
+                .chain(&self.positions),
+        );
+        roots.extend(self.gap.0.iter().copied().chain([self.gap.1]));
+        if let Velocities::Declared(_, slopes) = &self.velocities {
+            roots.extend(slopes.iter().flatten());
+        }
+        roots
+    }
+
+    /// The velocities after it; `None` at a singular point.
+    pub(super) fn velocities_after<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<Vec<Number<P>>> {
+        let order = model.pool.reachable(&self.velocity_roots());
+        let values = point.values(&model.pool, &order)?;
+        self.velocities_at(model, point, &values)
+    }
+
+    fn velocities_at<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &P,
+        values: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let given = |ids: &[ExprId]| ids.iter().map(|id| values[id.index()]).collect();
+        let before = |own: &SymbolId| point.symbol(&model.pool, *own);
+        match &self.velocities {
+            Velocities::Declared(own, _) => Some(given(own)),
+            Velocities::Rates => Some(given(self.after.rates.as_ref()?)),
+            Velocities::Nearest => {
+                let field = point.field();
+                let projection = self.projection::<P>(field, values)?;
+                let velocity: Vec<_> = self.qdot.iter().map(before).collect();
+                let shifted = |(row, shift): &AffineRow<P>| {
+                    let terms = row.iter().zip(&velocity);
+                    let along =
+                        |sum, (a, b): (&Number<P>, &Number<P>)| field.add(sum, field.mul(*a, *b));
+                    terms.fold(*shift, along)
+                };
+                Some(projection.iter().map(shifted).collect())
+            }
+            Velocities::Refracted => {
+                let velocity: Vec<_> = self.qdot.iter().map(before).collect();
+                refracted(
+                    point,
+                    values,
+                    (&self.before, &self.after),
+                    &self.gap,
+                    &velocity,
+                )
+            }
+        }
+    }
+
+    /// The projection on the constraints of the mode that is entered: rows of a matrix, each with its affine part.
+    fn projection<P: ExpansionPoint>(
+        &self,
+        field: P::Field,
+        values: &[Number<P>],
+    ) -> Option<Vec<AffineRow<P>>> {
+        let space = JetSpace::new(0, 0, 1)?;
+        let jets = Jets::new(field, &space);
+        let constants = |rows: &[Vec<ExprId>]| -> Vec<Vec<Vec<Number<P>>>> {
+            let row = |row: &Vec<ExprId>| {
+                let entries = row.iter().map(|id| jets.constant(values[id.index()]));
+                entries.collect()
+            };
+            rows.iter().map(row).collect()
+        };
+        let (metric, forms) = (constants(&self.after.metric), constants(&self.after.forms));
+        let n = metric.len();
+        let column = |i: usize| forms.iter().map(|form| form[i].clone()).collect();
+        // W^a, N rows of M.
+        let duals = solve(&jets, metric, (0..n).map(column).collect())?.unknowns;
+        let mass = forms.iter().map(|form| {
+            let dual = |a: usize| duals.iter().map(|row| row[a].clone()).collect::<Vec<_>>();
+            (0..forms.len())
+                .map(|a| dot(&jets, &form[..n], &dual(a)))
+                .collect()
+        });
+        // m_ab (eta^b | eta^b_0), M rows of N + 1.
+        let share = solve(&jets, mass.collect(), forms.clone())?.unknowns;
+        let entry = |i: usize, j: usize| {
+            let terms = duals[i]
+                .iter()
+                .zip(&share)
+                .map(|(w, row)| jets.mul(w, &row[j]));
+            let sum = terms.fold(field.integer(0), |sum, own| {
+                field.add(sum, jets.value(&own))
+            });
+            match i == j {
+                true => field.sub(field.integer(1), sum),
+                false => field.neg(sum),
+            }
+        };
+        let row = |i: usize| ((0..n).map(|j| entry(i, j)).collect(), entry(i, n));
+        Some((0..n).map(row).collect())
+    }
+
+    /// By how much `mu_C` is multiplied. Its sign is that of the gap rates alone where the state stays; else it has no meaning.
+    pub(super) fn jacobian<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<Number<P>> {
+        if self.open.is_some() {
+            return None;
+        }
+        let field = point.field();
+        if matches!(self.velocities, Velocities::Refracted) {
+            return Some(field.integer(1));
+        }
+        let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
+        let [before, after] = [&self.before, &self.after].map(|own| own.chart(point, &values));
+        let (before, after) = (before?, after?);
+        let fibre = match &self.velocities {
+            Velocities::Declared(_, slopes) => {
+                let row = |i: &usize| slopes[*i].iter().map(|id| values[id.index()]).collect();
+                after.independent.iter().map(row).collect()
+            }
+            Velocities::Nearest => {
+                let rows = self.projection::<P>(field, &values)?;
+                after
+                    .independent
+                    .iter()
+                    .map(|i| rows[*i].0.clone())
+                    .collect()
+            }
+            Velocities::Rates | Velocities::Refracted => Vec::new(),
+        };
+        let fibre = determinant(field, &product(field, &fibre, &before.basis))?;
+        let outgoing = self.velocities_at(model, point, &values)?;
+        let flux = self.flux(model, point, &values, &outgoing)?;
+        let ratio = field.mul(after.density, field.inv(before.density)?);
+        Some(field.mul(ratio, field.mul(fibre, flux)))
+    }
+
+    /// The rows of the determinant of [`Passage::flux`] as expressions, and the gap rate G before.
+    pub(super) fn bordered(&self, model: &mut Model) -> (Vec<Vec<ExprId>>, ExprId) {
+        let incoming = self.before.velocities(model);
+        let outgoing = match &self.velocities {
+            Velocities::Declared(own, _) => own.clone(),
+            _ => self.after.rates.clone().unwrap_or_else(|| incoming.clone()),
+        };
+        let pool = &mut model.pool;
+        let mut along = |row: &[ExprId], start: ExprId| {
+            let mut terms = vec![start];
+            for (slope, velocity) in row.iter().zip(&incoming) {
+                terms.push(pool.mul(*slope, *velocity));
+            }
+            pool.sum(&terms)
+        };
+        let gap_rate = along(&self.gap.0, self.gap.1);
+        let carried: Vec<ExprId> = (self.slopes.iter().zip(&self.rates))
+            .map(|(slopes, rate)| along(slopes, *rate))
+            .collect();
+        let mut first = vec![gap_rate];
+        first.extend(self.gap.0.iter().map(|own| pool.neg(*own)));
+        let mut rows = vec![first];
+        for ((velocity, carried), slopes) in outgoing.iter().zip(carried).zip(&self.slopes) {
+            let mut row = vec![pool.sub(*velocity, carried)];
+            row.extend(slopes);
+            rows.push(row);
+        }
+        (rows, gap_rate)
+    }
+
+    /// `det[dpsi + (qdot+ - d_t psi - dpsi qdot) dh/G]`, as a determinant with one row and one column more.
+    fn flux<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &P,
+        values: &[Number<P>],
+        outgoing: &[Number<P>],
+    ) -> Option<Number<P>> {
+        let field = point.field();
+        let value = |id: &ExprId| values[id.index()];
+        let incoming: Vec<_> = (self.qdot.iter())
+            .map(|own| point.symbol(&model.pool, *own))
+            .collect();
+        let along = |row: &[ExprId], start: Number<P>| {
+            let terms = row.iter().zip(&incoming);
+            terms.fold(start, |sum, (a, b)| field.add(sum, field.mul(value(a), *b)))
+        };
+        let gap_rate = along(&self.gap.0, value(&self.gap.1));
+        let mut first = vec![gap_rate];
+        first.extend(self.gap.0.iter().map(|own| field.neg(value(own))));
+        let mut rows = vec![first];
+        for ((slopes, rate), velocity) in self.slopes.iter().zip(&self.rates).zip(outgoing) {
+            let mut row = vec![field.sub(*velocity, along(slopes, value(rate)))];
+            row.extend(slopes.iter().map(value));
+            rows.push(row);
+        }
+        Some(field.mul(determinant(field, &rows)?, field.inv(gap_rate)?))
+    }
+}
+
+fn positions(model: &mut Model) -> Vec<ExprId> {
+    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+    symbols
+        .into_iter()
+        .map(|own| model.pool.variable(own))
+        .collect()
+}
+
+fn velocities_of(model: &mut Model) -> Vec<ExprId> {
+    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    symbols
+        .into_iter()
+        .map(|own| model.pool.variable(own))
+        .collect()
+}
+
+/// Declared velocities with their derivatives; those of a first-order system are none.
+fn declared(model: &mut Model, after: &Side, velocities: Vec<ExprId>) -> Velocities {
+    if after.rates.is_some() {
+        return Velocities::Rates;
+    }
+    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    let slopes = velocities
+        .iter()
+        .map(|own| {
+            symbols
+                .iter()
+                .map(|by| model.pool.diff(*own, *by))
+                .collect()
+        })
+        .collect();
+    Velocities::Declared(velocities, slopes)
+}
+
+fn product<A: Arithmetic>(
+    field: A,
+    left: &[Vec<A::Scalar>],
+    right: &[Vec<A::Scalar>],
+) -> Vec<Vec<A::Scalar>> {
+    let columns = right.first().map_or(0, Vec::len);
+    let entry = |row: &Vec<A::Scalar>, j: usize| {
+        let terms = row.iter().zip(right);
+        terms.fold(field.integer(0), |sum, (a, b)| {
+            field.add(sum, field.mul(*a, b[j]))
+        })
+    };
+    left.iter()
+        .map(|row| (0..columns).map(|j| entry(row, j)).collect())
+        .collect()
+}

@@ -1,0 +1,247 @@
+//! One side of an impact: metric, constraints and rates of a mode, as expressions of the state before the impact.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, SymbolId};
+
+use super::dynamics::Number;
+use super::examine::explicit;
+use super::frame::choose_dependent;
+use super::linear::{Matrix, solve};
+use super::minors::determinant;
+use crate::model::{Model, Statement};
+
+/// A mode at a state.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Side {
+    /// `g`
+    pub(super) metric: Vec<Vec<ExprId>>,
+    /// `eta^a` and `eta^a_0` at the end.
+    pub(super) forms: Vec<Vec<ExprId>>,
+    /// The rates of a first-order system.
+    pub(super) rates: Option<Vec<ExprId>>,
+    /// `A`
+    pub(super) linear: Vec<ExprId>,
+    /// `V`
+    pub(super) potential: ExprId,
+    /// The density of the volume that is looked at, 1 if there is none.
+    pub(super) density: ExprId,
+}
+
+/// Coordinates of the states over a position: independent velocities, and how all velocities follow from them.
+pub(super) struct Chart<A: Arithmetic> {
+    /// The velocities that are coordinates.
+    pub(super) independent: Vec<usize>,
+    /// The derivatives of all velocities by these, N rows.
+    pub(super) basis: Vec<Vec<A::Scalar>>,
+    /// `det g/det A_dep`, the density of `mu_C` up to its sign.
+    pub(super) density: A::Scalar,
+}
+
+impl Side {
+    /// The mode of a model, with the density that its claims state.
+    pub(super) fn of(model: &mut Model) -> Self {
+        let forms = model.constraints.iter().map(|own| {
+            let mut row = own.form.clone();
+            row.push(own.affine);
+            row
+        });
+        let forms = forms.collect();
+        Self {
+            metric: model.lagrangian.metric.clone(),
+            forms,
+            rates: model.field.clone(),
+            linear: model.lagrangian.linear.clone(),
+            potential: model.lagrangian.potential,
+            density: stated_density(model).map_or_else(|| model.pool.one(), |(own, _)| own),
+        }
+    }
+
+    /// The expressions, in one order.
+    fn expressions(&self) -> Vec<ExprId> {
+        let rows = self.metric.iter().chain(&self.forms).flatten();
+        let rates = self.rates.iter().flatten();
+        let rest = rates.chain(&self.linear).copied();
+        rows.copied()
+            .chain(rest)
+            .chain([self.potential, self.density])
+            .collect()
+    }
+
+    /// The same with other expressions in this order.
+    fn with(&self, expressions: Vec<ExprId>) -> Self {
+        let mut expressions = expressions.into_iter();
+        let mut take = |row: &Vec<ExprId>| expressions.by_ref().take(row.len()).collect::<Vec<_>>();
+        let metric = self.metric.iter().map(&mut take).collect();
+        let forms = self.forms.iter().map(&mut take).collect();
+        let rates = self.rates.as_ref().map(&mut take);
+        let linear = take(&self.linear);
+        let [potential, density] = [0, 1].map(|_| expressions.next().unwrap_or(self.potential));
+        Self {
+            metric,
+            forms,
+            rates,
+            linear,
+            potential,
+            density,
+        }
+    }
+
+    /// The mode at the state that a map leads to.
+    pub(super) fn substituted(&self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
+        let replaced = pool.substitute_all(&self.expressions(), replacements);
+        self.with(replaced)
+    }
+
+    /// Another mode at the state with these positions and velocities; `None` if it has a symbol that this one has not.
+    pub(super) fn of_mode(
+        model: &mut Model,
+        entered: &Model,
+        (q, qdot): (&[ExprId], &[ExprId]),
+    ) -> Option<Self> {
+        let mut entered = entered.clone();
+        let side = Self::of(&mut entered);
+        let replacements = replacements(model, &entered, (q, qdot))?;
+        let imported = model
+            .pool
+            .import(&entered.pool, &side.expressions(), &replacements)?;
+        Some(side.with(imported))
+    }
+
+    /// Metric, constraints, rates and density.
+    pub(super) fn roots(&self) -> impl Iterator<Item = ExprId> + '_ {
+        let rows = self.metric.iter().chain(&self.forms).flatten();
+        let rates = self.rates.iter().flatten();
+        rows.chain(rates).copied().chain([self.density])
+    }
+
+    /// `A` and `V`.
+    pub(super) fn forces(&self) -> impl Iterator<Item = ExprId> + '_ {
+        self.linear.iter().copied().chain([self.potential])
+    }
+
+    /// The dimension of the states.
+    pub(super) fn dimension(&self) -> usize {
+        match self.rates {
+            Some(_) => self.metric.len(),
+            None => 2 * self.metric.len() - self.forms.len(),
+        }
+    }
+
+    /// The coordinates of the states at a point; `None` where the constraints are dependent.
+    pub(super) fn chart<P: ExpansionPoint>(
+        &self,
+        point: &P,
+        values: &[Number<P>],
+    ) -> Option<Chart<P::Field>> {
+        let field = point.field();
+        let n = self.metric.len();
+        if self.rates.is_some() {
+            return Some(Chart {
+                independent: Vec::new(),
+                basis: vec![Vec::new(); n],
+                density: field.integer(1),
+            });
+        }
+        let space = JetSpace::new(0, 0, 1)?;
+        let jets = Jets::new(field, &space);
+        let number = |id: &ExprId| values[id.index()];
+        let rows = |rows: &[Vec<ExprId>]| -> Vec<Vec<Number<P>>> {
+            let row = |row: &Vec<ExprId>| row.iter().take(n).map(number).collect();
+            rows.iter().map(row).collect()
+        };
+        let forms: Matrix<P::Field> = (rows(&self.forms).into_iter())
+            .map(|row| row.into_iter().map(|own| jets.constant(own)).collect())
+            .collect();
+        let dependent = choose_dependent(&jets, &forms)?;
+        let independent: Vec<usize> = (0..n).filter(|i| !dependent.contains(i)).collect();
+        let columns = |columns: &[usize]| -> Matrix<P::Field> {
+            let row = |row: &Vec<_>| columns.iter().map(|j| Vec::clone(&row[*j])).collect();
+            forms.iter().map(row).collect()
+        };
+        let solved = solve(&jets, columns(&dependent), columns(&independent))?;
+        let mut basis = vec![vec![field.integer(0); independent.len()]; n];
+        for (k, i) in independent.iter().enumerate() {
+            basis[*i][k] = field.integer(1);
+        }
+        for (j, row) in dependent.iter().zip(&solved.unknowns) {
+            for (own, entry) in basis[*j].iter_mut().zip(row) {
+                *own = field.neg(jets.value(entry));
+            }
+        }
+        let minor = field.inv(jets.value(&solved.determinant))?;
+        let metric = determinant(field, &rows(&self.metric))?;
+        Some(Chart {
+            independent,
+            basis,
+            density: field.mul(metric, minor),
+        })
+    }
+}
+
+/// A quantity of a mode, in terms of which `energy` and momenta may occur, as that of another mode at the state with these positions
+/// and velocities; `None` if it is not known there.
+pub(super) fn quantity_of_mode(
+    model: &mut Model,
+    entered: &Model,
+    quantity: ExprId,
+    (q, qdot): (&[ExprId], &[ExprId]),
+) -> Option<ExprId> {
+    let mut entered = entered.clone();
+    let mut known = vec![
+        (model.time, entered.time),
+        (model.derived.energy, entered.derived.energy),
+    ];
+    for (i, own) in model.coordinates.iter().enumerate() {
+        let mut others = entered.coordinates.iter().enumerate();
+        if let Some((j, other)) = others.find(|(_, other)| other.name == own.name) {
+            let momenta = (model.derived.momenta[i], entered.derived.momenta[j]);
+            known.extend([(own.q, other.q), (own.qdot, other.qdot), momenta]);
+        }
+    }
+    for own in &model.parameters {
+        let other = entered
+            .parameters
+            .iter()
+            .find(|other| other.name == own.name)?;
+        known.push((own.symbol, other.symbol));
+    }
+    let known: Vec<_> = known
+        .into_iter()
+        .map(|(own, other)| (own, entered.pool.variable(other)))
+        .collect();
+    let there = entered.pool.import(&model.pool, &[quantity], &known)?[0];
+    let there = explicit(&mut entered, there);
+    let replacements = replacements(model, &entered, (q, qdot))?;
+    Some(model.pool.import(&entered.pool, &[there], &replacements)?[0])
+}
+
+/// Expressions of a model for the symbols of a mode, which is at the state with these positions and velocities.
+fn replacements(
+    model: &mut Model,
+    entered: &Model,
+    (q, qdot): (&[ExprId], &[ExprId]),
+) -> Option<Vec<(SymbolId, ExprId)>> {
+    let mut replacements = vec![(entered.time, model.pool.variable(model.time))];
+    for (own, after) in entered.coordinates.iter().zip(q) {
+        replacements.push((own.q, *after));
+    }
+    for (own, after) in entered.coordinates.iter().zip(qdot) {
+        replacements.push((own.qdot, *after));
+    }
+    for own in &entered.parameters {
+        let here = model.parameters.iter().find(|here| here.name == own.name)?;
+        replacements.push((own.symbol, model.pool.variable(here.symbol)));
+    }
+    Some(replacements)
+}
+
+/// The density that the claims of a model state, written out, and its text.
+pub(super) fn stated_density(model: &mut Model) -> Option<(ExprId, String)> {
+    let claims = model.claims.iter().filter(|own| own.scene.is_none());
+    let found = claims.clone().find_map(|own| match &own.statement {
+        Statement::Density(value) => Some((*value, own.text.clone())),
+        _ => None,
+    });
+    let (value, text) = found?;
+    let written = text.trim_start_matches("density = ").to_owned();
+    Some((explicit(model, value), written))
+}

@@ -1,0 +1,434 @@
+//! `symplectic`: do the motion and all that happens at surfaces keep `dp_i dq^i`?
+//!
+//! ```text
+//! motion        L_X (dp_i dq^i) = d(F_i dq^i) + d(lambda_a eta^a)
+//! surfaces      dp+_i dq+^i - dH+ dt = dp_i dq^i - dH dt  on vectors along h = 0
+//! ```
+//!
+//! Without constraints the motion keeps the form iff `F_i dq^i` is closed. With them the form on D is not kept where
+//! `lambda_a deta^a(X, Y)` differs from 0 for two fields of D: `deta^a(X, Y)` is the value of `d(lambda_a eta^a)` on their lifts, as
+//! both are annihilated by `eta^a`. An impulse along `dh` keeps the form iff it keeps the volume.
+
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, ModularPoint, Pool, RangePoint, RealPoint, SymbolId,
+    Verdict as Zero,
+};
+
+use super::collision::{Vanished, evidence_at_impact};
+use super::conserved::{enclosed_on_d, magnitude, state_on_d};
+use super::dynamics::{Dynamics, Number};
+use super::evidence::{Vanishing, Wording, evidence};
+use super::finding::{Certificate, Verdict, Witness};
+use super::hybrid::{Density, Surroundings, effects};
+use super::passage::{Passage, Velocities};
+use super::sample::Sample;
+use super::side::Side;
+use super::wall::Wall;
+use crate::model::Model;
+
+const KEPT: &str = "the motion of a Lagrangian without constraints keeps the symplectic form";
+
+/// The verdict on `symplectic`.
+pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
+    let motion = match model.constraints.is_empty() {
+        true => forces_are_closed(model, around),
+        false => constraints_are_seen(model, around),
+    };
+    let mut all = match motion {
+        Verdict::Proved(certificate) => certificate,
+        other => return other,
+    };
+    let one = Density {
+        value: Some(model.pool.one()),
+        written: None,
+        is_found: false,
+    };
+    let effects = effects(model, around, &one);
+    let mut open = None;
+    for effect in effects {
+        let surface = effect.surface;
+        let name = model.surfaces[surface].name.display.clone();
+        let wall = Wall::of(model, around.derivation, surface, around.others);
+        let is_declared = |own: &&Passage| matches!(own.velocities, Velocities::Declared(..));
+        let verdict = match wall.passage.as_ref().filter(is_declared) {
+            // What changes volumes does not keep the form.
+            Some(passage) if effect.keeps() => map_keeps(model, around, &wall, passage, &name),
+            _ => match effect.verdict {
+                Verdict::Refuted(witness) => Verdict::Refuted(Witness {
+                    reason: format!(
+                        "`{name}` does not keep the symplectic form, as volumes are not kept: it {}",
+                        effect.text
+                    ),
+                    help: "leave it out".to_owned(),
+                    ..witness
+                }),
+                other => other,
+            },
+        };
+        match verdict {
+            Verdict::Proved(own) => {
+                all.points += own.points;
+                all.error += own.error;
+                all.primes.extend(&own.primes);
+                all.shown += &format!("; `{name}` keeps it");
+            }
+            Verdict::Refuted(_) => return verdict,
+            Verdict::Undecided(reason) => {
+                open.get_or_insert(format!("what `{name}` does is not known: {reason}"));
+            }
+        }
+    }
+    all.primes.sort_unstable();
+    all.primes.dedup();
+    match open {
+        Some(reason) => Verdict::Undecided(reason),
+        None => Verdict::Proved(all),
+    }
+}
+
+/// The verdict on a motion with forces: `F_i dq^i` is a closed form of the positions.
+fn forces_are_closed(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
+    let n = model.coordinates.len();
+    let mut force = vec![model.pool.zero(); n];
+    for own in model.forces.clone() {
+        for (sum, entry) in force.iter_mut().zip(own.form) {
+            *sum = model.pool.add(*sum, entry);
+        }
+    }
+    let coordinates = model.coordinates.clone();
+    let mut certificate = Certificate {
+        shown: KEPT.to_owned(),
+        points: 0,
+        primes: Vec::new(),
+        error: 0.0,
+        seed: around.seed,
+        at: None,
+    };
+    for i in 0..n {
+        for j in 0..n {
+            let [a, b] = [i, j].map(|k| coordinates[k].name.display.clone());
+            let slope = model.pool.diff(force[i], coordinates[j].qdot);
+            let mut parts = vec![(slope, format!("derivative of the force on {a} by dot({b})"))];
+            if i < j {
+                let one = model.pool.diff(force[i], coordinates[j].q);
+                let other = model.pool.diff(force[j], coordinates[i].q);
+                let curl = model.pool.sub(one, other);
+                parts.push((curl, format!("curl of the force in {a} and {b}")));
+            }
+            for (value, shown) in parts {
+                if model.pool.is_syntactic_zero(value) {
+                    continue;
+                }
+                match vanishes(model, around, value, shown) {
+                    Verdict::Proved(own) => {
+                        certificate.points += own.points;
+                        certificate.error += own.error;
+                        certificate.primes.extend(own.primes);
+                    }
+                    other => return other,
+                }
+            }
+        }
+    }
+    Verdict::Proved(certificate)
+}
+
+/// The verdict on an expression that must be 0 at all states.
+fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: String) -> Verdict {
+    let question = AtStates {
+        dynamics: around.dynamics,
+        part: Part::Value(value),
+        shown,
+    };
+    let wording = Wording {
+        vanishes: KEPT.to_owned(),
+        differs: "forces change the symplectic form".to_owned(),
+        help: ["leave it out".to_owned(), String::new()],
+    };
+    evidence(model, &question, around.seed).verdict(true, wording, around.seed)
+}
+
+/// The verdict on constraints: never proved, as nothing is said of leaves.
+fn constraints_are_seen(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
+    let n = model.coordinates.len();
+    let q: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+    let mut curls = Vec::new();
+    for constraint in model.constraints.clone() {
+        let form = constraint.form;
+        let entry = |i: usize, j: usize, pool: &mut Pool| {
+            let [one, other] = [pool.diff(form[j], q[i]), pool.diff(form[i], q[j])];
+            pool.sub(one, other)
+        };
+        let row = |i: usize, pool: &mut Pool| (0..n).map(|j| entry(i, j, pool)).collect();
+        let rows: Vec<Vec<ExprId>> = (0..n).map(|i| row(i, &mut model.pool)).collect();
+        curls.push(rows);
+    }
+    let side = Side::of(model);
+    let free = n - model.constraints.len();
+    for i in 0..free {
+        for j in i + 1..free {
+            let question = AtStates {
+                dynamics: around.dynamics,
+                part: Part::Curl {
+                    curls: &curls,
+                    side: &side,
+                    pair: (i, j),
+                },
+                shown: "lambda_a deta^a(X, Y)".to_owned(),
+            };
+            let wording = Wording {
+                vanishes: String::new(),
+                differs: format!(
+                    "constraint forces change the symplectic form on D: X and Y are the fields of D of its independent velocities {} and {}",
+                    i + 1,
+                    j + 1
+                ),
+                help: [
+                    "leave it out; `volume: kept;` may hold".to_owned(),
+                    String::new(),
+                ],
+            };
+            let found = evidence(model, &question, around.seed);
+            if let verdict @ Verdict::Refuted(_) = found.verdict(true, wording, around.seed) {
+                return verdict;
+            }
+        }
+    }
+    Verdict::Undecided(
+        "the form on D may be kept on the leaves of integrable constraints, which are not examined"
+            .to_owned(),
+    )
+}
+
+/// The verdict on a declared map of velocities without constraints.
+fn map_keeps(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    wall: &Wall,
+    passage: &Passage,
+    name: &str,
+) -> Verdict {
+    let entries = change_of_form(model, passage);
+    let mut certificate: Option<Certificate> = None;
+    for (pair, mut value) in entries {
+        if let Some(solution) = wall.solution() {
+            value = model.pool.substitute(value, &[solution]);
+        }
+        if model.pool.is_syntactic_zero(value) {
+            continue;
+        }
+        let question = Vanished {
+            change: value,
+            shown: format!("change of the form on {pair}"),
+        };
+        let wording = Wording {
+            vanishes: format!("`{name}` keeps the symplectic form"),
+            differs: format!("`{name}` does not keep the symplectic form"),
+            help: ["leave it out".to_owned(), String::new()],
+        };
+        let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
+        match found.verdict(true, wording, around.seed) {
+            Verdict::Proved(own) => match &mut certificate {
+                None => certificate = Some(own),
+                Some(all) => {
+                    all.points += own.points;
+                    all.error += own.error;
+                    all.primes.extend(own.primes);
+                }
+            },
+            other => return other,
+        }
+    }
+    Verdict::Proved(certificate.unwrap_or(Certificate {
+        shown: String::new(),
+        points: 0,
+        primes: Vec::new(),
+        error: 0.0,
+        seed: around.seed,
+        at: None,
+    }))
+}
+
+/// `dp+ dq+ - dH+ dt - dp dq + dH dt` on each pair of vectors along the surface, which are those of all coordinates of `(t, q, qdot)` but
+/// one, with as much of that as keeps h.
+fn change_of_form(model: &mut Model, passage: &Passage) -> Vec<(String, ExprId)> {
+    let mut symbols = vec![model.time];
+    symbols.extend(model.coordinates.iter().map(|own| own.q));
+    symbols.extend(model.coordinates.iter().map(|own| own.qdot));
+    let (slope, rate) = passage.gap_form();
+    let mut gap = vec![rate];
+    gap.extend(slope);
+    gap.resize(symbols.len(), model.pool.zero());
+    let Some(k) = (1..gap.len()).find(|i| !model.pool.is_syntactic_zero(gap[*i])) else {
+        return Vec::new();
+    };
+    let [after, before] = [
+        canonical(model, passage, true),
+        canonical(model, passage, false),
+    ];
+    let pool = &mut model.pool;
+    let mut derivatives = |own: Canonical, sign: bool| {
+        let rows = own.pairs.into_iter().map(|pair| {
+            let [p, q] = pair.map(|id| {
+                let slopes = symbols.iter().map(|by| pool.diff(id, *by));
+                slopes.collect::<Vec<_>>()
+            });
+            (sign, p, q)
+        });
+        rows.collect::<Vec<_>>()
+    };
+    let mut products = derivatives(after, true);
+    products.extend(derivatives(before, false));
+    let entry = |i: usize, j: usize, pool: &mut Pool| {
+        let mut terms = Vec::new();
+        for (sign, p, q) in &products {
+            let [one, other] = [pool.mul(p[i], q[j]), pool.mul(p[j], q[i])];
+            let term = pool.sub(one, other);
+            terms.push(if *sign { term } else { pool.neg(term) });
+        }
+        pool.sum(&terms)
+    };
+    let mut found = Vec::new();
+    let others: Vec<usize> = (0..symbols.len()).filter(|i| *i != k).collect();
+    for (place, &i) in others.iter().enumerate() {
+        for &j in &others[place + 1..] {
+            let [direct, left, right] = [(i, j), (i, k), (k, j)].map(|(a, b)| entry(a, b, pool));
+            let [by_j, by_i] = [gap[j], gap[i]].map(|own| pool.div(own, gap[k]));
+            let [left, right] = [pool.mul(by_j, left), pool.mul(by_i, right)];
+            let both = pool.add(left, right);
+            let value = pool.sub(direct, both);
+            let value = pool.simplify(value);
+            if pool.zero_test(value) != Zero::Proved || !pool.is_syntactic_zero(value) {
+                let names = [i, j].map(|i| pool.symbol_name(symbols[i]).to_owned());
+                found.push((format!("d_{} and d_{}", names[0], names[1]), value));
+            }
+        }
+    }
+    found
+}
+
+/// Pairs `(p_i, q^i)`, and `(-H, t)`.
+struct Canonical {
+    pairs: Vec<[ExprId; 2]>,
+}
+
+fn canonical(model: &mut Model, passage: &Passage, is_after: bool) -> Canonical {
+    let symbols: Vec<(SymbolId, SymbolId)> = model
+        .coordinates
+        .iter()
+        .map(|own| (own.q, own.qdot))
+        .collect();
+    let time = model.time;
+    let pool = &mut model.pool;
+    let (side, q, qdot) = match (&passage.velocities, is_after) {
+        (Velocities::Declared(values, _), true) => {
+            (&passage.after, passage.positions.clone(), values.clone())
+        }
+        _ => {
+            let q = symbols.iter().map(|own| pool.variable(own.0)).collect();
+            let qdot = symbols.iter().map(|own| pool.variable(own.1)).collect();
+            (&passage.before, q, qdot)
+        }
+    };
+    let mut pairs = Vec::new();
+    let mut energy = vec![side.potential];
+    for ((row, linear), (position, velocity)) in side
+        .metric
+        .iter()
+        .zip(&side.linear)
+        .zip(q.iter().zip(&qdot))
+    {
+        let terms = row.iter().zip(&qdot);
+        let terms: Vec<ExprId> = terms.map(|(g, v)| pool.mul(*g, *v)).collect();
+        let kinetic = pool.sum(&terms);
+        pairs.push([pool.add(kinetic, *linear), *position]);
+        let product = pool.mul(kinetic, *velocity);
+        energy.push(pool.scale(&dalembert_expr::Rational::HALF, product));
+    }
+    let energy = pool.sum(&energy);
+    pairs.push([pool.neg(energy), pool.variable(time)]);
+    Canonical { pairs }
+}
+
+/// Something that must be 0 at all states on D.
+struct AtStates<'s> {
+    dynamics: &'s Dynamics,
+    part: Part<'s>,
+    shown: String,
+}
+
+enum Part<'s> {
+    Value(ExprId),
+    /// `lambda_a deta^a(X_i, X_j)`
+    Curl {
+        curls: &'s [Vec<Vec<ExprId>>],
+        side: &'s Side,
+        pair: (usize, usize),
+    },
+}
+
+impl Vanishing for AtStates<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.dynamics.roots();
+        match &self.part {
+            Part::Value(value) => roots.push(*value),
+            Part::Curl { curls, side, .. } => {
+                roots.extend(curls.iter().flatten().flatten());
+                roots.extend(side.roots());
+            }
+        }
+        roots
+    }
+
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    }
+
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        state_on_d(model, self.dynamics, &self.roots(), attempt)
+    }
+
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        enclosed_on_d(model, self.dynamics, point)
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let (curls, side, (i, j)) = match &self.part {
+            Part::Value(value) => {
+                let values = point.values(&model.pool, &model.pool.reachable(&[*value]))?;
+                return Some(vec![values[value.index()]]);
+            }
+            Part::Curl { curls, side, pair } => (curls, side, *pair),
+        };
+        let field = point.field();
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
+        let basis = side.chart(point, &values)?.basis;
+        let mut terms = Vec::new();
+        for (multiplier, curl) in motion.multipliers.iter().zip(curls.iter()) {
+            let mut sum = field.integer(0);
+            for (row, x) in curl.iter().zip(&basis) {
+                for (entry, y) in row.iter().zip(&basis) {
+                    let product = field.mul(x[i], y[j]);
+                    sum = field.add(sum, field.mul(values[entry.index()], product));
+                }
+            }
+            terms.push(field.mul(*multiplier, sum));
+        }
+        Some(terms)
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let terms = self.terms(model, point)?;
+        let sizes = terms.iter().map(|own| own.abs());
+        let sum = sizes.fold(0.0, |sum: f64, own| sum + own);
+        Some(match &self.part {
+            Part::Value(value) => magnitude(model, point, *value),
+            Part::Curl { .. } => sum,
+        })
+    }
+
+    fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+        vec![(self.shown.clone(), sum)]
+    }
+}

@@ -1,0 +1,95 @@
+//! Claims about impacts, resets and transitions: volumes, the symplectic form, energy and other quantities.
+//!
+//! | file | subject |
+//! |---|---|
+//! | `systems.rs` | declarations with a place for a claim |
+//! | `volume.rs`, `factor.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
+//! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
+//! | `differences.rs` | factors by differences of motions through an impact |
+
+mod differences;
+mod energy;
+mod factor;
+mod momenta;
+mod qualified;
+mod quantities;
+mod symplectic;
+mod systems;
+mod volume;
+
+use dalembert_codegen::claims::{Finding, Verdict, examine, examine_mode};
+use dalembert_codegen::{mechanics, model, read, spec};
+
+/// What becomes of a claim.
+#[derive(Debug, Clone, Copy)]
+enum Expected {
+    /// It is proved.
+    True,
+    /// It is refuted, with this in the message.
+    False(&'static str),
+    /// It is refuted with a value of this name, which is this number.
+    Shown(&'static str, f64),
+    /// It stays open, with this in the reason.
+    Open(&'static str),
+}
+
+/// The findings on all claims of a declaration, mode by mode.
+///
+/// # Panics
+/// If it is refused before its claims are looked at.
+fn findings(source: &str) -> Vec<Finding> {
+    let refused = |errors: &dalembert_codegen::diagnostics::Diagnostics| -> ! {
+        let texts: Vec<&str> = errors.iter().map(|own| own.message()).collect();
+        panic!("{texts:?}\n{source}");
+    };
+    match read(source.parse().expect("tokens")) {
+        Err(errors) => refused(&errors),
+        Ok(spec::Declaration::Model(spec)) => {
+            let mut model = model::check(&spec).unwrap_or_else(|errors| refused(&errors));
+            let derivation = mechanics::derive(&mut model);
+            examine(&mut model, &derivation).findings
+        }
+        Ok(spec::Declaration::Modes(modes)) => {
+            let graph = model::check_modes(&modes).unwrap_or_else(|errors| refused(&errors));
+            let all: Vec<&model::Model> = graph.modes.iter().map(|own| &own.model).collect();
+            let each = graph.modes.iter().flat_map(|mode| {
+                let mut model = mode.model.clone();
+                let derivation = mechanics::derive(&mut model);
+                examine_mode(&mut model, &derivation, &all).findings
+            });
+            each.collect()
+        }
+    }
+}
+
+/// Checks what becomes of a claim at the place `CLAIM` of a declaration; every mode that has it must agree.
+#[track_caller]
+fn check(declaration: &str, claim: &str, expected: Expected) {
+    let source = declaration.replace("CLAIM", &format!("claims {{ {claim}; }}"));
+    // Densities are stated for other claims.
+    let mut found = findings(&source);
+    found.retain(|own| !own.claim.starts_with("density = "));
+    assert!(!found.is_empty(), "{source}");
+    for finding in found {
+        let matches = match (&finding.verdict, expected) {
+            (Verdict::Proved(_), Expected::True) => true,
+            (Verdict::Refuted(witness), Expected::False(text)) => {
+                witness.to_string().contains(text)
+            }
+            (Verdict::Refuted(witness), Expected::Shown(name, value)) => {
+                let mut values = witness.values.iter();
+                let is_it = |(own, shown): &(String, f64)| {
+                    own == name && (shown - value).abs() <= 1e-12 * value.abs()
+                };
+                witness.sample.is_some() && values.any(is_it)
+            }
+            (Verdict::Undecided(reason), Expected::Open(text)) => reason.contains(text),
+            _ => false,
+        };
+        assert!(
+            matches,
+            "{claim}: expected {expected:?}, found {}",
+            finding.note()
+        );
+    }
+}

@@ -1,0 +1,48 @@
+//! What a proof of a density says where impacts do not keep its volume.
+
+use crate::findings;
+use crate::systems::{ball, disk};
+
+fn note(declaration: &str, claim: &str) -> String {
+    let source = declaration.replace("CLAIM", &format!("claims {{ {claim}; }}"));
+    findings(&source)[0].note()
+}
+
+#[test]
+fn a_density_of_the_motion_alone_is_called_one() {
+    let note_of = |law: &str, claim: &str| note(&ball(law), claim);
+    let found = note_of("restitution(c)", "density: exact");
+    assert!(
+        found.contains("`density: exact` is proved: of the motion between impacts alone"),
+        "{found}"
+    );
+    assert!(
+        found.contains("(impacts do not keep the volume: floor multiplies it by c^2)"),
+        "{found}"
+    );
+    let found = note_of("elastic", "density: exact");
+    assert!(
+        !found.contains("between impacts alone") && found.contains("floor (elastic) keeps it"),
+        "{found}"
+    );
+    let found = note_of("reset { dot(x) = -k*dot(x); }", "density = 3");
+    assert!(found.contains("of the motion between impacts alone (impacts do not keep the volume: floor does not keep it"), "{found}");
+    let wall = disk("wall: 1 - x >= 0 => elastic, instantaneous { no_turn: d(phi) = 0; };");
+    let found = note(&wall, "density: exact");
+    assert!(
+        found.contains("wall maps it to 0, as its instantaneous constraints do"),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_step_that_moves_the_state_has_its_factor_in_closed_form() {
+    let found = note(
+        &crate::systems::walker("cos(2*delta)*dot(theta)"),
+        "density: exact",
+    );
+    assert!(
+        found.contains("step multiplies it by cos(2*delta)^2"),
+        "{found}"
+    );
+}

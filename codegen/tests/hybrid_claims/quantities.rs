@@ -1,0 +1,92 @@
+//! `conserved under TRANSITION: e`.
+
+use crate::Expected::{False, True};
+use crate::check;
+use crate::systems::{crossing, grooves, media, spokes};
+
+fn kept(surface: &str, quantity: &str) -> String {
+    format!("conserved under {surface}: {quantity}")
+}
+
+fn changed(surface: &str, quantity: &str) -> String {
+    format!("not {}", kept(surface, quantity))
+}
+
+const LEFT: &str = "m1/2*(dot(x)^2 + dot(y)^2)";
+const RIGHT: &str = "m2/2*(dot(x)^2 + dot(y)^2) - V";
+
+#[test]
+fn what_a_transition_keeps_is_proved() {
+    let glass = media(LEFT, RIGHT);
+    check(&glass, &kept("rightward", "energy"), True);
+    check(&glass, &kept("rightward", "momentum(y)"), True);
+    check(&glass, &kept("rightward", "y"), True);
+    check(&glass, &changed("rightward", "dot(y)"), True);
+    check(&glass, &changed("rightward", "momentum(x)"), True);
+    let fields = crossing(["-2", "1"], ["-1", "-1"], "1");
+    check(&fields, &kept("leftward", "x + y^2"), True);
+    let cut = grooves("dot(y) = 0", "dot(y) = dot(x)");
+    check(&cut, &kept("rightward", "momentum(x) + momentum(y)"), True);
+    check(&cut, &changed("rightward", "energy"), True);
+    check(
+        &spokes("l1/l2*cos(2*h)*dot(x)"),
+        &changed("step", "energy"),
+        True,
+    );
+    check(
+        &spokes("l1/l2*dot(x)"),
+        &kept("step", "energy + g*cos(h)*momentum(x)*0"),
+        False("energy"),
+    );
+}
+
+#[test]
+fn what_it_changes_is_refuted_at_a_state() {
+    let glass = media(LEFT, RIGHT);
+    check(&glass, &kept("rightward", "dot(y)"), False("dot(y) after"));
+    check(
+        &glass,
+        &kept("rightward", "momentum(x)"),
+        False("momentum(x) after"),
+    );
+    check(
+        &glass,
+        &changed("rightward", "energy"),
+        False("is the same before and after"),
+    );
+    check(
+        &glass,
+        &changed("rightward", "momentum(y)"),
+        False("is the same before and after"),
+    );
+    check(
+        &glass,
+        &kept("rightward", "energy + 1e-9*dot(y)"),
+        False("difference"),
+    );
+    let cut = grooves("dot(y) = 0", "dot(y) = dot(x)");
+    check(&cut, &kept("rightward", "energy"), False("energy after"));
+    check(
+        &cut,
+        &kept("rightward", "momentum(x)"),
+        False("momentum(x) after"),
+    );
+    check(
+        &spokes("l1/l2*cos(2*h)*dot(x)"),
+        &kept("step", "momentum(x)"),
+        False("momentum(x) after"),
+    );
+    check(
+        &spokes("l1/l2*cos(2*h)*dot(x)"),
+        &kept("step", "x"),
+        False("x after"),
+    );
+}
+
+/// The elastic reflection where the step of the potential is too high: it turns the normal momentum, and keeps the energy.
+#[test]
+fn reflections_count_too() {
+    let same = media("(dot(x)^2 + dot(y)^2)/2", "(dot(x)^2 + dot(y)^2)/2 - V*y^2");
+    check(&same, &kept("rightward", "energy"), True);
+    check(&same, &kept("rightward", "x*momentum(y)"), True);
+}

@@ -1,0 +1,12 @@
+dalembert::model! {
+    pub Flow {
+        coordinates { x; y; }
+        field { dot(x) = y; dot(y) = -x; }
+        impacts { wall: x >= 0 => reset { y = -y; }; }
+        claims {
+            density = 1 + x^2;
+        }
+    }
+}
+
+fn main() {}
