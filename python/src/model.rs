@@ -26,6 +26,9 @@ pub struct NativeModel {
     mode: usize,
 }
 
+/// Positions, velocities, which of them were declared, and the end.
+type Initial = (Vec<f64>, Vec<f64>, Vec<bool>, Vec<bool>, Option<f64>);
+
 /// Texts that were loaded, without and with claims. What is made of a text lives as long as the process.
 static LOADED: [Mutex<BTreeMap<String, &'static [Loaded]>>; 2] =
     [const { Mutex::new(BTreeMap::new()) }; 2];
@@ -221,9 +224,8 @@ impl NativeModel {
         Ok(dict)
     }
 
-    /// The declared initial state and end: positions, velocities, and which of them were declared.
-    #[allow(clippy::type_complexity)]
-    fn initial(&self) -> (Vec<f64>, Vec<f64>, Vec<bool>, Vec<bool>, Option<f64>) {
+    /// The declared initial state and end.
+    fn initial(&self) -> Initial {
         let start = self.build().initial();
         (start.q, start.qdot, start.placed, start.named, start.until)
     }
