@@ -107,7 +107,7 @@ fn a_stage_uses_only_those_to_its_left() {
 }
 
 /// The modules of the runtime, each after those it uses.
-const RUNTIME: [&str; 38] = [
+const RUNTIME: [&str; 36] = [
     "error",
     "state",
     "per_surface",
@@ -129,8 +129,6 @@ const RUNTIME: [&str; 38] = [
     "effects",
     "events",
     "narrow",
-    "chart",
-    "independence",
     "simulation",
     "impacts",
     "inputs",

@@ -116,7 +116,6 @@
 
 pub mod audit;
 pub mod certified;
-mod chart;
 pub mod contract;
 pub mod declaration;
 pub mod describe;
@@ -128,7 +127,6 @@ pub mod extended;
 pub mod forces;
 mod generated;
 pub mod impacts;
-mod independence;
 pub mod initial;
 pub mod inputs;
 pub mod integrate;

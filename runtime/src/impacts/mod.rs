@@ -19,7 +19,6 @@ mod resting;
 mod root;
 mod search;
 mod series;
-mod sides;
 mod sliding;
 mod tangency;
 mod touch;

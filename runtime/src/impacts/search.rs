@@ -53,10 +53,7 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in first..self.parts.count() {
             if surface != first {
                 match self.told(surface, step, glance) {
-                    Told::Passed | Told::Clear => {
-                        self.is_told[surface] = true;
-                        continue;
-                    }
+                    Told::Passed | Told::Clear => continue,
                     Told::Unclear(model) => whole = model,
                 }
             }

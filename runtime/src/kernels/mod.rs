@@ -16,7 +16,6 @@ mod constrained;
 mod declared;
 mod described;
 mod impacting;
-mod independence;
 mod part;
 mod passage;
 mod pointers;
