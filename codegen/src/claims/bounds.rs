@@ -1,21 +1,35 @@
-//! Exact bounds of polynomials of parameters that lie between two numbers.
+//! Certified signs of expressions, from exact bounds of polynomials of parameters that lie between two numbers, or from enclosures.
 
 use dalembert_expr::{ExprId, Node, Rational, SymbolId};
 
+use super::regularity::domain;
 use crate::model::{Assumption, Model};
 
 /// The largest exponent that is multiplied out.
 const LARGEST: i64 = 16;
 
+/// True if a function is certified to be 0 or positive at all states: by its form, by bounds, or by an enclosure.
+pub(super) fn is_never_negative(model: &Model, value: ExprId) -> bool {
+    if model.pool.sign(value).is_nonnegative() {
+        return true;
+    }
+    let is_above = bounds(model, value).is_some_and(|[low, _]| low >= Rational::ZERO);
+    let ranges = || {
+        let order = model.pool.reachable(&[value]);
+        model.pool.enclose(&order, &domain(model, value))
+    };
+    is_above || ranges()[value.index()].is_some_and(|range| range.lo >= 0.0)
+}
+
 /// The least and the greatest value, or bounds of them; `None` if it is no polynomial of bounded parameters.
-pub(super) fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
+fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
     match model.pool.node(id) {
         Node::Number(value) => Some([value.clone(), value.clone()]),
         Node::Symbol(symbol) => of_parameter(model, *symbol),
         Node::Sum { constant, terms } => {
             let mut sum = [constant.clone(), constant.clone()];
             for (factor, term) in terms {
-                let [low, high] = bounds(model, *term)?.map(|own| &own * factor);
+                let [low, high] = bounds(model, *term)?.map(|end| &end * factor);
                 let [low, high] = if low <= high {
                     [low, high]
                 } else {
@@ -30,7 +44,7 @@ pub(super) fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
             for (base, exponent) in factors {
                 let exponent = exponent
                     .to_i64()
-                    .filter(|own| (1..=LARGEST).contains(own))?;
+                    .filter(|power| (1..=LARGEST).contains(power))?;
                 product = times(&product, &power(&bounds(model, *base)?, exponent));
             }
             Some(product)
@@ -40,7 +54,10 @@ pub(super) fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
 }
 
 fn of_parameter(model: &Model, symbol: SymbolId) -> Option<[Rational; 2]> {
-    let found = model.parameters.iter().find(|own| own.symbol == symbol)?;
+    let found = model
+        .parameters
+        .iter()
+        .find(|parameter| parameter.symbol == symbol)?;
     match &found.assumption {
         Assumption::Within { low, high } => Some([low.clone(), high.clone()]),
         _ => None,
@@ -55,10 +72,9 @@ fn times(a: &[Rational; 2], b: &[Rational; 2]) -> [Rational; 2] {
 }
 
 fn power(base: &[Rational; 2], exponent: i64) -> [Rational; 2] {
-    let [low, high] = base.clone().map(|own| {
-        let factors = (0..exponent).map(|_| own.clone());
-        factors.fold(Rational::ONE, |product, own| &product * &own)
-    });
+    let [low, high] = base
+        .clone()
+        .map(|end| (0..exponent).fold(Rational::ONE, |product, _| &product * &end));
     let is_around_zero = base[0] < Rational::ZERO && base[1] > Rational::ZERO;
     match (exponent % 2, low <= high) {
         (0, true) if is_around_zero => [Rational::ZERO, high],
@@ -79,10 +95,14 @@ mod tests {
             lagrangian = dot(x)^2/2 - x*c*k*m; }";
         let compiled = crate::compile(declaration.parse().expect("tokens")).expect("a model");
         let mut model = compiled.model;
-        let symbols: Vec<SymbolId> = model.parameters.iter().map(|own| own.symbol).collect();
+        let symbols: Vec<SymbolId> = model
+            .parameters
+            .iter()
+            .map(|parameter| parameter.symbol)
+            .collect();
         let [c, k, m] = [0, 1, 2].map(|i| model.pool.variable(symbols[i]));
         let square = |model: &mut Model, id| model.pool.pow(id, Rational::from(2));
-        let [c2, k2] = [c, k].map(|own| square(&mut model, own));
+        let [c2, k2] = [c, k].map(|id| square(&mut model, id));
         let one = model.pool.one();
         let less = model.pool.sub(c2, one);
         let range = |low: i64, high: i64| Some([Rational::from(low), Rational::from(high)]);

@@ -132,6 +132,10 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         self.place != Place::Anywhere && self.wall.hides(&model.pool, &self.roots())
     }
 
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
+    }
+
     fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
         self.wall.settle(model, point, self.place)?;
         self.dynamics.motion(&model.pool, point, None).map(|_| ())

@@ -1,14 +1,12 @@
 //! Conserved quantities: the rate of an expression along the motion on D, `d_i e qdot^i + de/dqdot^i qddot^i + d_t e`.
 
-use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, ModularPoint, RangePoint, RealPoint, SymbolId,
-};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
 use super::continuity::{poles, possible_jump};
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Evidence, Vanishing, Wording, evidence, in_arguments};
 use super::finding::Verdict;
-use super::sample::{ATTEMPTS, Sample, move_between_knots, sample, uses};
+use super::sample::{ATTEMPTS, state_on_d};
 use super::undecided::Undecided;
 use crate::model::Model;
 
@@ -179,16 +177,8 @@ impl Vanishing for Rate<'_> {
         in_arguments(&model.pool, &self.roots(), &solved)
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
-    }
-
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        state_on_d(model, self.dynamics, &self.roots(), attempt)
-    }
-
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        enclosed_on_d(model, self.dynamics, point)
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
@@ -220,48 +210,3 @@ pub(super) fn has_states(model: &Model, dynamics: &Dynamics) -> bool {
         })
     })
 }
-
-/// A real state on D with short independent velocities; what is shown of it includes all velocities.
-pub(super) fn state_on_d(
-    model: &Model,
-    dynamics: &Dynamics,
-    roots: &[ExprId],
-    attempt: usize,
-) -> Option<(Sample, RealPoint)> {
-    let mut sample = sample(model, attempt, uses(&model.pool, roots));
-    move_between_knots(model, roots, attempt, &mut sample);
-    with_velocities(model, dynamics, sample, attempt)
-}
-
-/// Ranges that contain a state on D: the dependent velocities follow from the others once more.
-pub(super) fn enclosed_on_d<P: RangePoint>(
-    model: &Model,
-    dynamics: &Dynamics,
-    point: &RealPoint,
-) -> Option<P> {
-    let mut point = P::of(point);
-    dynamics.motion(&model.pool, &mut point, None)?;
-    Some(point)
-}
-
-/// The sample with velocities on D, and its point.
-pub(super) fn with_velocities(
-    model: &Model,
-    dynamics: &Dynamics,
-    mut sample: Sample,
-    attempt: usize,
-) -> Option<(Sample, RealPoint)> {
-    let mut point = sample.point();
-    for (i, coordinate) in model.coordinates.iter().enumerate() {
-        let velocity = VELOCITIES[(i + attempt) % VELOCITIES.len()];
-        point.set(coordinate.qdot, velocity);
-    }
-    let motion = dynamics.motion(&model.pool, &mut point, None)?;
-    for (coordinate, value) in model.coordinates.iter().zip(&motion.qdot) {
-        let name = format!("dot({})", coordinate.name.display);
-        sample.push(name, coordinate.qdot, *value);
-    }
-    Some((sample, point))
-}
-/// Independent velocities of real states.
-const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];

@@ -8,16 +8,14 @@
 //! alone balances `P` only if that is, too.
 
 use dalembert_expr::{
-    Arithmetic, Assumption, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, RangePoint,
-    RealPoint, SymbolId,
+    Arithmetic, Assumption, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, SymbolId,
 };
 
-use super::conserved::{enclosed_on_d, state_on_d};
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Evidence, Vanishing, evidence};
 use super::frame::projected_cometric;
 use super::problem::Problem;
-use super::sample::Sample;
+use super::sample::{Sample, state_on_d};
 use crate::model::Model;
 
 /// `dF_i/dqdot^j` with its indices.
@@ -103,8 +101,8 @@ impl Vanishing for Row<'_> {
         roots
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
@@ -113,10 +111,6 @@ impl Vanishing for Row<'_> {
             point.set(*step, real_step(k));
         }
         Some((sample, point))
-    }
-
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        enclosed_on_d(model, self.dynamics, point)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {

@@ -4,18 +4,16 @@
 //! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
 
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, ModularPoint, Node, RangePoint, RealPoint,
-    SymbolId,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, RealPoint, SymbolId,
 };
 
-use super::conserved::{Quantity, enclosed_on_d, jump, magnitude, rate_scale, state_on_d};
+use super::conserved::{Quantity, jump, magnitude, rate_scale};
 use super::contraction::contraction;
-use super::dynamics::{Dynamics, Number};
+use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::Verdict;
 use super::frame::frame;
 use super::problem::Problem;
-use super::sample::Sample;
 use crate::model::Model;
 
 /// Rate and divergence are printed alike where their sum is below this part of them.
@@ -122,6 +120,20 @@ pub(super) fn check_rates(
     continuous(model, dynamics, value, verdict, seed)
 }
 
+/// `d ln(e)/dt` along a motion.
+fn rate_of_logarithm<P: ExpansionPoint>(
+    quantity: &Quantity,
+    model: &Model,
+    motion: &Motion<Number<P>>,
+    point: &mut P,
+) -> Option<Number<P>> {
+    let field = point.field();
+    let (value, terms) = quantity.terms(model, motion, point)?;
+    let add = |sum, term: &Number<P>| field.add(sum, *term);
+    let rate = terms.iter().fold(field.integer(0), add);
+    Some(field.mul(rate, field.inv(value)?))
+}
+
 /// `d ln(e)/dt + div` of a first-order system.
 struct RateBalance<'b> {
     quantity: Quantity,
@@ -138,27 +150,16 @@ impl Vanishing for RateBalance<'_> {
         roots
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
-    }
-
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        state_on_d(model, self.dynamics, &self.roots(), attempt)
-    }
-
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        enclosed_on_d(model, self.dynamics, point)
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
-        let field = point.field();
         let motion = self.dynamics.motion(&model.pool, point, None)?;
-        let (value, terms) = self.quantity.terms(model, &motion, point)?;
-        let add = |sum, term: &Number<P>| field.add(sum, *term);
-        let rate = terms.iter().fold(field.integer(0), add);
+        let rate = rate_of_logarithm(&self.quantity, model, &motion, point)?;
         let values = point.values(&model.pool, &model.pool.reachable(&[self.divergence]))?;
         let divergence = values[self.divergence.index()];
-        Some(vec![field.mul(rate, field.inv(value)?), divergence])
+        Some(vec![rate, divergence])
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
@@ -191,26 +192,16 @@ impl Vanishing for Balance<'_> {
         roots
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
-    }
-
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        state_on_d(model, self.dynamics, &self.roots(), attempt)
-    }
-
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        enclosed_on_d(model, self.dynamics, point)
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
     }
 
     /// The rate of `ln e`, then the divergence.
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
         let field = point.field();
         let motion = self.dynamics.motion(&model.pool, point, None)?;
-        let (value, terms) = self.quantity.terms(model, &motion, point)?;
-        let add = |sum, term: &Number<P>| field.add(sum, *term);
-        let rate = terms.iter().fold(field.integer(0), add);
-        let mut balance = vec![field.mul(rate, field.inv(value)?)];
+        let rate = rate_of_logarithm(&self.quantity, model, &motion, point)?;
+        let mut balance = vec![rate];
         let space = JetSpace::new(self.problem.variables.len(), 1, usize::MAX)?;
         let jets = Jets::new(field, &space);
         let frame = frame(&model.pool, &self.without_forces, &jets, point, None)?;

@@ -8,9 +8,9 @@
 //! maps are looked at as functions of the state: equal energies, a quadratic form without positive entries, or a state with more energy.
 //! J. Cortes and A. M. Vinogradov (2006), Theorem 5.7.
 
-use dalembert_expr::{ExprId, Pool, Rational, Sign, SymbolId, Verdict as Zero};
+use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
 
-use super::bounds::bounds;
+use super::bounds::is_never_negative;
 use super::evidence::Wording;
 use super::examine::explicit;
 use super::finding::{Certificate, Verdict};
@@ -67,14 +67,10 @@ pub(super) fn check_not_increasing(
 }
 
 fn proved(name: &str, reason: &str) -> Verdict {
-    Verdict::Proved(Certificate {
-        shown: format!("the energy does not grow in an impact at `{name}`: {reason}"),
-        points: 0,
-        primes: Vec::new(),
-        error: 0.0,
-        seed: 0,
-        at: None,
-    })
+    Verdict::Proved(Certificate::without_chance(
+        format!("the energy does not grow in an impact at `{name}`: {reason}"),
+        0,
+    ))
 }
 
 /// Why the energy does not grow, where the law says so.
@@ -85,14 +81,16 @@ fn known(
     wall: &Wall,
 ) -> Option<&'static str> {
     let is_zero = |id: &ExprId| model.pool.is_syntactic_zero(*id);
-    let own = &model.surfaces[surface];
+    let declared = &model.surfaces[surface];
     let stands = is_zero(&around.derivation.surfaces[surface].rate);
-    let constraints = model.constraints.iter().chain(&own.instantaneous);
-    let is_linear = constraints.clone().all(|own| is_zero(&own.affine));
+    let constraints = model.constraints.iter().chain(&declared.instantaneous);
+    let is_linear = constraints
+        .clone()
+        .all(|constraint| is_zero(&constraint.affine));
     if !stands || !is_linear {
         return None;
     }
-    match own.law {
+    match declared.law {
         Law::Elastic => Some("an elastic impact keeps it, and a projection takes of it"),
         Law::Restitution(e) | Law::Newton(e) => {
             let ranges = model
@@ -120,8 +118,7 @@ fn known(
     }
 }
 
-/// Whether the change of the energy is a constant that is not positive and a diagonal quadratic form of the velocities without positive
-/// entries.
+/// True if the change of the energy is a constant and a diagonal quadratic form of the velocities, none of them positive.
 fn is_never_positive_gain(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -135,7 +132,7 @@ fn is_never_positive_gain(
     let enters = model.surfaces[surface]
         .transition
         .as_ref()
-        .map(|own| own.enters);
+        .map(|transition| transition.enters);
     let entered = enters.and_then(|enters| around.others.get(enters)).copied();
     let quantity = model.pool.variable(model.derived.energy);
     let before = explicit(model, quantity);
@@ -148,7 +145,11 @@ fn is_never_positive_gain(
         None => gain,
     };
     let gain = model.pool.simplify(gain);
-    let velocities: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    let velocities: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.qdot)
+        .collect();
     let Some(parts) = diagonal(&mut model.pool, gain, &velocities) else {
         return false;
     };
@@ -165,29 +166,19 @@ fn is_never_positive_gain(
         let is_heavy = model.pool.sign(mass) == Sign::Positive;
         ratios.push(if is_heavy { ratio } else { part });
     }
-    ratios
-        .into_iter()
-        .all(|ratio| is_never_positive(model, ratio))
-}
-
-/// Whether a function is certified to be 0 or negative at all states.
-fn is_never_positive(model: &Model, value: ExprId) -> bool {
-    if model.pool.sign(value).is_nonpositive() {
-        return true;
-    }
-    let is_below = bounds(model, value).is_some_and(|[_, high]| high <= Rational::ZERO);
-    let ranges = || {
-        model
-            .pool
-            .enclose(&model.pool.reachable(&[value]), &domain(model, value))
-    };
-    is_below || ranges()[value.index()].is_some_and(|own| own.hi <= 0.0)
+    ratios.into_iter().all(|ratio| {
+        let loss = model.pool.neg(ratio);
+        is_never_negative(model, loss)
+    })
 }
 
 /// The constant and the second derivatives of a function that is a constant and a sum of multiples of squares.
 fn diagonal(pool: &mut Pool, gain: ExprId, velocities: &[SymbolId]) -> Option<Vec<ExprId>> {
     let zero = pool.zero();
-    let at_rest: Vec<_> = velocities.iter().map(|own| (*own, zero)).collect();
+    let at_rest: Vec<_> = velocities
+        .iter()
+        .map(|velocity| (*velocity, zero))
+        .collect();
     let mut parts = vec![pool.substitute(gain, &at_rest)];
     for (i, by) in velocities.iter().enumerate() {
         let slope = pool.diff(gain, *by);

@@ -5,7 +5,7 @@ use dalembert_expr::{
     Node, Pool, Profile, RangePoint, RealPoint, SymbolId,
 };
 
-use super::dynamics::Number;
+use super::dynamics::{Dynamics, Number};
 use super::exactness::{branches_of, sample_points};
 use super::finding::{Certificate, Verdict, Witness, digits};
 use super::sample::{self, Sample};
@@ -39,11 +39,29 @@ pub(super) trait Vanishing {
         false
     }
 
+    /// The motion on D, if states have to satisfy the constraints; `None` if any point is a state.
+    fn dynamics(&self) -> Option<&Dynamics>;
+
     /// Moves a random point to a state; `None` if that fails there.
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()>;
+    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
+        match self.dynamics() {
+            None => Some(()),
+            Some(dynamics) => dynamics.motion(&model.pool, point, None).map(|_| ()),
+        }
+    }
 
     /// A real state with short coordinates and its point.
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)>;
+    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
+        match self.dynamics() {
+            None => {
+                let roots = self.roots();
+                let sample = sample::sample(model, attempt, sample::uses(&model.pool, &roots));
+                let point = sample.point();
+                Some((sample, point))
+            }
+            Some(dynamics) => sample::state_on_d(model, dynamics, &self.roots(), attempt),
+        }
+    }
 
     /// The terms at a state.
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>>;
@@ -53,8 +71,14 @@ pub(super) trait Vanishing {
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
     /// Ranges that contain a state close to a real one: what is printed of it is exact but for what follows from the rest. `None` if it
-    /// is not certain that there is one.
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P>;
+    /// is not certain that there is one. The dependent velocities follow from the others once more.
+    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
+        let mut point = P::of(point);
+        if let Some(dynamics) = self.dynamics() {
+            dynamics.motion(&model.pool, &mut point, None)?;
+        }
+        Some(point)
+    }
 
     /// What a person is shown at a real state, given the terms and their sum.
     fn shown(&self, model: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
@@ -392,14 +416,8 @@ mod tests {
             self.terms.clone()
         }
 
-        fn settle(&self, _: &Model, _: &mut ModularPoint) -> Option<()> {
-            Some(())
-        }
-
-        fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-            let sample = sample::sample(model, attempt, sample::uses(&model.pool, &self.terms));
-            let point = sample.point();
-            Some((sample, point))
+        fn dynamics(&self) -> Option<&Dynamics> {
+            None
         }
 
         fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
@@ -409,10 +427,6 @@ mod tests {
 
         fn scale(&self, _: &Model, _: &mut RealPoint) -> Option<f64> {
             Some(self.size)
-        }
-
-        fn enclosed<P: RangePoint>(&self, _: &Model, point: &RealPoint) -> Option<P> {
-            Some(P::of(point))
         }
 
         fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {

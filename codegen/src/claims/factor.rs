@@ -1,10 +1,9 @@
-//! What a reset or a transition multiplies a volume by, as an expression where it does not depend on velocities.
+//! Factor of a volume at a reset or a transition, as an expression if it does not depend on velocities.
 
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
 
 use super::passage::{Passage, Velocities};
 use super::potential::factor_text;
-use super::side::Side;
 use crate::model::Model;
 
 /// Rows of determinants that are expanded.
@@ -14,7 +13,7 @@ const LARGEST: usize = 6;
 pub(super) fn closed_form(model: &mut Model, passage: &Passage) -> Option<ExprId> {
     let n = passage.positions.len();
     let sides = [&passage.before, &passage.after];
-    let is_free = sides.iter().all(|own| own.forms.is_empty());
+    let is_free = sides.iter().all(|side| side.forms.is_empty());
     if passage.open.is_some() || !is_free || n > LARGEST {
         return None;
     }
@@ -31,15 +30,23 @@ pub(super) fn closed_form(model: &mut Model, passage: &Passage) -> Option<ExprId
     let metric = match sides[0].metric == sides[1].metric {
         true => pool.one(),
         false => {
-            let [before, after] = sides.map(|own| rows(pool, &own.metric));
+            let [before, after] = sides.map(|side| rows(pool, &side.metric));
             pool.div(after, before)
         }
     };
-    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+    let symbols: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.qdot)
+        .collect();
     let (bordered, gap_rate) = passage.bordered(model);
     let bordered = rows(&mut model.pool, &bordered);
     let moving: Vec<SymbolId> = match sides[0].rates {
-        Some(_) => model.coordinates.iter().map(|own| own.q).collect(),
+        Some(_) => model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .collect(),
         None => symbols.clone(),
     };
     let pool = &mut model.pool;
@@ -58,7 +65,7 @@ pub(super) fn size_text(pool: &Pool, factor: ExprId) -> String {
         Sign::Positive | Sign::NonNegative => factor_text(pool, factor),
         _ if pool.as_number(factor).is_some() => pool
             .as_number(factor)
-            .map_or_else(String::new, |own| own.abs().to_string()),
+            .map_or_else(String::new, |number| number.abs().to_string()),
         _ => format!("|{}|", pool.text(factor)),
     }
 }
@@ -95,7 +102,7 @@ fn determinant(pool: &mut Pool, rows: &[Vec<ExprId>], columns: &[usize]) -> Expr
         let rest: Vec<usize> = columns
             .iter()
             .copied()
-            .filter(|&own| own != column)
+            .filter(|&other| other != column)
             .collect();
         let minor = determinant(pool, others, &rest);
         let term = pool.mul(first[column], minor);
@@ -105,20 +112,4 @@ fn determinant(pool: &mut Pool, rows: &[Vec<ExprId>], columns: &[usize]) -> Expr
         };
     }
     total
-}
-
-impl Side {
-    /// The velocities of the motion at the state before a passage.
-    pub(super) fn velocities(&self, model: &mut Model) -> Vec<ExprId> {
-        match &self.rates {
-            Some(rates) => rates.clone(),
-            None => {
-                let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
-                symbols
-                    .into_iter()
-                    .map(|own| model.pool.variable(own))
-                    .collect()
-            }
-        }
-    }
 }

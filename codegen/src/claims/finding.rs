@@ -61,6 +61,29 @@ pub struct Certificate {
     pub at: Option<Sample>,
 }
 
+impl Certificate {
+    /// The certificate of a proof that takes no random points.
+    pub(super) fn without_chance(shown: String, seed: u64) -> Self {
+        Self {
+            shown,
+            points: 0,
+            primes: Vec::new(),
+            error: 0.0,
+            seed,
+            at: None,
+        }
+    }
+
+    /// Adds the points, primes and chances of another proof that this one rests on.
+    pub(super) fn rest_on(&mut self, other: &Self) {
+        self.points += other.points;
+        self.error += other.error;
+        self.primes.extend(&other.primes);
+        self.primes.sort_unstable();
+        self.primes.dedup();
+    }
+}
+
 /// Why a claim fails, at a point that a person can follow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {

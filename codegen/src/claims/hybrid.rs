@@ -1,4 +1,4 @@
-//! What impacts do to a volume `f mu_C`: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`] or [`super::passage`].
+//! Changes of a volume `f mu_C` at surfaces: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`] or [`super::passage`].
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
 
@@ -23,34 +23,34 @@ pub(super) struct Density {
     pub(super) value: Option<ExprId>,
     /// Its text, where it was stated.
     pub(super) written: Option<String>,
-    /// Whether it was looked for: then that of another mode would have to be, too.
+    /// True if the tool found it; that of another mode is then unknown up to a factor.
     pub(super) is_found: bool,
 }
 
-/// What happens at a surface to a volume.
+/// Effect of a surface on a volume.
 #[derive(Debug)]
 pub(super) struct Effect {
     /// The surface.
     pub(super) surface: usize,
-    /// Whether it keeps the volume, with a state where it does not.
+    /// The verdict on the claim that it keeps the volume, with a state where it does not.
     pub(super) verdict: Verdict,
-    /// What it does, in words.
+    /// The effect in words.
     pub(super) text: String,
 }
 
 impl Effect {
-    /// Whether the volume is kept.
+    /// True if the volume is proved to be kept.
     pub(super) fn keeps(&self) -> bool {
         matches!(self.verdict, Verdict::Proved(_))
     }
 
     /// The sentence about the surface.
     pub(super) fn sentence(&self, model: &Model, derivation: &Derivation) -> String {
-        let own = &model.surfaces[self.surface];
-        let (name, law) = (&own.name.display, model.law_text(self.surface));
+        let surface = &model.surfaces[self.surface];
+        let (name, law) = (&surface.name.display, model.law_text(self.surface));
         let stands = (model.pool).is_syntactic_zero(derivation.surfaces[self.surface].rate);
         let moving = if stands { "" } else { ", which moves," };
-        let what = match own.law {
+        let what = match surface.law {
             Law::Transition => "the transition",
             _ => "an impact at",
         };
@@ -58,7 +58,7 @@ impl Effect {
     }
 }
 
-/// What is known of impacts and volumes beside a model.
+/// Facts beside a model that questions about impacts and volumes need.
 pub(super) struct Surroundings<'s> {
     pub(super) derivation: &'s Derivation,
     pub(super) dynamics: &'s Dynamics,
@@ -67,7 +67,7 @@ pub(super) struct Surroundings<'s> {
     pub(super) seed: u64,
 }
 
-/// What each surface does to a volume.
+/// Effects of all surfaces on a volume.
 pub(super) fn effects(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -204,7 +204,7 @@ pub(super) fn change_at(
     Ok((wall, found))
 }
 
-/// Whether the densities of both sides of a transition are 1, or that of the other mode is stated.
+/// True if the densities of both sides of a transition are 1, or that of the other mode is stated.
 fn has_plain_densities(
     model: &Model,
     around: &Surroundings<'_>,
@@ -214,13 +214,13 @@ fn has_plain_densities(
     let enters = model.surfaces[surface]
         .transition
         .as_ref()
-        .map(|own| own.enters);
+        .map(|transition| transition.enters);
     let entered = enters.and_then(|enters| around.others.get(enters));
     density.value == Some(model.pool.one())
-        && entered.is_some_and(|own| keeps_mu_c(own, around.seed))
+        && entered.is_some_and(|mode| keeps_mu_c(mode, around.seed))
 }
 
-/// Whether a mode states a density, or keeps `mu_C` itself.
+/// True if a mode states a density, or keeps `mu_C` itself.
 fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
     let mut mode = mode.clone();
     if mode.is_first_order() || stated_density(&mut mode).is_some() {
@@ -232,7 +232,7 @@ fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
     let derivation = derive(&mut mode);
     let problem = Problem::of(&mut mode, &derivation);
     let decision = decide(&mut mode, &problem, seed);
-    let found = decision.ok().and_then(|own| own.density);
+    let found = decision.ok().and_then(|exactness| exactness.density);
     found.is_some_and(|(potential, _)| potential.terms.is_empty())
 }
 
@@ -243,7 +243,7 @@ pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
     let is_affine = model
         .constraints
         .iter()
-        .any(|own| !model.pool.is_syntactic_zero(own.affine));
+        .any(|constraint| !model.pool.is_syntactic_zero(constraint.affine));
     let squared = |e: ExprId| match model.pool.as_number(e) {
         Some(number) if number.is_zero() => "maps it to 0".to_owned(),
         _ => format!("multiplies it by {}^2", factor_text(&model.pool, e)),
@@ -263,7 +263,7 @@ pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
         Law::Transition | Law::Reset => {
             let passage = wall.passage.as_ref();
             let slides = passage.is_some_and(Passage::may_slide);
-            match passage.and_then(|own| closed_form(model, own)) {
+            match passage.and_then(|passage| closed_form(model, passage)) {
                 Some(factor) if slides && model.pool.sign(factor).is_nonpositive() => {
                     "holds the motion, which comes to it from both sides, and maps it to 0"
                         .to_owned()
@@ -288,7 +288,7 @@ fn changed(witness: &Witness) -> String {
     let at = witness
         .sample
         .as_ref()
-        .map_or(String::new(), |own| format!(" at {}", own.text()));
+        .map_or(String::new(), |sample| format!(" at {}", sample.text()));
     match values.is_empty() {
         true => "does not keep it".to_owned(),
         false => format!("does not keep it: {}{at}", values.join(", ")),
@@ -299,7 +299,7 @@ fn changed(witness: &Witness) -> String {
 struct Change<'v> {
     wall: &'v Wall,
     density: &'v Density,
-    /// What it is claimed to be multiplied by.
+    /// The claimed factor of the volume.
     factor: Option<(ExprId, &'v str)>,
 }
 
@@ -330,7 +330,7 @@ impl Change<'_> {
         Some([values[both.0.index()], values[both.1.index()]])
     }
 
-    /// Whether the sign of the Jacobian counts: a motion of first order that does not go on slides along the surface.
+    /// True if the sign of the Jacobian counts: a motion of first order that does not go on slides along the surface.
     fn is_signed(&self) -> bool {
         self.wall.passage.as_ref().is_some_and(Passage::may_slide)
     }
@@ -366,9 +366,9 @@ impl AtImpact for Change<'_> {
             }
             None => old,
         };
-        let power = |own| match self.is_signed() {
-            true => own,
-            false => field.mul(own, own),
+        let power = |volume| match self.is_signed() {
+            true => volume,
+            false => field.mul(volume, volume),
         };
         Some(vec![power(after), field.neg(power(before))])
     }

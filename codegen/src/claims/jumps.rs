@@ -1,4 +1,4 @@
-//! What surfaces do to a symmetry xi and to its momentum `J = xi^i dL/dqdot^i`. The flow of xi keeps an impact by a law where it keeps the
+//! Effects of surfaces on a symmetry xi and on its momentum `J = xi^i dL/dqdot^i`. The flow of xi keeps an impact by a law where it keeps the
 //! surface: `xi(h) = 0` where `h = 0`. An impulse `p+ = p + eps pi_D^* dh` changes it by
 //! `eps dh(pi_D xi)` (W. Clark, thesis, chapter VI), `eps dh(xi)` where xi is in D.
 
@@ -35,10 +35,10 @@ fn at_surface(
     surface: usize,
     (momentum, field): (ExprId, &[ExprId]),
 ) -> String {
-    let own = &model.surfaces[surface];
-    let what = match own.law {
-        Law::Transition => format!("the transition {}", own.name.display),
-        _ => format!("an impact at {}", own.name.display),
+    let declared = &model.surfaces[surface];
+    let what = match declared.law {
+        Law::Transition => format!("the transition {}", declared.name.display),
+        _ => format!("an impact at {}", declared.name.display),
     };
     let found = changes_at(model, around, surface, (momentum, "momentum"), Wanted::Any);
     let found = match found {
@@ -56,14 +56,14 @@ fn at_surface(
             let at = witness
                 .sample
                 .as_ref()
-                .map_or(String::new(), |own| own.text());
+                .map_or(String::new(), |sample| sample.text());
             let jump = jump(model, around, surface, field);
             format!("{what} changes its momentum{jump}: {values} at {at}")
         }
     }
 }
 
-/// Whether the flow keeps a surface with a law, in words; nothing of resets and transitions.
+/// The verdict, in words, on the claim that the flow keeps a surface with a law; empty for resets and transitions.
 fn surface_is_kept(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -106,7 +106,7 @@ fn jump(model: &mut Model, around: &Surroundings<'_>, surface: usize, field: &[E
     let forms: Vec<Vec<ExprId>> = model
         .constraints
         .iter()
-        .map(|own| own.form.clone())
+        .map(|constraint| constraint.form.clone())
         .collect();
     let is_horizontal = forms.iter().all(|form| {
         let value = along(model, form, field);

@@ -6,11 +6,11 @@
 
 use dalembert_expr::{ExprId, Pool};
 
+use super::bounds::is_never_negative;
 use super::evidence::Wording;
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Effect, Surroundings, Unknown, change_at, effects, factor};
 use super::potential::{Potential, Term};
-use super::regularity::domain;
 use super::side::stated_density;
 use crate::model::{Law, Model};
 
@@ -32,7 +32,7 @@ pub(super) fn stated_or_one(model: &mut Model) -> Density {
 
 /// The density of a potential, as far as it is written out.
 pub(super) fn of_potential(pool: &mut Pool, potential: Option<&Potential>) -> Density {
-    let written = potential.and_then(|own| exponential(pool, own));
+    let written = potential.and_then(|potential| exponential(pool, potential));
     Density {
         value: written,
         written: None,
@@ -45,13 +45,13 @@ fn exponential(pool: &mut Pool, potential: &Potential) -> Option<ExprId> {
     let mut factors = Vec::new();
     for (coefficient, term) in &potential.terms {
         factors.push(match term {
-            Term::Plain(own) => {
-                let exponent = pool.mul(*coefficient, *own);
+            Term::Plain(value) => {
+                let exponent = pool.mul(*coefficient, *value);
                 pool.call(dalembert_expr::Function::Exp, exponent)
             }
-            Term::Logarithm(own) => {
+            Term::Logarithm(value) => {
                 let exponent = pool.as_number(*coefficient)?.clone();
-                let size = pool.call(dalembert_expr::Function::Abs, *own);
+                let size = pool.call(dalembert_expr::Function::Abs, *value);
                 pool.pow(size, exponent)
             }
             Term::MassDeterminant | Term::MetricDeterminant | Term::DependentDeterminant => {
@@ -82,15 +82,16 @@ pub(super) fn check_kept(
     let effects = effects(model, around, density);
     let sentences = effects
         .iter()
-        .map(|own| own.sentence(model, around.derivation));
+        .map(|effect| effect.sentence(model, around.derivation));
     let sentences: Vec<String> = sentences.collect();
     let with_sentences = || effects.iter().zip(&sentences);
-    let refuted = with_sentences().find(|(own, _)| matches!(own.verdict, Verdict::Refuted(_)));
+    let refuted =
+        with_sentences().find(|(effect, _)| matches!(effect.verdict, Verdict::Refuted(_)));
     if let Some((effect, sentence)) = refuted {
         let verdict = Verdict::Refuted(of_a_surface(model, effect, sentence.clone()));
         return (verdict, others(with_sentences(), effect));
     }
-    let open = with_sentences().find(|(own, _)| !own.keeps());
+    let open = with_sentences().find(|(effect, _)| !effect.keeps());
     if let Some((effect, sentence)) = open {
         return (
             Verdict::Undecided(sentence.clone()),
@@ -106,29 +107,21 @@ pub(super) fn check_kept(
         ..flow
     };
     for effect in &effects {
-        if let Verdict::Proved(own) = &effect.verdict {
-            together = with(together, own);
+        if let Verdict::Proved(certificate) = &effect.verdict {
+            together.rest_on(certificate);
         }
     }
     (Verdict::Proved(together), Vec::new())
 }
 
-/// One certificate of two proofs.
-fn with(mut all: Certificate, other: &Certificate) -> Certificate {
-    all.points += other.points;
-    all.error += other.error;
-    all.primes.extend(&other.primes);
-    all.primes.sort_unstable();
-    all.primes.dedup();
-    all
-}
-
 /// Surfaces and transitions by name: `impacts at floor, wall, transitions up`.
 fn names(model: &Model, effects: &[Effect]) -> String {
     let of = |is_transition: bool, what: &str| -> Option<String> {
-        let own = effects.iter().map(|own| &model.surfaces[own.surface]);
-        let own = own.filter(|own| (own.law == Law::Transition) == is_transition);
-        let names: Vec<&str> = own.map(|own| own.name.display.as_str()).collect();
+        let surfaces = effects.iter().map(|effect| &model.surfaces[effect.surface]);
+        let surfaces = surfaces.filter(|surface| (surface.law == Law::Transition) == is_transition);
+        let names: Vec<&str> = surfaces
+            .map(|surface| surface.name.display.as_str())
+            .collect();
         (!names.is_empty()).then(|| format!("{what} {}", names.join(", ")))
     };
     let parts = [of(false, "impacts at"), of(true, "transitions")];
@@ -137,7 +130,7 @@ fn names(model: &Model, effects: &[Effect]) -> String {
 }
 
 fn others<'e>(all: impl Iterator<Item = (&'e Effect, &'e String)>, shown: &Effect) -> Vec<String> {
-    let rest = all.filter(|(own, _)| own.surface != shown.surface);
+    let rest = all.filter(|(effect, _)| effect.surface != shown.surface);
     rest.map(|(_, sentence)| sentence.clone()).collect()
 }
 
@@ -220,16 +213,14 @@ fn without_map(
         })
     };
     match unknown {
-        Unknown::Vanishes if model.pool.is_syntactic_zero(value) => Verdict::Proved(Certificate {
-            shown: format!(
-                "instantaneous constraints of `{name}` map states on a line to one: volumes become 0"
-            ),
-            points: 0,
-            primes: Vec::new(),
-            error: 0.0,
-            seed: 0,
-            at: None,
-        }),
+        Unknown::Vanishes if model.pool.is_syntactic_zero(value) => {
+            Verdict::Proved(Certificate::without_chance(
+                format!(
+                    "instantaneous constraints of `{name}` map states on a line to one: volumes become 0"
+                ),
+                0,
+            ))
+        }
         Unknown::Vanishes => refuted(
             format!(
                 "instantaneous constraints of `{name}` map states on a line to one: volumes become 0, and are not multiplied by {written}"
@@ -246,31 +237,24 @@ fn without_map(
     }
 }
 
-/// Whether a function is certified to be 0 or positive at all states.
-fn is_never_negative(model: &Model, value: ExprId) -> bool {
-    if model.pool.sign(value).is_nonnegative() {
-        return true;
-    }
-    let ranges = model
-        .pool
-        .enclose(&model.pool.reachable(&[value]), &domain(model, value));
-    ranges[value.index()].is_some_and(|own| own.lo >= 0.0)
-}
-
-/// What a proof of a density says where surfaces do not keep its volume: it is one of the motion alone.
+/// The certificate of a density, restricted in words to the motion between impacts if surfaces do not keep its volume.
 pub(super) fn qualified(
     model: &Model,
     certificate: Certificate,
     effects: &[Effect],
 ) -> Certificate {
     let texts = |wanted: fn(&Verdict) -> bool| -> String {
-        let found = effects.iter().filter(|own| wanted(&own.verdict));
-        let texts =
-            found.map(|own| format!("{} {}", model.surfaces[own.surface].name.display, own.text));
+        let found = effects.iter().filter(|effect| wanted(&effect.verdict));
+        let texts = found.map(|effect| {
+            format!(
+                "{} {}",
+                model.surfaces[effect.surface].name.display, effect.text
+            )
+        });
         texts.collect::<Vec<_>>().join(", ")
     };
-    let failing = texts(|own| matches!(own, Verdict::Refuted(_)));
-    let open = texts(|own| matches!(own, Verdict::Undecided(_)));
+    let failing = texts(|verdict| matches!(verdict, Verdict::Refuted(_)));
+    let open = texts(|verdict| matches!(verdict, Verdict::Undecided(_)));
     let because = match (failing.is_empty(), open.is_empty()) {
         (true, true) => return certificate,
         (false, true) => format!("impacts do not keep the volume: {failing}"),

@@ -18,7 +18,7 @@ use super::examine::explicit;
 use super::linear::{dot, solve};
 use super::minors::{LARGEST, determinant};
 use super::refraction::refracted;
-use super::side::{Side, quantity_of_mode};
+use super::side::{Side, quantity_of_mode, velocities_of};
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
@@ -39,7 +39,7 @@ pub(super) struct Passage {
     /// `dh` and `d_t h`.
     gap: (Vec<ExprId>, ExprId),
     qdot: Vec<SymbolId>,
-    /// Whether another mode is entered, and whether nothing was declared of the state there.
+    /// True if another mode is entered; true if nothing was declared of the state there.
     leads_to_another_mode: bool,
     is_kept: bool,
     /// Why nothing is known of volumes, if nothing is.
@@ -100,17 +100,21 @@ impl Passage {
         others: &[&Model],
     ) -> Option<Self> {
         let before = Side::of(model);
-        let own = &model.surfaces[surface];
-        let reset = own.reset.clone();
-        let (transition, q) = (own.transition.clone(), positions(model));
+        let crossed = &model.surfaces[surface];
+        let reset = crossed.reset.clone();
+        let (transition, q) = (crossed.transition.clone(), positions(model));
         let leads_to_another_mode = transition.is_some();
-        let is_kept = transition.as_ref().is_some_and(|own| own.map.is_none());
+        let is_kept = transition
+            .as_ref()
+            .is_some_and(|transition| transition.map.is_none());
         let (after, positions, velocities) = match (reset, transition) {
             (Some(reset), _) => {
                 let replacements = reset.replacements(&model.coordinates);
                 let kept = |given: &[Option<ExprId>], all: Vec<ExprId>| -> Vec<ExprId> {
                     let pairs = given.iter().zip(all);
-                    pairs.map(|(given, own)| given.unwrap_or(own)).collect()
+                    pairs
+                        .map(|(given, before)| given.unwrap_or(before))
+                        .collect()
                 };
                 let qdot = kept(&reset.qdot, velocities_of(model));
                 let q = kept(&reset.q, q);
@@ -155,31 +159,35 @@ impl Passage {
         velocities: Velocities,
         gap: (Vec<ExprId>, ExprId),
     ) -> Self {
-        let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+        let symbols: Vec<SymbolId> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .collect();
         let positions = match before.rates.clone() {
             Some(rates) => {
-                let motion = model.coordinates.iter().map(|own| own.qdot).zip(rates);
+                let motion = model
+                    .coordinates
+                    .iter()
+                    .map(|coordinate| coordinate.qdot)
+                    .zip(rates);
                 let motion: Vec<_> = motion.collect();
                 model.pool.substitute_all(&positions, &motion)
             }
             None => positions,
         };
-        let qdot: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
-        let time = model.time;
-        let slopes = positions
+        let qdot: Vec<SymbolId> = model
+            .coordinates
             .iter()
-            .map(|own| {
-                symbols
-                    .iter()
-                    .map(|by| model.pool.diff(*own, *by))
-                    .collect()
-            })
+            .map(|coordinate| coordinate.qdot)
             .collect();
+        let time = model.time;
+        let slopes = derivatives(&mut model.pool, &positions, &symbols);
         let rates = positions
             .iter()
-            .map(|own| model.pool.diff(*own, time))
+            .map(|position| model.pool.diff(*position, time))
             .collect();
-        let moves = |own: &ExprId| model.pool.depends_on_any(*own, &qdot);
+        let moves = |position: &ExprId| model.pool.depends_on_any(*position, &qdot);
         let is_refracted = matches!(velocities, Velocities::Refracted);
         let sides = [&before, &after];
         let [from, to] = sides.map(Side::dimension);
@@ -189,7 +197,7 @@ impl Passage {
             Some(Open::Coordinates)
         } else if before.rates.is_none() && positions.iter().any(moves) {
             Some(Open::Positions)
-        } else if is_refracted && sides.iter().any(|own| !own.forms.is_empty()) {
+        } else if is_refracted && sides.iter().any(|side| !side.forms.is_empty()) {
             Some(Open::Refraction)
         } else if before.metric.len() >= LARGEST {
             Some(Open::Size)
@@ -220,9 +228,9 @@ impl Passage {
         let q = model
             .coordinates
             .iter()
-            .map(|own| own.q)
+            .map(|coordinate| coordinate.q)
             .zip(&self.positions);
-        let mut replacements: Vec<_> = q.map(|(own, after)| (own, *after)).collect();
+        let mut replacements: Vec<_> = q.map(|(symbol, after)| (symbol, *after)).collect();
         if let Velocities::Declared(values, _) = &self.velocities {
             replacements.extend(self.qdot.iter().copied().zip(values.iter().copied()));
         }
@@ -267,9 +275,9 @@ impl Passage {
                 let q = model
                     .coordinates
                     .iter()
-                    .map(|own| own.q)
+                    .map(|coordinate| coordinate.q)
                     .zip(&self.positions);
-                let mut replacements: Vec<_> = q.map(|(own, after)| (own, *after)).collect();
+                let mut replacements: Vec<_> = q.map(|(symbol, after)| (symbol, *after)).collect();
                 replacements.extend(self.qdot.iter().copied().zip(qdot));
                 Some(model.pool.substitute(value, &replacements))
             }
@@ -281,23 +289,23 @@ impl Passage {
         self.gap.clone()
     }
 
-    /// Whether the Lagrangian changes and mechanics says how the motion goes on.
+    /// True if the Lagrangian changes and mechanics says how the motion goes on.
     pub(super) fn is_refracted(&self) -> bool {
         matches!(self.velocities, Velocities::Refracted)
     }
 
-    /// Whether velocities after it are computed, not written out.
+    /// True if the velocities after it are computed, not written out.
     pub(super) fn computes_velocities(&self) -> bool {
         matches!(self.velocities, Velocities::Nearest | Velocities::Refracted)
     }
 
-    /// Whether no position changes.
+    /// True if no position changes.
     pub(super) fn keeps_positions(&self, model: &Model) -> bool {
         let mut pairs = self.positions.iter().zip(&model.coordinates);
-        pairs.all(|(after, own)| matches!(model.pool.node(*after), Node::Symbol(symbol) if *symbol == own.q))
+        pairs.all(|(after, coordinate)| matches!(model.pool.node(*after), Node::Symbol(symbol) if *symbol == coordinate.q))
     }
 
-    /// Whether the state of a first-order system stays while the mode changes: where the motion then comes back it slides.
+    /// True if the state of a first-order system stays while the mode changes: where the motion then comes back it slides.
     pub(super) fn may_slide(&self) -> bool {
         self.is_kept && self.before.rates.is_some()
     }
@@ -314,8 +322,8 @@ impl Passage {
             }
             Velocities::Refracted => {
                 let sides = [&self.before, &self.after];
-                let forces = sides.iter().flat_map(|own| own.forces());
-                let metrics = sides.iter().flat_map(|own| of_metric(own));
+                let forces = sides.iter().flat_map(|side| side.forces());
+                let metrics = sides.iter().flat_map(|side| of_metric(side));
                 let gap = self.gap.0.iter().copied().chain([self.gap.1]);
                 metrics.chain(forces).chain(gap).collect()
             }
@@ -358,9 +366,9 @@ impl Passage {
         values: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
         let given = |ids: &[ExprId]| ids.iter().map(|id| values[id.index()]).collect();
-        let before = |own: &SymbolId| point.symbol(&model.pool, *own);
+        let before = |velocity: &SymbolId| point.symbol(&model.pool, *velocity);
         match &self.velocities {
-            Velocities::Declared(own, _) => Some(given(own)),
+            Velocities::Declared(velocities, _) => Some(given(velocities)),
             Velocities::Rates => Some(given(self.after.rates.as_ref()?)),
             Velocities::Nearest => {
                 let field = point.field();
@@ -420,8 +428,8 @@ impl Passage {
                 .iter()
                 .zip(&share)
                 .map(|(w, row)| jets.mul(w, &row[j]));
-            let sum = terms.fold(field.integer(0), |sum, own| {
-                field.add(sum, jets.value(&own))
+            let sum = terms.fold(field.integer(0), |sum, term| {
+                field.add(sum, jets.value(&term))
             });
             match i == j {
                 true => field.sub(field.integer(1), sum),
@@ -446,7 +454,7 @@ impl Passage {
             return Some(field.integer(1));
         }
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
-        let [before, after] = [&self.before, &self.after].map(|own| own.chart(point, &values));
+        let [before, after] = [&self.before, &self.after].map(|side| side.chart(point, &values));
         let (before, after) = (before?, after?);
         let fibre = match &self.velocities {
             Velocities::Declared(_, slopes) => {
@@ -474,7 +482,7 @@ impl Passage {
     pub(super) fn bordered(&self, model: &mut Model) -> (Vec<Vec<ExprId>>, ExprId) {
         let incoming = self.before.velocities(model);
         let outgoing = match &self.velocities {
-            Velocities::Declared(own, _) => own.clone(),
+            Velocities::Declared(velocities, _) => velocities.clone(),
             _ => self.after.rates.clone().unwrap_or_else(|| incoming.clone()),
         };
         let pool = &mut model.pool;
@@ -490,7 +498,7 @@ impl Passage {
             .map(|(slopes, rate)| along(slopes, *rate))
             .collect();
         let mut first = vec![gap_rate];
-        first.extend(self.gap.0.iter().map(|own| pool.neg(*own)));
+        first.extend(self.gap.0.iter().map(|slope| pool.neg(*slope)));
         let mut rows = vec![first];
         for ((velocity, carried), slopes) in outgoing.iter().zip(carried).zip(&self.slopes) {
             let mut row = vec![pool.sub(*velocity, carried)];
@@ -511,7 +519,7 @@ impl Passage {
         let field = point.field();
         let value = |id: &ExprId| values[id.index()];
         let incoming: Vec<_> = (self.qdot.iter())
-            .map(|own| point.symbol(&model.pool, *own))
+            .map(|velocity| point.symbol(&model.pool, *velocity))
             .collect();
         let along = |row: &[ExprId], start: Number<P>| {
             let terms = row.iter().zip(&incoming);
@@ -519,7 +527,7 @@ impl Passage {
         };
         let gap_rate = along(&self.gap.0, value(&self.gap.1));
         let mut first = vec![gap_rate];
-        first.extend(self.gap.0.iter().map(|own| field.neg(value(own))));
+        first.extend(self.gap.0.iter().map(|slope| field.neg(value(slope))));
         let mut rows = vec![first];
         for ((slopes, rate), velocity) in self.slopes.iter().zip(&self.rates).zip(outgoing) {
             let mut row = vec![field.sub(*velocity, along(slopes, value(rate)))];
@@ -531,19 +539,21 @@ impl Passage {
 }
 
 fn positions(model: &mut Model) -> Vec<ExprId> {
-    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+    let symbols: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
     symbols
         .into_iter()
-        .map(|own| model.pool.variable(own))
+        .map(|symbol| model.pool.variable(symbol))
         .collect()
 }
 
-fn velocities_of(model: &mut Model) -> Vec<ExprId> {
-    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
-    symbols
-        .into_iter()
-        .map(|own| model.pool.variable(own))
-        .collect()
+/// Derivatives of expressions by symbols, one row per expression.
+fn derivatives(pool: &mut Pool, values: &[ExprId], symbols: &[SymbolId]) -> Vec<Vec<ExprId>> {
+    let mut row = |value: &ExprId| symbols.iter().map(|by| pool.diff(*value, *by)).collect();
+    values.iter().map(&mut row).collect()
 }
 
 /// Declared velocities with their derivatives; those of a first-order system are none.
@@ -551,16 +561,12 @@ fn declared(model: &mut Model, after: &Side, velocities: Vec<ExprId>) -> Velocit
     if after.rates.is_some() {
         return Velocities::Rates;
     }
-    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
-    let slopes = velocities
+    let symbols: Vec<SymbolId> = model
+        .coordinates
         .iter()
-        .map(|own| {
-            symbols
-                .iter()
-                .map(|by| model.pool.diff(*own, *by))
-                .collect()
-        })
+        .map(|coordinate| coordinate.qdot)
         .collect();
+    let slopes = derivatives(&mut model.pool, &velocities, &symbols);
     Velocities::Declared(velocities, slopes)
 }
 

@@ -44,10 +44,13 @@ pub(super) fn refracted<P: ExpansionPoint>(
     let slope = numbers(slope);
     // The momenta before without the velocity-linear terms after, and dh, both raised by the metric after.
     let shifts = before.linear.iter().zip(&after.linear);
-    let shifts = shifts.map(|(own, other)| field.sub(value(own), value(other)));
+    let shifts = shifts.map(|(before, after)| field.sub(value(before), value(after)));
     let momenta = lowered(before, velocity).into_iter().zip(shifts);
-    let right = momenta.zip(&slope).map(|((own, shift), slope)| {
-        vec![jets.constant(field.add(own, shift)), jets.constant(*slope)]
+    let right = momenta.zip(&slope).map(|((momentum, shift), slope)| {
+        vec![
+            jets.constant(field.add(momentum, shift)),
+            jets.constant(*slope),
+        ]
     });
     let metric = after.metric.iter().map(|row| {
         let entries = row.iter().map(|id| jets.constant(value(id)));
@@ -63,6 +66,7 @@ pub(super) fn refracted<P: ExpansionPoint>(
     let twice = field.mul(field.integer(2), field.mul(compliance, excess));
     let root = point.power(field.sub(field.mul(b, b), twice), &Rational::HALF)?;
     let c = field.neg(field.mul(field.add(root, b), field.inv(compliance)?));
-    let shifted = |(own, along): (&Number<P>, &Number<P>)| field.add(*own, field.mul(c, *along));
+    let shifted =
+        |(start, along): (&Number<P>, &Number<P>)| field.add(*start, field.mul(c, *along));
     Some(start.iter().zip(&along).map(shifted).collect())
 }

@@ -4,6 +4,7 @@ use dalembert_expr::{
     Assumption as Known, Domain, ExprId, Function, Interval, Node, Pool, RealPoint, SymbolId,
 };
 
+use super::dynamics::Dynamics;
 use crate::model::{Assumption, Model, Topology};
 
 /// A real point: values of parameters and coordinates that a person can type.
@@ -242,4 +243,39 @@ fn round(value: f64) -> f64 {
 /// Whether any expression below `roots` contains a symbol.
 pub(super) fn uses<'a>(pool: &'a Pool, roots: &'a [ExprId]) -> impl Fn(SymbolId) -> bool + 'a {
     move |symbol| roots.iter().any(|root| pool.depends_on(*root, symbol))
+}
+
+/// Independent velocities of real states.
+const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];
+
+/// A real state on D with short independent velocities; what is shown of it includes all velocities.
+pub(super) fn state_on_d(
+    model: &Model,
+    dynamics: &Dynamics,
+    roots: &[ExprId],
+    attempt: usize,
+) -> Option<(Sample, RealPoint)> {
+    let mut sample = sample(model, attempt, uses(&model.pool, roots));
+    move_between_knots(model, roots, attempt, &mut sample);
+    with_velocities(model, dynamics, sample, attempt)
+}
+
+/// The sample with velocities on D, and its point.
+pub(super) fn with_velocities(
+    model: &Model,
+    dynamics: &Dynamics,
+    mut sample: Sample,
+    attempt: usize,
+) -> Option<(Sample, RealPoint)> {
+    let mut point = sample.point();
+    for (i, coordinate) in model.coordinates.iter().enumerate() {
+        let velocity = VELOCITIES[(i + attempt) % VELOCITIES.len()];
+        point.set(coordinate.qdot, velocity);
+    }
+    let motion = dynamics.motion(&model.pool, &mut point, None)?;
+    for (coordinate, value) in model.coordinates.iter().zip(&motion.qdot) {
+        let name = format!("dot({})", coordinate.name.display);
+        sample.push(name, coordinate.qdot, *value);
+    }
+    Some((sample, point))
 }

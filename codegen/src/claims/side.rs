@@ -39,9 +39,9 @@ pub(super) struct Chart<A: Arithmetic> {
 impl Side {
     /// The mode of a model, with the density that its claims state.
     pub(super) fn of(model: &mut Model) -> Self {
-        let forms = model.constraints.iter().map(|own| {
-            let mut row = own.form.clone();
-            row.push(own.affine);
+        let forms = model.constraints.iter().map(|constraint| {
+            let mut row = constraint.form.clone();
+            row.push(constraint.affine);
             row
         });
         let forms = forms.collect();
@@ -51,7 +51,7 @@ impl Side {
             rates: model.field.clone(),
             linear: model.lagrangian.linear.clone(),
             potential: model.lagrangian.potential,
-            density: stated_density(model).map_or_else(|| model.pool.one(), |(own, _)| own),
+            density: stated_density(model).map_or_else(|| model.pool.one(), |(density, _)| density),
         }
     }
 
@@ -149,7 +149,7 @@ impl Side {
             rows.iter().map(row).collect()
         };
         let forms: Matrix<P::Field> = (rows(&self.forms).into_iter())
-            .map(|row| row.into_iter().map(|own| jets.constant(own)).collect())
+            .map(|row| row.into_iter().map(|value| jets.constant(value)).collect())
             .collect();
         let dependent = choose_dependent(&jets, &forms)?;
         let independent: Vec<usize> = (0..n).filter(|i| !dependent.contains(i)).collect();
@@ -163,8 +163,8 @@ impl Side {
             basis[*i][k] = field.integer(1);
         }
         for (j, row) in dependent.iter().zip(&solved.unknowns) {
-            for (own, entry) in basis[*j].iter_mut().zip(row) {
-                *own = field.neg(jets.value(entry));
+            for (component, entry) in basis[*j].iter_mut().zip(row) {
+                *component = field.neg(jets.value(entry));
             }
         }
         let minor = field.inv(jets.value(&solved.determinant))?;
@@ -174,6 +174,14 @@ impl Side {
             basis,
             density: field.mul(metric, minor),
         })
+    }
+
+    /// The velocities of the motion at the state before a passage.
+    pub(super) fn velocities(&self, model: &mut Model) -> Vec<ExprId> {
+        match &self.rates {
+            Some(rates) => rates.clone(),
+            None => velocities_of(model),
+        }
     }
 }
 
@@ -190,23 +198,23 @@ pub(super) fn quantity_of_mode(
         (model.time, entered.time),
         (model.derived.energy, entered.derived.energy),
     ];
-    for (i, own) in model.coordinates.iter().enumerate() {
+    for (i, here) in model.coordinates.iter().enumerate() {
         let mut others = entered.coordinates.iter().enumerate();
-        if let Some((j, other)) = others.find(|(_, other)| other.name == own.name) {
+        if let Some((j, other)) = others.find(|(_, other)| other.name == here.name) {
             let momenta = (model.derived.momenta[i], entered.derived.momenta[j]);
-            known.extend([(own.q, other.q), (own.qdot, other.qdot), momenta]);
+            known.extend([(here.q, other.q), (here.qdot, other.qdot), momenta]);
         }
     }
-    for own in &model.parameters {
+    for here in &model.parameters {
         let other = entered
             .parameters
             .iter()
-            .find(|other| other.name == own.name)?;
-        known.push((own.symbol, other.symbol));
+            .find(|other| other.name == here.name)?;
+        known.push((here.symbol, other.symbol));
     }
     let known: Vec<_> = known
         .into_iter()
-        .map(|(own, other)| (own, entered.pool.variable(other)))
+        .map(|(here, other)| (here, entered.pool.variable(other)))
         .collect();
     let there = entered.pool.import(&model.pool, &[quantity], &known)?[0];
     let there = explicit(&mut entered, there);
@@ -221,27 +229,43 @@ fn replacements(
     (q, qdot): (&[ExprId], &[ExprId]),
 ) -> Option<Vec<(SymbolId, ExprId)>> {
     let mut replacements = vec![(entered.time, model.pool.variable(model.time))];
-    for (own, after) in entered.coordinates.iter().zip(q) {
-        replacements.push((own.q, *after));
+    for (coordinate, after) in entered.coordinates.iter().zip(q) {
+        replacements.push((coordinate.q, *after));
     }
-    for (own, after) in entered.coordinates.iter().zip(qdot) {
-        replacements.push((own.qdot, *after));
+    for (coordinate, after) in entered.coordinates.iter().zip(qdot) {
+        replacements.push((coordinate.qdot, *after));
     }
-    for own in &entered.parameters {
-        let here = model.parameters.iter().find(|here| here.name == own.name)?;
-        replacements.push((own.symbol, model.pool.variable(here.symbol)));
+    for parameter in &entered.parameters {
+        let here = model
+            .parameters
+            .iter()
+            .find(|here| here.name == parameter.name)?;
+        replacements.push((parameter.symbol, model.pool.variable(here.symbol)));
     }
     Some(replacements)
 }
 
 /// The density that the claims of a model state, written out, and its text.
 pub(super) fn stated_density(model: &mut Model) -> Option<(ExprId, String)> {
-    let claims = model.claims.iter().filter(|own| own.scene.is_none());
-    let found = claims.clone().find_map(|own| match &own.statement {
-        Statement::Density(value) => Some((*value, own.text.clone())),
+    let claims = model.claims.iter().filter(|claim| claim.scene.is_none());
+    let found = claims.clone().find_map(|claim| match &claim.statement {
+        Statement::Density(value) => Some((*value, claim.text.clone())),
         _ => None,
     });
     let (value, text) = found?;
     let written = text.trim_start_matches("density = ").to_owned();
     Some((explicit(model, value), written))
+}
+
+/// The velocities of a model, as variables.
+pub(super) fn velocities_of(model: &mut Model) -> Vec<ExprId> {
+    let symbols: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.qdot)
+        .collect();
+    symbols
+        .into_iter()
+        .map(|symbol| model.pool.variable(symbol))
+        .collect()
 }

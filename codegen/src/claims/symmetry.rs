@@ -9,17 +9,15 @@
 //! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2). `f(q, t)` is 0 where the flow keeps
 //! the Lagrangian itself, see [`super::gauge`] elsewhere.
 
-use dalembert_expr::{
-    ExpansionPoint, ExprId, ModularPoint, Pool, RangePoint, RealPoint, SymbolId, Verdict as Zero,
-};
+use dalembert_expr::{ExpansionPoint, ExprId, Pool, RealPoint, SymbolId, Verdict as Zero};
 
-use super::conserved::{enclosed_on_d, magnitude, state_on_d};
+use super::conserved::magnitude;
 use super::continuity::possible_jump;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::{Certificate, Verdict};
 use super::gauge;
-use super::sample::{Sample, sample, uses};
+use super::sample::{Sample, sample, state_on_d, uses};
 use crate::model::Model;
 
 /// The verdict on a symmetry, with remarks.
@@ -53,14 +51,8 @@ pub(super) fn check_symmetry(
             refuted => return (refuted, Vec::new()),
         }
     }
-    let mut certificate = whole.unwrap_or_else(|| Certificate {
-        shown: KEPT.to_owned(),
-        points: 0,
-        primes: Vec::new(),
-        error: 0.0,
-        seed,
-        at: None,
-    });
+    let mut certificate =
+        whole.unwrap_or_else(|| Certificate::without_chance(KEPT.to_owned(), seed));
     if !is_kept {
         certificate.shown = GAUGE.to_owned();
     }
@@ -170,11 +162,8 @@ impl Vanishing for Change<'_> {
         roots
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        match self.on_d {
-            None => Some(()),
-            Some(dynamics) => dynamics.motion(&model.pool, point, None).map(|_| ()),
-        }
+    fn dynamics(&self) -> Option<&Dynamics> {
+        self.on_d
     }
 
     fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
@@ -185,13 +174,6 @@ impl Vanishing for Change<'_> {
                 Some((sample, point))
             }
             Some(dynamics) => state_on_d(model, dynamics, &self.roots(), attempt),
-        }
-    }
-
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        match self.on_d {
-            None => Some(P::of(point)),
-            Some(dynamics) => enclosed_on_d(model, dynamics, point),
         }
     }
 

@@ -9,19 +9,15 @@
 //! `lambda_a deta^a(X, Y)` differs from 0 for two fields of D: `deta^a(X, Y)` is the value of `d(lambda_a eta^a)` on their lifts, as
 //! both are annihilated by `eta^a`. An impulse along `dh` keeps the form iff it keeps the volume.
 
-use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, ModularPoint, Pool, RangePoint, RealPoint, SymbolId,
-    Verdict as Zero,
-};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
 
 use super::collision::{Vanished, evidence_at_impact};
-use super::conserved::{enclosed_on_d, magnitude, state_on_d};
+use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Surroundings, effects};
 use super::passage::{Passage, Velocities};
-use super::sample::Sample;
 use super::side::Side;
 use super::wall::Wall;
 use crate::model::Model;
@@ -49,7 +45,8 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
         let surface = effect.surface;
         let name = model.surfaces[surface].name.display.clone();
         let wall = Wall::of(model, around.derivation, surface, around.others);
-        let is_declared = |own: &&Passage| matches!(own.velocities, Velocities::Declared(..));
+        let is_declared =
+            |passage: &&Passage| matches!(passage.velocities, Velocities::Declared(..));
         let verdict = match wall.passage.as_ref().filter(is_declared) {
             // What changes volumes does not keep the form.
             Some(passage) if effect.keeps() => map_keeps(model, around, &wall, passage, &name),
@@ -66,10 +63,8 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
             },
         };
         match verdict {
-            Verdict::Proved(own) => {
-                all.points += own.points;
-                all.error += own.error;
-                all.primes.extend(&own.primes);
+            Verdict::Proved(part) => {
+                all.rest_on(&part);
                 all.shown += &format!("; `{name}` keeps it");
             }
             Verdict::Refuted(_) => return verdict,
@@ -78,8 +73,6 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
             }
         }
     }
-    all.primes.sort_unstable();
-    all.primes.dedup();
     match open {
         Some(reason) => Verdict::Undecided(reason),
         None => Verdict::Proved(all),
@@ -90,20 +83,13 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
 fn forces_are_closed(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     let n = model.coordinates.len();
     let mut force = vec![model.pool.zero(); n];
-    for own in model.forces.clone() {
-        for (sum, entry) in force.iter_mut().zip(own.form) {
+    for declared in model.forces.clone() {
+        for (sum, entry) in force.iter_mut().zip(declared.form) {
             *sum = model.pool.add(*sum, entry);
         }
     }
     let coordinates = model.coordinates.clone();
-    let mut certificate = Certificate {
-        shown: KEPT.to_owned(),
-        points: 0,
-        primes: Vec::new(),
-        error: 0.0,
-        seed: around.seed,
-        at: None,
-    };
+    let mut certificate = Certificate::without_chance(KEPT.to_owned(), around.seed);
     for i in 0..n {
         for j in 0..n {
             let [a, b] = [i, j].map(|k| coordinates[k].name.display.clone());
@@ -120,11 +106,7 @@ fn forces_are_closed(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
                     continue;
                 }
                 match vanishes(model, around, value, shown) {
-                    Verdict::Proved(own) => {
-                        certificate.points += own.points;
-                        certificate.error += own.error;
-                        certificate.primes.extend(own.primes);
-                    }
+                    Verdict::Proved(part) => certificate.rest_on(&part),
                     other => return other,
                 }
             }
@@ -151,7 +133,11 @@ fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: Stri
 /// The verdict on constraints: never proved, as nothing is said of leaves.
 fn constraints_are_seen(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     let n = model.coordinates.len();
-    let q: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+    let q: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
     let mut curls = Vec::new();
     for constraint in model.constraints.clone() {
         let form = constraint.form;
@@ -209,7 +195,7 @@ fn map_keeps(
     name: &str,
 ) -> Verdict {
     let entries = change_of_form(model, passage);
-    let mut certificate: Option<Certificate> = None;
+    let mut certificate = Certificate::without_chance(String::new(), around.seed);
     for (pair, mut value) in entries {
         if let Some(solution) = wall.solution() {
             value = model.pool.substitute(value, &[solution]);
@@ -228,47 +214,33 @@ fn map_keeps(
         };
         let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
         match found.verdict(true, wording, around.seed) {
-            Verdict::Proved(own) => match &mut certificate {
-                None => certificate = Some(own),
-                Some(all) => {
-                    all.points += own.points;
-                    all.error += own.error;
-                    all.primes.extend(own.primes);
-                }
-            },
+            Verdict::Proved(part) => certificate.rest_on(&part),
             other => return other,
         }
     }
-    Verdict::Proved(certificate.unwrap_or(Certificate {
-        shown: String::new(),
-        points: 0,
-        primes: Vec::new(),
-        error: 0.0,
-        seed: around.seed,
-        at: None,
-    }))
+    Verdict::Proved(certificate)
 }
 
 /// `dp+ dq+ - dH+ dt - dp dq + dH dt` on each pair of vectors along the surface, which are those of all coordinates of `(t, q, qdot)` but
 /// one, with as much of that as keeps h.
 fn change_of_form(model: &mut Model, passage: &Passage) -> Vec<(String, ExprId)> {
     let mut symbols = vec![model.time];
-    symbols.extend(model.coordinates.iter().map(|own| own.q));
-    symbols.extend(model.coordinates.iter().map(|own| own.qdot));
+    symbols.extend(model.coordinates.iter().map(|coordinate| coordinate.q));
+    symbols.extend(model.coordinates.iter().map(|coordinate| coordinate.qdot));
     let (slope, rate) = passage.gap_form();
     let mut gap = vec![rate];
     gap.extend(slope);
     gap.resize(symbols.len(), model.pool.zero());
-    let Some(k) = (1..gap.len()).find(|i| !model.pool.is_syntactic_zero(gap[*i])) else {
-        return Vec::new();
-    };
+    // A gap that depends on time alone is a surface of states at one time.
+    let moves = |i: &usize| !model.pool.is_syntactic_zero(gap[*i]);
+    let k = (1..gap.len()).find(moves).unwrap_or(0);
     let [after, before] = [
         canonical(model, passage, true),
         canonical(model, passage, false),
     ];
     let pool = &mut model.pool;
-    let mut derivatives = |own: Canonical, sign: bool| {
-        let rows = own.pairs.into_iter().map(|pair| {
+    let mut derivatives = |form: Canonical, sign: bool| {
+        let rows = form.pairs.into_iter().map(|pair| {
             let [p, q] = pair.map(|id| {
                 let slopes = symbols.iter().map(|by| pool.diff(id, *by));
                 slopes.collect::<Vec<_>>()
@@ -293,12 +265,12 @@ fn change_of_form(model: &mut Model, passage: &Passage) -> Vec<(String, ExprId)>
     for (place, &i) in others.iter().enumerate() {
         for &j in &others[place + 1..] {
             let [direct, left, right] = [(i, j), (i, k), (k, j)].map(|(a, b)| entry(a, b, pool));
-            let [by_j, by_i] = [gap[j], gap[i]].map(|own| pool.div(own, gap[k]));
+            let [by_j, by_i] = [gap[j], gap[i]].map(|slope| pool.div(slope, gap[k]));
             let [left, right] = [pool.mul(by_j, left), pool.mul(by_i, right)];
             let both = pool.add(left, right);
             let value = pool.sub(direct, both);
             let value = pool.simplify(value);
-            if pool.zero_test(value) != Zero::Proved || !pool.is_syntactic_zero(value) {
+            if !pool.is_syntactic_zero(value) {
                 let names = [i, j].map(|i| pool.symbol_name(symbols[i]).to_owned());
                 found.push((format!("d_{} and d_{}", names[0], names[1]), value));
             }
@@ -316,7 +288,7 @@ fn canonical(model: &mut Model, passage: &Passage, is_after: bool) -> Canonical 
     let symbols: Vec<(SymbolId, SymbolId)> = model
         .coordinates
         .iter()
-        .map(|own| (own.q, own.qdot))
+        .map(|coordinate| (coordinate.q, coordinate.qdot))
         .collect();
     let time = model.time;
     let pool = &mut model.pool;
@@ -325,8 +297,11 @@ fn canonical(model: &mut Model, passage: &Passage, is_after: bool) -> Canonical 
             (&passage.after, passage.positions.clone(), values.clone())
         }
         _ => {
-            let q = symbols.iter().map(|own| pool.variable(own.0)).collect();
-            let qdot = symbols.iter().map(|own| pool.variable(own.1)).collect();
+            let q = symbols.iter().map(|(q, _)| pool.variable(*q)).collect();
+            let qdot = symbols
+                .iter()
+                .map(|(_, qdot)| pool.variable(*qdot))
+                .collect();
             (&passage.before, q, qdot)
         }
     };
@@ -380,16 +355,8 @@ impl Vanishing for AtStates<'_> {
         roots
     }
 
-    fn settle(&self, model: &Model, point: &mut ModularPoint) -> Option<()> {
-        self.dynamics.motion(&model.pool, point, None).map(|_| ())
-    }
-
-    fn sample(&self, model: &Model, attempt: usize) -> Option<(Sample, RealPoint)> {
-        state_on_d(model, self.dynamics, &self.roots(), attempt)
-    }
-
-    fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
-        enclosed_on_d(model, self.dynamics, point)
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
     }
 
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
@@ -420,8 +387,7 @@ impl Vanishing for AtStates<'_> {
 
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let terms = self.terms(model, point)?;
-        let sizes = terms.iter().map(|own| own.abs());
-        let sum = sizes.fold(0.0, |sum: f64, own| sum + own);
+        let sum: f64 = terms.iter().map(|term| term.abs()).sum();
         Some(match &self.part {
             Part::Value(value) => magnitude(model, point, *value),
             Part::Curl { .. } => sum,

@@ -22,12 +22,11 @@ use dalembert_expr::{
     RealPoint, Series, SymbolId, Verdict as Zero,
 };
 
-use super::conserved::with_velocities;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::in_arguments;
 use super::linear::{Matrix, dot, solve};
 use super::passage::Passage;
-use super::sample::{Sample, sample, uses};
+use super::sample::{Sample, sample, uses, with_velocities};
 use crate::mechanics::Derivation;
 use crate::model::{Beside, Law, Model, Surface};
 
