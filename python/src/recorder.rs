@@ -53,7 +53,7 @@ pub(crate) struct Contacts {
     pub accumulation: Vec<f64>,
 }
 
-/// What is kept of a run.
+/// Samples, impacts and contacts of a run.
 #[derive(Debug, Default)]
 pub(crate) struct Record {
     pub samples: Columns,

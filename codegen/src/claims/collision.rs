@@ -26,7 +26,7 @@ pub(super) trait AtImpact {
         after: &[Number<P>],
     ) -> Option<Vec<Number<P>>>;
 
-    /// Whether a real state with these terms is looked at.
+    /// True if a real state with these terms may serve as a witness.
     fn wants(&self, terms: &[f64]) -> bool {
         let _ = terms;
         true

@@ -428,7 +428,7 @@ impl<'e> Examiner<'e> {
         Some((defaults, value, dynamics))
     }
 
-    /// What there is where there is no density.
+    /// Remedies in words if no density exists.
     fn alternatives(&mut self, exactness: &Exactness) -> Vec<String> {
         alternatives::alternatives(
             self.model,
@@ -445,7 +445,7 @@ impl<'e> Examiner<'e> {
         kept::of_potential(&mut self.model.pool, potential)
     }
 
-    /// What surfaces do to a volume.
+    /// Effects of all surfaces on a volume.
     fn effects(&mut self, density: &Density) -> Vec<Effect> {
         let (model, around) = self.around();
         hybrid::effects(model, &around, density)
@@ -520,10 +520,10 @@ impl<'e> Examiner<'e> {
     }
 }
 
-/// Whether the claims state no density.
+/// True if the claims state no density.
 fn stated_density_is_absent(model: &Model) -> bool {
-    let mut claims = model.claims.iter().filter(|own| own.scene.is_none());
-    claims.all(|own| !matches!(own.statement, Statement::Density(_)))
+    let mut claims = model.claims.iter().filter(|claim| claim.scene.is_none());
+    claims.all(|claim| !matches!(claim.statement, Statement::Density(_)))
 }
 
 /// The expression with energy and momenta written out.

@@ -142,7 +142,7 @@ struct Jump<'j> {
     value: ExprId,
     /// Its value after the impact.
     after: ExprId,
-    /// Whether that is one of the velocities after the impact in place of those before it.
+    /// True if that quantity is written in the velocities after the impact, not in those before it.
     is_computed: bool,
     /// Its derivatives by the velocities.
     slopes: Vec<ExprId>,

@@ -400,7 +400,7 @@ pub enum Statement {
     Symmetry(Vec<ExprId>),
     /// One invariant volume is kept by the motion and by all that happens at surfaces.
     VolumeKept,
-    /// What the volume is multiplied by at the surface of an index.
+    /// Factor of the volume at a surface.
     Factor {
         /// The factor.
         value: ExprId,

@@ -564,7 +564,7 @@ pub enum Statement {
     Factor {
         /// The surface.
         under: Declared,
-        /// What the volume is multiplied by.
+        /// The factor of the volume.
         value: Scalar,
     },
     /// `symplectic`

@@ -20,7 +20,7 @@ mod volume;
 use dalembert_codegen::claims::{Finding, Verdict, examine, examine_mode};
 use dalembert_codegen::{mechanics, model, read, spec};
 
-/// What becomes of a claim.
+/// Expected verdict on a claim.
 #[derive(Debug, Clone, Copy)]
 enum Expected {
     /// It is proved.

@@ -1,4 +1,4 @@
-//! What surfaces do to the momentum of a symmetry.
+//! Effects of surfaces on the momentum of a symmetry.
 
 use crate::findings;
 use crate::systems::{disk, particle};

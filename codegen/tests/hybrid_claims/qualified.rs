@@ -1,4 +1,4 @@
-//! What a proof of a density says where impacts do not keep its volume.
+//! Verdicts on densities of models whose impacts do not keep the volume.
 
 use crate::findings;
 use crate::systems::{ball, disk};

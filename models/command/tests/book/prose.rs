@@ -73,7 +73,7 @@ fn length(sentence: &str) -> usize {
     words
 }
 
-/// What is wrong with a page.
+/// Mistakes on a page, one sentence each.
 fn mistakes(page: &str) -> Vec<String> {
     let mut found = Vec::new();
     for sentence in sentences(page) {
