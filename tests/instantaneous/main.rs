@@ -398,7 +398,14 @@ fn claims_about_such_impacts_stay_open() {
         .iter()
         .find(|note| note.contains("density: exact"))
         .expect("a note");
-    assert!(volume.contains("an impact at w maps it to 0"), "{volume}");
+    assert!(
+        volume.contains("of the motion between impacts alone"),
+        "{volume}"
+    );
+    assert!(
+        volume.contains("w maps it to 0, as its instantaneous constraints do"),
+        "{volume}"
+    );
 }
 
 #[test]
