@@ -107,7 +107,7 @@ fn a_stage_uses_only_those_to_its_left() {
 }
 
 /// The modules of the runtime, each after those it uses.
-const RUNTIME: [&str; 36] = [
+const RUNTIME: [&str; 38] = [
     "error",
     "state",
     "per_surface",
@@ -129,6 +129,8 @@ const RUNTIME: [&str; 36] = [
     "effects",
     "events",
     "narrow",
+    "chart",
+    "independence",
     "simulation",
     "impacts",
     "inputs",

@@ -28,6 +28,26 @@ static TOUCHED: Text = Text::new(
     }",
 );
 
+/// It vanishes at two places beside each other.
+static TWICE: Text = Text::new(
+    "Twice {
+        coordinates { x; y; z; }
+        parameters { apart = 1e-3; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { first: d(x) = 0; second: d(x) + y*(y - apart)*d(z) = 0; }
+    }",
+);
+
+/// It vanishes, or nearly, at the tip of a narrow needle.
+static NEEDLE: Text = Text::new(
+    "Needle {
+        coordinates { x; y; z; }
+        parameters { s > 0 = 1e-2; left = 0; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { first: d(x) = 0; second: d(x) + (1 + left - exp(-(y/s)^2))*d(z) = 0; }
+    }",
+);
+
 /// It vanishes where a needle stands upright.
 static UPRIGHT: Text = Text::new(
     "Upright {
@@ -189,6 +209,28 @@ fn a_drop_of_even_order_is_found() {
         // Nearer than this the forms are dependent to rounding: `y^2 < 4 * 2^-52`.
         assert_drop(case, &run, 1, (1, 0.0), 3e-8);
     });
+}
+
+#[test]
+fn drops_beside_each_other_are_found() {
+    for apart in [0.3, 1e-2, 1e-3] {
+        let system = TWICE.with([("apart", apart)]);
+        Start::new(&system, &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 3.0).every(|case, run, _| {
+            assert_drop(case, &run, 1, (1, 0.0), 1e-12);
+        });
+    }
+}
+
+#[test]
+fn a_drop_at_the_tip_of_a_needle_is_found() {
+    for s in [0.1, 1e-2, 1e-3] {
+        let system = NEEDLE.with([("s", s)]);
+        let start = Start::new(&system, &[0.0, -0.7, 0.0], &[0.0, 1.0, 0.0], 2.0);
+        start.every(|case, run, _| assert_drop(case, &run, 1, (1, 0.0), 3e-8 * s + 1e-15));
+        let system = NEEDLE.with([("s", s), ("left", 1e-4)]);
+        let start = Start::new(&system, &[0.0, -0.7, 0.0], &[0.0, 1.0, 0.0], 2.0);
+        start.every(|case, run, _| assert_eq!(run.outcome, Outcome::Done, "{case}"));
+    }
 }
 
 #[test]

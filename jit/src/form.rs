@@ -98,7 +98,7 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Option<&'static Form>) 
             None => functions.table(),
         },
         kernels_over: [
-            has_surfaces.then(|| any(functions.table::<TaylorModel>())),
+            (has_surfaces || tables.can_lose_rank).then(|| any(functions.table::<TaylorModel>())),
             has_surfaces.then(|| any(functions.table::<Bent>())),
             (may_be_narrow || tables.varies).then(|| any(functions.table::<Rated>())),
             tables.varies.then(|| any(functions.table::<Dual>())),

@@ -1,6 +1,8 @@
 //! Systems with inputs, and inputs that are functions of time and state.
 
-use crate::contract::{Constrained, Impacting, Level, Powered, RankDrop, System, VectorField};
+use crate::contract::{
+    Along, Chart, Constrained, Impacting, Level, Powered, RankDrop, System, VectorField,
+};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::law::{Blow, Contact, Jump, Law};
 use crate::numbers::{Bent, TaylorModel};
@@ -116,8 +118,16 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<S
         self.system.outside_chart(state)
     }
 
+    fn chart(&self, state: &Self::State, number: usize) -> Option<Chart> {
+        self.system.chart(state, number)
+    }
+
     fn can_lose_rank(&self) -> bool {
         self.system.can_lose_rank()
+    }
+
+    fn keeps_rank(&self, along: Along<'_>) -> bool {
+        self.system.keeps_rank(along)
     }
 
     fn rank_drop(
@@ -285,6 +295,14 @@ where
 
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         self.system.surface_active(surface, t, state)
+    }
+
+    fn has_conditions(&self, surface: usize) -> bool {
+        self.system.has_conditions(surface)
+    }
+
+    fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
+        self.system.counts_along(surface, along, rounding)
     }
 
     fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {

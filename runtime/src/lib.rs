@@ -116,6 +116,7 @@
 
 pub mod audit;
 pub mod certified;
+mod chart;
 pub mod contract;
 pub mod declaration;
 pub mod describe;
@@ -127,6 +128,7 @@ pub mod extended;
 pub mod forces;
 mod generated;
 pub mod impacts;
+mod independence;
 pub mod initial;
 pub mod inputs;
 pub mod integrate;

@@ -2,10 +2,13 @@
 
 use core::ops::ControlFlow;
 
+use crate::chart::{self, Exit};
 use crate::contract::{RankDrop, System};
 use crate::effects::{Change, Effect, Moment, StepView};
 use crate::error::Fault;
+use crate::events::first::narrowed;
 use crate::forces::{Along, Driven};
+use crate::independence;
 use crate::integrate::controller::least_trial;
 use crate::integrate::{Counters, Dop853, Instant, Rebound, Stepper};
 use crate::narrow;
@@ -276,6 +279,9 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             stepper: &mut *self.stepper,
         };
         let proposed = self.effects.propose(&mut view)?;
+        if let Some(exit) = chart::exit(&mut view, proposed.unwrap_or(1.0))? {
+            return Err(self.leave_chart(exit, observer));
+        }
         if self.system.can_lose_rank() {
             self.keep_rank(proposed.unwrap_or(1.0), observer)?;
         }
@@ -341,7 +347,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     #[inline(always)]
     fn pass<O: Observer<Sys>>(&mut self, observer: &mut O) -> Result<(), Outcome> {
         if let Some(coordinate) = self.system.outside_chart(self.stepper.end_state()) {
-            return Err(self.leave_chart(1.0, coordinate, observer));
+            return Err(self.leave_chart_before(1.0, coordinate, observer));
         }
         if self.progress.watches_energy
             && !has_energy(self.system, self.stepper.t_end(), self.stepper.end_state())
@@ -384,7 +390,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.progress.flight = 0.0;
         self.arrive(theta)?;
         if let Some(coordinate) = self.system.outside_chart(&self.progress.state) {
-            return Err(self.leave_chart(theta, coordinate, observer));
+            return Err(self.leave_chart_before(theta, coordinate, observer));
         }
         let mut now = Moment {
             system: self.system,
@@ -488,16 +494,12 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
     /// Ends the run where the constraint forms become dependent between the start of the step and `reach`.
     #[inline(never)]
     fn keep_rank<O: Observer<Sys>>(&mut self, reach: f64, observer: &mut O) -> Result<(), Outcome> {
-        let (start, end) = (self.stepper.t_start(), self.stepper.t_end());
-        let stepper = &*self.stepper;
-        // At both ends `motion` gives the states that this step shares with its neighbours, so that no gap is left
-        // between two steps.
-        let motion = |theta: f64| match theta {
-            0.0 => (start, *stepper.start_state()),
-            1.0 => (end, *stepper.end_state()),
-            _ => (start + theta * stepper.length(), stepper.interpolate(theta)),
+        let view = StepView {
+            system: self.system,
+            counters: &mut self.progress.counters,
+            stepper: &mut *self.stepper,
         };
-        let Some(RankDrop { theta, constraint }) = self.system.rank_drop(motion, reach) else {
+        let Some(RankDrop { theta, constraint }) = independence::drop(&view, reach) else {
             return Ok(());
         };
         self.arrive(theta)?;
@@ -508,42 +510,37 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         })
     }
 
-    /// At `theta` the motion is outside the chart: goes to the last state inside it, by bisection.
+    /// At `theta` a coordinate is outside its chart, which no enclosure has shown: ends the run in the last state inside it.
     #[cold]
-    fn leave_chart<O: Observer<Sys>>(
+    fn leave_chart_before<O: Observer<Sys>>(
         &mut self,
         theta: f64,
         coordinate: usize,
         observer: &mut O,
     ) -> Outcome {
-        match self.go_to_end_of_chart(theta, coordinate, observer) {
-            Ok(coordinate) => Outcome::LeftChart { coordinate },
-            Err(outcome) => outcome,
+        let mut view = StepView {
+            system: self.system,
+            counters: &mut self.progress.counters,
+            stepper: &mut *self.stepper,
+        };
+        if let Err(fault) = view.prepare() {
+            return fault.into();
         }
+        let onset = narrowed([0.0, theta], |part| chart::outside(&view, part).is_some());
+        let coordinate = chart::outside(&view, onset.after).unwrap_or(coordinate);
+        self.leave_chart(Exit { onset, coordinate }, observer)
     }
 
-    /// Goes to the end of the chart and returns the coordinate that leaves it first.
-    fn go_to_end_of_chart<O: Observer<Sys>>(
-        &mut self,
-        theta: f64,
-        coordinate: usize,
-        observer: &mut O,
-    ) -> Result<usize, Outcome> {
-        self.stepper
-            .prepare_dense(self.system, &mut self.progress.counters)?;
-        let (mut inside, mut outside, mut left) = (0.0, theta, coordinate);
-        loop {
-            let middle = 0.5 * (inside + outside);
-            if middle <= inside || middle >= outside {
-                break;
-            }
-            match self.system.outside_chart(&self.stepper.interpolate(middle)) {
-                None => inside = middle,
-                Some(coordinate) => (outside, left) = (middle, coordinate),
-            }
+    /// Ends the run in the last state inside the chart.
+    #[cold]
+    fn leave_chart<O: Observer<Sys>>(&mut self, exit: Exit, observer: &mut O) -> Outcome {
+        let inside = exit.onset.before;
+        let arrived = self.arrive(inside);
+        match arrived.and_then(|()| self.show(inside, observer)) {
+            Ok(()) => Outcome::LeftChart {
+                coordinate: exit.coordinate,
+            },
+            Err(outcome) => outcome,
         }
-        self.arrive(inside)?;
-        self.show(inside, observer)?;
-        Ok(left)
     }
 }

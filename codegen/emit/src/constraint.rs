@@ -76,6 +76,8 @@ fn emit_rank_drop(context: &Context<'_>) -> TokenStream {
         context.form.dimension(),
     );
     quote! {
+        const MAY_LOSE_RANK: bool = true;
+
         fn rank_drop_along(
             &self,
             motion: impl ::core::ops::Fn(f64) -> (f64, Self::State),

@@ -5,8 +5,8 @@
 //! code with event location. A claim that it cannot prove within its budget is reported as a [`Finding`], in the same
 //! way as a surface that was passed.
 //!
-//! Limits: the conditions of a surface (`when`) have no enclosure and are sampled where its gap is negative. A
-//! surface is not audited while it holds the motion.
+//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative, unless the system
+//! encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while it does.
 //!
 //! ```
 //! use dalembert::audit::{Audit, Finding};

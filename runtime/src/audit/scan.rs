@@ -2,7 +2,7 @@
 
 use super::motion::Motion;
 use crate::contract::Impacting;
-use crate::numbers::{Bent, Interval, Rated};
+use crate::numbers::{Bent, Interval, Rated, TaylorModel};
 
 /// Maximum number of halvings of a step; shorter pieces are not divided.
 const DEPTH: u32 = 44;
@@ -10,7 +10,10 @@ const DEPTH: u32 = 44;
 /// Maximum number of pieces of a step.
 const PIECES: u32 = 1 << 14;
 
-/// Places within a piece at which the conditions of a surface are sampled.
+/// How far rounding may move what conditions take, in parts of its size.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Where in a piece conditions are sampled that have no enclosure.
 const SAMPLES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// One gap along a step.
@@ -72,13 +75,18 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         for _ in 0..PIECES {
             let piece = piece(part, index, depth);
             let sign = self.sign(piece);
-            if sign == Sign::Unclear && depth < DEPTH {
+            let may_be_negative = matches!(sign, Sign::Negative | Sign::Unclear);
+            let matters = is_above || !self.is_passable;
+            let counts = match may_be_negative && matters {
+                true => self.counts_on(piece),
+                false => Some(false),
+            };
+            let is_unclear = counts.is_none() || (sign == Sign::Unclear && counts == Some(true));
+            if is_unclear && depth < DEPTH {
                 (index, depth) = (2 * index, depth + 1);
                 continue;
             }
-            let may_be_negative = matches!(sign, Sign::Negative | Sign::Unclear);
-            let matters = is_above || !self.is_passable;
-            if may_be_negative && matters && self.counts_on(piece) {
+            if counts != Some(false) {
                 return Err(piece[0]);
             }
             is_above = match sign {
@@ -118,8 +126,25 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         }
     }
 
-    /// True if the surface counts at one of the sample places of a piece.
-    fn counts_on(&self, [from, to]: [f64; 2]) -> bool {
+    /// Whether the surface counts on a piece, by more than rounding; `None` where that is not certain. Conditions that the system does not
+    /// enclose are sampled.
+    fn counts_on(&self, piece: [f64; 2]) -> Option<bool> {
+        if !self.system.has_conditions(self.surface) {
+            return Some(self.counts_at_samples(piece));
+        }
+        let along = |i: usize| TaylorModel::steady(self.motion.component(i, piece).value);
+        let time = TaylorModel::steady(self.motion.time(piece).value);
+        let about = |value: Interval| {
+            let reach = ROUNDING * value.magnitude();
+            TaylorModel::steady(Interval::point(value.middle()).widened(reach))
+        };
+        let rounded = |i: usize| about(self.motion.component(i, piece).value);
+        let moment = about(self.motion.time(piece).value);
+        self.system
+            .counts_along(self.surface, (time, &along), (moment, &rounded))
+    }
+
+    fn counts_at_samples(&self, [from, to]: [f64; 2]) -> bool {
         SAMPLES.into_iter().any(|sample| {
             let part = from + sample * (to - from);
             let (t, state) = (self.motion.time_at(part), self.motion.state(part));

@@ -8,6 +8,9 @@ use crate::numbers::{Bent, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
+/// Time and the components of a state along a stretch of motion, as [`Impacting::gap_along`] takes them.
+pub type Along<'a> = (TaylorModel, &'a dyn Fn(usize) -> TaylorModel);
+
 /// A system with impact surfaces `h_s >= 0`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`"
@@ -91,7 +94,21 @@ pub trait Impacting: System {
         true
     }
 
-    /// True if a surface that counts has a law here. If it has none, the run ends as
+    /// True if a surface has conditions that are enclosed along a motion. False by default: of a system that encloses none a run looks at
+    /// the ends of its steps for where a surface begins to count behind the motion.
+    fn has_conditions(&self, surface: usize) -> bool {
+        let _ = surface;
+        false
+    }
+
+    /// True if the surface counts all along a stretch of motion, or nowhere on it; `None` where that is not certain. Margins of
+    /// conditions that change by no more than they do in `rounding` are none.
+    fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
+        let _ = (surface, along, rounding);
+        None
+    }
+
+    /// True if a surface that counts has a law here; where it has none, the run ends as
     /// [`Outcome::Untaken`](crate::Outcome::Untaken).
     fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);

@@ -14,9 +14,9 @@ mod variational;
 mod volume;
 
 pub use constrained::Constrained;
-pub use dalembert_numbers::tables::Level;
+pub use dalembert_numbers::tables::{Chart, Level};
 pub use field::{TaylorField, VectorField};
-pub use impacting::Impacting;
+pub use impacting::{Along, Impacting};
 pub(crate) use landing::after_reset;
 pub use powered::Powered;
 pub(crate) use system::carried;

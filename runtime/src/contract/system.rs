@@ -1,6 +1,6 @@
 //! Mechanical systems, and the principle that gives their motions.
 
-use super::VectorField;
+use super::{Along, Chart, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
@@ -129,10 +129,24 @@ pub trait System: VectorField {
         None
     }
 
-    /// True if the constraint forms may become dependent somewhere: the generator has not proved the contrary. Only
-    /// such systems are checked in every step of a run.
+    /// The interval of this number that the chart has at a state: one component of the state must stay in it. None by default, whatever
+    /// [`System::outside_chart`] says: a run looks at the ends of its steps then, and not inside them.
+    fn chart(&self, state: &Self::State, number: usize) -> Option<Chart> {
+        let _ = (state, number);
+        None
+    }
+
+    /// True if the constraint forms may become dependent somewhere: not proved otherwise while building. A run watches such
+    /// systems in every step, and only them.
     #[inline(always)]
     fn can_lose_rank(&self) -> bool {
+        false
+    }
+
+    /// True if the constraint forms are certainly independent all along a stretch of motion. False by default: nothing is known, and
+    /// [`System::rank_drop`] looks at places of the whole step.
+    fn keeps_rank(&self, along: Along<'_>) -> bool {
+        let _ = along;
         false
     }
 

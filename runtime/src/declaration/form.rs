@@ -69,9 +69,9 @@ impl<S: Emitted> Of<S> {
 
     const fn kernels_over(is_narrow: bool, of_variations: &'static KernelTable<Dual>) -> Kinds {
         [
-            match S::TABLES.surfaces {
-                [] => None,
-                _ => Some(const { &Self::kernels::<TaylorModel>(KernelSet::OF_GAPS) }),
+            match (S::TABLES.surfaces, S::TABLES.can_lose_rank) {
+                ([], false) => None,
+                _ => Some(const { &Self::kernels::<TaylorModel>(Self::ENCLOSED) }),
             },
             match S::TABLES.surfaces {
                 [] => None,
@@ -91,8 +91,14 @@ impl<S: Emitted> Of<S> {
         ]
     }
 
-    /// True if a series has more initial values than an erased system can store: the system then stores results and
-    /// time, and computes the initial values again where it continues.
+    /// What is enclosed along steps.
+    const ENCLOSED: KernelSet = match S::TABLES.can_lose_rank {
+        true => KernelSet::OF_SURFACES.forms(),
+        false => KernelSet::OF_SURFACES,
+    };
+
+    /// True if a series begins with more than an erased system has room for: it keeps the results and the time, and begins again
+    /// where it goes on.
     const BEGINS_AGAIN: bool = <S::Firsts<f64> as Row<f64>>::CAPACITY > MOST_FIRSTS;
 
     /// Number of rates and gaps.

@@ -110,6 +110,7 @@ impl<const C: usize> Declared for Erased<C> {
     type Kernels = Pointers<&'static Form>;
 
     const MAY_BE_NARROW: bool = true;
+    const MAY_LOSE_RANK: bool = true;
 
     const HAS_MODES: bool = true;
 

@@ -7,6 +7,7 @@
 
 pub(crate) mod bends;
 pub(crate) mod crossing;
+pub(crate) mod first;
 pub(crate) mod haven;
 pub(crate) mod locate;
 pub(crate) mod path;

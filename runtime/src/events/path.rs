@@ -111,7 +111,8 @@ impl<S: StateVector> Path<S> {
         Ok(is_new)
     }
 
-    fn follow_dense<Sys: System<State = S>, Step: Stepper<Sys>>(
+    /// Takes in the dense output of the step, which is ready.
+    pub(crate) fn follow_dense<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
         step: &StepView<'_, Sys, Step>,
     ) {

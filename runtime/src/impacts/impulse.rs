@@ -505,8 +505,10 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
             if law.is_map() && law != declared {
                 return Err(Outcome::NoReset { surface });
             }
-            self.watch
-                .set_passable(surface, self.passes(now.system, surface));
+            let passes = self.passes(now.system, surface);
+            self.watch.set_passable(surface, passes);
+            let is_guarded = !passes && now.system.has_conditions(surface);
+            self.watch.set_guarded(surface, is_guarded);
         }
         let hits = self.watch.begin(now)?;
         self.strike(hits, now, observer)
@@ -539,7 +541,7 @@ impl<Sys: Impacting> Effect<Sys> for Impacts<Sys> {
         now: &mut Moment<'_, Sys>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
-        self.watch.check_behind(now)?;
+        self.watch.check_behind(theta, now)?;
         let held = *self.resting.held();
         if self.resting.turn(now, observer)? {
             let rates = now.system.gap_rates(now.t, now.state)?;

@@ -19,6 +19,7 @@ mod resting;
 mod root;
 mod search;
 mod series;
+mod sides;
 mod sliding;
 mod tangency;
 mod touch;

@@ -53,7 +53,10 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in first..self.parts.count() {
             if surface != first {
                 match self.told(surface, step, glance) {
-                    Told::Passed | Told::Clear => continue,
+                    Told::Passed | Told::Clear => {
+                        self.is_told[surface] = true;
+                        continue;
+                    }
                     Told::Unclear(model) => whole = model,
                 }
             }

@@ -19,7 +19,7 @@ use crate::events::crossing::Signs;
 use crate::events::haven::Haven;
 use crate::events::path::Path;
 use crate::events::piece::Piece;
-use crate::events::resolution::{counts_beyond_rounding, resolution};
+use crate::events::resolution::resolution;
 use crate::integrate::Stepper;
 use crate::law::Law;
 use crate::numbers::TaylorModel;
@@ -66,8 +66,13 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) errors: f64,
     /// Surfaces that hold the motion: their gaps are 0, and are not tested.
     held: Held<Sys::Gaps>,
-    /// The surface that begins to count behind the motion at the proposed cut of the last step.
-    behind: Option<usize>,
+    /// The surface that begins to count behind the motion where the last step is to be cut.
+    pub(super) behind: Option<usize>,
+    /// Whether a surface is a wall with conditions, behind which the motion may be.
+    guarded: PerSurface<bool, Sys::Gaps>,
+    has_guarded: bool,
+    /// Whether the gap of a surface is known to have one sign on the last step.
+    pub(super) is_told: PerSurface<bool, Sys::Gaps>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
     /// A box in which no gap vanishes, and a box with bounds of the gaps' derivatives.
@@ -107,6 +112,9 @@ impl<Sys: Impacting> Watch<Sys> {
         Self {
             gaps: zeros,
             passable: PerSurface::all(&zeros, false),
+            guarded: PerSurface::all(&zeros, false),
+            has_guarded: false,
+            is_told: PerSurface::all(&zeros, false),
             rates: zeros,
             has_rates: false,
             proposed: None,
@@ -143,6 +151,18 @@ impl<Sys: Impacting> Watch<Sys> {
     /// Sets whether a surface is passable in the next run.
     pub(super) fn set_passable(&mut self, surface: usize, passable: bool) {
         self.passable[surface] = passable;
+    }
+
+    /// Says whether a surface is a wall with conditions in the coming run.
+    pub(super) fn set_guarded(&mut self, surface: usize, is_guarded: bool) {
+        self.guarded[surface] = is_guarded;
+        self.has_guarded = self.guarded.iter().any(|is_guarded| is_guarded);
+    }
+
+    /// True if the motion may be behind this surface in the last step, where that has conditions and does not hold the motion.
+    pub(super) fn may_be_behind(&self, surface: usize) -> bool {
+        let is_in_front = self.is_told[surface] && self.gaps.as_slice()[surface] >= 0.0;
+        self.guarded[surface] && !is_in_front && !self.held.is_held(surface)
     }
 
     pub(super) fn is_passable(&self, surface: usize) -> bool {
@@ -390,13 +410,14 @@ impl<Sys: Impacting> Watch<Sys> {
         let Self { limits, path, .. } = self;
         limits.follow(step.system, path, &mut step.counters.enclosures);
         let mut has_told = true;
+        self.is_told.fill(false);
         let unclear = surfaces.find_map(|surface| match self.told(surface, step, &glance) {
-            Told::Passed => None,
-            Told::Clear => {
-                has_told = false;
+            Told::Unclear(model) => Some((surface, model)),
+            told => {
+                has_told &= matches!(told, Told::Passed);
+                self.is_told[surface] = true;
                 None
             }
-            Told::Unclear(model) => Some((surface, model)),
         });
         self.limits.learn(has_told);
         if let Some(first) = unclear {
@@ -406,6 +427,9 @@ impl<Sys: Impacting> Watch<Sys> {
                 self.has_rates = true;
             }
             self.search(step, &glance, &last_rates, first)?;
+        }
+        if self.has_guarded {
+            self.look_behind(step)?;
         }
         if self.proposed.is_none() {
             self.pass(step, &mut glance)?;
@@ -501,68 +525,13 @@ impl<Sys: Impacting> Watch<Sys> {
             counters,
         });
         match checked {
+            // It began to count within rounding of the end of the step, or where conditions are not enclosed.
             Err(Outcome::StartsInside { surface, .. }) => self.end_where_behind(surface, step),
             checked => checked,
         }
     }
 
-    /// Proposes a cut where a surface begins to count in the step with the motion behind it; such a surface counts at
-    /// the end of the step.
-    #[cold]
-    fn end_where_behind<Step: Stepper<Sys>>(
-        &mut self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-    ) -> Result<(), Outcome> {
-        step.prepare()?;
-        let (mut before, mut after) = (0.0, 1.0);
-        loop {
-            let middle = 0.5 * (before + after);
-            if middle <= before || middle >= after {
-                break;
-            }
-            let (t, state) = (step.time(middle), step.state(middle));
-            let gap = step.system.gaps(t, &state).as_slice()[surface];
-            step.counters.event_evaluations += 1;
-            match gap < 0.0 && step.system.surface_active(surface, t, &state) {
-                true => after = middle,
-                false => before = middle,
-            }
-        }
-        self.length = step.length();
-        self.parts.fill(None);
-        (self.proposed, self.behind) = (Some(after), Some(surface));
-        Ok(())
-    }
-
-    /// Ends the run where a surface begins to count behind the motion, if the step was cut for that.
-    pub(super) fn check_behind(&self, now: &Moment<'_, Sys>) -> Result<(), Outcome> {
-        match self.behind {
-            Some(surface) => {
-                let gap = now.system.gaps(now.t, now.state).as_slice()[surface];
-                Err(Outcome::BeginsBehind { surface, gap })
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// Handles a passable surface that is met within rounding at the end of the step, without a fall that counted. It
-    /// has not been crossed, so its gap is set to the smallest number of the side of the motion.
-    fn keep_side<Step: Stepper<Sys>>(
-        &mut self,
-        surface: usize,
-        start: f64,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
-    ) {
-        let gap = self.gaps.as_slice()[surface];
-        let meets = gap == 0.0 && start != 0.0;
-        if meets || (gap < 0.0 && start > 0.0 && !self.is_sunk(surface, step, glance)) {
-            self.gaps.as_mut_slice()[surface] = f64::MIN_POSITIVE.copysign(start);
-        }
-    }
-
-    /// Tests if the step passes this surface without a hit.
+    /// Whether the step passes this surface.
     #[inline]
     pub(super) fn told<Step: Stepper<Sys>>(
         &self,
@@ -606,26 +575,6 @@ impl<Sys: Impacting> Watch<Sys> {
             _ => Told::Unclear(Some(model)),
         }
     }
-
-    /// Checks that no gap of a surface that counts is negative beyond rounding; within rounding the surface is at
-    /// hand. A surface that counts by rounding alone is ignored: a ball that lands on a ledge is not inside the wall
-    /// below.
-    fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
-        for surface in 0..self.gaps.count() {
-            let gap = self.gaps.as_slice()[surface];
-            let is_wall = !self.is_passable(surface);
-            if is_wall && gap < 0.0 && now.system.surface_active(surface, now.t, now.state) {
-                let drift = SAME_TIME * (self.rates.as_slice()[surface] * now.t).abs();
-                if gap >= -2.0 * rounding(now, surface, &self.sizes) - drift {
-                    self.gaps.as_mut_slice()[surface] = 0.0;
-                } else if counts_beyond_rounding(now.system, surface, now.t, now.state, &self.sizes)
-                {
-                    return Err(Outcome::StartsInside { surface, gap });
-                }
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Gaps at a moment; fails if one is not finite.
@@ -634,8 +583,12 @@ fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outc
     finite(now.system, now.system.gaps(now.t, now.state))
 }
 
-/// Size of a gap's rounding errors at a moment, for components that have had these sizes.
-fn rounding<Sys: Impacting>(now: &mut Moment<'_, Sys>, surface: usize, sizes: &Sys::State) -> f64 {
+/// The size of a gap's rounding errors at a moment, from components that have had these sizes.
+pub(super) fn rounding<Sys: Impacting>(
+    now: &mut Moment<'_, Sys>,
+    surface: usize,
+    sizes: &Sys::State,
+) -> f64 {
     resolution(
         now.system,
         surface,

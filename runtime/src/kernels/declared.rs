@@ -39,6 +39,9 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// True if rates of some system of this type may have narrow features ([`Tables::can_be_narrow`]).
     const MAY_BE_NARROW: bool;
 
+    /// True if constraint forms may become dependent, so that they are enclosed along motions.
+    const MAY_LOSE_RANK: bool = false;
+
     /// True if some system of this type has modes.
     const HAS_MODES: bool = false;
 

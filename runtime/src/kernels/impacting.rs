@@ -5,7 +5,7 @@ use super::passage::passage;
 use super::system::{coefficient, over_numbers};
 use super::{At, Declared, Form, HasSurfaces, Kernels, Part};
 use super::{Beside, Condition, Surface, Tables};
-use crate::contract::{Impacting, System, VectorField, after_reset};
+use crate::contract::{Along, Impacting, System, VectorField, after_reset};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};
 use crate::law::{Blow, Contact, Jump, Landing, Law};
@@ -105,7 +105,84 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
-/// True if a surface counts; a surface that the mode does not have does not count.
+/// True if a surface counts along a motion, by more than rounding.
+fn counts_along<S: Declared>(
+    system: &S,
+    surface: usize,
+    (t, component): Along<'_>,
+    (moment, rounded): Along<'_>,
+) -> Option<bool> {
+    let number = match has_modes(system) {
+        true => number_of(Some(&component(system.state_len() - 1))),
+        false => 0,
+    };
+    let part = Part::numbered(system, number);
+    let Some(surface) = part.surface(surface) else {
+        return Some(false);
+    };
+    let Some(own) = part.tables.surfaces.get(surface) else {
+        return Some(true);
+    };
+    let count = lists(own).map(<[Condition]>::len).sum::<usize>();
+    if count == 0 {
+        return Some(true);
+    }
+    let arguments: S::Arguments<TaylorModel> = over_numbers(system);
+    let margins = |t: TaylorModel, component: &dyn Fn(usize) -> TaylorModel| {
+        let mut q = S::Positions::<TaylorModel>::zeros(part.lengths()[0]);
+        for (i, entry) in q.as_mut_slice().iter_mut().enumerate() {
+            *entry = component(i);
+        }
+        let at = At {
+            parameters: arguments.as_slice(),
+            t,
+            first: q.as_slice(),
+            second: &[],
+        };
+        let mut margins = S::Room::<TaylorModel>::zeros(count);
+        let values = &mut margins.as_mut_slice()[..count];
+        part.kernels.conditions(surface, at, values).ok()?;
+        Some(margins)
+    };
+    let (along, rounding) = (margins(t, component)?, margins(moment, rounded)?);
+    let mut holds = lists_hold(own, |place, _| {
+        let margin = along.as_slice()[place].range();
+        let floor = rounding.as_slice()[place].range().width();
+        let (is_true, is_false) = (margin.lo > floor, margin.hi <= floor);
+        (is_true || is_false).then_some(is_true)
+    });
+    let own_holds = holds.next().flatten();
+    let none = certain::none(holds);
+    match own.beside {
+        Beside::Independent => own_holds,
+        Beside::Otherwise => none,
+        Beside::Last => certain::none([own_holds, none].into_iter()).map(|neither| !neither),
+    }
+}
+
+/// The lists of conditions that decide whether a surface counts, its own first.
+fn lists(surface: &Surface) -> impl Iterator<Item = &'static [Condition]> {
+    core::iter::once(surface.conditions).chain(surface.others.iter().copied())
+}
+
+/// True if each of the lists holds; `holds` tells of the condition at a place among all of them.
+fn lists_hold<'a>(
+    surface: &'a Surface,
+    holds: impl Fn(usize, &Condition) -> Option<bool> + 'a,
+) -> impl Iterator<Item = Option<bool>> + 'a {
+    let mut first = 0;
+    lists(surface).map(move |list| {
+        let places = first..;
+        first += list.len();
+        certain::all(
+            places
+                .zip(list)
+                .map(|(place, condition)| holds(place, condition)),
+        )
+    })
+}
+
+/// True if a surface counts; none counts that the mode does not have.
 #[inline]
 pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
     let part = Part::of(system, state.as_slice());
@@ -138,8 +215,7 @@ pub(super) fn counts_throughout<S: Declared>(
     let Some(own) = part.tables.surfaces.get(surface) else {
         return Some(true);
     };
-    let lists = || core::iter::once(own.conditions).chain(own.others.iter().copied());
-    let count = lists().map(<[Condition]>::len).sum::<usize>();
+    let count = lists(own).map(<[Condition]>::len).sum::<usize>();
     if count == 0 {
         return Some(true);
     }
@@ -152,15 +228,8 @@ pub(super) fn counts_throughout<S: Declared>(
     let mut margins = S::Room::<Interval>::zeros(count);
     let margins = &mut margins.as_mut_slice()[..count];
     part.kernels.conditions(surface, at, margins).ok()?;
-    let mut rest = &margins[..];
-    let mut holds = lists().map(|list| {
-        let (own, behind) = rest.split_at(list.len());
-        rest = behind;
-        certain::all(
-            list.iter()
-                .zip(own)
-                .map(|(one, margin)| certain::holds(*margin, one.is_closed)),
-        )
+    let mut holds = lists_hold(own, |place, condition| {
+        certain::holds(margins[place], condition.is_closed)
     });
     let own_holds = holds.next().flatten();
     match own.beside {
@@ -274,6 +343,18 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     #[inline]
     fn surface_active(&self, surface: usize, t: f64, state: &S::State) -> bool {
         counts(self, surface, t, state)
+    }
+
+    fn has_conditions(&self, surface: usize) -> bool {
+        let Some((part, own)) = Part::of_surface(self, surface) else {
+            return false;
+        };
+        let declared = part.tables.surfaces.get(own);
+        declared.is_some_and(|own| lists(own).any(|list| !list.is_empty()))
+    }
+
+    fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
+        counts_along(self, surface, along, rounding)
     }
 
     #[inline]

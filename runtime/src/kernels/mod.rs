@@ -16,6 +16,7 @@ mod constrained;
 mod declared;
 mod described;
 mod impacting;
+mod independence;
 mod part;
 mod passage;
 mod pointers;

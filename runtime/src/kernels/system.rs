@@ -1,8 +1,11 @@
 //! `VectorField`, `System`, `Lagrangian` and `Divergence` for every declared model.
 
+use super::independence::keeps_rank;
 use super::part::has_modes;
 use super::{At, Declared, Form, HasConstraints, HasDivergence, Kernels, Part, number, write};
-use crate::contract::{Divergence, Keep, Lagrangian, RankDrop, System, VectorField, carried};
+use crate::contract::{
+    Along, Chart, Divergence, Keep, Lagrangian, RankDrop, System, VectorField, carried,
+};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::generated::check_coefficient;
 use crate::nearest::nearest_by_steps;
@@ -262,9 +265,22 @@ impl<S: Declared> System for S {
         outside.map(|chart| part.coordinate(chart.coordinate))
     }
 
+    #[inline]
+    fn chart(&self, state: &S::State, number: usize) -> Option<Chart> {
+        let part = Part::of(self, state.as_slice());
+        part.tables.charts.get(number).copied()
+    }
+
     #[inline(always)]
     fn can_lose_rank(&self) -> bool {
         self.tables().can_lose_rank
+    }
+
+    fn keeps_rank(&self, along: Along<'_>) -> bool {
+        match const { S::MAY_LOSE_RANK } {
+            true => keeps_rank(self, along),
+            false => false,
+        }
     }
 
     fn rank_drop(&self, motion: impl Fn(f64) -> (f64, S::State), reach: f64) -> Option<RankDrop> {

@@ -95,6 +95,8 @@ fn emit_hooks(whole: &Whole<'_>) -> TokenStream {
     let drop = whole.known.tables().can_lose_rank.then(|| {
         let types = emit_list(whole);
         quote! {
+            const MAY_LOSE_RANK: bool = true;
+
             fn rank_drop_along(
                 &self,
                 motion: impl ::core::ops::Fn(f64) -> (f64, Self::State),

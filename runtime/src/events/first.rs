@@ -1,0 +1,136 @@
+//! The first part of a step at which something begins to hold: stretches on which an enclosure rules it out are passed, others are
+//! halved.
+
+/// Halvings before the ends of a stretch decide: `2^-40` of a step; and fewer from where too many stretches beside each other cannot be ruled
+/// out, as where something holds by little more than rounding.
+const DEPTHS: [u32; 3] = [40, 20, 10];
+
+/// Stretches looked at for each of them.
+const STRETCHES: u32 = 4096;
+
+/// Two neighbouring parts of a step: something does not hold at the first, and does at the second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Onset {
+    pub before: f64,
+    pub after: f64,
+}
+
+/// Finds the first part up to `reach` at which something holds that does not hold at the start. `is_out` tells of a stretch whether it
+/// certainly holds nowhere on it, `holds` of a part whether it holds there.
+pub(crate) fn onset(
+    reach: f64,
+    mut is_out: impl FnMut([f64; 2]) -> bool,
+    mut holds: impl FnMut(f64) -> bool,
+) -> Option<Onset> {
+    let mut from = 0.0;
+    for depth in DEPTHS {
+        let begins = |ends: [f64; 2]| holds(ends[1]).then(|| narrowed(ends, &mut holds));
+        match walk([from, reach], [depth, STRETCHES], &mut is_out, begins) {
+            Walk::Found(onset) => return Some(onset),
+            Walk::Passed => return None,
+            Walk::Stopped(at) => from = at,
+        }
+    }
+    holds(reach).then(|| narrowed([from, reach], holds))
+}
+
+/// What a walk over stretches came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Walk<T> {
+    Found(T),
+    /// There is nothing.
+    Passed,
+    /// It looked at as many stretches as it may, and came up to here.
+    Stopped(f64),
+}
+
+/// Looks for something on stretches between two parts that are not ruled out, once they are halved so many times; looks at so many stretches.
+pub(crate) fn walk<T>(
+    span: [f64; 2],
+    [leaves, stretches]: [u32; 2],
+    mut is_out: impl FnMut([f64; 2]) -> bool,
+    mut found: impl FnMut([f64; 2]) -> Option<T>,
+) -> Walk<T> {
+    let (mut index, mut depth) = (0_u64, 0_u32);
+    for _ in 0..stretches {
+        let ends = stretch(span, index, depth);
+        if !is_out(ends) {
+            if depth < leaves {
+                (index, depth) = (2 * index, depth + 1);
+                continue;
+            }
+            if let Some(found) = found(ends) {
+                return Walk::Found(found);
+            }
+        }
+        index += 1;
+        while index.is_multiple_of(2) && depth > 0 {
+            (index, depth) = (index / 2, depth - 1);
+        }
+        if depth == 0 {
+            return Walk::Passed;
+        }
+    }
+    Walk::Stopped(stretch(span, index, depth)[0])
+}
+
+/// The ends of a stretch.
+fn stretch([from, to]: [f64; 2], index: u64, depth: u32) -> [f64; 2] {
+    let count = (1_u64 << depth) as f64;
+    [index, index + 1].map(|end| match end as f64 == count {
+        true => to,
+        false => from + (to - from) * (end as f64 / count),
+    })
+}
+
+/// Neighbouring numbers between these, at the second of which something holds that does not hold at the first.
+pub(crate) fn narrowed(
+    [mut before, mut after]: [f64; 2],
+    mut holds: impl FnMut(f64) -> bool,
+) -> Onset {
+    loop {
+        let middle = 0.5 * (before + after);
+        if middle <= before || middle >= after {
+            return Onset { before, after };
+        }
+        match holds(middle) {
+            true => after = middle,
+            false => before = middle,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first part at which `x` is in one of these windows.
+    fn first_in(windows: &[[f64; 2]], reach: f64) -> Option<f64> {
+        let is_out = |[from, to]: [f64; 2]| windows.iter().all(|own| to < own[0] || own[1] < from);
+        let holds = |x: f64| windows.iter().any(|own| own[0] <= x && x <= own[1]);
+        onset(reach, is_out, holds).map(|found| found.after)
+    }
+
+    #[test]
+    fn narrow_windows_are_found_where_they_begin() {
+        for width in [0.3, 1e-3, 1e-9] {
+            for start in [0.01, 0.37, 0.5, 0.99] {
+                let windows = [[start, start + width], [start + 0.4, start + 0.5]];
+                assert_eq!(first_in(&windows, 1.0), Some(start), "{start} {width}");
+            }
+        }
+        assert_eq!(first_in(&[[0.6, 0.7]], 0.5), None);
+        assert_eq!(first_in(&[[0.2, 0.9]], 0.5), Some(0.2));
+        assert_eq!(first_in(&[], 1.0), None);
+    }
+
+    #[test]
+    fn what_is_never_ruled_out_is_decided_at_the_end() {
+        assert_eq!(onset(1.0, |_| false, |_| false), None);
+        let found = onset(1.0, |_| false, |x| x >= 0.25);
+        assert_eq!(found.map(|found| found.after), Some(0.25));
+        // Nor where it holds for a part of the step.
+        let found = onset(1.0, |_| false, |x| (0.25..0.5).contains(&x));
+        assert_eq!(found.map(|found| found.after), Some(0.25));
+    }
+}

@@ -1,0 +1,96 @@
+//! Runs of a start, their impacts, and certified ones.
+
+use dalembert::Policies;
+use dalembert_driver::{
+    Certification, Certified, Contact, Ending, Form, Impact, Integrator, Piece, Settings, Strike,
+    Watch,
+};
+
+use crate::starts::Case;
+
+/// Impacts that are followed.
+pub const IMPACTS: u64 = 16;
+
+/// What a run did.
+pub struct Course {
+    pub impacts: Vec<Impact>,
+    pub ending: Ending,
+}
+
+#[derive(Default)]
+struct Log(Vec<Impact>);
+
+impl Watch for Log {
+    fn step(&mut self, _: &dyn Piece) {}
+
+    fn impact(&mut self, impact: Impact) {
+        self.0.push(impact);
+    }
+
+    fn contact(&mut self, _: Contact) {}
+}
+
+/// How a run is made.
+#[derive(Debug, Clone, Copy)]
+pub struct Way {
+    pub integrator: Integrator,
+    pub form: Form,
+    pub tol: f64,
+}
+
+/// Makes a run; `None` where the start is refused.
+pub fn run(case: &Case, way: Way, until: f64) -> Option<Course> {
+    let settings = Settings {
+        form: way.form,
+        integrator: way.integrator,
+        tol: way.tol,
+        step: None,
+        max_step: None,
+        steps: Some(100_000),
+        until,
+        impacts: Some(IMPACTS),
+        laws: Vec::new(),
+        policies: Policies::default(),
+        projection: None,
+    };
+    let mut log = Log::default();
+    let ending = case.model.simulate(&case.origin, &settings, &mut log);
+    let impacts = log.0;
+    Some(Course {
+        impacts,
+        ending: ending.ok()?,
+    })
+}
+
+/// The first impacts as enclosures, as far as motion is certified; `None` where the model has no certified motion.
+pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> {
+    let request = Certification {
+        form: Form::Reduced,
+        until: case.until,
+        impacts: Some(impacts),
+        laws: Vec::new(),
+        parameters: Vec::new(),
+        positions: Vec::new(),
+        rates: Vec::new(),
+    };
+    let mut strikes = Vec::new();
+    let mut keep = |strike: &Strike| strikes.push(strike.clone());
+    let certified = case.model.certify(&case.origin, &request, &mut keep).ok()?;
+    Some((strikes, certified))
+}
+
+/// The error of a run behind an impact, by that of a reference: of time in parts of the run, of the state in parts of its size.
+pub fn error(own: &Impact, reference: &Impact, until: f64) -> f64 {
+    let time = (own.t - reference.t).abs() / until;
+    let after = (&own.after, &reference.after);
+    time.max(apart(&after.0.q, &after.1.q))
+        .max(apart(&after.0.qdot, &after.1.qdot))
+}
+
+/// The largest difference of two vectors, in parts of their size; coordinates that the mode does not have are left out.
+pub fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = || a.iter().zip(b).filter(|(a, b)| !(a.is_nan() && b.is_nan()));
+    let largest = pairs().fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let size = pairs().fold(1e-3, |most: f64, (a, _)| most.max(a.abs()));
+    largest / size
+}
