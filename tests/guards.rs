@@ -141,7 +141,7 @@ fn an_impact_in_the_same_step_hides_no_window() {
     // It is met after the window, in the same step; before it, the window is past the impact.
     let window = WINDOW.with([("far", 2.6)]);
     assert_begins_behind(&window, (&[0.5], &[1.0]), 2.0, 4e-15);
-    let window = WINDOW.with([("far", 1.6)]);
+    let window = WINDOW.with([("far", 1.85)]);
     // It comes back to 1.2 at the time of the window.
     assert_begins_behind(&window, (&[0.5], &[1.0]), 2.0, 4e-15);
     let window = WINDOW.with([("far", 1.2)]);

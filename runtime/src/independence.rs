@@ -51,7 +51,9 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
         looked_at,
     ) {
         Walk::Found(drop) => Some(drop),
-        Walk::Passed => None,
+        Walk::Passed if is_independent([reach - shortest, reach]) => None,
+        // Forms that are dependent at the end within rounding, beside what they are at the start.
+        Walk::Passed => looked_at([0.0, reach]),
         Walk::Stopped(at) => looked_at([at, reach]),
     }
 }

@@ -7,7 +7,7 @@
 
 use super::crossing::Signs;
 use super::piece::Piece;
-use super::stretches::Stretches;
+use super::stretches::{Region, Stretches};
 use crate::numbers::TaylorModel;
 
 /// Maximum number of halvings: a stretch of `2^-40` of a step is decided by its ends.
@@ -83,12 +83,31 @@ pub(crate) struct Line<'a> {
     pub whole: Option<TaylorModel>,
     /// The gap at the start and at the end of the step.
     pub ends: [f64; 2],
-    /// The size of its rounding errors; evaluated once or twice.
-    pub rounding: &'a mut dyn FnMut() -> f64,
+    /// The size of its rounding errors at a part of the step; asked for once or twice.
+    pub rounding: &'a mut dyn FnMut(f64) -> f64,
     /// Start of the search.
     pub start: Start,
     /// A known fall; it is the first unless another precedes it.
     pub known: Option<Bracket>,
+}
+
+/// The rounding of the gap, as it was last asked for, and of which region.
+struct Floors(Option<(Region, f64)>);
+
+impl Floors {
+    /// That about a stretch.
+    fn at(&mut self, stretches: &Stretches, rounding: &mut dyn FnMut(f64) -> f64) -> f64 {
+        let region = stretches.region();
+        match self.0 {
+            Some((known, floor)) if known == region => floor,
+            _ => {
+                let [left, right] = stretches.ends();
+                let floor = rounding(0.5 * (left + right));
+                self.0 = Some((region, floor));
+                floor
+            }
+        }
+    }
 }
 
 /// A fraction of the step with the gap there.
@@ -157,7 +176,7 @@ impl Line<'_> {
     fn isolate(&mut self) -> Result<Isolated, Search> {
         let mut above = self.start.above;
         let mut rose = self.start.slope.is_none();
-        let mut floor = None;
+        let mut floors = Floors(None);
         let mut high: Option<Place> = None;
         let mut known: Option<Place> = None;
         let limits = [self.start.from, self.start.until];
@@ -189,7 +208,7 @@ impl Line<'_> {
                 && view.span != ends
                 && (is_clear(&piece.without_remainder(), is_at_hand)
                     || !piece.is_sharper_than(match is_doubtful {
-                        true => *floor.get_or_insert_with(&mut self.rounding),
+                        true => floors.at(&stretches, self.rounding),
                         false => f64::INFINITY,
                     }))
             {
@@ -221,7 +240,7 @@ impl Line<'_> {
                 }
                 Signs::Negative => {
                     if above {
-                        let floor = *floor.get_or_insert_with(&mut self.rounding);
+                        let floor = floors.at(&stretches, self.rounding);
                         let low = self.place_at(right, &mut known);
                         if low.gap < -floor {
                             return Self::sunk(
@@ -238,8 +257,8 @@ impl Line<'_> {
                         stretches.halve();
                         continue;
                     }
-                    let floor = *floor.get_or_insert_with(&mut self.rounding);
-                    // A gap that rises from zero by more than rounding is not flat, however soon it falls.
+                    let floor = floors.at(&stretches, self.rounding);
+                    // A gap that rises from zero beyond rounding is not flat, however soon it falls.
                     let rises = is_at_hand && self.start.slope.is_some_and(|slope| slope > floor);
                     if rises && depth < DEPTH {
                         stretches.halve();
@@ -409,7 +428,7 @@ impl Line<'_> {
             let inside = [0.25, 0.5, 0.75].map(|x| (self.gap)(x));
             let sizes = inside.into_iter().chain(self.ends).map(f64::abs);
             let largest = sizes.fold(0.0_f64, f64::max);
-            grown > PEAK * largest && grown > PEAK * (self.rounding)()
+            grown > PEAK * largest && grown > PEAK * (self.rounding)(trial)
         };
         if grown > nearby || (PEAK * grown > nearby && is_peak()) {
             Search::Pole(after.x.max(narrowed.bracket().after))
@@ -565,7 +584,7 @@ mod tests {
             along: &mut |ends| function.along(part(ends)),
             whole: None,
             ends: [function.at(0.0), function.at(1.0)],
-            rounding: &mut || 1e-15,
+            rounding: &mut |_| 1e-15,
             start,
             known: None,
         }
@@ -657,7 +676,7 @@ mod tests {
                     along: &mut |ends| sampled::along(&sampled::nodes(ends).map(gap)),
                     whole: None,
                     ends: [gap(0.0), gap(1.0)],
-                    rounding: &mut || 64.0 * unit,
+                    rounding: &mut |_| 64.0 * unit,
                     start: FROM_ABOVE,
                     known: None,
                 };

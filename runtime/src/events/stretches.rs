@@ -7,6 +7,17 @@ const BEHIND: f64 = 1.125;
 /// Fraction of the step below which an expected fall gets no cuts of its own: halving reaches it.
 const NEAR: f64 = 1.0 / (1_u64 << 36) as f64;
 
+/// Halvings from one region to the next smaller ones.
+const HALVINGS: u32 = 8;
+
+/// A region of a step about stretches beside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Region {
+    chosen: usize,
+    depth: u32,
+    index: u64,
+}
+
 /// The stretches of a search: a few between cuts, each divided into `2^depth` parts.
 #[derive(Debug)]
 pub(super) struct Stretches {
@@ -37,6 +48,16 @@ impl Stretches {
     /// Number of halvings of the present stretch.
     pub(super) fn depth(&self) -> u32 {
         self.depth
+    }
+
+    /// A region about the stretch, of which there is one more for every so many halvings.
+    pub(super) fn region(&self) -> Region {
+        let halvings = self.depth % HALVINGS;
+        Region {
+            chosen: self.chosen,
+            depth: self.depth - halvings,
+            index: self.index >> halvings,
+        }
     }
 
     /// The ends of the present stretch.

@@ -51,7 +51,7 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         step.system
             .gap_along(surface, path.time_model(part), &component)
     };
-    let mut rounding = || rounding_along(surface, step, sizes, &mut more);
+    let mut rounding = |part: f64| rounding_along(surface, step, part, sizes, &mut more);
     let plain = series.and_then(|series| plain_fall(surface, series, start, &mut gap));
     let line = Line {
         gap: &mut gap,

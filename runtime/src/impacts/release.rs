@@ -89,7 +89,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         },
         whole: None,
         ends: [whole[0], whole[SAMPLES - 1]],
-        rounding: &mut || ROUNDING * largest,
+        rounding: &mut |_| ROUNDING * largest,
         start: Start {
             from: 0.0,
             above,

@@ -240,7 +240,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let gaps = step.system.gaps(step.time(part), &step.state(part));
         let gap = gaps.as_slice()[surface];
         let mut evaluations = 1;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
         let counts = !self.is_passable(surface) && is_active(surface, step, part);
         if gap < -2.0 * rounding && counts {
@@ -272,15 +272,15 @@ impl<Sys: Impacting> Watch<Sys> {
         let slow = SLOW.max(2.0 * math::sqrt(missed));
         if rate.abs() <= slow * ends[0].abs().max(ends[1].abs()) {
             let mut evaluations = 0;
-            let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+            let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
             if self.is_slow(surface, rate, || rounding) {
                 graze = Graze::WithinRounding;
             } else if self.errors > 0.0 && change > 0.0 {
                 // NOTE: only a gap with positive second derivative would have turned before the surface.
                 let scale = step.system.scale(step.t_end(), step.end());
                 let unit = (&self.sizes, &scale, tolerance);
-                let end = (step.t_end(), step.end());
-                let error = error_within(step.system, surface, end, unit, &mut evaluations);
+                let here = (step.time(part), &step.state(part));
+                let error = error_within(step.system, surface, here, unit, &mut evaluations);
                 if self.is_slow(surface, rate, || SAFETY * self.errors * error) {
                     graze = Graze::WithinError;
                 }
@@ -303,7 +303,7 @@ impl<Sys: Impacting> Watch<Sys> {
         glance: &Glance<Sys::Gaps>,
     ) -> bool {
         let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
         let is_falling = |rate: f64| rate * glance.length < -rounding;
         glance.rate(surface).is_some_and(is_falling)
@@ -322,27 +322,24 @@ impl<Sys: Impacting> Watch<Sys> {
             return false;
         }
         let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
         gap < -2.0 * rounding
     }
 }
 
-/// Size of a gap's rounding errors along a step, for components that have had these sizes.
+/// The size of a gap's rounding errors at a part of a step, from components that have had these sizes.
+///
+/// NOTE: that of a gap which is steep elsewhere in the step says nothing about where it vanishes.
 pub(super) fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
+    part: f64,
     sizes: &Sys::State,
     evaluations: &mut u64,
 ) -> f64 {
-    resolution(
-        step.system,
-        surface,
-        step.t_end(),
-        step.end(),
-        sizes,
-        evaluations,
-    )
+    let (t, state) = (step.time(part), step.state(part));
+    resolution(step.system, surface, t, &state, sizes, evaluations)
 }
 
 pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(

@@ -76,7 +76,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
         self.path.refine(step)?;
         let mut evaluations = 0;
-        let rounding = rounding_along(surface, step, &self.sizes, &mut evaluations);
+        let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;
         let drift = SAME_TIME * (self.rates.as_slice()[surface] * step.t_end()).abs();
         let floor = 2.0 * rounding + drift;
