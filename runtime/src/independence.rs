@@ -11,6 +11,9 @@ use crate::integrate::Stepper;
 const HALVINGS: u32 = 20;
 const STRETCHES: u32 = 1024;
 
+/// Place, as a share of the step, at which independence is tried besides the ends. Not a place that halving comes to.
+const MIDDLE: f64 = 0.375;
+
 /// The first drop between the start of a step with dense output and `reach`.
 pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
@@ -28,7 +31,10 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
         0.0 => (step.t_start(), *step.start()),
         _ => (step.time(theta), step.state(theta)),
     };
+    // NOTE: sizes are taken beside the first place, which must not be where the forms are dependent: it lies as far before the
+    // stretch as the stretch is long.
     let looked_at = |[from, to]: [f64; 2]| {
+        let from = (2.0 * from - to).max(0.0);
         let part = |theta: f64| match theta {
             1.0 => to,
             _ => from + theta * (to - from),
@@ -40,8 +46,9 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
         })
     };
     let shortest = reach / (1_u64 << HALVINGS) as f64;
-    if !is_independent([0.0, shortest]) {
-        // Forms so nearly dependent, or not enclosed: places of the whole step have to tell.
+    let mut places = [0.0, MIDDLE * reach, reach - shortest].into_iter();
+    if !places.any(|at| is_independent([at, at + shortest])) {
+        // Forms that are nearly dependent everywhere, or that cannot be enclosed: places of the whole step have to tell.
         return looked_at([0.0, reach]);
     }
     match walk(

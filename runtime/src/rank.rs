@@ -96,12 +96,8 @@ impl<const M: usize, const N: usize> Plane<M, N> {
 
     /// Size of the multivector relative to that at another place.
     fn size_beside(&self, other: &Self) -> f64 {
-        self.lengths_beside(other).product()
-    }
-
-    fn lengths_beside(&self, other: &Self) -> impl Iterator<Item = f64> {
         let pairs = self.lengths[..self.count].iter().zip(other.lengths);
-        pairs.map(|(own, other)| own / other)
+        pairs.map(|(length, other)| length / other).product()
     }
 }
 
@@ -174,11 +170,12 @@ fn first_drop<const M: usize, const N: usize>(
 ) -> Option<RankDrop> {
     let first = plane(0.0);
     let named = |at: Plane<M, N>, theta: f64| {
-        let lengths = at.lengths_beside(&first).enumerate();
-        let least = lengths.min_by(|a, b| a.1.total_cmp(&b.1));
+        let end = plane(reach);
+        let length = |a: usize| at.lengths[a] / first.lengths[a].max(end.lengths[a]);
+        let least = (0..at.count).min_by(|&a, &b| length(a).total_cmp(&length(b)));
         RankDrop {
             theta,
-            constraint: least.map_or(0, |(constraint, _)| constraint),
+            constraint: least.unwrap_or(0),
         }
     };
     let size = |theta: f64| plane(theta).size_beside(&first);

@@ -130,7 +130,7 @@ fn asked(name: &str, default: u64) -> u64 {
 
 #[test]
 fn first_impacts_are_those_of_exact_geometry_however_gaps_are_written() {
-    try_starts(30, 1);
+    try_starts(200, 1);
 }
 
 #[test]
