@@ -31,10 +31,10 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
         0.0 => (step.t_start(), *step.start()),
         _ => (step.time(theta), step.state(theta)),
     };
-    // NOTE: sizes are taken beside the first place, which must not be where the forms are dependent: it lies as far before the
-    // stretch as the stretch is long.
+    let shortest = reach / (1_u64 << HALVINGS) as f64;
+    // NOTE: sizes are taken beside the first place, which must not be where the forms are dependent: it lies before the stretch.
     let looked_at = |[from, to]: [f64; 2]| {
-        let from = (2.0 * from - to).max(0.0);
+        let from = (from - shortest).max(0.0);
         let part = |theta: f64| match theta {
             1.0 => to,
             _ => from + theta * (to - from),
@@ -45,7 +45,6 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
             ..found
         })
     };
-    let shortest = reach / (1_u64 << HALVINGS) as f64;
     let mut places = [0.0, MIDDLE * reach, reach - shortest].into_iter();
     if !places.any(|at| is_independent([at, at + shortest])) {
         // Forms that are nearly dependent everywhere, or that cannot be enclosed: places of the whole step have to tell.
