@@ -9,12 +9,12 @@ use dalembert_expr::ExprId;
 
 use crate::claims::{ClosedForm, Finding, Sample, Term, Verdict};
 use crate::model::{
-    Assumption, Beside, Claim, Constraint, Coordinate, Existence, Model, Parameter, Statement,
-    Surface, Topology,
+    Assumption, Beside, Claim, Condition, Constraint, Coordinate, Existence, Model, Parameter,
+    Statement, Surface, Topology, Transition,
 };
 
 /// The version of the format.
-pub const FORMAT: &str = "dalembert certificate 1";
+pub const FORMAT: &str = "dalembert certificate 2";
 
 /// A value of a certificate.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +54,7 @@ pub(super) fn certificate(model: &Model, claims: &[Claim], findings: &[Finding])
         ("motion", writer.motion()),
         ("constraints", writer.constraints(&model.constraints)),
         ("surfaces", writer.surfaces()),
+        ("density", writer.stated()),
         ("claims", writer.claims(claims, findings)),
     ])
 }
@@ -178,18 +179,50 @@ impl Writer<'_> {
                 ("name", Tree::text(own.name.display.clone())),
                 ("gap", self.expression(own.gap)),
                 ("when", Tree::list(margins)),
-                (
-                    "otherwise",
-                    Tree::Flag(matches!(own.beside, Beside::Otherwise(_))),
-                ),
                 ("law", Tree::text(own.law.name())),
                 ("coefficient", self.optional(own.law.coefficient())),
                 ("reset", reset.unwrap_or(Tree::Absent)),
                 ("instantaneous", self.constraints(&own.instantaneous)),
-                ("is_transition", Tree::Flag(own.transition.is_some())),
+                ("excluded", self.excluded(&own.beside)),
+                ("transition", self.transition(own.transition.as_ref())),
             ])
         };
         Tree::list(self.model.surfaces.iter().map(entry))
+    }
+
+    /// The lists of functions of which one must be negative in each for the surface to count.
+    fn excluded(&self, beside: &Beside) -> Tree {
+        let lists = match beside {
+            Beside::Otherwise(lists) => lists.as_slice(),
+            // The last of several transitions has a law by its own conditions.
+            Beside::Last(_) | Beside::Independent => &[],
+        };
+        let list = |list: &Vec<Condition>| {
+            let margins = list.iter().map(|condition| condition.margin);
+            self.expressions(&margins.collect::<Vec<_>>())
+        };
+        Tree::list(lists.iter().map(list))
+    }
+
+    /// The mode that is entered, which is another part of the document, and the state that it is entered with if that was declared.
+    fn transition(&self, transition: Option<&Transition>) -> Tree {
+        let Some(transition) = transition else {
+            return Tree::Absent;
+        };
+        let state = transition.map.as_ref().map(|map| {
+            Tree::Record(vec![
+                ("q", self.expressions(&map.q)),
+                ("qdot", self.expressions(&map.qdot)),
+            ])
+        });
+        Tree::Record(vec![
+            ("enters", Tree::text(transition.mode.clone())),
+            ("state", state.unwrap_or(Tree::Absent)),
+            (
+                "keeps_lagrangian",
+                Tree::Flag(transition.keeps_lagrangian),
+            ),
+        ])
     }
 
     fn after(&self, given: Option<ExprId>, symbol: dalembert_expr::SymbolId) -> Tree {
@@ -251,14 +284,10 @@ impl Writer<'_> {
                 ("holds", Tree::Flag(*holds)),
             ],
             Statement::VolumeKept => {
-                vec![
-                    ("kind", Tree::text("volume_kept")),
-                    ("stated", self.stated()),
-                ]
+                vec![("kind", Tree::text("volume_kept"))]
             }
             Statement::Factor { value, under } => vec![
                 ("kind", Tree::text("factor")),
-                ("stated", self.stated()),
                 ("value", self.expression(*value)),
                 ("under", Tree::Integer(*under as u64)),
             ],
@@ -274,7 +303,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The density that the claims state.
+    /// The density that the claims of the model or mode state.
     fn stated(&self) -> Tree {
         let mut claims = self.model.claims.iter().filter(|own| own.scene.is_none());
         self.optional(claims.find_map(|own| match own.statement {
