@@ -15,6 +15,7 @@ digits as that takes, and every claim that was proved is tested at random states
   volume_kept        the density satisfies Liouville's equation, and the motion through each surface has the derivative that keeps it
   factor             the determinant of the derivative of the motion through the surface, times the densities
   symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt
+  invariant_form     the form is the same on vectors that the motion carries along, between surfaces and through each of them
   energy_not_increasing  the energy after an impact is not above that before
 
 States that are random cannot prove an identity, but a false one passes only where it holds to some forty digits. Only the
@@ -190,8 +191,12 @@ def power(base, numerator, denominator):
     return base ** numerator
 
 
+def asinh(x):
+    return -asinh(-x) if x < 0 else ln(x + sqrt(x * x + 1))
+
+
 FUNCTIONS = {own.__name__: own for own in (
-    sin, cos, tan, asin, acos, atan, atan2, sqrt, ln, exp, sinh, cosh, tanh, abs)}
+    sin, cos, tan, asin, acos, atan, atan2, sqrt, ln, exp, sinh, cosh, tanh, asinh, abs)}
 
 
 # Expressions -----------------------------------------------------------------------------------------------------------
@@ -1109,6 +1114,85 @@ def check_symplectic(model, claim, source):
     return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
 
+class Chart:
+    """Positions and independent velocities near a state, with the time before them."""
+
+    def __init__(self, model, state, dependent=None):
+        self.model, self.state = model, state
+        self.dependent = dependent
+        if dependent is None:
+            self.dependent = [] if model.rates else model.dependent(state)
+        self.independent = [] if model.rates else [i for i in range(model.n) if i not in self.dependent]
+        self.size = 1 + model.n + len(self.independent)
+
+    def coordinates(self):
+        velocities = self.model.velocities(self.state)
+        return [self.state[0], *self.model.positions(self.state), *(velocities[i] for i in self.independent)]
+
+    def at(self, z):
+        n = self.model.n
+        state = [*z[:1 + n], *self.state[1 + n:]]
+        if self.model.rates:
+            return self.model.with_velocities(state, [own(state) for own in self.model.rates])
+        return self.model.completed(state, z[1 + n:], self.dependent)
+
+    def along(self, z, vector):
+        """The direction of states that a vector of coordinates stands for."""
+        h = self.model.precision.h
+        ends = [self.at(moved(z, vector, sign * h)) for sign in (1, -1)]
+        return [(a - b) / (2 * h) for a, b in zip(*ends)]
+
+    def motion(self, z):
+        state = self.at(z)
+        accelerations = [] if self.model.rates else self.model.acceleration(state)
+        return [Decimal(1), *self.model.velocities(state), *(accelerations[i] for i in self.independent)]
+
+    def form(self, terms, z, vectors):
+        """The sum of `c det(df_i(v_j))`."""
+        state, directions = self.at(z), [self.along(z, own) for own in vectors]
+        total = Decimal(0)
+        for coefficient, functions in terms:
+            rows = [[self.model.derivative(own, state, by) for by in directions] for own in functions]
+            total += coefficient(state) * determinant(rows)
+        return total
+
+
+def check_form(model, claim, source):
+    """The form on vectors that the motion carries along, between surfaces and through each of them."""
+    def terms_of(mode):
+        return [(mode.claimed(own["coefficient"]), [mode.claimed(f) for f in own["differentials"]]) for own in claim["terms"]]
+    terms = terms_of(model)
+    degree = len(claim["terms"][0]["differentials"])
+
+    def vectors(size):
+        return [[Decimal(0), *(model.number(source, Decimal(-1), Decimal(1)) for _ in range(size - 1))] for _ in range(degree)]
+
+    def rate(state):
+        chart = Chart(model, state)
+        z, given, h, ends = chart.coordinates(), vectors(chart.size), model.precision.h, []
+        drift = chart.motion(z)
+        spread = [model.derivative(chart.motion, z, own) for own in given]
+        for step in (h, -h):
+            carried = [moved(own, by, step) for own, by in zip(given, spread)]
+            ends.append(chart.form(terms, moved(z, drift, step), carried))
+        return (ends[0] - ends[1]) / (2 * h)
+
+    def change(surface):
+        def of(state):
+            crossing = Crossing(model, surface, state)
+            entered = crossing.models[1]
+            before, after = (Chart(*own) for own in zip(crossing.models, (crossing.before, crossing.after), crossing.dependent))
+            given = vectors(before.size)
+            carried = [[dot(own, row) for row in zip(*crossing.columns)] for own in given]
+            start = before.form(terms, before.coordinates(), given)
+            return after.form(terms_of(entered), after.coordinates(), carried) - start
+        return of
+    found = states(model, source, rate)
+    for surface in model.surfaces:
+        found += states(model, source, change(surface), 2)
+    return all(is_small(own, 1, 18) for own in found), f"largest change {float(max(map(abs, found))):.1e}"
+
+
 def check_energy(model, claim, source):
     surface = model.surfaces[claim["under"]]
     pairs = states(model, source, lambda state: across(model, surface, "energy", state))
@@ -1356,6 +1440,7 @@ CHECKS = {
     "volume_kept": check_kept,
     "factor": check_factor,
     "symplectic": check_symplectic,
+    "invariant_form": check_form,
     "energy_not_increasing": check_energy,
 }
 

@@ -174,6 +174,11 @@ impl Dynamics {
         }
     }
 
+    /// `eta^a` and `eta^a_0` by rows; `g` and `f - drift` by rows, and the row of the curvatures.
+    pub(super) fn equations(&self) -> [&[Vec<ExprId>]; 2] {
+        [&self.forms.rows, &self.motion.rows]
+    }
+
     /// All expressions that are evaluated.
     pub(super) fn roots(&self) -> Vec<ExprId> {
         let rows = self.forms.rows.iter().chain(&self.motion.rows);
@@ -304,8 +309,8 @@ impl Dynamics {
     }
 }
 
-/// Accelerations and multipliers. `rows` are `(g | f - drift)`, `forms` are `(eta | eta_0)`.
-fn accelerate<A: Arithmetic>(
+/// Accelerations and multipliers as series. `rows` are `(g | f - drift)`, `forms` are `(eta | eta_0)`.
+pub(super) fn accelerate<A: Arithmetic>(
     jets: &Jets<'_, A>,
     rows: Matrix<A>,
     forms: &Matrix<A>,

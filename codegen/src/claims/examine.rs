@@ -14,7 +14,9 @@ use super::hybrid::{self, Density, Effect, Surroundings};
 use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
-use super::{alternatives, conserved, density, energy, impact, jumps, kept, symmetry, symplectic};
+use super::{
+    alternatives, conserved, density, energy, impact, invariant, jumps, kept, symmetry, symplectic,
+};
 use crate::mechanics::Derivation;
 use crate::model::{Claim, Existence, Model, Statement};
 
@@ -203,6 +205,12 @@ impl<'e> Examiner<'e> {
                 )
             }
             Statement::Symmetry(field) => self.symmetry(field),
+            Statement::Invariant(form) => {
+                let written = claim.text.trim_start_matches("invariant: ");
+                let (model, around) = self.around();
+                let verdict = invariant::check_invariant(model, &around, form, written);
+                (verdict, Vec::new())
+            }
             Statement::VolumeKept => self.volume_kept(),
             Statement::Factor { value, under } => {
                 let written = claim

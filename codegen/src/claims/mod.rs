@@ -18,6 +18,7 @@
 //! | `wall.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
+//! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs` | forms on vectors of one time, along the motion and through surfaces |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
@@ -28,6 +29,7 @@ mod alternatives;
 mod ansatz;
 mod bounds;
 mod branches;
+mod carried;
 mod closure;
 mod collision;
 mod conditions;
@@ -45,6 +47,7 @@ pub mod exactness;
 mod examine;
 mod exceptional;
 mod existence;
+mod expansion;
 mod factor;
 mod finding;
 mod fit;
@@ -57,10 +60,12 @@ mod growth;
 mod hybrid;
 mod hypersurfaces;
 mod impact;
+mod invariant;
 mod jumps;
 mod kept;
 mod landing;
 mod leaf;
+mod lie;
 mod linear;
 mod minors;
 mod momentum;

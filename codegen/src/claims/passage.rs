@@ -11,7 +11,9 @@
 //! A refraction without constraints has J = 1: along `p + c dh` the energies agree, `(1 + dc(dh)) G+ = G-`, and the first
 //! factor is `det(dp+/dp)`.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, Pool, SymbolId};
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, Pool, Series, SymbolId,
+};
 
 use super::dynamics::Number;
 use super::examine::explicit;
@@ -47,7 +49,7 @@ pub(super) struct Passage {
 }
 
 /// A row of a matrix with its affine part.
-type AffineRow<P> = (Vec<Number<P>>, Number<P>);
+type AffineRow<A> = (Vec<Series<A>>, Series<A>);
 
 /// The velocities after a passage.
 #[derive(Debug)]
@@ -365,75 +367,71 @@ impl Passage {
         point: &P,
         values: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
-        let given = |ids: &[ExprId]| ids.iter().map(|id| values[id.index()]).collect();
-        let before = |velocity: &SymbolId| point.symbol(&model.pool, *velocity);
+        let space = JetSpace::new(0, 0, 1)?;
+        let jets = Jets::new(point.field(), &space);
+        let before = |velocity: &SymbolId| jets.constant(point.symbol(&model.pool, *velocity));
+        let velocity: Vec<_> = self.qdot.iter().map(before).collect();
+        let series = |id: ExprId| jets.constant(values[id.index()]);
+        let after = self.velocities_along(&jets, point, &series, &velocity)?;
+        Some(after.iter().map(|own| jets.value(own)).collect())
+    }
+
+    /// The velocities after it as series, given the series of expressions and of the velocities before it.
+    pub(super) fn velocities_along<P: ExpansionPoint>(
+        &self,
+        jets: &Jets<'_, P::Field>,
+        point: &P,
+        series: &dyn Fn(ExprId) -> Series<P::Field>,
+        velocity: &[Series<P::Field>],
+    ) -> Option<Vec<Series<P::Field>>> {
+        let given = |ids: &[ExprId]| ids.iter().map(|id| series(*id)).collect();
         match &self.velocities {
             Velocities::Declared(velocities, _) => Some(given(velocities)),
             Velocities::Rates => Some(given(self.after.rates.as_ref()?)),
             Velocities::Nearest => {
-                let field = point.field();
-                let projection = self.projection::<P>(field, values)?;
-                let velocity: Vec<_> = self.qdot.iter().map(before).collect();
-                let shifted = |(row, shift): &AffineRow<P>| {
-                    let terms = row.iter().zip(&velocity);
-                    let along =
-                        |sum, (a, b): (&Number<P>, &Number<P>)| field.add(sum, field.mul(*a, *b));
-                    terms.fold(*shift, along)
+                let shifted = |(row, shift): (Vec<_>, Vec<_>)| {
+                    jets.add(&dot(jets, &row, velocity), &shift)
                 };
-                Some(projection.iter().map(shifted).collect())
+                let projection = self.projection(jets, series)?;
+                Some(projection.into_iter().map(shifted).collect())
             }
             Velocities::Refracted => {
-                let velocity: Vec<_> = self.qdot.iter().map(before).collect();
-                refracted(
-                    point,
-                    values,
-                    (&self.before, &self.after),
-                    &self.gap,
-                    &velocity,
-                )
+                let sides = (&self.before, &self.after);
+                refracted(jets, point, series, sides, &self.gap, velocity)
             }
         }
     }
 
     /// The projection on the constraints of the mode that is entered: rows of a matrix, each with its affine part.
-    fn projection<P: ExpansionPoint>(
+    fn projection<A: Arithmetic>(
         &self,
-        field: P::Field,
-        values: &[Number<P>],
-    ) -> Option<Vec<AffineRow<P>>> {
-        let space = JetSpace::new(0, 0, 1)?;
-        let jets = Jets::new(field, &space);
-        let constants = |rows: &[Vec<ExprId>]| -> Vec<Vec<Vec<Number<P>>>> {
-            let row = |row: &Vec<ExprId>| {
-                let entries = row.iter().map(|id| jets.constant(values[id.index()]));
-                entries.collect()
-            };
+        jets: &Jets<'_, A>,
+        series: &dyn Fn(ExprId) -> Series<A>,
+    ) -> Option<Vec<AffineRow<A>>> {
+        let rows = |rows: &[Vec<ExprId>]| -> Vec<Vec<Series<A>>> {
+            let row = |row: &Vec<ExprId>| row.iter().map(|id| series(*id)).collect();
             rows.iter().map(row).collect()
         };
-        let (metric, forms) = (constants(&self.after.metric), constants(&self.after.forms));
+        let (metric, forms) = (rows(&self.after.metric), rows(&self.after.forms));
         let n = metric.len();
         let column = |i: usize| forms.iter().map(|form| form[i].clone()).collect();
         // W^a, N rows of M.
-        let duals = solve(&jets, metric, (0..n).map(column).collect())?.unknowns;
+        let duals = solve(jets, metric, (0..n).map(column).collect())?.unknowns;
         let mass = forms.iter().map(|form| {
             let dual = |a: usize| duals.iter().map(|row| row[a].clone()).collect::<Vec<_>>();
             (0..forms.len())
-                .map(|a| dot(&jets, &form[..n], &dual(a)))
+                .map(|a| dot(jets, &form[..n], &dual(a)))
                 .collect()
         });
         // m_ab (eta^b | eta^b_0), M rows of N + 1.
-        let share = solve(&jets, mass.collect(), forms.clone())?.unknowns;
+        let share = solve(jets, mass.collect(), forms.clone())?.unknowns;
+        let one = jets.constant(jets.field.integer(1));
         let entry = |i: usize, j: usize| {
-            let terms = duals[i]
-                .iter()
-                .zip(&share)
-                .map(|(w, row)| jets.mul(w, &row[j]));
-            let sum = terms.fold(field.integer(0), |sum, term| {
-                field.add(sum, jets.value(&term))
-            });
+            let terms = duals[i].iter().zip(&share);
+            let sum = jets.dot(terms.map(|(w, row)| (w.as_slice(), row[j].as_slice())));
             match i == j {
-                true => field.sub(field.integer(1), sum),
-                false => field.neg(sum),
+                true => jets.sub(&one, &sum),
+                false => jets.scale(jets.field.integer(-1), &sum),
             }
         };
         let row = |i: usize| ((0..n).map(|j| entry(i, j)).collect(), entry(i, n));
@@ -462,12 +460,11 @@ impl Passage {
                 after.independent.iter().map(row).collect()
             }
             Velocities::Nearest => {
-                let rows = self.projection::<P>(field, &values)?;
-                after
-                    .independent
-                    .iter()
-                    .map(|i| rows[*i].0.clone())
-                    .collect()
+                let space = JetSpace::new(0, 0, 1)?;
+                let jets = Jets::new(field, &space);
+                let rows = self.projection(&jets, &|id| jets.constant(values[id.index()]))?;
+                let row = |i: &usize| rows[*i].0.iter().map(|own| jets.value(own)).collect();
+                after.independent.iter().map(row).collect()
             }
             Velocities::Rates | Velocities::Refracted => Vec::new(),
         };

@@ -99,11 +99,8 @@ impl Side {
     ) -> Option<Self> {
         let mut entered = entered.clone();
         let side = Self::of(&mut entered);
-        let replacements = replacements(model, &entered, (q, qdot))?;
-        let imported = model
-            .pool
-            .import(&entered.pool, &side.expressions(), &replacements)?;
-        Some(side.with(imported))
+        let expressions = imported(model, &entered, (q, qdot), &side.expressions())?;
+        Some(side.with(expressions))
     }
 
     /// Metric, constraints, rates and density.
@@ -194,6 +191,12 @@ pub(super) fn quantity_of_mode(
     (q, qdot): (&[ExprId], &[ExprId]),
 ) -> Option<ExprId> {
     let mut entered = entered.clone();
+    let there = named_in(model, &mut entered, quantity)?;
+    Some(imported(model, &entered, (q, qdot), &[there])?[0])
+}
+
+/// The quantity of another mode that goes by the names of one of this mode, written out; `None` if it lacks one of them.
+pub(super) fn named_in(model: &Model, entered: &mut Model, quantity: ExprId) -> Option<ExprId> {
     let mut known = vec![
         (model.time, entered.time),
         (model.derived.energy, entered.derived.energy),
@@ -217,9 +220,19 @@ pub(super) fn quantity_of_mode(
         .map(|(here, other)| (here, entered.pool.variable(other)))
         .collect();
     let there = entered.pool.import(&model.pool, &[quantity], &known)?[0];
-    let there = explicit(&mut entered, there);
-    let replacements = replacements(model, &entered, (q, qdot))?;
-    Some(model.pool.import(&entered.pool, &[there], &replacements)?[0])
+    Some(explicit(entered, there))
+}
+
+/// Expressions of another mode as those of this one, where that mode is at the state with these positions and velocities; `None` if they have a
+/// symbol that this mode has not.
+pub(super) fn imported(
+    model: &mut Model,
+    entered: &Model,
+    after: (&[ExprId], &[ExprId]),
+    expressions: &[ExprId],
+) -> Option<Vec<ExprId>> {
+    let replacements = replacements(model, entered, after)?;
+    model.pool.import(&entered.pool, expressions, &replacements)
 }
 
 /// Expressions of a model for the symbols of a mode, which is at the state with these positions and velocities.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! motion        L_X (dp_i dq^i) = d(F_i dq^i) + d(lambda_a eta^a)
-//! surfaces      dp+_i dq+^i - dH+ dt = dp_i dq^i - dH dt  on vectors along h = 0
+//! surfaces      the same on vectors that the motion through h = 0 carries along, see `invariant.rs`
 //! ```
 //!
 //! Without constraints the motion keeps the form iff `F_i dq^i` is closed. With them the form on D is not kept where
@@ -11,16 +11,18 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
 
-use super::collision::{Vanished, evidence_at_impact};
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
+use super::expansion::Tangents;
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Surroundings, effects};
+use super::invariant::kept_at_surface;
 use super::passage::{Passage, Velocities};
 use super::side::Side;
+use super::undecided::Undecided;
 use super::wall::Wall;
-use crate::model::Model;
+use crate::model::{ExteriorForm, Model};
 
 const KEPT: &str = "the motion of a Lagrangian without constraints keeps the symplectic form";
 
@@ -46,10 +48,10 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
         let name = model.surfaces[surface].name.display.clone();
         let wall = Wall::of(model, around.derivation, surface, around.others);
         let is_declared =
-            |passage: &&Passage| matches!(passage.velocities, Velocities::Declared(..));
-        let verdict = match wall.passage.as_ref().filter(is_declared) {
+            |passage: &Passage| matches!(passage.velocities, Velocities::Declared(..));
+        let verdict = match wall.passage.as_ref().is_some_and(is_declared) {
             // What changes volumes does not keep the form.
-            Some(passage) if effect.keeps() => map_keeps(model, around, &wall, passage, &name),
+            true if effect.keeps() => map_keeps(model, around, surface),
             _ => match effect.verdict {
                 Verdict::Refuted(witness) => Verdict::Refuted(Witness {
                     reason: format!(
@@ -187,142 +189,29 @@ fn constraints_are_seen(model: &mut Model, around: &Surroundings<'_>) -> Verdict
 }
 
 /// The verdict on a declared map of velocities without constraints.
-fn map_keeps(
-    model: &mut Model,
-    around: &Surroundings<'_>,
-    wall: &Wall,
-    passage: &Passage,
-    name: &str,
-) -> Verdict {
-    let entries = change_of_form(model, passage);
-    let mut certificate = Certificate::without_chance(String::new(), around.seed);
-    for (pair, mut value) in entries {
-        if let Some(solution) = wall.solution() {
-            value = model.pool.substitute(value, &[solution]);
-        }
-        if model.pool.is_syntactic_zero(value) {
-            continue;
-        }
-        let question = Vanished {
-            change: value,
-            shown: format!("change of the form on {pair}"),
-        };
-        let wording = Wording {
-            vanishes: format!("`{name}` keeps the symplectic form"),
-            differs: format!("`{name}` does not keep the symplectic form"),
-            help: ["leave it out".to_owned(), String::new()],
-        };
-        let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
-        match found.verdict(true, wording, around.seed) {
-            Verdict::Proved(part) => certificate.rest_on(&part),
-            other => return other,
-        }
-    }
-    Verdict::Proved(certificate)
+fn map_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Verdict {
+    let Some(tangents) = Tangents::of(model, around.dynamics) else {
+        return Verdict::Undecided(Undecided::Degenerate.to_string());
+    };
+    let (form, written) = symplectic_form(model);
+    kept_at_surface(model, around, &tangents, (&form, &written), surface)
 }
 
-/// `dp+ dq+ - dH+ dt - dp dq + dH dt` on each pair of vectors along the surface, which are those of all coordinates of `(t, q, qdot)` but
-/// one, with as much of that as keeps h.
-fn change_of_form(model: &mut Model, passage: &Passage) -> Vec<(String, ExprId)> {
-    let mut symbols = vec![model.time];
-    symbols.extend(model.coordinates.iter().map(|coordinate| coordinate.q));
-    symbols.extend(model.coordinates.iter().map(|coordinate| coordinate.qdot));
-    let (slope, rate) = passage.gap_form();
-    let mut gap = vec![rate];
-    gap.extend(slope);
-    gap.resize(symbols.len(), model.pool.zero());
-    // A gap that depends on time alone is a surface of states at one time.
-    let moves = |i: &usize| !model.pool.is_syntactic_zero(gap[*i]);
-    let k = (1..gap.len()).find(moves).unwrap_or(0);
-    let [after, before] = [
-        canonical(model, passage, true),
-        canonical(model, passage, false),
-    ];
-    let pool = &mut model.pool;
-    let mut derivatives = |form: Canonical, sign: bool| {
-        let rows = form.pairs.into_iter().map(|pair| {
-            let [p, q] = pair.map(|id| {
-                let slopes = symbols.iter().map(|by| pool.diff(id, *by));
-                slopes.collect::<Vec<_>>()
-            });
-            (sign, p, q)
-        });
-        rows.collect::<Vec<_>>()
-    };
-    let mut products = derivatives(after, true);
-    products.extend(derivatives(before, false));
-    let entry = |i: usize, j: usize, pool: &mut Pool| {
-        let mut terms = Vec::new();
-        for (sign, p, q) in &products {
-            let [one, other] = [pool.mul(p[i], q[j]), pool.mul(p[j], q[i])];
-            let term = pool.sub(one, other);
-            terms.push(if *sign { term } else { pool.neg(term) });
-        }
-        pool.sum(&terms)
-    };
-    let mut found = Vec::new();
-    let others: Vec<usize> = (0..symbols.len()).filter(|i| *i != k).collect();
-    for (place, &i) in others.iter().enumerate() {
-        for &j in &others[place + 1..] {
-            let [direct, left, right] = [(i, j), (i, k), (k, j)].map(|(a, b)| entry(a, b, pool));
-            let [by_j, by_i] = [gap[j], gap[i]].map(|slope| pool.div(slope, gap[k]));
-            let [left, right] = [pool.mul(by_j, left), pool.mul(by_i, right)];
-            let both = pool.add(left, right);
-            let value = pool.sub(direct, both);
-            let value = pool.simplify(value);
-            if !pool.is_syntactic_zero(value) {
-                let names = [i, j].map(|i| pool.symbol_name(symbols[i]).to_owned());
-                found.push((format!("d_{} and d_{}", names[0], names[1]), value));
-            }
-        }
+/// `dp_i ^ dq^i`, and its text.
+fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
+    let mut form = ExteriorForm::zero(2);
+    let mut texts = Vec::new();
+    for i in 0..model.coordinates.len() {
+        let (q, p) = (model.coordinates[i].q, model.derived.momenta[i]);
+        let pool = &mut model.pool;
+        let pair = [p, q].map(|symbol| pool.variable(symbol));
+        let [dp, dq] = pair.map(|own| ExteriorForm::differential(pool, own));
+        let area = dp.wedge(pool, &dq);
+        form = form.plus(pool, area);
+        let name = &model.coordinates[i].name.display;
+        texts.push(format!("d(momentum({name}))^d({name})"));
     }
-    found
-}
-
-/// Pairs `(p_i, q^i)`, and `(-H, t)`.
-struct Canonical {
-    pairs: Vec<[ExprId; 2]>,
-}
-
-fn canonical(model: &mut Model, passage: &Passage, is_after: bool) -> Canonical {
-    let symbols: Vec<(SymbolId, SymbolId)> = model
-        .coordinates
-        .iter()
-        .map(|coordinate| (coordinate.q, coordinate.qdot))
-        .collect();
-    let time = model.time;
-    let pool = &mut model.pool;
-    let (side, q, qdot) = match (&passage.velocities, is_after) {
-        (Velocities::Declared(values, _), true) => {
-            (&passage.after, passage.positions.clone(), values.clone())
-        }
-        _ => {
-            let q = symbols.iter().map(|(q, _)| pool.variable(*q)).collect();
-            let qdot = symbols
-                .iter()
-                .map(|(_, qdot)| pool.variable(*qdot))
-                .collect();
-            (&passage.before, q, qdot)
-        }
-    };
-    let mut pairs = Vec::new();
-    let mut energy = vec![side.potential];
-    for ((row, linear), (position, velocity)) in side
-        .metric
-        .iter()
-        .zip(&side.linear)
-        .zip(q.iter().zip(&qdot))
-    {
-        let terms = row.iter().zip(&qdot);
-        let terms: Vec<ExprId> = terms.map(|(g, v)| pool.mul(*g, *v)).collect();
-        let kinetic = pool.sum(&terms);
-        pairs.push([pool.add(kinetic, *linear), *position]);
-        let product = pool.mul(kinetic, *velocity);
-        energy.push(pool.scale(&dalembert_expr::Rational::HALF, product));
-    }
-    let energy = pool.sum(&energy);
-    pairs.push([pool.neg(energy), pool.variable(time)]);
-    Canonical { pairs }
+    (form, texts.join(" + "))
 }
 
 /// Something that must be 0 at all states on D.

@@ -186,55 +186,64 @@ impl Wall {
         if let Some(passage) = &self.passage {
             return passage.velocities_after(model, point);
         }
-        let (n, m) = (self.coordinates.len(), self.constraints);
-        let field = point.field();
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
         let space = JetSpace::new(0, 0, 1)?;
-        let jets = Jets::new(field, &space);
-        let mut entries = self
-            .roots
+        let jets = Jets::new(point.field(), &space);
+        let velocity: Vec<_> = self
+            .velocities
             .iter()
-            .map(|root| jets.constant(values[root.index()]));
+            .map(|own| jets.constant(point.symbol(&model.pool, *own)))
+            .collect();
+        let after = self.struck(&jets, &|id| jets.constant(values[id.index()]), &velocity)?;
+        Some(after.iter().map(|own| jets.value(own)).collect())
+    }
+
+    /// The velocities after an impulse as series, given the series of expressions and of the velocities before it.
+    pub(super) fn struck<A: Arithmetic>(
+        &self,
+        jets: &Jets<'_, A>,
+        series: &dyn Fn(ExprId) -> Series<A>,
+        velocity: &[Series<A>],
+    ) -> Option<Vec<Series<A>>> {
+        let (n, m) = (self.coordinates.len(), self.constraints);
+        let mut entries = self.roots.iter().map(|root| series(*root));
         let mut rows = |count: usize| -> Vec<Vec<_>> {
             (0..count)
                 .map(|_| entries.by_ref().take(n).collect())
                 .collect()
         };
         let (metric, forms, slope) = (rows(n), rows(m), rows(1).pop()?);
-        let rest: Vec<_> = entries.map(|own| jets.value(&own)).collect();
+        let rest: Vec<_> = entries.collect();
         let [rate, coefficient] = rest.as_slice() else {
             return None;
         };
         let Normal {
             gradient,
             projected,
-        } = Normal::of(&jets, &metric, &forms, &slope)?;
-        let velocity: Vec<_> = self
-            .velocities
-            .iter()
-            .map(|own| jets.constant(point.symbol(&model.pool, *own)))
-            .collect();
-        let number = |series: Vec<Number<P>>| jets.value(&series);
-        let steep = number(dot(&jets, &slope, &projected));
-        let gap_rate = field.add(number(dot(&jets, &slope, &velocity)), *rate);
+        } = Normal::of(jets, &metric, &forms, &slope)?;
+        let steep = dot(jets, &slope, &projected);
+        let gap_rate = jets.add(&dot(jets, &slope, velocity), rate);
         let lowered: Vec<_> = metric
             .iter()
-            .map(|row| dot(&jets, row, &projected))
+            .map(|row| dot(jets, row, &projected))
             .collect();
-        let momentum = field.add(number(dot(&jets, &velocity, &lowered)), *rate);
-        let ratio = || Some(field.mul(steep, field.inv(number(dot(&jets, &slope, &gradient)))?));
-        let one = field.integer(1);
+        let momentum = jets.add(&dot(jets, velocity, &lowered), rate);
+        let ratio = || Some(jets.mul(&steep, &jets.inverse(&dot(jets, &slope, &gradient))?));
+        let elastic = jets.add(&jets.constant(jets.field.integer(1)), coefficient);
         let factor = match self.law {
-            Law::Elastic | Law::Restitution(_) => field.mul(field.add(one, *coefficient), momentum),
-            Law::Newton(_) => field.mul(field.add(one, *coefficient), gap_rate),
-            Law::NonholonomicPlastic => field.mul(field.mul(field.integer(2), ratio()?), gap_rate),
+            Law::Elastic | Law::Restitution(_) => jets.mul(&elastic, &momentum),
+            Law::Newton(_) => jets.mul(&elastic, &gap_rate),
+            Law::NonholonomicPlastic => {
+                let twice = jets.scale(jets.field.integer(2), &ratio()?);
+                jets.mul(&twice, &gap_rate)
+            }
             Law::ImpactPlastic => gap_rate,
-            Law::TotallyPlastic => field.mul(ratio()?, gap_rate),
+            Law::TotallyPlastic => jets.mul(&ratio()?, &gap_rate),
             Law::Reset | Law::Transition => return None,
         };
-        let impulse = field.neg(field.mul(factor, field.inv(steep)?));
-        let after = |(own, along): (&Vec<Number<P>>, &Vec<Number<P>>)| {
-            field.add(jets.value(own), field.mul(impulse, jets.value(along)))
+        let impulse = jets.mul(&factor, &jets.inverse(&steep)?);
+        let after = |(own, along): (&Series<A>, &Series<A>)| {
+            jets.sub(own, &jets.mul(&impulse, along))
         };
         Some(velocity.iter().zip(&projected).map(after).collect())
     }

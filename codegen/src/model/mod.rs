@@ -9,6 +9,7 @@ mod check;
 mod culprit;
 mod definitions;
 mod degree;
+mod exterior;
 mod form;
 mod graph;
 mod index;
@@ -36,6 +37,7 @@ use crate::spec::ItemId;
 pub use crate::spec::Existence;
 pub use check::check;
 pub(crate) use check::check_within;
+pub use exterior::{ExteriorForm, Wedge};
 pub use graph::{Entry, Mode, ModeGraph, Places, check_modes};
 pub use index::INDICES;
 pub use law::{Law, Reset};
@@ -398,6 +400,8 @@ pub enum Statement {
     },
     /// The flow of this vector field, N components, keeps the Lagrangian and the constraints.
     Symmetry(Vec<ExprId>),
+    /// The motion and all that happens at surfaces keep a differential form.
+    Invariant(ExteriorForm),
     /// One invariant volume is kept by the motion and by all that happens at surfaces.
     VolumeKept,
     /// Factor of the volume at a surface.
@@ -415,16 +419,17 @@ pub enum Statement {
 
 impl Statement {
     /// What it is about.
-    pub fn expressions(&self) -> &[ExprId] {
+    pub fn expressions(&self) -> Vec<ExprId> {
         match self {
             Self::Existence(_)
             | Self::VolumeKept
             | Self::Symplectic
-            | Self::EnergyNotIncreasing(_) => &[],
+            | Self::EnergyNotIncreasing(_) => Vec::new(),
             Self::Density(value) | Self::Conserved { value, .. } | Self::Factor { value, .. } => {
-                std::slice::from_ref(value)
+                vec![*value]
             }
-            Self::Symmetry(field) => field,
+            Self::Symmetry(field) => field.clone(),
+            Self::Invariant(form) => form.expressions().collect(),
         }
     }
 

@@ -34,6 +34,22 @@ impl Resolver<'_> {
         });
     }
 
+    /// As [`Resolver::check_periodic`], of the derivatives of an expression by some symbols.
+    pub(super) fn check_periodic_derivatives(
+        &mut self,
+        written: &[&Scalar],
+        scope: &Scope,
+        expr: ExprId,
+        symbols: &[SymbolId],
+    ) {
+        self.check_turns(written, scope, expr, |pool, expr, angle| {
+            symbols.iter().all(|symbol| {
+                let slope = pool.diff(expr, *symbol);
+                is_periodic(pool, slope, angle)
+            })
+        });
+    }
+
     fn check_turns(
         &mut self,
         written: &[&Scalar],

@@ -291,6 +291,18 @@ impl Writer<'_> {
                 ("value", self.expression(*value)),
                 ("under", Tree::Integer(*under as u64)),
             ],
+            Statement::Invariant(form) => {
+                let terms = form.terms.iter().map(|term| {
+                    Tree::Record(vec![
+                        ("coefficient", self.expression(term.coefficient)),
+                        ("differentials", self.expressions(&term.differentials)),
+                    ])
+                });
+                vec![
+                    ("kind", Tree::text("invariant_form")),
+                    ("terms", Tree::list(terms)),
+                ]
+            }
             Statement::Symplectic => vec![("kind", Tree::text("symplectic"))],
             Statement::EnergyNotIncreasing(under) => vec![
                 ("kind", Tree::text("energy_not_increasing")),

@@ -558,6 +558,8 @@ pub enum Statement {
     },
     /// `symmetry: e`, with `partial(x)` for the fields of the coordinates.
     Symmetry(Scalar),
+    /// `invariant: e`, with `d(..)` and `^` between forms.
+    Invariant(Scalar),
     /// `volume: kept`
     VolumeKept,
     /// `density under surface: factor = e`

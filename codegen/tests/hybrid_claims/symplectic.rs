@@ -60,12 +60,12 @@ fn what_does_not_is_refuted_at_a_point() {
     check(
         &particle("low: y >= 0 => reset { dot(y) = -dot(y); dot(x) = dot(x)/2; x = 2*x; };"),
         CLAIM,
-        False("change of the form"),
+        False("changes `d(momentum(x))^d(x) + d(momentum(y))^d(y)`"),
     );
     check(
         &particle("left: x >= 0 => reset { dot(x) = -a*dot(x); dot(y) = dot(y)/a^2; };"),
         CLAIM,
-        False("change of the form"),
+        False("changes `d(momentum(x))^d(x) + d(momentum(y))^d(y)`"),
     );
     check(
         &forced("-y*d(x) + x*d(y)"),
@@ -97,7 +97,7 @@ fn near_misses_are_refuted() {
             "low: y >= 0 => reset { dot(y) = -dot(y); dot(x) = dot(x) + 1e-9*y*dot(x) + 1e-9; x = x; };",
         ),
         CLAIM,
-        False("change of the form"),
+        False("changes `d(momentum(x))^d(x) + d(momentum(y))^d(y)`"),
     );
     check(
         &forced("1e-9*y*d(x)"),

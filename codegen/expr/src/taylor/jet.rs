@@ -231,6 +231,14 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
         self.power(a, &Rational::from(-1), value)
     }
 
+    /// The square root of `a` whose value is given; `None` if the value of `a` is 0 and the series is not that of a constant.
+    pub fn root(&self, a: &[A::Scalar], value: A::Scalar) -> Option<Series<A>> {
+        match a.len() {
+            0 | 1 => Some(self.constant(value)),
+            _ => self.power(a, &Rational::HALF, value),
+        }
+    }
+
     /// `a^exponent` whose value is given; `None` if the value of `a` is 0.
     pub(super) fn power(
         &self,

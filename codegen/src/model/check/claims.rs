@@ -104,6 +104,10 @@ impl Resolver<'_> {
                 };
                 (statement, format!("{not}conserved{across}: {value}"))
             }
+            spec::Statement::Invariant(written) => {
+                let form = self.invariant_form(written)?;
+                (Statement::Invariant(form), format!("invariant: {written}"))
+            }
             spec::Statement::VolumeKept => (Statement::VolumeKept, "volume: kept".to_owned()),
             spec::Statement::Symplectic => (Statement::Symplectic, "symplectic".to_owned()),
             spec::Statement::Factor { under, value } => {

@@ -118,6 +118,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
             Statement::Conserved { .. }
             | Statement::Density(_)
             | Statement::VolumeKept
+            | Statement::Invariant(_)
             | Statement::Factor { .. } => continue,
             Statement::Existence(_) => ("density that is looked for", "state one: `density = ..;`"),
             Statement::Symmetry(_) => {

@@ -9,6 +9,7 @@ mod cancellation;
 mod claims;
 mod constraints;
 mod coordinates;
+mod exterior;
 mod field;
 mod frame;
 mod initial;
@@ -281,8 +282,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
     used.extend(
         claims
             .iter()
-            .flat_map(|own| own.statement.expressions())
-            .copied(),
+            .flat_map(|own| own.statement.expressions()),
     );
     used.extend(
         view.iter()

@@ -5,11 +5,12 @@ use super::super::cursor::{Cursor, Read};
 use super::declared;
 use crate::diagnostics::{Location, nearest};
 
-const KINDS: [&str; 8] = [
+const KINDS: [&str; 9] = [
     "density",
     "conserved",
     "not",
     "symmetry",
+    "invariant",
     "volume",
     "symplectic",
     "energy",
@@ -38,6 +39,7 @@ pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
                 "density" => density(cursor)?,
                 "conserved" => conserved(cursor, true)?,
                 "symmetry" => symmetry(cursor)?,
+                "invariant" => invariant(cursor)?,
                 "volume" => volume(cursor)?,
                 "symplectic" => Statement::Symplectic,
                 "energy" => energy(cursor)?,
@@ -133,6 +135,12 @@ fn conserved(cursor: &mut Cursor<'_>, holds: bool) -> Read<Statement> {
 fn symmetry(cursor: &mut Cursor<'_>) -> Read<Statement> {
     cursor.expect_operator(":", "symmetry: partial(theta);")?;
     Ok(Statement::Symmetry(cursor.scalar()?))
+}
+
+/// `invariant: d(x)^d(dot(x))`, after the first word.
+fn invariant(cursor: &mut Cursor<'_>) -> Read<Statement> {
+    cursor.expect_operator(":", "invariant: d(x)^d(dot(x));")?;
+    Ok(Statement::Invariant(cursor.scalar()?))
 }
 
 fn expect_word(cursor: &mut Cursor<'_>, word: &str, form: &str) -> Read<Location> {

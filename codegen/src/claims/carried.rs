@@ -1,0 +1,450 @@
+//! A form before and after a surface, on vectors that the motion through it carries along.
+//!
+//! ```text
+//! v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)      w+(v+_1, .., v+_k) = w(v_1, .., v_k)
+//! ```
+//!
+//! X has the rate 1 of time, and vectors have none. On vectors along the surface this is the pullback by the map, and with X in one place the specular
+//! condition (W. Clark, thesis, VII.3). Of a transition X+ and w+ are those of the mode that is entered.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series, SymbolId};
+
+use super::collision::{AtImpact, with_difference};
+use super::dynamics::{Dynamics, Number};
+use super::examine::explicit;
+use super::expansion::{
+    CHANCE, Expansions, Part, Products, Tangents, accelerations, constants, inner, written_out,
+};
+use super::hybrid::Surroundings;
+use super::passage::{Passage, Velocities};
+use super::side::{imported, named_in, velocities_of};
+use super::wall::Wall;
+use crate::mechanics::derive;
+use crate::model::{ExteriorForm, Model};
+
+/// The state behind a surface, as expressions of the state before it.
+#[derive(Debug)]
+struct Behind {
+    /// The rates of a first-order system.
+    rates: Option<Vec<ExprId>>,
+    /// The equations of motion.
+    equations: [Vec<Vec<ExprId>>; 2],
+    /// Coefficients, each with the derivatives of its functions by positions and velocities.
+    terms: Vec<(ExprId, Vec<Vec<ExprId>>)>,
+}
+
+/// A form at a surface.
+pub(super) struct Carried<'c> {
+    wall: &'c Wall,
+    tangents: &'c Tangents,
+    form: &'c ExteriorForm,
+    /// Everything before the surface.
+    expansions: Expansions,
+    /// The motion before it.
+    dynamics: Dynamics,
+    rates: Option<Vec<ExprId>>,
+    positions: Vec<ExprId>,
+    behind: Behind,
+    pub(super) part: Part,
+    pub(super) shown: String,
+}
+
+impl<'c> Carried<'c> {
+    /// A form at a wall; of a transition with the mode that is entered.
+    ///
+    /// # Errors
+    /// Why it is not known behind the wall.
+    pub(super) fn of(
+        model: &mut Model,
+        around: &Surroundings<'_>,
+        (form, named): (&'c ExteriorForm, &ExteriorForm),
+        tangents: &'c Tangents,
+        (wall, entered): (&'c Wall, Option<&Model>),
+    ) -> Result<Self, String> {
+        let behind = Behind::of(model, around, named, wall, entered)
+            .ok_or("the form is not known behind it")?;
+        let positions = positions(model, wall);
+        let mut expansions = Expansions::of(model);
+        let mut before: Vec<ExprId> = form.expressions().collect();
+        before.extend(&positions);
+        before.extend(&tangents.residuals);
+        before.push(wall.gap);
+        before.extend(match &wall.passage {
+            Some(passage) => passage.velocity_roots(),
+            None => wall.roots.clone(),
+        });
+        before.extend(model.field.iter().flatten());
+        expansions.add(&mut model.pool, before);
+        let mut found = Self {
+            wall,
+            tangents,
+            form,
+            expansions,
+            dynamics: around.dynamics.clone(),
+            rates: model.field.clone(),
+            positions,
+            behind,
+            part: Part::All(0),
+            shown: String::new(),
+        };
+        if let Some(solution) = wall.solution() {
+            found.restrict(model, solution);
+        }
+        Ok(found)
+    }
+
+    /// Replaces a coordinate by its value on the surface, in all that is evaluated.
+    fn restrict(&mut self, model: &mut Model, solution: (SymbolId, ExprId)) {
+        let pool = &mut model.pool;
+        self.expansions.restrict(pool, solution);
+        self.dynamics = self.dynamics.substituted(pool, &[solution]);
+        let mut on_surface = |row: &mut Vec<ExprId>| *row = pool.substitute_all(row, &[solution]);
+        let behind = &mut self.behind;
+        behind.rates.iter_mut().for_each(&mut on_surface);
+        behind.equations.iter_mut().flatten().for_each(&mut on_surface);
+        for (coefficient, slopes) in &mut behind.terms {
+            let mut single = vec![*coefficient];
+            on_surface(&mut single);
+            *coefficient = single[0];
+            slopes.iter_mut().for_each(&mut on_surface);
+        }
+    }
+
+    /// True if the velocities behind it are computed at a point, not written out.
+    fn computes_velocities(&self) -> bool {
+        let passage = self.wall.passage.as_ref();
+        passage.is_none_or(Passage::computes_velocities)
+    }
+
+    /// Positions and velocities behind it as series in the variables before it.
+    fn map<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &P,
+        jets: &Jets<'_, P::Field>,
+        values: &[Number<P>],
+    ) -> Option<[Vec<Series<P::Field>>; 2]> {
+        let n = model.coordinates.len();
+        let series = |id: ExprId| self.expansions.series(jets, values, id);
+        let positions = self.positions.iter().map(|id| series(*id)).collect();
+        if self.rates.is_some() {
+            return Some([positions, Vec::new()]);
+        }
+        let velocity: Vec<_> = (model.coordinates.iter().enumerate())
+            .map(|(i, own)| jets.variable(n + i, point.symbol(&model.pool, own.qdot)))
+            .collect();
+        let velocities = match &self.wall.passage {
+            Some(passage) => passage.velocities_along(jets, point, &series, &velocity)?,
+            None => self.wall.struck(jets, &series, &velocity)?,
+        };
+        Some([positions, velocities])
+    }
+
+    /// The motion before the surface: rates of positions, velocities and time.
+    fn motion_before<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        values: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let n = model.coordinates.len();
+        let mut motion: Vec<Number<P>>;
+        match &self.rates {
+            Some(rates) => {
+                let rate = |id: &ExprId| self.expansions.value(values, *id);
+                motion = rates.iter().map(rate).collect();
+                motion.resize(2 * n, field.integer(0));
+            }
+            None => {
+                let velocity = |own: &crate::model::Coordinate| point.symbol(&model.pool, own.qdot);
+                motion = model.coordinates.iter().map(velocity).collect();
+                let order = model.pool.reachable(&self.dynamics.roots());
+                let values = point.values(&model.pool, &order)?;
+                let space = JetSpace::new(0, 0, 1)?;
+                let jets = Jets::new(field, &space);
+                let series = constants::<P>(&jets, &values);
+                let found = accelerations(&jets, self.dynamics.equations(), &series)?;
+                motion.extend(found.iter().map(|own| jets.value(own)));
+            }
+        }
+        motion.push(field.integer(1));
+        Some(motion)
+    }
+
+    /// What is evaluated behind the surface, with the velocities there where they are computed.
+    fn values_behind<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        velocities: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let order = model.pool.reachable(&self.behind.roots());
+        if !self.computes_velocities() || self.rates.is_some() {
+            return point.values(&model.pool, &order);
+        }
+        let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let before: Vec<_> = (symbols.iter())
+            .map(|symbol| point.symbol(&model.pool, *symbol))
+            .collect();
+        for (symbol, velocity) in symbols.iter().zip(velocities) {
+            point.set_symbol(*symbol, *velocity);
+        }
+        let values = point.values(&model.pool, &order);
+        for (symbol, velocity) in symbols.iter().zip(before) {
+            point.set_symbol(*symbol, velocity);
+        }
+        values
+    }
+
+    /// The products that the form is the sum of, after and before, and the rate of the gap after in a first-order system.
+    fn products<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<([Products<Number<P>>; 2], Vec<Number<P>>)> {
+        let field = point.field();
+        let roots: Vec<ExprId> = self.expansions.roots().collect();
+        let values = point.values(&model.pool, &model.pool.reachable(&roots))?;
+        let vectors = self.tangents.vectors(field, &self.expansions, &values)?;
+        let space = JetSpace::new(self.expansions.size(), 1, usize::MAX)?;
+        let jets = Jets::new(field, &space);
+        let [positions, velocities] = self.map(model, point, &jets, &values)?;
+        let incoming = self.motion_before(model, point, &values)?;
+        let numbers = |series: &[Series<P::Field>]| -> Vec<Number<P>> {
+            series.iter().map(|own| jets.value(own)).collect()
+        };
+        let behind = self.values_behind(model, point, &numbers(&velocities))?;
+        let outgoing = self.behind.motion::<P>(field, &numbers(&velocities), &behind)?;
+        let push = |vector: &Vec<Number<P>>| -> Vec<Number<P>> {
+            let along = |series: &Series<P::Field>| {
+                inner(field, series.iter().skip(1).copied(), vector)
+            };
+            positions.iter().chain(&velocities).map(along).collect()
+        };
+        let gap = |vector: &Vec<_>| self.expansions.along(field, &values, self.wall.gap, vector);
+        let share = field.inv(gap(&incoming))?;
+        let image = push(&incoming);
+        let carried = vectors.iter().map(|vector| {
+            let share = field.mul(gap(vector), share);
+            let ends = push(vector).into_iter().zip(outgoing.iter().zip(&image));
+            let turned = ends.map(|(own, (to, by))| {
+                field.add(own, field.mul(share, field.sub(*to, *by)))
+            });
+            turned.collect()
+        });
+        let carried: Vec<Vec<Number<P>>> = carried.collect();
+        let mut after = Products::new();
+        for (coefficient, differentials) in &self.behind.terms {
+            let row = |slopes: &Vec<ExprId>| {
+                let along = |vector: &Vec<Number<P>>| {
+                    inner(field, slopes.iter().map(|id| behind[id.index()]), vector)
+                };
+                carried.iter().map(along).collect()
+            };
+            let rows = differentials.iter().map(row).collect();
+            after.push(behind[coefficient.index()], rows);
+        }
+        let mut before = Products::new();
+        for term in &self.form.terms {
+            let row = |id: &ExprId| {
+                let along = |vector: &Vec<_>| self.expansions.along(field, &values, *id, vector);
+                vectors.iter().map(along).collect()
+            };
+            let coefficient = self.expansions.value(&values, term.coefficient);
+            before.push(coefficient, term.differentials.iter().map(row).collect());
+        }
+        Some(([after, before], outgoing))
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        (self.tangents.dimension(), self.form.degree)
+    }
+
+    /// The components of the change at a real state, with their sizes.
+    pub(super) fn components(&self, model: &Model, point: &mut RealPoint) -> Option<(Vec<f64>, f64)> {
+        let field = point.field();
+        let (sides, _) = self.products(model, point)?;
+        let (dimension, degree) = self.sizes();
+        let each = super::expansion::choices(dimension, degree);
+        let change = |places: &Vec<usize>| {
+            let [after, before] = sides.each_ref().map(|side| side.component(field, places));
+            Some(after? - before?)
+        };
+        let changes: Option<Vec<f64>> = each.iter().map(change).collect();
+        Some((changes?, sides[0].size() + sides[1].size()))
+    }
+
+    /// True if a motion of first order goes on through the surface at a real state, and does not slide along it.
+    fn goes_on(&self, model: &Model, point: &mut RealPoint, outgoing: &[f64]) -> Option<bool> {
+        if !self.wall.passage.as_ref().is_some_and(Passage::may_slide) {
+            return Some(true);
+        }
+        let roots: Vec<ExprId> = self.expansions.roots().collect();
+        let values = point.values(&model.pool, &model.pool.reachable(&roots))?;
+        let mut vector = outgoing.to_vec();
+        vector.resize(2 * model.coordinates.len(), 0.0);
+        vector.push(1.0);
+        let rate = self.expansions.along(point.field(), &values, self.wall.gap, &vector);
+        Some(rate < 0.0)
+    }
+}
+
+impl Behind {
+    fn of(
+        model: &mut Model,
+        around: &Surroundings<'_>,
+        form: &ExteriorForm,
+        wall: &Wall,
+        entered: Option<&Model>,
+    ) -> Option<Self> {
+        let mut there = entered.unwrap_or(model).clone();
+        let derivation = match entered {
+            Some(_) => &derive(&mut there),
+            None => around.derivation,
+        };
+        let dynamics = Dynamics::of(&mut there, derivation);
+        let mut form = written_out(form, |id| named_in(model, &mut there, id))?;
+        if let Some(rates) = there.field.clone() {
+            form = with_rates(&mut there, form, &rates);
+        }
+        let mut symbols: Vec<SymbolId> = there.coordinates.iter().map(|own| own.q).collect();
+        symbols.extend(there.coordinates.iter().map(|own| own.qdot));
+        let qdot = match wall.passage.as_ref().map(|passage| &passage.velocities) {
+            Some(Velocities::Declared(values, _)) => values.clone(),
+            _ => velocities_of(model),
+        };
+        let after = (positions(model, wall), qdot);
+        let mut here = |expressions: &[ExprId], there: &Model| {
+            imported(model, there, (&after.0, &after.1), expressions)
+        };
+        let mut terms = Vec::new();
+        for term in &form.terms {
+            let mut slopes = Vec::new();
+            for id in &term.differentials {
+                let own: Vec<ExprId> = (symbols.iter())
+                    .map(|by| there.pool.diff(*id, *by))
+                    .collect();
+                slopes.push(here(&own, &there)?);
+            }
+            terms.push((here(&[term.coefficient], &there)?[0], slopes));
+        }
+        let rates = match there.field.clone() {
+            Some(rates) => Some(here(&rates, &there)?),
+            None => None,
+        };
+        let mut rows = |rows: &[Vec<ExprId>]| -> Option<Vec<Vec<ExprId>>> {
+            rows.iter().map(|row| here(row, &there)).collect()
+        };
+        let equations = match &rates {
+            Some(_) => [Vec::new(), Vec::new()],
+            None => {
+                let [forms, motion] = dynamics.equations();
+                [rows(forms)?, rows(motion)?]
+            }
+        };
+        Some(Self {
+            rates,
+            equations,
+            terms,
+        })
+    }
+
+    fn roots(&self) -> Vec<ExprId> {
+        let rows = self.equations.iter().flatten().flatten();
+        let slopes = self.terms.iter().flat_map(|(_, slopes)| slopes).flatten();
+        let coefficients = self.terms.iter().map(|(coefficient, _)| coefficient);
+        let all = rows.chain(slopes).chain(coefficients);
+        all.chain(self.rates.iter().flatten()).copied().collect()
+    }
+
+    /// The rates of positions and velocities.
+    fn motion<P: ExpansionPoint>(
+        &self,
+        field: P::Field,
+        velocities: &[Number<P>],
+        values: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        if let Some(rates) = &self.rates {
+            return Some(rates.iter().map(|id| values[id.index()]).collect());
+        }
+        let space = JetSpace::new(0, 0, 1)?;
+        let jets = Jets::new(field, &space);
+        let series = constants::<P>(&jets, values);
+        let equations = [self.equations[0].as_slice(), self.equations[1].as_slice()];
+        let found = accelerations(&jets, equations, &series)?;
+        let mut motion = velocities.to_vec();
+        motion.extend(found.iter().map(|own| jets.value(own)));
+        Some(motion)
+    }
+}
+
+/// The positions behind a wall.
+fn positions(model: &mut Model, wall: &Wall) -> Vec<ExprId> {
+    match &wall.passage {
+        Some(passage) => passage.positions.clone(),
+        None => {
+            let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+            let pool = &mut model.pool;
+            symbols.into_iter().map(|own| pool.variable(own)).collect()
+        }
+    }
+}
+
+/// A form of a first-order system with velocities replaced by rates.
+pub(super) fn with_rates(model: &mut Model, form: ExteriorForm, rates: &[ExprId]) -> ExteriorForm {
+    let velocities = model.coordinates.iter().map(|own| own.qdot);
+    let replacements: Vec<_> = velocities.zip(rates.iter().copied()).collect();
+    let pool = &mut model.pool;
+    let replaced = written_out(&form, |id| Some(pool.substitute(id, &replacements)));
+    replaced.unwrap_or(form)
+}
+
+/// A form with energy, momenta and rates written out.
+pub(super) fn explicit_form(model: &mut Model, form: &ExteriorForm) -> ExteriorForm {
+    let found = written_out(form, |id| Some(explicit(model, id)));
+    let found = found.unwrap_or_else(|| form.clone());
+    match model.field.clone() {
+        Some(rates) => with_rates(model, found, &rates),
+        None => found,
+    }
+}
+
+impl AtImpact for Carried<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots: Vec<ExprId> = self.expansions.roots().collect();
+        roots.extend(self.dynamics.roots());
+        roots.extend(self.behind.roots());
+        roots
+    }
+
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        _: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let ([after, before], _) = self.products(model, point)?;
+        let after = after.total(field, &self.part, self.sizes())?;
+        let before = before.total(field, &self.part, self.sizes())?;
+        Some(vec![after, field.neg(before)])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint, _: &[f64]) -> Option<f64> {
+        let ([after, before], outgoing) = self.products(model, point)?;
+        if !self.goes_on(model, point, &outgoing)? {
+            return None;
+        }
+        let size = after.size() + before.size();
+        Some(match self.part {
+            Part::One(_) => size,
+            Part::All(_) => size / CHANCE,
+        })
+    }
+
+    fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
+        let names = ["after", "before"].map(|when| format!("{} {when}", self.shown));
+        with_difference(names, [terms[0], -terms[1]], sum)
+    }
+}

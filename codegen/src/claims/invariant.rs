@@ -1,0 +1,324 @@
+//! `invariant: FORM`: do the motion and all that happens at surfaces keep a differential form on D?
+//!
+//! Forms are looked at on vectors of one time: `L_X w = 0` along the motion ([`super::lie`]), and `w+ = w` on vectors that the motion
+//! through a surface carries along ([`super::carried`]).
+
+use dalembert_expr::{ExprId, RealPoint};
+
+use super::bounds::is_never_negative;
+use super::carried::{Carried, explicit_form};
+use super::collision::evidence_at_impact;
+use super::conserved::jump;
+use super::evidence::{Evidence, Vanishing, Wording, evidence};
+use super::expansion::{CHANCE, Part, Tangents, choices, is_too_large};
+use super::finding::{Certificate, Verdict, Witness};
+use super::hybrid::Surroundings;
+use super::lie::Lie;
+use super::passage::{Open, Passage};
+use super::undecided::Undecided;
+use super::wall::Wall;
+use crate::model::{ExteriorForm, Model};
+
+/// Real states at which the largest components are looked for, and components that are looked at one by one.
+const STATES: usize = 12;
+const COMPONENTS: usize = 32;
+
+/// The verdict on `invariant: form`.
+pub(super) fn check_invariant(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    form: &ExteriorForm,
+    written: &str,
+) -> Verdict {
+    let Some(tangents) = Tangents::of(model, around.dynamics) else {
+        return Verdict::Undecided(Undecided::Degenerate.to_string());
+    };
+    let dimension = tangents.dimension();
+    if is_too_large(dimension, form.degree) {
+        return Verdict::Undecided(format!(
+            "a form of degree {} on states of {dimension} dimensions has more components than are examined",
+            form.degree
+        ));
+    }
+    let explicit = explicit_form(model, form);
+    if let Some(verdict) = vanishes(model, around, &tangents, (&explicit, written)) {
+        return verdict;
+    }
+    let motion = kept_by_motion(model, around, &tangents, (&explicit, written));
+    let mut all = match motion {
+        Verdict::Proved(certificate) => certificate,
+        other => return other,
+    };
+    let mut open = None;
+    for surface in 0..model.surfaces.len() {
+        let name = model.surfaces[surface].name.display.clone();
+        match kept_at_surface(model, around, &tangents, (form, written), surface) {
+            Verdict::Proved(part) => {
+                all.rest_on(&part);
+                all.shown += &format!("; `{name}` keeps it");
+            }
+            Verdict::Undecided(reason) => {
+                open.get_or_insert(format!("what `{name}` does is not known: {reason}"));
+            }
+            refuted @ Verdict::Refuted(_) => return refuted,
+        }
+    }
+    match open {
+        Some(reason) => Verdict::Undecided(reason),
+        None => Verdict::Proved(all),
+    }
+}
+
+/// The verdict on a form that is 0 at all states, of which nothing is claimed.
+fn vanishes(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    (form, written): (&ExteriorForm, &str),
+) -> Option<Verdict> {
+    let refuted = |reason: String| {
+        Some(Verdict::Refuted(Witness {
+            reason,
+            sample: None,
+            values: Vec::new(),
+            help: "leave it out".to_owned(),
+        }))
+    };
+    if form.degree > tangents.dimension() {
+        return refuted(format!(
+            "`{written}` is of degree {}, and states have {} dimensions: it is 0, and nothing is claimed of it",
+            form.degree,
+            tangents.dimension()
+        ));
+    }
+    let mut question = Lie::of(model, around.dynamics, tangents, form).of_form();
+    question.part = Part::All(around.seed);
+    match evidence(model, &question, around.seed).shows_that_it_vanishes() {
+        true => refuted(format!(
+            "`{written}` is 0 at all states, and nothing is claimed of it"
+        )),
+        false => None,
+    }
+}
+
+/// The verdict on the motion between surfaces.
+fn kept_by_motion(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    (form, written): (&ExteriorForm, &str),
+) -> Verdict {
+    let names = tangents.names(model);
+    let mut question = Lie::of(model, around.dynamics, tangents, form);
+    let wording = || Wording {
+        vanishes: format!("the motion keeps `{written}`"),
+        differs: format!("the motion changes `{written}`"),
+        help: ["leave it out".to_owned(), String::new()],
+    };
+    let sizes = (tangents.dimension(), form.degree);
+    let ranked = {
+        let model = &*model;
+        let at = |attempt: usize| {
+            let (_, mut point) = question.sample(model, attempt)?;
+            let products = question.products(model, &mut point)?;
+            let field = dalembert_expr::Reals;
+            let each = choices(sizes.0, sizes.1);
+            let each = each.iter().map(|places| products.component(field, places));
+            Some((each.collect::<Option<Vec<f64>>>()?, products.size()))
+        };
+        ranked(sizes, at)
+    };
+    let verdict = decided(around.seed, ranked, &mut |part| {
+        question.shown = format!("rate of the form on {}", on(&names, part));
+        question.part = part.clone();
+        (evidence(model, &question, around.seed), wording())
+    });
+    if matches!(verdict, Verdict::Proved(_)) {
+        let places = discontinuities(model, around, form);
+        if let Some(place) = places {
+            let text = format!("its rate is 0 wherever it has one, but it may jump {place}");
+            return Verdict::Undecided(text);
+        }
+    }
+    verdict
+}
+
+/// Where the form may jump along a motion, in words.
+fn discontinuities(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    form: &ExteriorForm,
+) -> Option<String> {
+    let mut symbols: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
+    symbols.extend(model.coordinates.iter().map(|own| own.qdot));
+    let mut parts: Vec<ExprId> = form.terms.iter().map(|term| term.coefficient).collect();
+    for id in form.terms.iter().flat_map(|term| &term.differentials) {
+        parts.extend(symbols.iter().map(|by| model.pool.diff(*id, *by)));
+    }
+    parts
+        .into_iter()
+        .find_map(|part| jump(model, around.dynamics, part, around.seed))
+}
+
+/// The verdict on what happens at a surface.
+pub(super) fn kept_at_surface(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    (form, written): (&ExteriorForm, &str),
+    surface: usize,
+) -> Verdict {
+    let declared = &model.surfaces[surface];
+    if !declared.instantaneous.is_empty() {
+        let text = "instantaneous constraints are not examined";
+        return Verdict::Undecided(text.to_owned());
+    }
+    let enters = declared.transition.as_ref().map(|own| own.enters);
+    let entered = enters.and_then(|enters| around.others.get(enters)).copied();
+    let wall = Wall::of(model, around.derivation, surface, around.others);
+    match &wall.passage {
+        None if enters.is_some() => {
+            return Verdict::Undecided("the mode that it leads to is not at hand".to_owned());
+        }
+        Some(passage) if passage.open == Some(Open::Refraction) => {
+            return Verdict::Undecided(Open::Refraction.text());
+        }
+        _ => {}
+    }
+    let form = (form, written);
+    let mut verdict = kept_at_wall(model, around, tangents, form, (surface, &wall, entered));
+    let is_refracted = wall.passage.as_ref().is_some_and(Passage::is_refracted);
+    if let (true, Verdict::Proved(all)) = (is_refracted, &mut verdict) {
+        let wall = Wall::reflecting(model, around.derivation, surface);
+        match kept_at_wall(model, around, tangents, form, (surface, &wall, None)) {
+            Verdict::Proved(part) => all.rest_on(&part),
+            Verdict::Undecided(reason) => return Verdict::Undecided(reason),
+            // It is not known where there is a reflection.
+            Verdict::Refuted(_) => {
+                let text = "a reflection there would change it";
+                return Verdict::Undecided(text.to_owned());
+            }
+        }
+    }
+    let may_slide = wall.passage.as_ref().is_some_and(Passage::may_slide);
+    if may_slide && matches!(verdict, Verdict::Proved(_)) && !always_goes_on(model, &wall) {
+        let text = "the motion may slide along it, and the rate of its gap is not known to be negative behind it";
+        return Verdict::Undecided(text.to_owned());
+    }
+    verdict
+}
+
+/// True if the motion of the mode that is entered is certified not to come back to the surface.
+fn always_goes_on(model: &mut Model, wall: &Wall) -> bool {
+    let Some(passage) = &wall.passage else {
+        return true;
+    };
+    let (slopes, rate) = passage.gap_form();
+    let rates = passage.after.rates.clone().unwrap_or_default();
+    let pool = &mut model.pool;
+    let mut terms = vec![rate];
+    for (slope, rate) in slopes.iter().zip(rates) {
+        terms.push(pool.mul(*slope, rate));
+    }
+    let outgoing = pool.sum(&terms);
+    let outgoing = match wall.solution() {
+        Some(solution) => pool.substitute(outgoing, &[solution]),
+        None => outgoing,
+    };
+    let falling = pool.neg(outgoing);
+    is_never_negative(model, falling)
+}
+
+fn kept_at_wall(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    (form, written): (&ExteriorForm, &str),
+    (surface, wall, entered): (usize, &Wall, Option<&Model>),
+) -> Verdict {
+    let name = model.surfaces[surface].name.display.clone();
+    let explicit = explicit_form(model, form);
+    let forms = (&explicit, form);
+    let mut question = match Carried::of(model, around, forms, tangents, (wall, entered)) {
+        Ok(question) => question,
+        Err(reason) => return Verdict::Undecided(reason),
+    };
+    let names = tangents.names(model);
+    let wording = || Wording {
+        vanishes: format!("`{name}` keeps `{written}`"),
+        differs: format!("`{name}` changes `{written}`"),
+        help: ["leave it out".to_owned(), String::new()],
+    };
+    let sizes = (tangents.dimension(), form.degree);
+    let ranked = {
+        let model = &*model;
+        let roots = super::collision::AtImpact::roots(&question);
+        ranked(sizes, |attempt| {
+            let found = wall.incoming(model, around.dynamics, attempt, roots.clone());
+            let (_, mut point): (_, RealPoint) = found?;
+            question.components(model, &mut point)
+        })
+    };
+    decided(around.seed, ranked, &mut |part| {
+        question.shown = format!("the form on {}", on(&names, part));
+        question.part = part.clone();
+        let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
+        (found, wording())
+    })
+}
+
+/// Names of the vectors of a part.
+fn on(names: &[String], part: &Part) -> String {
+    match part {
+        Part::All(_) => String::new(),
+        Part::One(places) => {
+            let names: Vec<&str> = places.iter().map(|place| names[*place].as_str()).collect();
+            names.join(", ")
+        }
+    }
+}
+
+/// Components, those first that are largest at real states.
+fn ranked(
+    (dimension, degree): (usize, usize),
+    mut at: impl FnMut(usize) -> Option<(Vec<f64>, f64)>,
+) -> Vec<Vec<usize>> {
+    let all = choices(dimension, degree);
+    let mut sizes = vec![0.0_f64; all.len()];
+    for (components, size) in (0..STATES).filter_map(&mut at) {
+        for (largest, component) in sizes.iter_mut().zip(components) {
+            *largest = largest.max(component.abs() / size);
+        }
+    }
+    let mut places: Vec<usize> = (0..all.len()).collect();
+    places.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
+    places.truncate(COMPONENTS);
+    places.into_iter().map(|place| all[place].clone()).collect()
+}
+
+/// The verdict on all components: proved together, refuted by one.
+fn decided(
+    seed: u64,
+    components: Vec<Vec<usize>>,
+    ask: &mut dyn FnMut(&Part) -> (Evidence, Wording),
+) -> Verdict {
+    let (all, wording) = ask(&Part::All(seed));
+    let open = all.open.to_string();
+    match all.verdict(true, wording, seed) {
+        Verdict::Proved(certificate) => {
+            return Verdict::Proved(Certificate {
+                error: certificate.error + CHANCE,
+                ..certificate
+            });
+        }
+        undecided @ Verdict::Undecided(_) if components.is_empty() => return undecided,
+        _ => {}
+    }
+    for places in components {
+        let (one, wording) = ask(&Part::One(places));
+        if let refuted @ Verdict::Refuted(_) = one.verdict(true, wording, seed) {
+            return refuted;
+        }
+    }
+    Verdict::Undecided(open)
+}

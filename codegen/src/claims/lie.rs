@@ -1,0 +1,180 @@
+//! Lie derivative of a form along the motion: `L_X (c df_1 ^ .. ^ df_k) = X(c) df_1 ^ .. ^ df_k + c d(X f_1) ^ .. ^ df_k + ..`, on
+//! vectors of one time.
+//!
+//! The motion is that of the whole space: it keeps `eta^a(qdot) + eta^a_0`, so that derivatives and restriction to D commute.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series};
+
+use super::dynamics::{Dynamics, Number};
+use super::evidence::Vanishing;
+use super::expansion::{Expansions, Part, Products, Tangents, accelerations, inner};
+use crate::model::{ExteriorForm, Model};
+
+/// A question about a form at all states.
+pub(super) struct Lie<'l> {
+    dynamics: &'l Dynamics,
+    tangents: &'l Tangents,
+    form: &'l ExteriorForm,
+    expansions: Expansions,
+    rates: Option<Vec<ExprId>>,
+    /// True if the form itself is meant.
+    is_form: bool,
+    pub(super) part: Part,
+    pub(super) shown: String,
+}
+
+impl<'l> Lie<'l> {
+    /// That of a form which is written out.
+    pub(super) fn of(
+        model: &mut Model,
+        dynamics: &'l Dynamics,
+        tangents: &'l Tangents,
+        form: &'l ExteriorForm,
+    ) -> Self {
+        let mut expansions = Expansions::of(model);
+        let pool = &mut model.pool;
+        expansions.add(pool, form.expressions());
+        let differentials = form.terms.iter().flat_map(|term| &term.differentials);
+        for id in differentials {
+            let slopes = expansions.slopes(*id).to_vec();
+            expansions.add(pool, slopes);
+        }
+        expansions.add(pool, tangents.residuals.iter().copied());
+        match &model.field {
+            Some(rates) => expansions.add(pool, rates.iter().copied()),
+            None => expansions.add(
+                pool,
+                dynamics.equations().into_iter().flatten().flatten().copied(),
+            ),
+        }
+        Self {
+            dynamics,
+            tangents,
+            form,
+            expansions,
+            rates: model.field.clone(),
+            is_form: false,
+            part: Part::All(0),
+            shown: String::new(),
+        }
+    }
+
+    /// The same about the form itself.
+    pub(super) fn of_form(self) -> Self {
+        Self {
+            is_form: true,
+            ..self
+        }
+    }
+
+    /// The motion as series in the variables of a state: rates of positions, velocities and time.
+    fn motion<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &P,
+        jets: &Jets<'_, P::Field>,
+        values: &[Number<P>],
+    ) -> Option<Vec<Series<P::Field>>> {
+        let n = model.coordinates.len();
+        let series = |id: ExprId| self.expansions.series(jets, values, id);
+        let mut motion: Vec<Series<P::Field>>;
+        match &self.rates {
+            Some(rates) => {
+                motion = rates.iter().map(|rate| series(*rate)).collect();
+                motion.resize(2 * n, Vec::new());
+            }
+            None => {
+                let symbols = model.coordinates.iter().enumerate();
+                let velocities = symbols.map(|(i, coordinate)| {
+                    jets.variable(n + i, point.symbol(&model.pool, coordinate.qdot))
+                });
+                motion = velocities.collect();
+                motion.extend(accelerations(jets, self.dynamics.equations(), &series)?);
+            }
+        }
+        motion.push(jets.constant(jets.field.integer(1)));
+        Some(motion)
+    }
+
+    /// The products that the form or its derivative is the sum of.
+    pub(super) fn products<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<Products<Number<P>>> {
+        let field = point.field();
+        let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
+        let expansions = &self.expansions;
+        let vectors = self.tangents.vectors(field, expansions, &values)?;
+        let space = JetSpace::new(expansions.size(), 1, usize::MAX)?;
+        let jets = Jets::new(field, &space);
+        let motion = match self.is_form {
+            true => Vec::new(),
+            false => self.motion(model, point, &jets, &values)?,
+        };
+        let speeds: Vec<Number<P>> = motion.iter().map(|own| jets.value(own)).collect();
+        let row = |id: ExprId| -> Vec<Number<P>> {
+            let along = |vector: &Vec<_>| expansions.along(field, &values, id, vector);
+            vectors.iter().map(along).collect()
+        };
+        let carried = |id: ExprId| -> Vec<Number<P>> {
+            let slopes = expansions.slopes(id).iter();
+            let slopes: Vec<_> = slopes
+                .map(|slope| expansions.series(&jets, &values, *slope))
+                .collect();
+            let pairs = slopes.iter().zip(&motion);
+            let rate = jets.dot(pairs.map(|(a, b)| (a.as_slice(), b.as_slice())));
+            let along = |vector: &Vec<_>| inner(field, rate.iter().skip(1).copied(), vector);
+            vectors.iter().map(along).collect()
+        };
+        let mut products = Products::new();
+        for term in &self.form.terms {
+            let coefficient = expansions.value(&values, term.coefficient);
+            let rows: Vec<Vec<_>> = term.differentials.iter().map(|id| row(*id)).collect();
+            if self.is_form {
+                products.push(coefficient, rows);
+                continue;
+            }
+            for (place, id) in term.differentials.iter().enumerate() {
+                let mut rows = rows.clone();
+                rows[place] = carried(*id);
+                products.push(coefficient, rows);
+            }
+            let rate = expansions.along(field, &values, term.coefficient, &speeds);
+            products.push(rate, rows);
+        }
+        Some(products)
+    }
+
+    fn sizes(&self) -> (usize, usize) {
+        (self.tangents.dimension(), self.form.degree)
+    }
+}
+
+impl Vanishing for Lie<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        self.expansions.roots().collect()
+    }
+
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let products = self.products(model, point)?;
+        let total = products.total(point.field(), &self.part, self.sizes())?;
+        Some(vec![total])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let size = self.products(model, point)?.size();
+        Some(match self.part {
+            Part::One(_) => size,
+            Part::All(_) => size / super::expansion::CHANCE,
+        })
+    }
+
+    fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+        vec![(self.shown.clone(), sum)]
+    }
+}
