@@ -144,6 +144,55 @@ dalembert::model! {
     }
 }
 
+/// Differential forms: of first-order motion, beside constraints, forces and moving walls, through refraction and between fields.
+const FORMS: &str = "
+    pub Wall {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        impacts { moving: x - t^2/3 >= 0; left: 3 - x >= 0 => reset { dot(x) = -dot(x); y = y + 2; }; }
+        claims { invariant: d(momentum(x))^d(x) + d(momentum(y))^d(y); invariant: d(x)^d(y)^d(dot(x))^d(dot(y)); }
+    }
+    pub Shear {
+        coordinates { x; y; }
+        field { dot(x) = 1; dot(y) = x; }
+        claims { invariant: d(y) - x*d(x); invariant: d(dot(y))^d(y); }
+    }
+    pub Sleigh {
+        coordinates { x; y; theta: angle; }
+        parameters { a > 0 = 1/3; }
+        lagrangian = (dot(x - a*cos(theta))^2 + dot(y - a*sin(theta))^2)/2 + dot(theta)^2/5;
+        constraints { blade: dot(y)*cos(theta) = dot(x)*sin(theta); }
+        claims { invariant: d(x)^d(y)^d(theta)^d(dot(x))^d(dot(theta))/(cos(theta)*dot(theta)); }
+    }
+    pub Damped {
+        coordinates { x; }
+        parameters { c > 0 = 1/3; }
+        lagrangian = dot(x)^2/2 - x^4;
+        forces { drag: -c*dot(x)*d(x); }
+        impacts { floor: x >= 0; }
+        claims { invariant: exp(c*t)*d(x)^d(dot(x)); }
+    }
+    pub Media {
+        coordinates { x; y; }
+        parameters { m1 > 0 = 1; m2 > 0 = 2; V = 1/5; }
+        modes {
+            left { lagrangian = m1/2*(dot(x)^2 + dot(y)^2) + y*dot(x)/3; }
+            right { lagrangian = m2/2*(dot(x)^2 + dot(y)^2) - V + y*dot(x)/3; }
+        }
+        transitions { rightward: left -> right when x >= 0; leftward: right -> left when x <= 0; }
+        claims { invariant: d(momentum(x))^d(x) + d(momentum(y))^d(y); }
+    }
+    pub Turned {
+        coordinates { x; y; }
+        parameters { k > 0 = 1; }
+        modes {
+            right { field { dot(x) = -2; dot(y) = 1; } }
+            left { field { dot(x) = -k; dot(y) = 1; } }
+        }
+        transitions { leftward: right -> left when x <= 0; }
+        claims { invariant: d(y); }
+    }";
+
 /// A folder for certificates.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -151,15 +200,21 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes the certificate of a model, and gives its path.
+/// Writes the certificate of a model, one of [`FORMS`] if it is so named, and gives its path.
 fn certificate(model: &str, folder: &Path) -> PathBuf {
-    let path = folder.join(format!("{model}.json"));
+    let path = folder.join(format!("{}.json", model.replace(':', "_")));
     let place = path.to_str().expect("a path");
+    let texts = folder.join("forms.dal");
+    std::fs::write(&texts, FORMS).expect("a file");
+    let model = match model.strip_prefix("forms:") {
+        Some(name) => format!("{}:{name}", texts.display()),
+        None => model.to_owned(),
+    };
     let mut models = dalembert_command::all();
     models.extend(models![
         Spiral, Belt, Winding, Charge, Cubic, Slowed, Bent, Laws, Doors
     ]);
-    let finished = command::run(models, &["check", model, "--certificate", place], "");
+    let finished = command::run(models, &["check", &model, "--certificate", place], "");
     assert_eq!(finished.exit, Exit::Reached, "{}", finished.output);
     path
 }
@@ -179,7 +234,21 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         .map(|model| model.description().name)
         .collect();
     let others = [
-        "spiral", "belt", "winding", "charge", "cubic", "slowed", "bent", "laws", "doors",
+        "spiral",
+        "belt",
+        "winding",
+        "charge",
+        "cubic",
+        "slowed",
+        "bent",
+        "laws",
+        "doors",
+        "forms:wall",
+        "forms:shear",
+        "forms:sleigh",
+        "forms:damped",
+        "forms:media",
+        "forms:turned",
     ];
     let names = names.iter().chain(&others);
     let files: Vec<PathBuf> = names.map(|name| certificate(name, &folder)).collect();
@@ -206,11 +275,7 @@ fn a_certificate_that_was_tampered_with_fails() {
             "/0/content/claims/0/value",
             json!("energy + theta1/1000000000000"),
         ),
-        (
-            "double_pendulum",
-            "/0/content/claims/0/holds",
-            json!(false),
-        ),
+        ("double_pendulum", "/0/content/claims/0/holds", json!(false)),
         (
             "double_pendulum",
             "/0/content/claims/0/primes/0",
@@ -273,6 +338,17 @@ fn a_certificate_that_was_tampered_with_fails() {
             json!("-x - 1/1000000000"),
         ),
         ("laws", "/0/content/surfaces/1/coefficient", json!("e^2")),
+        // A form between surfaces, and the motion behind one.
+        (
+            "forms:damped",
+            "/0/content/claims/0/terms/0/coefficient",
+            json!("exp(c*t*1000000001/1000000000)"),
+        ),
+        (
+            "forms:turned",
+            "/1/content/motion/rates/1",
+            json!("1 + 1/1000000000"),
+        ),
     ];
     for (model, place, value) in cases {
         let path = certificate(model, &folder);

@@ -7,7 +7,9 @@
 //! X has the rate 1 of time, and vectors have none. On vectors along the surface this is the pullback by the map, and with X in one place the specular
 //! condition (W. Clark, thesis, VII.3). Of a transition X+ and w+ are those of the mode that is entered.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series, SymbolId};
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series, SymbolId,
+};
 
 use super::collision::{AtImpact, with_difference};
 use super::dynamics::{Dynamics, Number};
@@ -101,7 +103,11 @@ impl<'c> Carried<'c> {
         let mut on_surface = |row: &mut Vec<ExprId>| *row = pool.substitute_all(row, &[solution]);
         let behind = &mut self.behind;
         behind.rates.iter_mut().for_each(&mut on_surface);
-        behind.equations.iter_mut().flatten().for_each(&mut on_surface);
+        behind
+            .equations
+            .iter_mut()
+            .flatten()
+            .for_each(&mut on_surface);
         for (coefficient, slopes) in &mut behind.terms {
             let mut single = vec![*coefficient];
             on_surface(&mut single);
@@ -140,33 +146,19 @@ impl<'c> Carried<'c> {
         Some([positions, velocities])
     }
 
-    /// The motion before the surface: rates of positions, velocities and time.
+    /// The motion before the surface: rates of positions, velocities and time. Sets the dependent velocities: where a coordinate was replaced by its
+    /// value on the surface they are those there.
     fn motion_before<P: ExpansionPoint>(
         &self,
         model: &Model,
         point: &mut P,
-        values: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
         let field = point.field();
-        let n = model.coordinates.len();
-        let mut motion: Vec<Number<P>>;
-        match &self.rates {
-            Some(rates) => {
-                let rate = |id: &ExprId| self.expansions.value(values, *id);
-                motion = rates.iter().map(rate).collect();
-                motion.resize(2 * n, field.integer(0));
-            }
-            None => {
-                let velocity = |own: &crate::model::Coordinate| point.symbol(&model.pool, own.qdot);
-                motion = model.coordinates.iter().map(velocity).collect();
-                let order = model.pool.reachable(&self.dynamics.roots());
-                let values = point.values(&model.pool, &order)?;
-                let space = JetSpace::new(0, 0, 1)?;
-                let jets = Jets::new(field, &space);
-                let series = constants::<P>(&jets, &values);
-                let found = accelerations(&jets, self.dynamics.equations(), &series)?;
-                motion.extend(found.iter().map(|own| jets.value(own)));
-            }
+        let found = self.dynamics.motion(&model.pool, point, None)?;
+        let mut motion = found.qdot;
+        match self.rates {
+            Some(_) => motion.resize(2 * motion.len(), field.integer(0)),
+            None => motion.extend(found.qddot),
         }
         motion.push(field.integer(1));
         Some(motion)
@@ -204,22 +196,23 @@ impl<'c> Carried<'c> {
         point: &mut P,
     ) -> Option<([Products<Number<P>>; 2], Vec<Number<P>>)> {
         let field = point.field();
+        let incoming = self.motion_before(model, point)?;
         let roots: Vec<ExprId> = self.expansions.roots().collect();
         let values = point.values(&model.pool, &model.pool.reachable(&roots))?;
         let vectors = self.tangents.vectors(field, &self.expansions, &values)?;
         let space = JetSpace::new(self.expansions.size(), 1, usize::MAX)?;
         let jets = Jets::new(field, &space);
         let [positions, velocities] = self.map(model, point, &jets, &values)?;
-        let incoming = self.motion_before(model, point, &values)?;
         let numbers = |series: &[Series<P::Field>]| -> Vec<Number<P>> {
             series.iter().map(|own| jets.value(own)).collect()
         };
         let behind = self.values_behind(model, point, &numbers(&velocities))?;
-        let outgoing = self.behind.motion::<P>(field, &numbers(&velocities), &behind)?;
+        let outgoing = self
+            .behind
+            .motion::<P>(field, &numbers(&velocities), &behind)?;
         let push = |vector: &Vec<Number<P>>| -> Vec<Number<P>> {
-            let along = |series: &Series<P::Field>| {
-                inner(field, series.iter().skip(1).copied(), vector)
-            };
+            let along =
+                |series: &Series<P::Field>| inner(field, series.iter().skip(1).copied(), vector);
             positions.iter().chain(&velocities).map(along).collect()
         };
         let gap = |vector: &Vec<_>| self.expansions.along(field, &values, self.wall.gap, vector);
@@ -228,9 +221,8 @@ impl<'c> Carried<'c> {
         let carried = vectors.iter().map(|vector| {
             let share = field.mul(gap(vector), share);
             let ends = push(vector).into_iter().zip(outgoing.iter().zip(&image));
-            let turned = ends.map(|(own, (to, by))| {
-                field.add(own, field.mul(share, field.sub(*to, *by)))
-            });
+            let turned =
+                ends.map(|(own, (to, by))| field.add(own, field.mul(share, field.sub(*to, *by))));
             turned.collect()
         });
         let carried: Vec<Vec<Number<P>>> = carried.collect();
@@ -262,7 +254,11 @@ impl<'c> Carried<'c> {
     }
 
     /// The components of the change at a real state, with their sizes.
-    pub(super) fn components(&self, model: &Model, point: &mut RealPoint) -> Option<(Vec<f64>, f64)> {
+    pub(super) fn components(
+        &self,
+        model: &Model,
+        point: &mut RealPoint,
+    ) -> Option<(Vec<f64>, f64)> {
         let field = point.field();
         let (sides, _) = self.products(model, point)?;
         let (dimension, degree) = self.sizes();
@@ -285,7 +281,9 @@ impl<'c> Carried<'c> {
         let mut vector = outgoing.to_vec();
         vector.resize(2 * model.coordinates.len(), 0.0);
         vector.push(1.0);
-        let rate = self.expansions.along(point.field(), &values, self.wall.gap, &vector);
+        let rate = self
+            .expansions
+            .along(point.field(), &values, self.wall.gap, &vector);
         Some(rate < 0.0)
     }
 }

@@ -65,9 +65,8 @@ impl Expansions {
 
     /// All that is evaluated.
     pub(super) fn roots(&self) -> impl Iterator<Item = ExprId> + '_ {
-        let of = |(value, slopes): &(ExprId, Vec<ExprId>)| {
-            std::iter::once(*value).chain(slopes.clone())
-        };
+        let of =
+            |(value, slopes): &(ExprId, Vec<ExprId>)| std::iter::once(*value).chain(slopes.clone());
         self.entries.values().flat_map(of)
     }
 
@@ -112,8 +111,9 @@ pub(super) fn inner<A: Arithmetic>(
     row: impl Iterator<Item = A::Scalar>,
     vector: &[A::Scalar],
 ) -> A::Scalar {
-    row.zip(vector)
-        .fold(field.integer(0), |sum, (a, b)| field.add(sum, field.mul(a, *b)))
+    row.zip(vector).fold(field.integer(0), |sum, (a, b)| {
+        field.add(sum, field.mul(a, *b))
+    })
 }
 
 /// Tangent vectors of the states of one time, by positions and independent velocities.
@@ -225,7 +225,8 @@ fn dependent(model: &Model, dynamics: &Dynamics, attempt: usize) -> Option<Vec<u
     let (_, mut point) = state_on_d(model, dynamics, &dynamics.roots(), attempt)?;
     let [forms, _] = dynamics.equations();
     let roots: Vec<ExprId> = forms.iter().flatten().copied().collect();
-    let values: Vec<f64> = RealPoint::values(&mut point, &model.pool, &model.pool.reachable(&roots))?;
+    let values: Vec<f64> =
+        RealPoint::values(&mut point, &model.pool, &model.pool.reachable(&roots))?;
     let space = JetSpace::new(0, 0, 1)?;
     let jets = Jets::new(Reals, &space);
     let row = |row: &Vec<ExprId>| {
@@ -301,10 +302,9 @@ impl Products<f64> {
     /// A size beside which rounding is small.
     pub(super) fn size(&self) -> f64 {
         let largest = |row: &Vec<f64>| row.iter().fold(1.0, |size: f64, own| size.max(own.abs()));
-        let each = self
-            .products
-            .iter()
-            .map(|(coefficient, rows)| coefficient.abs() * rows.iter().map(largest).product::<f64>());
+        let each = self.products.iter().map(|(coefficient, rows)| {
+            coefficient.abs() * rows.iter().map(largest).product::<f64>()
+        });
         each.sum()
     }
 }
@@ -372,8 +372,7 @@ pub(super) fn accelerations<A: Arithmetic>(
         rows.iter().map(row).collect()
     });
     let (curvature, rows) = rows.split_last()?;
-    let [accelerations, _] =
-        super::dynamics::accelerate(jets, rows.to_vec(), &forms, curvature)?;
+    let [accelerations, _] = super::dynamics::accelerate(jets, rows.to_vec(), &forms, curvature)?;
     Some(accelerations)
 }
 

@@ -44,7 +44,12 @@ impl<'l> Lie<'l> {
             Some(rates) => expansions.add(pool, rates.iter().copied()),
             None => expansions.add(
                 pool,
-                dynamics.equations().into_iter().flatten().flatten().copied(),
+                dynamics
+                    .equations()
+                    .into_iter()
+                    .flatten()
+                    .flatten()
+                    .copied(),
             ),
         }
         Self {

@@ -389,9 +389,8 @@ impl Passage {
             Velocities::Declared(velocities, _) => Some(given(velocities)),
             Velocities::Rates => Some(given(self.after.rates.as_ref()?)),
             Velocities::Nearest => {
-                let shifted = |(row, shift): (Vec<_>, Vec<_>)| {
-                    jets.add(&dot(jets, &row, velocity), &shift)
-                };
+                let shifted =
+                    |(row, shift): (Vec<_>, Vec<_>)| jets.add(&dot(jets, &row, velocity), &shift);
                 let projection = self.projection(jets, series)?;
                 Some(projection.into_iter().map(shifted).collect())
             }

@@ -242,9 +242,8 @@ impl Wall {
             Law::Reset | Law::Transition => return None,
         };
         let impulse = jets.mul(&factor, &jets.inverse(&steep)?);
-        let after = |(own, along): (&Series<A>, &Series<A>)| {
-            jets.sub(own, &jets.mul(&impulse, along))
-        };
+        let after =
+            |(own, along): (&Series<A>, &Series<A>)| jets.sub(own, &jets.mul(&impulse, along));
         Some(velocity.iter().zip(&projected).map(after).collect())
     }
 

@@ -115,7 +115,12 @@ impl ExteriorForm {
 
     /// All functions.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> + '_ {
-        let of = |term: &Wedge| term.differentials.clone().into_iter().chain([term.coefficient]);
+        let of = |term: &Wedge| {
+            term.differentials
+                .clone()
+                .into_iter()
+                .chain([term.coefficient])
+        };
         self.terms.iter().flat_map(of)
     }
 }

@@ -218,10 +218,7 @@ impl Writer<'_> {
         Tree::Record(vec![
             ("enters", Tree::text(transition.mode.clone())),
             ("state", state.unwrap_or(Tree::Absent)),
-            (
-                "keeps_lagrangian",
-                Tree::Flag(transition.keeps_lagrangian),
-            ),
+            ("keeps_lagrangian", Tree::Flag(transition.keeps_lagrangian)),
         ])
     }
 

@@ -7,17 +7,17 @@ use crate::Expected::True;
 use crate::check;
 use crate::systems::{crossing, grooves, media, particle, spokes, walker};
 
-type State = Vec<f64>;
+pub(super) type State = Vec<f64>;
 type Density<'h> = &'h dyn Fn(&[f64]) -> f64;
 
 /// A motion before and after an impact, with the surface and the map.
-struct Hybrid<'h> {
-    before: &'h dyn Fn(&[f64]) -> State,
-    gap: &'h dyn Fn(&[f64]) -> f64,
-    map: &'h dyn Fn(&[f64]) -> State,
-    after: &'h dyn Fn(&[f64]) -> State,
+pub(super) struct Hybrid<'h> {
+    pub(super) before: &'h dyn Fn(&[f64]) -> State,
+    pub(super) gap: &'h dyn Fn(&[f64]) -> f64,
+    pub(super) map: &'h dyn Fn(&[f64]) -> State,
+    pub(super) after: &'h dyn Fn(&[f64]) -> State,
     /// Densities of the volumes in the coordinates of the state.
-    densities: [Density<'h>; 2],
+    pub(super) densities: [Density<'h>; 2],
 }
 
 const STEPS: usize = 400;
@@ -39,7 +39,7 @@ fn run(rate: &dyn Fn(&[f64]) -> State, z: &[f64], time: f64) -> State {
 
 impl Hybrid<'_> {
     /// The state at a time, after one impact before it.
-    fn end(&self, start: &[f64], time: f64) -> State {
+    pub(super) fn end(&self, start: &[f64], time: f64) -> State {
         // The secant method finds the time of the impact.
         let gap_at = |t: f64| (self.gap)(&run(self.before, start, t));
         let (mut t0, mut t1) = (0.0, time / 2.0);
@@ -55,10 +55,10 @@ impl Hybrid<'_> {
         run(self.after, &(self.map)(&hit), time - t1)
     }
 
-    /// By how much the volume is multiplied.
-    fn factor(&self, start: &[f64], time: f64) -> f64 {
+    /// The derivatives of the end by the components of the start.
+    pub(super) fn columns(&self, start: &[f64], time: f64) -> Vec<State> {
         let n = start.len();
-        let columns: Vec<State> = (0..n)
+        (0..n)
             .map(|i| {
                 let h = 1e-4;
                 let moved = |h: f64| {
@@ -72,9 +72,13 @@ impl Hybrid<'_> {
                 };
                 (0..n).map(slope).collect()
             })
-            .collect();
+            .collect()
+    }
+
+    /// By how much the volume is multiplied.
+    fn factor(&self, start: &[f64], time: f64) -> f64 {
         let [before, after] = self.densities;
-        determinant(columns).abs() * after(&self.end(start, time)) / before(start)
+        determinant(self.columns(start, time)).abs() * after(&self.end(start, time)) / before(start)
     }
 }
 
@@ -101,11 +105,11 @@ fn determinant(mut rows: Vec<State>) -> f64 {
 }
 
 #[track_caller]
-fn assert_close(found: f64, expected: f64) {
+pub(super) fn assert_close(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
 }
 
-fn one(_: &[f64]) -> f64 {
+pub(super) fn one(_: &[f64]) -> f64 {
     1.0
 }
 

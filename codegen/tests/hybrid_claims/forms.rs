@@ -10,8 +10,7 @@ const SPACE: &str = "invariant: d(x)^d(y)^d(dot(x))^d(dot(y))";
 const ON_D: &str = "invariant: d(x)^d(y)^d(theta)^d(phi)^d(dot(theta))^d(dot(phi))";
 
 /// A particle on a line without forces but those of a potential.
-const QUARTIC: &str =
-    "pub Quartic { coordinates { x; } lagrangian = dot(x)^2/2 - x^4; CLAIM }";
+const QUARTIC: &str = "pub Quartic { coordinates { x; } lagrangian = dot(x)^2/2 - x^4; CLAIM }";
 
 /// Constant fields on both sides of `x = 0` with a parameter.
 fn parametric(left: [&str; 2], parameter: &str) -> String {
@@ -69,7 +68,10 @@ fn forms_that_the_motion_changes_are_refuted() {
     check(
         &forced("-dot(x)*d(x)/3"),
         "invariant: d(x)^d(dot(x))",
-        Shown("rate of the form on partial(x), partial(dot(x))", -1.0 / 3.0),
+        Shown(
+            "rate of the form on partial(x), partial(dot(x))",
+            -1.0 / 3.0,
+        ),
     );
     check(
         &forced("-c*dot(x)*d(x)"),
@@ -86,7 +88,11 @@ fn forms_that_the_motion_changes_are_refuted() {
         "invariant: d(x)^d(y)^d(theta)^d(dot(x))^d(dot(theta))/cos(theta)",
         False("the motion changes"),
     );
-    check(&disk(""), "invariant: d(momentum(x))^d(x)", False("the motion changes"));
+    check(
+        &disk(""),
+        "invariant: d(momentum(x))^d(x)",
+        False("the motion changes"),
+    );
     check(
         &disk(""),
         "invariant: d(momentum(x))^d(x) + d(momentum(y))^d(y) + d(momentum(theta))^d(theta) + d(momentum(phi))^d(phi)",
@@ -165,7 +171,10 @@ fn impacts_that_change_forms_are_refuted() {
     check(
         &grooves("dot(y) = dot(x)/2", "dot(y) = 2*dot(x)"),
         "invariant: d(x)^d(y)^d(dot(x))",
-        Shown("the form on partial(x), partial(y), partial(dot(x)) after", 0.16),
+        Shown(
+            "the form on partial(x), partial(y), partial(dot(x)) after",
+            0.16,
+        ),
     );
     check(
         &spokes("l1/l2*cos(2*h)*dot(x)"),
@@ -189,7 +198,10 @@ fn near_misses_are_refuted() {
     check(
         &ball("newton(1 - 1e-9)"),
         "invariant: d(dot(x))^d(x)",
-        Shown("the form on partial(x), partial(dot(x)) after", -(1.0 - 1e-9_f64).powi(2)),
+        Shown(
+            "the form on partial(x), partial(dot(x)) after",
+            -(1.0 - 1e-9_f64).powi(2),
+        ),
     );
     check(
         QUARTIC,
@@ -202,7 +214,9 @@ fn near_misses_are_refuted() {
         False("the motion changes"),
     );
     check(
-        &particle("left: x >= 0 => reset { dot(x) = -5/4*dot(x); dot(y) = (16/25 + 1e-9)*dot(y); };"),
+        &particle(
+            "left: x >= 0 => reset { dot(x) = -5/4*dot(x); dot(y) = (16/25 + 1e-9)*dot(y); };",
+        ),
         SPACE,
         False("`left` changes"),
     );

@@ -5,8 +5,9 @@
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
-//! | `differences.rs` | factors by differences of motions through an impact |
+//! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
 
+mod carried;
 mod differences;
 mod energy;
 mod factor;

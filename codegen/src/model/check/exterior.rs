@@ -78,13 +78,18 @@ impl Resolver<'_> {
                 (function, _) => {
                     let inner = arguments.iter().find(|own| has_differential(own))?;
                     let text = format!("`{inner}` is a form, and `{function}` takes functions");
-                    return self.refuse(inner.at, text, "forms are added, multiplied by functions and by `^`");
+                    return self.refuse(
+                        inner.at,
+                        text,
+                        "forms are added, multiplied by functions and by `^`",
+                    );
                 }
             },
             ScalarKind::Number(..) | ScalarKind::Name(_) | ScalarKind::Member(..) => return None,
         };
         if form.terms.len() > TERMS {
-            let text = format!("`{written}` has more than {TERMS} products when it is multiplied out");
+            let text =
+                format!("`{written}` has more than {TERMS} products when it is multiplied out");
             return self.refuse(written.at, text, "use fewer terms");
         }
         Some(form)
@@ -125,7 +130,9 @@ impl Resolver<'_> {
         moving.extend(&self.symbols.derived.momenta);
         moving.push(self.symbols.derived.energy);
         if !self.pool.depends_on_any(value, &moving) {
-            let text = format!("`d` of `{argument}`, which depends neither on positions nor on velocities");
+            let text = format!(
+                "`d` of `{argument}`, which depends neither on positions nor on velocities"
+            );
             let help = "a form compares states of one time: parameters, numbers and `t` have no differential";
             return self.refuse(at, text, help);
         }
@@ -133,11 +140,7 @@ impl Resolver<'_> {
         Some(ExteriorForm::differential(&self.pool, value))
     }
 
-    fn form_sum(
-        &mut self,
-        terms: &[(bool, Scalar)],
-        scope: &mut Scope,
-    ) -> Option<ExteriorForm> {
+    fn form_sum(&mut self, terms: &[(bool, Scalar)], scope: &mut Scope) -> Option<ExteriorForm> {
         let mut sum: Option<ExteriorForm> = None;
         for (is_negative, term) in terms {
             let mut form = self.form(term, scope)?;
@@ -228,12 +231,7 @@ impl Resolver<'_> {
     }
 
     /// `left ^ right`, one of which is a form.
-    fn wedge(
-        &mut self,
-        left: &Scalar,
-        right: &Scalar,
-        scope: &mut Scope,
-    ) -> Option<ExteriorForm> {
+    fn wedge(&mut self, left: &Scalar, right: &Scalar, scope: &mut Scope) -> Option<ExteriorForm> {
         let forms = [self.form(left, scope)?, self.form(right, scope)?];
         match forms.each_ref().map(|form| form.degree) {
             [0, _] => {
