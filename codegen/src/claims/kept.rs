@@ -7,6 +7,7 @@
 use dalembert_expr::{ExprId, Pool};
 
 use super::bounds::is_never_negative;
+use super::corollaries::corollaries;
 use super::evidence::Wording;
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Effect, Surroundings, Unknown, change_at, effects, factor};
@@ -111,7 +112,8 @@ pub(super) fn check_kept(
             together.rest_on(certificate);
         }
     }
-    (Verdict::Proved(together), Vec::new())
+    let remarks = corollaries(model, around, density);
+    (Verdict::Proved(together), remarks)
 }
 
 /// Surfaces and transitions by name: `impacts at floor, wall, transitions up`.

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
+//! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
 
 mod carried;
+mod corollaries;
 mod differences;
 mod energy;
 mod factor;

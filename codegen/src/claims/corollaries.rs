@@ -1,0 +1,169 @@
+//! Consequences of a volume that motion and impacts keep, with their hypotheses.
+//!
+//! Impacts accumulate for almost no start where the volume is smooth and each impulse vanishes with the gap rate (W. Clark, thesis, Theorem
+//! VII.17). Almost every start comes back arbitrarily near where energy levels are compact besides (Theorem VII.21): the energy is kept, and
+//! surfaces bound all coordinates that are no angles.
+
+use dalembert_expr::{ExprId, Pool, Sign, SymbolId};
+
+use super::conserved::check_conserved;
+use super::examine::explicit;
+use super::finding::Verdict;
+use super::hybrid::{Density, Surroundings};
+use super::impact::{Wanted, changes_at};
+use crate::model::{Beside, Law, Model, Topology};
+
+/// The consequences in words, given that the volume of a density is kept.
+pub(super) fn corollaries(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    density: &Density,
+) -> Vec<String> {
+    if model.is_first_order() || !is_smooth(model, density) || !impulses_vanish(model) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    if !model.surfaces.is_empty() {
+        found.push(
+            "impacts accumulate for almost no start: the volume is smooth, and impulses vanish with the gap rate; motion that grazes is taken to go on"
+                .to_owned(),
+        );
+    }
+    let Some(bounds) = bounded(model) else {
+        return found;
+    };
+    if is_autonomous(model, around) && keeps_energy(model, around) {
+        let bounds = match bounds.is_empty() {
+            true => "all coordinates are angles".to_owned(),
+            false => format!(
+                "coordinates that are no angles are bounded by {}",
+                bounds.join(", ")
+            ),
+        };
+        found.push(format!(
+            "almost every start comes back arbitrarily near: the energy is kept, and {bounds}, so that energy levels are compact where the metric is positive and the potential finite"
+        ));
+    }
+    found
+}
+
+/// True if a density is positive and smooth everywhere.
+fn is_smooth(model: &Model, density: &Density) -> bool {
+    let is_positive = |value: ExprId| {
+        let sign = model.pool.sign(value);
+        sign == Sign::Positive && model.pool.is_finite(value)
+    };
+    // A density that was found is regular: its existence on all of Q was proved.
+    density.is_found || density.value.is_some_and(is_positive)
+}
+
+/// True if every surface has a law whose impulse is a multiple of the gap rate, which is 0 at the end of the surface.
+fn impulses_vanish(model: &Model) -> bool {
+    let is_linear = |model: &Model| {
+        let mut affine = model.constraints.iter().map(|constraint| constraint.affine);
+        affine.all(|affine| model.pool.is_syntactic_zero(affine))
+    };
+    model.surfaces.iter().all(|surface| match surface.law {
+        Law::Elastic | Law::Restitution(_) => is_linear(model),
+        Law::Newton(_) => true,
+        _ => false,
+    })
+}
+
+/// True if nothing of the declaration depends on time.
+fn is_autonomous(model: &Model, around: &Surroundings<'_>) -> bool {
+    let gaps = model.surfaces.iter().map(|surface| surface.gap);
+    let mut roots = around.dynamics.roots();
+    roots.extend(gaps);
+    roots
+        .iter()
+        .all(|id| !model.pool.depends_on(*id, model.time))
+}
+
+/// True if motion and impacts are proved to keep the energy.
+fn keeps_energy(model: &mut Model, around: &Surroundings<'_>) -> bool {
+    let quantity = (model.pool.variable(model.derived.energy), "energy");
+    let energy = (explicit(model, quantity.0), "energy");
+    let parts = std::slice::from_ref(around.dynamics);
+    let along = check_conserved(model, parts, energy, true, around.seed);
+    let keeps = |model: &mut Model, surface: usize| {
+        let changes = changes_at(model, around, surface, quantity, Wanted::Any);
+        changes.is_ok_and(|changes| changes.together(true).shows_that_it_vanishes())
+    };
+    matches!(along, Verdict::Proved(_)) && (0..model.surfaces.len()).all(|own| keeps(model, own))
+}
+
+/// The surfaces that bound the coordinates that are no angles; `None` if one of these is not known to be bounded.
+fn bounded(model: &mut Model) -> Option<Vec<String>> {
+    let coordinates = model.coordinates.clone();
+    let is_open =
+        |own: &&crate::model::Coordinate| matches!(own.topology, Topology::Interval { .. });
+    if coordinates.iter().any(|own| is_open(&own)) {
+        return None;
+    }
+    let lines = coordinates
+        .iter()
+        .filter(|own| own.topology == Topology::Line);
+    let lines: Vec<SymbolId> = lines.map(|own| own.q).collect();
+    let mut ends = vec![[false; 2]; lines.len()];
+    let mut names = Vec::new();
+    for surface in model.surfaces.clone() {
+        let is_free = surface.conditions.is_empty() && surface.beside == Beside::Independent;
+        let found = match is_free {
+            true => confined(&mut model.pool, surface.gap, &lines),
+            false => Vec::new(),
+        };
+        for (place, is_low, is_high) in &found {
+            ends[*place][0] |= is_low;
+            ends[*place][1] |= is_high;
+        }
+        if !found.is_empty() {
+            names.push(surface.name.display.clone());
+        }
+    }
+    ends.iter()
+        .all(|[low, high]| *low && *high)
+        .then_some(names)
+}
+
+/// The lines that a gap which is not negative bounds, from below and from above: it falls in them as a square does, or is linear in a single one.
+fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, bool, bool)> {
+    let used = (0..lines.len()).filter(|i| pool.depends_on(gap, lines[*i]));
+    let used: Vec<usize> = used.collect();
+    let slopes: Vec<ExprId> = used.iter().map(|i| pool.diff(gap, lines[*i])).collect();
+    if let ([line], [slope]) = (used.as_slice(), slopes.as_slice())
+        && !pool.depends_on_any(*slope, lines)
+        && is_parameter(pool, *slope)
+    {
+        return match pool.sign(*slope) {
+            Sign::Positive => vec![(*line, true, false)],
+            Sign::Negative => vec![(*line, false, true)],
+            _ => Vec::new(),
+        };
+    }
+    for (i, slope) in used.iter().zip(&slopes) {
+        for j in &used {
+            let second = pool.diff(*slope, lines[*j]);
+            let second = pool.simplify(second);
+            let is_right = match i == j {
+                true => is_parameter(pool, second) && pool.sign(second) == Sign::Negative,
+                false => pool.is_syntactic_zero(second),
+            };
+            if !is_right {
+                return Vec::new();
+            }
+        }
+    }
+    let all_finite = slopes.iter().chain([&gap]).all(|id| pool.is_finite(*id));
+    match all_finite {
+        true => used.into_iter().map(|i| (i, true, true)).collect(),
+        false => Vec::new(),
+    }
+}
+
+/// True if an expression is a number, or made of numbers and symbols that have a sign: parameters.
+fn is_parameter(pool: &Pool, id: ExprId) -> bool {
+    let assumed =
+        |symbol: &SymbolId| pool.symbol_assumption(*symbol) != dalembert_expr::Assumption::None;
+    pool.symbols(id).iter().all(assumed)
+}

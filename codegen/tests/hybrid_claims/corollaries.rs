@@ -1,0 +1,99 @@
+//! Consequences of `volume: kept`.
+
+use dalembert_codegen::claims::Verdict;
+
+use crate::findings;
+use crate::systems::{ball, disk, field, particle};
+
+const RARE: &str = "impacts accumulate for almost no start";
+const RECURRENT: &str = "almost every start comes back arbitrarily near";
+
+/// Checks which consequences a proof of `volume: kept` has.
+#[track_caller]
+fn check(declaration: &str, claims: &str, expected: [bool; 2]) {
+    let source = declaration.replace("CLAIM", &format!("claims {{ {claims} }}"));
+    let found = findings(&source);
+    let kept = found.iter().find(|own| own.claim == "volume: kept");
+    let kept = kept.expect("the claim");
+    assert!(
+        matches!(kept.verdict, Verdict::Proved(_)),
+        "{}",
+        kept.note()
+    );
+    let says = |text: &str| kept.remarks.iter().any(|remark| remark.starts_with(text));
+    assert_eq!([RARE, RECURRENT].map(says), expected, "{:?}", kept.remarks);
+}
+
+const KEPT: &str = "volume: kept;";
+const BOX: &str = "left: x >= -1; right: x <= 1; low: y >= -2; high: b*y <= 1;";
+
+#[test]
+fn bounded_billiards_are_recurrent() {
+    check(
+        &particle("wall: 1 - x^2/a^2 - y^2/b^2 >= 0;"),
+        KEPT,
+        [true; 2],
+    );
+    check(&particle(BOX), KEPT, [true; 2]);
+    let table = "front: 1 - (x + R*cos(phi))^2 - (y + R*sin(phi))^2 >= 0; back: x^2 + y^2 <= 4;";
+    check(&disk(table), KEPT, [true; 2]);
+    let pendulum =
+        "pub Pendulum { coordinates { x: angle; } lagrangian = dot(x)^2/2 + cos(x); CLAIM }";
+    check(pendulum, KEPT, [false, true]);
+}
+
+#[test]
+fn unbounded_motion_is_not_said_to_be_recurrent() {
+    check(&ball("elastic"), KEPT, [true, false]);
+    check(&particle("outside: x^2 + y^2 >= 1;"), KEPT, [true, false]);
+    check(&particle("strip: 1 - x^2 >= 0;"), KEPT, [true, false]);
+    check(
+        &particle("slanted: x + y >= 0; other: x + y <= 1;"),
+        KEPT,
+        [true, false],
+    );
+    check(
+        &particle(&BOX.replace("high: b*y <= 1;", "")),
+        KEPT,
+        [true, false],
+    );
+    check(
+        &particle("wall: 1 - x^2 - y^2 >= 0 when x > 0;"),
+        KEPT,
+        [true, false],
+    );
+    check(&disk(""), KEPT, [false, false]);
+}
+
+#[test]
+fn energy_that_changes_excludes_the_argument() {
+    check(
+        &particle("wall: 1 + sin(t)/2 - x^2 - y^2 >= 0;"),
+        KEPT,
+        [true, false],
+    );
+    // A force that keeps volumes and no energy.
+    let driven = particle("wall: 1 - x^2 - y^2 >= 0;")
+        .replace("impacts", "forces { pull: -y*d(x) + x*d(y); } impacts");
+    check(&driven, KEPT, [true, false]);
+}
+
+#[test]
+fn maps_that_are_not_the_identity_at_their_ends_and_rough_densities_have_none() {
+    check(
+        &particle("left: x >= 0 => reset { dot(x) = -dot(x); y = y + 1; };"),
+        KEPT,
+        [false; 2],
+    );
+    check(&field("dot(x) = 1; dot(y) = 0;", ""), KEPT, [false; 2]);
+    check(
+        &particle("left: x >= 0;"),
+        "density = 1/dot(y)^2; volume: kept;",
+        [false; 2],
+    );
+    check(
+        &particle("left: x >= 0;"),
+        "density = 1 + dot(y)^2; volume: kept;",
+        [true, false],
+    );
+}
