@@ -35,6 +35,9 @@ struct Behind {
     terms: Vec<(ExprId, Vec<Vec<ExprId>>)>,
 }
 
+/// The products of a form after and before, and the motion after.
+type Sides<S> = ([Products<S>; 2], Vec<S>);
+
 /// A form at a surface.
 pub(super) struct Carried<'c> {
     wall: &'c Wall,
@@ -189,12 +192,12 @@ impl<'c> Carried<'c> {
         values
     }
 
-    /// The products that the form is the sum of, after and before, and the rate of the gap after in a first-order system.
+    /// The products that the form is the sum of, after and before, and the motion after.
     fn products<P: ExpansionPoint>(
         &self,
         model: &Model,
         point: &mut P,
-    ) -> Option<([Products<Number<P>>; 2], Vec<Number<P>>)> {
+    ) -> Option<Sides<Number<P>>> {
         let field = point.field();
         let incoming = self.motion_before(model, point)?;
         let roots: Vec<ExprId> = self.expansions.roots().collect();

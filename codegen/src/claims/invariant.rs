@@ -17,7 +17,7 @@ use super::lie::Lie;
 use super::passage::{Open, Passage};
 use super::undecided::Undecided;
 use super::wall::Wall;
-use crate::model::{ExteriorForm, Model};
+use crate::model::{ExteriorForm, Law, Model};
 
 /// Real states at which the largest components are looked for, and components that are looked at one by one.
 const STATES: usize = 12;
@@ -200,12 +200,34 @@ pub(super) fn kept_at_surface(
             }
         }
     }
+    let is_volume = form.0.degree == tangents.dimension();
+    let is_sure =
+        is_volume && loses_volumes(model, surface) && matches!(verdict, Verdict::Refuted(_));
+    if may_hold(model, surface) && !is_sure {
+        let text = "the motion behind it may be held by it, or still approach it";
+        return Verdict::Undecided(text.to_owned());
+    }
     let may_slide = wall.passage.as_ref().is_some_and(Passage::may_slide);
     if may_slide && matches!(verdict, Verdict::Proved(_)) && !always_goes_on(model, &wall) {
         let text = "the motion may slide along it, and the rate of its gap is not known to be negative behind it";
         return Verdict::Undecided(text.to_owned());
     }
     verdict
+}
+
+/// True if the law of a surface need not reverse the gap rate.
+fn may_hold(model: &Model, surface: usize) -> bool {
+    let law = model.surfaces[surface].law;
+    matches!(law, Law::NonholonomicPlastic | Law::TotallyPlastic) || loses_volumes(model, surface)
+}
+
+/// True if the gap rate is 0 after every impact: states are mapped to fewer dimensions, whatever the motion does then.
+fn loses_volumes(model: &Model, surface: usize) -> bool {
+    match model.surfaces[surface].law {
+        Law::ImpactPlastic => true,
+        Law::Restitution(e) | Law::Newton(e) => model.pool.is_syntactic_zero(e),
+        _ => false,
+    }
 }
 
 /// True if the motion of the mode that is entered is certified not to come back to the surface.

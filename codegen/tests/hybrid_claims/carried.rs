@@ -8,6 +8,9 @@ use crate::check;
 use crate::differences::{Hybrid, State, assert_close, one};
 use crate::systems::{ball, crossing, media, particle, spokes};
 
+/// A form of degree 2 on two vectors.
+type Form<'f> = &'f dyn Fn(&[f64], &[f64]) -> f64;
+
 /// `sum over i of dp_i ^ dq_i` of a state `(q.., v..)` with the metric `m` times the identity.
 fn symplectic(m: f64) -> impl Fn(&[f64], &[f64]) -> f64 {
     move |v, w| {
@@ -23,7 +26,7 @@ fn largest_change(
     hybrid: &Hybrid<'_>,
     start: &[f64],
     time: f64,
-    [before, after]: [&dyn Fn(&[f64], &[f64]) -> f64; 2],
+    [before, after]: [Form<'_>; 2],
 ) -> f64 {
     let columns = hybrid.columns(start, time);
     let axis = |i: usize| -> State { (0..start.len()).map(|k| f64::from(k == i)).collect() };
@@ -55,10 +58,10 @@ fn a_refraction_carries_the_symplectic_form() {
         after: &free,
         densities: [&one, &one],
     };
-    let forms: [&dyn Fn(&[f64], &[f64]) -> f64; 2] = [&symplectic(m1), &symplectic(m2)];
+    let forms: [Form<'_>; 2] = [&symplectic(m1), &symplectic(m2)];
     let change = largest_change(&glass, &[-0.5, 0.2, 1.1, 0.4], 1.0, forms);
     assert!(change < 1e-9, "{change:e}");
-    let other: [&dyn Fn(&[f64], &[f64]) -> f64; 2] = [&symplectic(m1), &symplectic(m1)];
+    let other: [Form<'_>; 2] = [&symplectic(m1), &symplectic(m1)];
     assert!(largest_change(&glass, &[-0.5, 0.2, 1.1, 0.4], 1.0, other) > 0.1);
     let model = media(
         "m1/2*(dot(x)^2 + dot(y)^2)",

@@ -132,6 +132,11 @@ fn impacts_that_keep_forms_are_proved() {
     let crossing = crossing(["-2", "1"], ["-2", "-1"], "1");
     check(&crossing, "invariant: d(x)^d(y)", True);
     check(&crossing, "invariant: d(x)", True);
+    let turned = field(
+        "dot(x) = 1; dot(y) = 0;",
+        "right: x <= 1 => reset { x = 0; y = y + k; };",
+    );
+    check(&turned, "invariant: d(y)", True);
 }
 
 #[test]
@@ -175,6 +180,14 @@ fn impacts_that_change_forms_are_refuted() {
             "the form on partial(x), partial(y), partial(dot(x)) after",
             0.16,
         ),
+    );
+    check(
+        &field(
+            "dot(x) = 1; dot(y) = 0;",
+            "right: x <= 1 => reset { x = 0; y = 2*y; };",
+        ),
+        "invariant: d(y)^d(x)",
+        Shown("the form on partial(x), partial(y) after", -2.0),
     );
     check(
         &spokes("l1/l2*cos(2*h)*dot(x)"),
@@ -239,6 +252,16 @@ fn forms_that_are_not_examined_stay_open() {
         &particle("hold: x >= 0 => elastic, instantaneous { stick: dot(y) = 0; };"),
         PLANE,
         Open("instantaneous constraints"),
+    );
+    check(
+        &particle("hold: x >= 0 => impact_plastic;"),
+        "invariant: d(dot(y))",
+        Open("may be held by it"),
+    );
+    check(
+        &particle("hold: x >= 0 => newton(0);"),
+        "invariant: d(dot(x))",
+        Open("may be held by it"),
     );
     check(
         &parametric(["k", "1"], "k = 1"),
