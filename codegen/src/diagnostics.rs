@@ -78,12 +78,12 @@ impl Diagnostics {
         Self::default()
     }
 
-    /// Whether nothing went wrong.
+    /// True if nothing went wrong.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
-    /// How many errors were met.
+    /// Number of errors so far.
     pub fn len(&self) -> usize {
         self.errors.len()
     }
@@ -120,7 +120,7 @@ impl Diagnostics {
     pub fn extend_once(&mut self, others: Self) {
         for error in others.errors {
             let text = error.message().to_owned();
-            let is_new = !self.errors.iter().any(|own| own.message() == text);
+            let is_new = !self.errors.iter().any(|error| error.message() == text);
             if is_new {
                 self.errors.push(error);
             }

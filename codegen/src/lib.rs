@@ -51,7 +51,7 @@ pub fn read(input: TokenStream) -> Result<spec::Declaration, diagnostics::Diagno
 /// A model with modes after all stages.
 #[derive(Debug)]
 pub struct CompiledModes {
-    /// What was declared.
+    /// Checked declaration.
     pub graph: model::ModeGraph,
     /// Each mode as a model of its own, in order.
     pub modes: Vec<Compiled>,
@@ -60,7 +60,7 @@ pub struct CompiledModes {
 /// All stages of a model with modes.
 ///
 /// # Errors
-/// As [`compile`].
+/// Same as [`compile`].
 pub fn compile_modes(declared: &spec::Modes) -> Result<CompiledModes, diagnostics::Diagnostics> {
     let graph = model::check_modes(declared)?;
     let mut mistakes = diagnostics::Diagnostics::new();
@@ -81,13 +81,13 @@ pub fn compile_modes(declared: &spec::Modes) -> Result<CompiledModes, diagnostic
 /// A model after all stages.
 #[derive(Debug)]
 pub struct Compiled {
-    /// What was declared.
+    /// Checked declaration.
     pub model: model::Model,
-    /// What follows from it.
+    /// Derived equations.
     pub derivation: mechanics::Derivation,
     /// The verdicts on its claims, in order; all of them accepted.
     pub findings: Vec<claims::Finding>,
-    /// What is emitted.
+    /// Lowered program.
     pub programs: program::Lowered,
     /// Its scenes, in order; each is a model of its own, without scenes.
     pub scenes: Vec<Compiled>,
@@ -109,7 +109,7 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
     compile_within(input, spec::STEPS)
 }
 
-/// As [`compile`], with this budget for the algebra.
+/// Same as [`compile`], with this budget for the algebra.
 fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     compile_spec(&spec::parse(input)?, steps)
 }
@@ -117,7 +117,7 @@ fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostic
 /// All stages of what was written, with a budget for the algebra.
 ///
 /// # Errors
-/// As [`compile`].
+/// Same as [`compile`].
 pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     let model = model::check_within(spec, steps)?;
     let scenes: Vec<model::Model> = (0..model.scenes.len())

@@ -1,4 +1,4 @@
-//! What the fuzz targets do with their bytes. Nothing may panic, overflow the stack or go on without end.
+//! Fuzz targets over bytes. No input may cause a panic, a stack overflow or an endless loop.
 
 use std::io::Cursor;
 
@@ -45,9 +45,11 @@ pub fn states(bytes: &[u8]) {
 pub fn arguments(bytes: &[u8]) {
     const OURS: [&str; 5] = ["--csv", "--json", "--plot", "--until", "--impacts"];
     let text = String::from_utf8_lossy(bytes);
-    let is_ours = |flag: &str| OURS.iter().any(|own| flag.starts_with(own));
+    let is_ours = |flag: &str| OURS.iter().any(|known| flag.starts_with(known));
     let flags = text.lines().filter(|flag| !is_ours(flag)).take(12);
-    let line = ["simulate", "skate", "--until", "0.5", "--json", "-"].into_iter().chain(flags);
+    let line = ["simulate", "skate", "--until", "0.5", "--json", "-"]
+        .into_iter()
+        .chain(flags);
     command(&line.collect::<Vec<_>>(), &[]);
 }
 
@@ -94,9 +96,42 @@ fn group(bytes: &mut impl Iterator<Item = u8>, depth: usize) -> TokenStream {
 
 fn leaf(byte: u8) -> TokenTree {
     const WORDS: [&str; 36] = [
-        "coordinates", "parameters", "const", "let", "lagrangian", "constraints", "forces", "impacts", "initial",
-        "view", "outputs", "claims", "path", "region", "x", "y", "m", "f", "N", "i", "t", "pi", "d", "dot", "sum",
-        "in", "when", "sin", "sqrt", "atan2", "angle", "elastic", "newton", "energy", "until", "density",
+        "coordinates",
+        "parameters",
+        "const",
+        "let",
+        "lagrangian",
+        "constraints",
+        "forces",
+        "impacts",
+        "initial",
+        "view",
+        "outputs",
+        "claims",
+        "path",
+        "region",
+        "x",
+        "y",
+        "m",
+        "f",
+        "N",
+        "i",
+        "t",
+        "pi",
+        "d",
+        "dot",
+        "sum",
+        "in",
+        "when",
+        "sin",
+        "sqrt",
+        "atan2",
+        "angle",
+        "elastic",
+        "newton",
+        "energy",
+        "until",
+        "density",
     ];
     const NUMBERS: [&str; 8] = ["0", "1", "2", "3", "0.5", "4096", "1e300", "1e-300"];
     const MARKS: &str = "=;,:+-*/^%<>.#!&";
@@ -105,7 +140,11 @@ fn leaf(byte: u8) -> TokenTree {
         0 => Ident::new(WORDS[index / 3 % WORDS.len()], Span::call_site()).into(),
         1 => number(NUMBERS[index / 3 % NUMBERS.len()]),
         _ => {
-            let spacing = if byte < 128 { Spacing::Joint } else { Spacing::Alone };
+            let spacing = if byte < 128 {
+                Spacing::Joint
+            } else {
+                Spacing::Alone
+            };
             let mark = MARKS.as_bytes()[index / 3 % MARKS.len()];
             Punct::new(char::from(mark), spacing).into()
         }
@@ -113,7 +152,10 @@ fn leaf(byte: u8) -> TokenTree {
 }
 
 fn number(text: &str) -> TokenTree {
-    text.parse().map_or_else(|_| Literal::u8_unsuffixed(0).into(), |own: Literal| own.into())
+    text.parse().map_or_else(
+        |_| Literal::u8_unsuffixed(0).into(),
+        |literal: Literal| literal.into(),
+    )
 }
 
 #[cfg(test)]
@@ -124,7 +166,9 @@ mod tests {
     fn noise(seed: u64, length: usize) -> Vec<u8> {
         let mut state = seed;
         let step = |_| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 56) as u8
         };
         (0..length).map(step).collect()

@@ -70,10 +70,11 @@ pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
     load_from(name, text, |declaration| declaration)
 }
 
-/// As [`load`], without looking at the claims of the models. Nothing is known then that follows from a claim, such as an invariant volume.
+/// Same as [`load`], without the claims of the models. Nothing that follows from a claim is known then, such as an
+/// invariant volume.
 ///
 /// # Errors
-/// As [`load`].
+/// Same as [`load`].
 pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
     load_from(name, text, Declaration::without_claims)
 }

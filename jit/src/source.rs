@@ -17,7 +17,7 @@ pub struct Refused {
 /// A mistake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mistake {
-    /// What is wrong, and what to write instead.
+    /// Mistake, and advice.
     pub message: String,
     /// The line, from 1 on.
     pub line: usize,

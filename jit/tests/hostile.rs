@@ -77,7 +77,7 @@ impl Draws {
     }
 }
 
-/// Where words and marks of a text begin and end.
+/// Positions at which words and marks of a text begin and end.
 fn pieces(text: &str) -> Vec<(usize, usize)> {
     let mut pieces: Vec<(usize, usize)> = Vec::new();
     let mut is_in_word = false;

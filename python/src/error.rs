@@ -75,7 +75,7 @@ pub(crate) fn named<'py>(py: Python<'py>, pairs: &[(String, f64)]) -> PyResult<B
     Ok(dict)
 }
 
-/// Why a state is refused.
+/// Reason for which a state is refused.
 pub(crate) fn state(description: &Description, error: &StateError) -> PyErr {
     let StateError::Parameter(error) = error else {
         return refused(words::state_text(description, error, &ADVICE));
@@ -89,7 +89,7 @@ pub(crate) fn state(description: &Description, error: &StateError) -> PyErr {
     })
 }
 
-/// Why a run has no derivatives.
+/// Reason for which a run has no derivatives.
 pub(crate) fn variation(description: &Description, error: &VariationError) -> PyErr {
     let surface = |index: usize| names::surfaces(description).nth(index).unwrap_or_default();
     let text = match *error {
@@ -116,7 +116,7 @@ pub(crate) fn variation(description: &Description, error: &VariationError) -> Py
     refused(format!("jacobian: {text}"))
 }
 
-/// Why a run does not begin.
+/// Reason for which a run does not begin.
 pub(crate) fn run(model: &dyn AnyModel, refusal: &Refusal) -> PyErr {
     match refusal {
         Refusal::State(error) => state(&model.description(), error),

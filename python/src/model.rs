@@ -184,42 +184,58 @@ impl NativeModel {
 
     /// Names, shapes and documentation of what is declared.
     fn description<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let own = self.describe();
+        let description = self.describe();
         let dict = PyDict::new(py);
-        dict.set_item("name", own.name)?;
-        dict.set_item("type_name", own.type_name)?;
-        dict.set_item("documentation", own.documentation)?;
-        dict.set_item("source", own.source)?;
-        dict.set_item("is_first_order", own.is_first_order)?;
-        let coordinates: Vec<&str> = names::coordinates(own).collect();
-        let velocities: Vec<String> = coordinates.iter().map(|own| names::velocity(own)).collect();
-        let momenta: Vec<String> = coordinates.iter().map(|own| names::momentum(own)).collect();
+        dict.set_item("name", description.name)?;
+        dict.set_item("type_name", description.type_name)?;
+        dict.set_item("documentation", description.documentation)?;
+        dict.set_item("source", description.source)?;
+        dict.set_item("is_first_order", description.is_first_order)?;
+        let coordinates: Vec<&str> = names::coordinates(description).collect();
+        let velocities: Vec<String> = coordinates
+            .iter()
+            .map(|coordinate| names::velocity(coordinate))
+            .collect();
+        let momenta: Vec<String> = coordinates
+            .iter()
+            .map(|coordinate| names::momentum(coordinate))
+            .collect();
         dict.set_item("coordinates", coordinates)?;
         dict.set_item("velocities", velocities)?;
         dict.set_item("momenta", momenta)?;
-        let topologies: Vec<_> = own.coordinates.iter().map(|it| ends(it.topology)).collect();
+        let topologies: Vec<_> = description
+            .coordinates
+            .iter()
+            .map(|it| ends(it.topology))
+            .collect();
         dict.set_item("topologies", topologies)?;
-        dict.set_item("quasi_velocities", own.quasi_velocities)?;
-        let parameters = own.parameters.iter();
+        dict.set_item("quasi_velocities", description.quasi_velocities)?;
+        let parameters = description.parameters.iter();
         let parameters = parameters.map(|it| (it.name, it.assumption.to_string(), it.default));
         dict.set_item(
             "parameters",
             PyList::new(py, parameters.collect::<Vec<_>>())?,
         )?;
         dict.set_item("inputs", self.form.documentation.inputs)?;
-        let constraints: Vec<&str> = own.constraints.iter().map(|it| it.name).collect();
+        let constraints: Vec<&str> = description.constraints.iter().map(|it| it.name).collect();
         dict.set_item("constraints", constraints)?;
-        let surfaces: Vec<_> = own.surfaces.iter().map(|it| (it.name, it.law)).collect();
+        let surfaces: Vec<_> = description
+            .surfaces
+            .iter()
+            .map(|it| (it.name, it.law))
+            .collect();
         dict.set_item("surfaces", surfaces)?;
-        dict.set_item("outputs", own.outputs)?;
-        dict.set_item("scenes", own.scenes)?;
-        let modes: Vec<_> = own
+        dict.set_item("outputs", description.outputs)?;
+        dict.set_item("scenes", description.scenes)?;
+        let modes: Vec<_> = description
             .modes
             .iter()
             .map(|it| (it.name, it.coordinates))
             .collect();
         dict.set_item("modes", modes)?;
-        let view = own.view.map(|view| (view.labels, view.plane, view.region));
+        let view = description
+            .view
+            .map(|view| (view.labels, view.plane, view.region));
         dict.set_item("view", view)?;
         Ok(dict)
     }

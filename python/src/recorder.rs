@@ -49,7 +49,7 @@ pub(crate) struct Contacts {
     pub at: Columns,
     pub surfaces: Vec<i64>,
     pub begins: Vec<bool>,
-    /// Where impacts accumulate, if that is how a contact begins; else NaN.
+    /// Time at which impacts accumulate, if a contact begins that way; else NaN.
     pub accumulation: Vec<f64>,
 }
 

@@ -172,7 +172,7 @@ impl Request<'_> {
             let law = law(name, *coefficient)?;
             let surface = surface.as_deref();
             let surface =
-                surface.map(|own| names::find("surface", own, names::surfaces(&description)));
+                surface.map(|name| names::find("surface", name, names::surfaces(&description)));
             let surface = surface.transpose();
             let surface = surface.map_err(|unknown| refused(format!("law: {unknown}")))?;
             let added = course::add_law(&mut laws, model, surface, law);
@@ -234,16 +234,21 @@ fn choice<T: Copy>(place: &'static str, given: &str, values: &[(&'static str, T)
 
 fn integrators() -> Vec<(&'static str, Integrator)> {
     let every = Integrator::every().iter();
-    every.map(|own| (own.name(), *own)).collect()
+    every
+        .map(|integrator| (integrator.name(), *integrator))
+        .collect()
 }
 
 fn forms() -> Vec<(&'static str, Form)> {
-    Form::every().iter().map(|own| (own.name(), *own)).collect()
+    Form::every()
+        .iter()
+        .map(|form| (form.name(), *form))
+        .collect()
 }
 
 pub(crate) fn policies() -> Vec<(&'static str, OffConstraint)> {
     let every = OffConstraint::every().iter();
-    every.map(|own| (own.name(), *own)).collect()
+    every.map(|policy| (policy.name(), *policy)).collect()
 }
 
 /// The law of this name, with its coefficient if it takes one.

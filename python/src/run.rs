@@ -84,8 +84,8 @@ impl<C: Default, T> Lazy<C, T> {
 impl Table {
     /// The columns as arrays that own them.
     fn of(py: Python<'_>, model: &NativeModel, columns: Columns) -> PyResult<Py<Self>> {
-        let own = model.describe();
-        let (n, outputs) = (own.coordinates.len(), own.outputs.len());
+        let description = model.describe();
+        let (n, outputs) = (description.coordinates.len(), description.outputs.len());
         let rows = columns.t.len();
         let table = Self {
             q: matrix(py, columns.q, rows, n)?,
@@ -93,11 +93,11 @@ impl Table {
             p: matrix(py, columns.p, rows, n)?,
             energy: array(py, columns.energy),
             outputs: matrix(py, columns.outputs, rows, outputs)?,
-            view: match own.view {
+            view: match description.view {
                 Some(_) => Some(matrix(py, columns.view, rows, 2)?),
                 None => None,
             },
-            mode: (!own.modes.is_empty()).then(|| array(py, columns.mode)),
+            mode: (!description.modes.is_empty()).then(|| array(py, columns.mode)),
             t: array(py, columns.t),
         };
         Py::new(py, table)
@@ -220,9 +220,9 @@ impl NativeRun {
     /// The form, the integrator, the tolerance and the step that was kept.
     #[getter]
     fn settings(&self) -> (&'static str, &'static str, f64, Option<f64>) {
-        let own = &self.course.settings;
-        let (form, integrator) = (own.form.name(), own.integrator.name());
-        (form, integrator, own.tol, self.ending.step)
+        let settings = &self.course.settings;
+        let (form, integrator) = (settings.form.name(), settings.integrator.name());
+        (form, integrator, settings.tol, self.ending.step)
     }
 
     /// The law in force on each surface, by name.

@@ -335,8 +335,8 @@ pub mod certain {
     /// other transition counts. The remaining case, in which no transition is taken, ends the motion and is not
     /// certain motion.
     #[inline]
-    pub fn last(own: Option<bool>, no_other: Option<bool>) -> Option<bool> {
-        match (own, no_other) {
+    pub fn last(holds: Option<bool>, no_other: Option<bool>) -> Option<bool> {
+        match (holds, no_other) {
             (Some(true), _) => Some(true),
             (Some(false), Some(false)) => Some(false),
             _ => None,

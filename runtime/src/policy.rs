@@ -53,8 +53,8 @@ pub enum Corner {
     /// End with [`Outcome::Ambiguous`](crate::Outcome::Ambiguous).
     #[default]
     Stop,
-    /// Of the surfaces approached at one time, the first declared acts first.
+    /// The first declared of the surfaces approached at one time acts first.
     Ascending,
-    /// Of the surfaces approached at one time, the last declared acts first.
+    /// The last declared of the surfaces approached at one time acts first.
     Descending,
 }

@@ -36,13 +36,15 @@ pub fn line_integral<V: StateVector>(
     let slope = |s: f64| -> Result<f64, Fault> {
         let mut place = to.zeroed();
         let ends = from.iter().zip(to.as_slice());
-        for (own, (from, to)) in place.as_mut_slice().iter_mut().zip(ends) {
-            *own = from + (to - from) * s;
+        for (entry, (from, to)) in place.as_mut_slice().iter_mut().zip(ends) {
+            *entry = from + (to - from) * s;
         }
         let gradient = gradient(&place)?;
         let ends = from.iter().zip(to.as_slice());
         let products = gradient.as_slice().iter().zip(ends);
-        Ok(products.map(|(own, (from, to))| own * (to - from)).sum())
+        Ok(products
+            .map(|(component, (from, to))| component * (to - from))
+            .sum())
     };
     let mut panels = 1;
     let mut coarse = composite(&slope, panels)?;

@@ -62,17 +62,17 @@ impl<const M: usize, const N: usize> Plane<M, N> {
         let mut lengths = [0.0; M];
         for a in 0..count {
             let (earlier, rest) = forms.split_at_mut(a);
-            let own = &mut rest[0];
+            let form = &mut rest[0];
             for other in earlier.iter() {
-                let product = inner(own, other);
-                for (own, other) in own.iter_mut().zip(other) {
-                    *own -= product * other;
+                let product = inner(form, other);
+                for (entry, other) in form.iter_mut().zip(other) {
+                    *entry -= product * other;
                 }
             }
-            let length = sqrt(inner(own, own));
+            let length = sqrt(inner(form, form));
             lengths[a] = length;
             let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
-            own.iter_mut().for_each(|entry| *entry *= inverse);
+            form.iter_mut().for_each(|entry| *entry *= inverse);
         }
         Self {
             theta,
@@ -86,9 +86,9 @@ impl<const M: usize, const N: usize> Plane<M, N> {
     /// Cosine of the angle between the oriented planes: `det (Q_a Q_b^T)`.
     fn cosine(&self, other: &Self) -> f64 {
         let mut products = [[0.0; M]; M];
-        for (row, own) in products.iter_mut().zip(&self.basis[..self.count]) {
+        for (row, vector) in products.iter_mut().zip(&self.basis[..self.count]) {
             for (entry, other) in row.iter_mut().zip(&other.basis[..self.count]) {
-                *entry = inner(own, other);
+                *entry = inner(vector, other);
             }
         }
         determinant(products, self.count)
@@ -116,15 +116,15 @@ fn determinant<const M: usize>(mut rows: [[f64; M]; M], count: usize) -> f64 {
             rows.swap(pivot, k);
             product = -product;
         }
-        let own = rows[k];
-        product *= own[k];
-        if own[k] == 0.0 {
+        let pivot_row = rows[k];
+        product *= pivot_row[k];
+        if pivot_row[k] == 0.0 {
             return 0.0;
         }
         for row in &mut rows[k + 1..count] {
-            let factor = row[k] / own[k];
-            for (entry, own) in row.iter_mut().zip(&own) {
-                *entry -= factor * own;
+            let factor = row[k] / pivot_row[k];
+            for (entry, element) in row.iter_mut().zip(&pivot_row) {
+                *entry -= factor * element;
             }
         }
     }

@@ -98,7 +98,7 @@ fn related_atoms_are_not_taken_for_independent_ones() {
     }
 }
 
-/// As above with the two sides different: nothing hides an obstruction.
+/// Same as above with two different sides: nothing hides an obstruction.
 #[test]
 fn unrelated_atoms_are_not_taken_for_related_ones() {
     let differences = [

@@ -124,7 +124,7 @@ fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
     assert_eq!(verified(half), Existence::Global);
 }
 
-/// Where both forms of the snakeboard are the same, it has no equations.
+/// The snakeboard has no equations where both its forms are the same.
 #[test]
 fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     let snakeboard = |phi: &str| {
@@ -156,7 +156,7 @@ fn curves(coordinates: &str, f: &str) -> String {
     )
 }
 
-/// Where `f` vanishes there is a closed orbit that attracts or repels: no density is finite there.
+/// A closed orbit that attracts or repels exists where `f` vanishes: no density is finite there.
 #[test]
 fn densities_that_are_singular_somewhere_are_not_proved() {
     let exact = |x: &str, f: &str| answer(&curves(&format!("{x}; y: angle;"), f), "density: exact");

@@ -46,7 +46,7 @@ pub fn compare_motion<S: Instance>(system: &S, program: &Program) -> usize {
     states.len()
 }
 
-/// As [`compare_motion`], for all quantities that are reported at a state.
+/// Same as [`compare_motion`], for all quantities that are reported at a state.
 ///
 /// # Panics
 /// If they differ.

@@ -66,7 +66,7 @@ pub trait Numeric {
     /// The state with these positions and velocities, on the constraints or not.
     fn state(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64>;
 
-    /// As [`Numeric::state`], with the velocities projected on D.
+    /// Same as [`Numeric::state`], with the velocities projected on D.
     fn projected(&self, t: f64, q: &[f64], qdot: &[f64]) -> Vec<f64>;
 
     /// The rate of a state.
@@ -176,7 +176,7 @@ pub fn slope(f: &mut dyn FnMut(f64) -> f64) -> f64 {
     (45.0 * pair(1.0) - 9.0 * pair(2.0) + pair(3.0)) / (60.0 * STEP)
 }
 
-/// As [`slope`], for all components of a vector.
+/// Same as [`slope`], for all components of a vector.
 pub fn slopes(f: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let pair = |k: f64| moved(&f(k * STEP), -1.0, &f(-k * STEP));
     let [first, second, third] = [1.0, 2.0, 3.0].map(pair);

@@ -48,7 +48,7 @@ impl WithVolume {
     /// The system of a declaration with `mu_C` itself, which need not be invariant.
     ///
     /// # Panics
-    /// As [`WithVolume::declared`].
+    /// Same as [`WithVolume::declared`].
     pub fn natural(source: &str) -> Self {
         let natural = |model: &mut Model, derivation: &Derivation, _| {
             let problem = Problem::of(model, derivation);
@@ -61,7 +61,7 @@ impl WithVolume {
     /// The system of a declaration with the volume that `choose` returns for the one that was found.
     ///
     /// # Panics
-    /// As [`WithVolume::declared`].
+    /// Same as [`WithVolume::declared`].
     pub fn with(
         source: &str,
         choose: impl FnOnce(&mut Model, &Derivation, Option<Volume>) -> Option<Volume>,

@@ -15,7 +15,7 @@ use quote::{ToTokens, quote};
 
 use super::function::number;
 
-/// Something that can be written as a constant expression.
+/// Values that can be written as constant expressions.
 pub(super) trait Constant {
     fn tokens(&self) -> TokenStream;
 }

@@ -21,11 +21,11 @@ pub type Domain = Vec<(SymbolId, Interval)>;
 /// The answer of [`Pool::zeros_on`].
 #[derive(Clone, PartialEq, Debug)]
 pub enum Zeros {
-    /// There is no zero.
+    /// No zero.
     None,
-    /// There is a zero between two points at which the signs differ, or at a point.
+    /// A zero between two points at which the signs differ, or at a point.
     Between(Vec<(SymbolId, f64)>, Vec<(SymbolId, f64)>),
-    /// Neither was shown; a part of the box that is undecided.
+    /// Undecided: a part of the box in which neither was shown.
     Open(Domain),
 }
 

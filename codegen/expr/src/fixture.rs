@@ -1,4 +1,4 @@
-//! For tests: reads expressions from text, by the ordinary grammar.
+//! Fixture of tests: reads expressions from text, by the ordinary grammar.
 
 use crate::{Assumption, ExprId, Function, Pool, Rational, SymbolId};
 

@@ -57,7 +57,7 @@ impl Hasher for WordHasher {
     }
 }
 
-/// For maps that are looked up and never iterated.
+/// Hasher of maps that are looked up and never iterated.
 pub type WordHash = BuildHasherDefault<WordHasher>;
 
 /// An open-addressing table of positions into a vector that its owner keeps.

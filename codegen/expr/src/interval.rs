@@ -34,7 +34,7 @@ impl Interval {
     /// The number 0.
     pub const ZERO: Self = Self { lo: 0.0, hi: 0.0 };
 
-    /// From one number to another.
+    /// Interval between two numbers.
     pub fn new(lo: f64, hi: f64) -> Self {
         Self { lo, hi }
     }

@@ -31,7 +31,7 @@ impl Pool {
         self.modular_eval_ordered(&self.reachable(roots), roots, point)
     }
 
-    /// As [`Pool::modular_eval`]; `order` is [`Pool::reachable`] of the roots.
+    /// Same as [`Pool::modular_eval`]; `order` is [`Pool::reachable`] of the roots.
     pub(crate) fn modular_eval_ordered(
         &self,
         order: &[ExprId],

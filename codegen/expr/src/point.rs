@@ -63,7 +63,7 @@ impl ModularPoint {
         Self::with_denominator(modulus, seed, 12)
     }
 
-    /// As [`ModularPoint::new`], for coefficients whose denominators divide `denominator`.
+    /// Same as [`ModularPoint::new`], for coefficients whose denominators divide `denominator`.
     pub fn with_denominator(modulus: Modulus, seed: u64, denominator: i64) -> Self {
         Self {
             modulus,

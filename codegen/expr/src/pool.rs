@@ -203,7 +203,7 @@ impl Pool {
         self.reachable_where(roots, |_| true)
     }
 
-    /// As [`Pool::reachable`], through expressions that satisfy `keep` only.
+    /// Same as [`Pool::reachable`], through expressions that satisfy `keep` only.
     pub(crate) fn reachable_where(
         &self,
         roots: &[ExprId],

@@ -26,7 +26,7 @@ impl Profile {
     }
 }
 
-/// Beyond this common denominator the multiples of base angles are refused.
+/// Largest common denominator of the multiples of base angles; larger ones are refused.
 const MAX_DENOMINATOR: i64 = 1 << 40;
 
 impl Pool {

@@ -17,8 +17,8 @@ pub struct RankReport {
     pub independent_rows: Vec<usize>,
     /// Every other row, with the earlier independent rows that it combines with coefficients other than 0; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
-    /// For each independent row, in the same order, the column of its pivot: the first in which it differs from the
-    /// combinations of the rows before.
+    /// Pivot column of each independent row, in the same order: the first in which the row differs from the
+    /// combinations of the rows before it.
     pub pivot_columns: Vec<usize>,
     /// True if the independence is certain. It is not if the entries could not be evaluated, or if they contain functions
     /// whose hidden relations the residues do not show and values in double precision do not confirm the rank.

@@ -30,7 +30,7 @@ pub(crate) struct Squares {
 struct Step {
     symbols: Vec<SymbolId>,
     positives: Vec<ExprId>,
-    /// Everything below them.
+    /// Expressions below them.
     order: Vec<ExprId>,
 }
 

@@ -146,7 +146,7 @@ impl SamplePoints {
         Self::new(pool, &pool.reachable(roots), profile, seed)
     }
 
-    /// As [`SamplePoints::seeded`] for the expressions in `order`, which is [`Pool::reachable`] of the roots.
+    /// Same as [`SamplePoints::seeded`] for the expressions in `order`, which is [`Pool::reachable`] of the roots.
     pub(crate) fn new(pool: &Pool, order: &[ExprId], profile: &Profile, seed: u64) -> Option<Self> {
         let limit = (DRAW_WORK / order.len().max(1)).clamp(DRAWS.0, DRAWS.1);
         let moduli: &[Modulus] = if profile.branches {
@@ -191,8 +191,8 @@ impl SamplePoints {
         self.find_frozen(pool, &mut [], f)
     }
 
-    /// As [`SamplePoints::find`] with points of one prime, see [`SamplePoints::modulo`], at which some symbols have the
-    /// values that are given; those of the point that is found where there are none yet.
+    /// Same as [`SamplePoints::find`] with points of one prime, see [`SamplePoints::modulo`]. Some symbols have the
+    /// given values; without given values, those of the point that is found.
     pub fn find_frozen<T>(
         &mut self,
         pool: &Pool,

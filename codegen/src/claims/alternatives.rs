@@ -1,5 +1,5 @@
-//! What there is instead where no density of the configuration exists on all of Q: conditions on the parameters, and
-//! densities that depend on velocities.
+//! Alternatives where no density of the configuration exists on all of Q: conditions on the parameters, and densities
+//! that depend on velocities.
 
 use super::conditions::{Scan, find_conditions};
 use super::exactness::Exactness;
@@ -37,7 +37,8 @@ pub(super) fn alternatives(
     remarks
 }
 
-/// What the scan found; nothing if there was nothing to scan. Where there is a local density, it was for one on all of Q.
+/// Result of the scan in words; `None` if there was nothing to scan. If a local density exists, the scan was for one on
+/// all of Q.
 fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
     let what = match is_local {
         true => "a density on all of Q",
@@ -56,7 +57,7 @@ fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
     }
 }
 
-/// What the absence of a density of `q` says of densities of `q` and `qdot`.
+/// Consequence of the absence of a density of `q` for densities of `q` and `qdot`.
 ///
 /// Without potential, other forces and drift, `X(f) = -f div X` has at `qdot = 0` a part that is linear in the
 /// velocities: `f(q, 0)` would be a density of `q`.
@@ -68,7 +69,7 @@ fn near_rest(model: &Model, problem: &Problem) -> String {
         && model
             .coordinates
             .iter()
-            .all(|own| !pool.depends_on(potential, own.q))
+            .all(|coordinate| !pool.depends_on(potential, coordinate.q))
         && model
             .lagrangian
             .linear

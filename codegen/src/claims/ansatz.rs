@@ -1,5 +1,5 @@
-//! What the factor of a density that depends on velocities is looked for among: functions of the configuration times
-//! velocities and kinetic momenta.
+//! Candidates for the factor of a density that depends on velocities: functions of the configuration times velocities
+//! and kinetic momenta.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
 
@@ -36,7 +36,7 @@ pub(super) fn stages(
     // Without these the terms of a homogeneous factor are separately invariant.
     let linear = &model.lagrangian.linear;
     if problem.has_drift(pool)
-        || linear.iter().any(|own| !pool.is_syntactic_zero(*own))
+        || linear.iter().any(|entry| !pool.is_syntactic_zero(*entry))
         || pool.depends_on_any(model.lagrangian.potential, &problem.symbols)
     {
         bases.push(pool.one());
@@ -45,9 +45,9 @@ pub(super) fn stages(
     let lines: Vec<SymbolId> = model
         .coordinates
         .iter()
-        .filter(|own| !matches!(own.topology, Topology::Angle))
-        .map(|own| own.q)
-        .filter(|own| roots.iter().any(|root| pool.depends_on(*root, *own)))
+        .filter(|coordinate| !matches!(coordinate.topology, Topology::Angle))
+        .map(|coordinate| coordinate.q)
+        .filter(|coordinate| roots.iter().any(|root| pool.depends_on(*root, *coordinate)))
         .take(LINES)
         .collect();
     let polynomials = monomials(pool, &lines, 2);

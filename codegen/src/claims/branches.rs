@@ -13,8 +13,8 @@ use crate::model::Model;
 /// Constraints whose combinations of roots are gone through.
 const MOST: usize = 4;
 
-/// A constraint with the velocity that it is solved for, and its coefficients `c`, `b`, `a`, which are values where that velocity
-/// is 0.
+/// A constraint with the velocity that it is solved for, and its coefficients `c`, `b`, `a`, evaluated where that
+/// velocity is 0.
 #[derive(Debug, Clone)]
 pub(super) struct Branch {
     pub(super) velocity: SymbolId,
@@ -23,8 +23,8 @@ pub(super) struct Branch {
     pub(super) is_second: bool,
 }
 
-/// A branch for each constraint of a model that is not linear; `None` if one is no polynomial of degree 1 or 2 with a leading
-/// coefficient that is never 0 in a velocity of which the other constraints are free.
+/// One branch for each nonlinear constraint of a model. `None` unless every such constraint is a polynomial of degree 1
+/// or 2 in a velocity that no other constraint contains, with a leading coefficient that is never 0.
 pub(super) fn branches(model: &mut Model, derivation: &Derivation) -> Option<Vec<Branch>> {
     let nonlinear: Vec<ExprId> = model
         .constraints
@@ -80,7 +80,7 @@ fn branch(pool: &mut Pool, phi: ExprId, velocity: SymbolId) -> Option<Branch> {
 }
 
 impl Branch {
-    /// Everything that is evaluated.
+    /// Expressions to be evaluated.
     pub(super) fn roots(&self) -> impl Iterator<Item = ExprId> {
         self.coefficients.into_iter()
     }

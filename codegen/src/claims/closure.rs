@@ -8,7 +8,7 @@ use dalembert_expr::{Arithmetic, Jets, Modulus};
 
 use super::frame::Demand;
 
-/// How an element of the hull came about.
+/// Origin of an element of the hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Origin {
     /// A generator.
@@ -32,7 +32,7 @@ pub(super) struct Hull {
     pub(super) basis: Vec<usize>,
     /// The first element that is independent as a pair but not as a vector.
     pub(super) obstruction: Option<usize>,
-    /// Whether no bracket leads out of it; else the order of the series was too small to go on.
+    /// True if no bracket leads out of it; else the order of the series was too small to go on.
     pub(super) is_closed: bool,
 }
 
@@ -53,7 +53,7 @@ impl Echelon {
         }
     }
 
-    /// Whether the row is independent of those before; if so it is kept.
+    /// True if the row is independent of those before; if so it is kept.
     fn push(&mut self, row: &[u64]) -> bool {
         let mut row = row[..self.width].to_vec();
         for (pivot, known) in &self.rows {
@@ -77,12 +77,12 @@ impl Echelon {
     }
 }
 
-/// How far a hull is closed.
+/// Closure of a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Until {
-    /// Until no bracket leads out of it.
+    /// No bracket leads out of the hull.
     Closed,
-    /// Until there is an obstruction: the ranks are then too small, but they differ.
+    /// An obstruction was found. The ranks are then too small, but they differ.
     Obstructed,
 }
 

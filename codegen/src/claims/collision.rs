@@ -10,12 +10,12 @@ use super::sample::Sample;
 use super::wall::{Place, Wall};
 use crate::model::Model;
 
-/// Numbers that differ by a smaller part look alike in a message.
+/// Relative difference below which two numbers look alike in a message.
 const ALIKE: f64 = 1e-9;
 
 /// A sum of terms that may vanish at all states before an impact; see [`Vanishing`].
 pub(super) trait AtImpact {
-    /// What is evaluated besides the impact's map.
+    /// Expressions evaluated in addition to the impact map.
     fn roots(&self) -> Vec<ExprId>;
 
     /// The terms at a state, given the velocities after the impact.
@@ -39,8 +39,8 @@ pub(super) trait AtImpact {
     fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
 
-/// The evidence on a sum at the states before an impact at a wall. What vanishes everywhere does so on the surface;
-/// else every component of the surface is looked at.
+/// Evidence on a sum at the states before an impact at a wall. A sum that vanishes everywhere vanishes on the surface;
+/// otherwise every component of the surface is examined.
 pub(super) fn evidence_at_impact(
     model: &Model,
     wall: &Wall,
@@ -68,7 +68,7 @@ pub(super) fn evidence_at_impact(
     at(Place::Second)
 }
 
-/// Two values with their names, and what they differ by where they look alike.
+/// Two values with their names, and their difference where they look alike.
 pub(super) fn with_difference(
     names: [String; 2],
     values: [f64; 2],
@@ -81,7 +81,7 @@ pub(super) fn with_difference(
     shown
 }
 
-/// The value of an expression at a point with other velocities, which are the point's afterwards.
+/// Value of an expression at a point with other velocities. The point keeps these velocities.
 pub(super) fn value_with<P: ExpansionPoint>(
     model: &Model,
     point: &mut P,
@@ -95,16 +95,18 @@ pub(super) fn value_with<P: ExpansionPoint>(
     Some(values[value.index()])
 }
 
-/// The values of two expressions, of the first after and of the second before an impact; the point's velocities are those before, as
-/// they were.
+/// Values of two expressions, the first after and the second before an impact. The point keeps the velocities before
+/// it.
 pub(super) fn after_and_before<P: ExpansionPoint>(
     model: &Model,
     point: &mut P,
     after: &[Number<P>],
     (later, earlier): (ExprId, ExprId),
 ) -> Option<[Number<P>; 2]> {
-    let symbols = model.coordinates.iter().map(|own| own.qdot);
-    let before: Vec<_> = symbols.map(|own| point.symbol(&model.pool, own)).collect();
+    let symbols = model.coordinates.iter().map(|coordinate| coordinate.qdot);
+    let before: Vec<_> = symbols
+        .map(|symbol| point.symbol(&model.pool, symbol))
+        .collect();
     let new = value_with(model, point, after, later)?;
     let old = value_with(model, point, &before, earlier)?;
     Some([new, old])
@@ -193,7 +195,9 @@ impl AtImpact for Vanished {
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
-        let largest = after.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+        let largest = after
+            .iter()
+            .fold(0.0, |size: f64, component| size.max(component.abs()));
         Some(magnitude(model, point, self.change) + largest)
     }
 

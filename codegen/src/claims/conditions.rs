@@ -1,9 +1,10 @@
 //! Conditions on parameters under which a density exists that does not exist for indeterminate parameters.
 //!
-//! Tried are, within the declared assumptions: one parameter 0; two equal; two 0; one a small fraction, where the
-//! obstruction has a root or a pole; one 0 and two others equal; polynomials of degree 3 in three parameters. Every trial is the rank test of [`super::exactness`] with the
-//! parameters fixed; conditions at which the model is degenerate, and those that imply a simpler one that was found, are
-//! left out. There may be others: the answer is about the conditions scanned.
+//! The scan tries, within the declared assumptions: one parameter 0; two equal; two 0; one a small fraction, where the
+//! obstruction has a root or a pole; one 0 and two others equal; polynomials of degree 3 in three parameters. Every trial
+//! is the rank test of [`super::exactness`] with the parameters fixed. The scan leaves out conditions at which the model
+//! is degenerate, and conditions that imply a simpler one that was found. Other conditions may exist: the answer is about
+//! the conditions scanned.
 
 use dalembert_expr::{ExprId, Rational, SamplePoints, SymbolId, Verdict as Zero};
 
@@ -21,7 +22,7 @@ use crate::model::{Assumption, Model, Parameter};
 pub struct Condition {
     /// All of them hold.
     pub equations: Vec<Equation>,
-    /// Whether the density then exists on all of Q, not only locally.
+    /// True if the density then exists on all of Q, not only locally.
     pub is_global: bool,
 }
 
@@ -36,14 +37,14 @@ pub enum Equation {
     Zero(ExprId),
 }
 
-/// What a scan found.
+/// Result of a scan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Scan {
     /// Conditions under which a density exists, simple ones first.
     pub found: Vec<Condition>,
     /// Rank tests and values of obstructions that were computed.
     pub trials: usize,
-    /// Whether all conditions were tried; else the scan was cut off.
+    /// True if all conditions were tried; else the scan was cut off.
     pub is_complete: bool,
 }
 
@@ -53,11 +54,11 @@ const TRIALS: (usize, usize) = (16, 400);
 const WORK: f64 = 1.5e8;
 /// Trials of a scan for a density on all of Q, each of which looks for the density.
 const GLOBAL_TRIALS: usize = 48;
-/// Singular points after which a model counts as degenerate; more where half of the points have no roots.
+/// Number of singular points after which a model counts as degenerate. It is larger where half of the points have no
+/// roots.
 const ATTEMPTS: (usize, usize) = (4, 128);
 
-/// The conditions under which a density exists, for a model without one: locally, or on all of Q if there is one
-/// locally.
+/// Conditions under which a density exists, for a model without one: locally, or on all of Q if one exists locally.
 ///
 /// # Errors
 /// [`Undecided`], if no points can be had.
@@ -105,7 +106,7 @@ impl Condition {
     /// `I13 = 0 and I23 = 0`
     pub fn text(&self, model: &Model) -> String {
         let name = |position: &usize| &model.parameters[*position].name.display;
-        let equation = |own: &Equation| match own {
+        let equation = |equation: &Equation| match equation {
             Equation::Value(p, value) => format!("{} = {value}", name(p)),
             Equation::Equal(p, q) => format!("{} = {}", name(p), name(q)),
             Equation::Zero(polynomial) => format!("{} = 0", model.pool.text(*polynomial)),
@@ -121,21 +122,21 @@ impl Scan {
         let texts: Vec<String> = self
             .found
             .iter()
-            .map(|own| match own.is_global {
-                true => own.text(model),
-                false => format!("{} (locally)", own.text(model)),
+            .map(|condition| match condition.is_global {
+                true => condition.text(model),
+                false => format!("{} (locally)", condition.text(model)),
             })
             .collect();
         format!("{}, among the conditions scanned", texts.join("; "))
     }
 }
 
-/// How many trials are within reach: one takes series of the order of the hull's depth for the inverse metric and for a
-/// bracket of each generator with each element.
+/// Number of trials that are affordable. One trial takes series of the order of the hull's depth for the inverse metric
+/// and for a bracket of each generator with each element.
 fn trials(problem: &Problem, depth: usize) -> usize {
     let (n, m) = (problem.coordinates as f64, problem.forms.len() as f64);
     let products = n.powi(3) + 2.0 * n * (n - m) * (n + 1.0).powi(2);
-    // Pairs of monomials whose product is within the order: those of twice as many variables.
+    // Number of pairs of monomials whose product is within the order: that of monomials in twice as many variables.
     let variables = 2 * problem.variables.len();
     let pairs: f64 = (1..=depth)
         .map(|k| (variables + k) as f64 / k as f64)
@@ -225,12 +226,15 @@ impl Scanner<'_> {
     ) -> Option<()> {
         let is_known = found
             .iter()
-            .any(|own| implies(model, &equations, &own.equations));
+            .any(|condition| implies(model, &equations, &condition.equations));
         if is_known || !is_admitted(&model.parameters, &equations) {
             return Some(());
         }
         self.left = self.left.checked_sub(1)?;
-        let fixed: Option<Vec<_>> = equations.iter().map(|own| fixed(model, own)).collect();
+        let fixed: Option<Vec<_>> = equations
+            .iter()
+            .map(|equation| fixed(model, equation))
+            .collect();
         let Some(fixed) = fixed else {
             return Some(());
         };
@@ -240,7 +244,7 @@ impl Scanner<'_> {
             return Some(());
         }
         let local = decide_local_where(pool, problem, self.seed, &fixed);
-        if !local.is_ok_and(|own| own.exists) {
+        if !local.is_ok_and(|local| local.exists) {
             return Some(());
         }
         let is_global = self.is_global(model, &equations);
@@ -253,7 +257,8 @@ impl Scanner<'_> {
         Some(())
     }
 
-    /// Adds the zeros of a polynomial to those found, unless the density that exists there at random points is none after all.
+    /// Adds the zeros of a polynomial to the conditions found, unless the density that exists at random points of them
+    /// fails on all of Q.
     fn try_polynomial(&self, model: &mut Model, polynomial: ExprId, found: &mut Vec<Condition>) {
         let equations = vec![Equation::Zero(polynomial)];
         let is_global = match self.solved(model, polynomial) {
@@ -266,7 +271,7 @@ impl Scanner<'_> {
                 }
             }
         };
-        found.retain(|own| !implies(model, &own.equations, &equations));
+        found.retain(|condition| !implies(model, &condition.equations, &equations));
         found.push(Condition {
             equations,
             is_global,
@@ -289,16 +294,16 @@ impl Scanner<'_> {
         })
     }
 
-    /// Whether the density exists on all of Q under a condition.
+    /// True if the density exists on all of Q under a condition.
     fn is_global(&self, model: &mut Model, equations: &[Equation]) -> bool {
         let replacements = replacements(model, equations);
         let problem = self.problem.substituted(&mut model.pool, &replacements);
         let exactness = decide(model, &problem, self.seed);
-        exactness.is_ok_and(|own| own.global == Some(Global::Exists))
+        exactness.is_ok_and(|exactness| exactness.global == Some(Global::Exists))
     }
 }
 
-/// What replaces parameters that are numbers or equal others.
+/// Replacements of parameters that are numbers or equal to others.
 fn replacements(model: &mut Model, equations: &[Equation]) -> Vec<(SymbolId, ExprId)> {
     let mut replacements = Vec::new();
     for equation in equations {
@@ -312,7 +317,7 @@ fn replacements(model: &mut Model, equations: &[Equation]) -> Vec<(SymbolId, Exp
     replacements
 }
 
-/// A parameter that is fixed, and to which value.
+/// Position and value of a parameter that is fixed.
 fn fixed(model: &Model, equation: &Equation) -> Option<(SymbolId, Fixed)> {
     let symbol = |position: usize| model.parameters[position].symbol;
     match equation {
@@ -325,7 +330,7 @@ fn fixed(model: &Model, equation: &Equation) -> Option<(SymbolId, Fixed)> {
     }
 }
 
-/// Whether `known` follows from `equations`.
+/// True if `known` follows from `equations`.
 fn implies(model: &mut Model, equations: &[Equation], known: &[Equation]) -> bool {
     if let [Equation::Zero(polynomial)] = known {
         let replacements = replacements(model, equations);
@@ -333,21 +338,21 @@ fn implies(model: &mut Model, equations: &[Equation], known: &[Equation]) -> boo
         return model.pool.zero_test(value) == Zero::Proved;
     }
     let value = |position: usize| {
-        equations.iter().find_map(|own| match own {
+        equations.iter().find_map(|equation| match equation {
             Equation::Value(p, value) if *p == position => Some(value),
             _ => None,
         })
     };
-    known.iter().all(|own| {
-        equations.contains(own)
-            || matches!(own, Equation::Equal(p, q) if value(*p).is_some() && value(*p) == value(*q))
+    known.iter().all(|equation| {
+        equations.contains(equation)
+            || matches!(equation, Equation::Equal(p, q) if value(*p).is_some() && value(*p) == value(*q))
     })
 }
 
-/// Whether the declared assumptions allow the equations.
+/// True if the declared assumptions allow the equations.
 fn is_admitted(parameters: &[Parameter], equations: &[Equation]) -> bool {
     let mut fixed = Vec::new();
-    equations.iter().all(|own| match own {
+    equations.iter().all(|equation| match equation {
         Equation::Value(p, value) => {
             fixed.push(*p);
             Range::of(&parameters[*p].assumption).contains(value)
@@ -355,7 +360,7 @@ fn is_admitted(parameters: &[Parameter], equations: &[Equation]) -> bool {
         // What was fixed before is not asked about once more.
         Equation::Equal(p, q) if fixed.contains(p) || fixed.contains(q) => false,
         Equation::Equal(p, q) => {
-            let [p, q] = [p, q].map(|own| Range::of(&parameters[*own].assumption));
+            let [p, q] = [p, q].map(|index| Range::of(&parameters[*index].assumption));
             p.meets(&q)
         }
         Equation::Zero(_) => true,
@@ -390,7 +395,7 @@ impl Range {
             && !(self.without_zero && value.is_zero())
     }
 
-    /// Whether some value is in both.
+    /// True if both sets have a common value.
     fn meets(&self, other: &Self) -> bool {
         let both = Self {
             low: self.low.clone().max(other.low.clone()),

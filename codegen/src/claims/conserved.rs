@@ -57,7 +57,7 @@ pub(super) fn check_conserved(
     verdict
 }
 
-/// Where a quantity may jump along a motion, in words.
+/// Places where a quantity may jump along a motion, in words.
 pub(super) fn jump(
     model: &mut Model,
     dynamics: &Dynamics,
@@ -86,8 +86,8 @@ pub(super) struct Quantity {
 impl Quantity {
     /// Differentiates a function of coordinates, velocities and time.
     pub(super) fn of(model: &mut Model, value: ExprId) -> Self {
-        let positions = model.coordinates.iter().map(|own| own.q);
-        let velocities = model.coordinates.iter().map(|own| own.qdot);
+        let positions = model.coordinates.iter().map(|coordinate| coordinate.q);
+        let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
         let mut symbols: Vec<SymbolId> = positions.chain(velocities).collect();
         symbols.push(model.time);
         let slopes = symbols
@@ -106,7 +106,7 @@ impl Quantity {
         roots
     }
 
-    /// The value and the terms of its rate along a motion; `None` where there is none.
+    /// Value and terms of its rate along a motion; `None` where it has no value.
     pub(super) fn terms<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -125,8 +125,8 @@ impl Quantity {
     }
 }
 
-/// The size of the terms of a rate, were every velocity and every acceleration as large as the largest: an
-/// acceleration may be the small difference of large ones.
+/// Size of the terms of a rate if every velocity and every acceleration were as large as the largest. An acceleration
+/// may be the small difference of large ones.
 pub(super) fn rate_scale(
     quantity: &Quantity,
     model: &Model,
@@ -152,7 +152,7 @@ pub(super) fn rate_scale(
         .sum()
 }
 
-/// The size of what an expression adds up at a point.
+/// Size of the terms that an expression adds up at a point.
 pub(super) fn magnitude(model: &Model, point: &RealPoint, id: ExprId) -> f64 {
     let (_, magnitude) = model.pool.eval_magnitude(id, &|symbol| point.value(symbol));
     magnitude
@@ -198,7 +198,7 @@ impl Vanishing for Rate<'_> {
     }
 }
 
-/// Whether there is a real state on D at which Lagrangian and motion have values.
+/// True if there is a real state on D at which Lagrangian and motion have values.
 pub(super) fn has_states(model: &Model, dynamics: &Dynamics) -> bool {
     let whole = model.lagrangian.whole;
     let mut roots = dynamics.roots();

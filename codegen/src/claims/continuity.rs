@@ -1,18 +1,17 @@
-//! Where a quantity may jump although its rate is 0 wherever it has one: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))`
-//! at `x = pi`.
+//! Jumps of a quantity whose rate is 0 wherever it has one: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))` at `x = pi`.
 //!
 //! Along a motion, which is analytic, a quantity made of sums, products, quotients, sines, cosines and exponentials is
 //! meromorphic, so that a rate of 0 makes it constant. Roots, absolute values, logarithms and inverse functions choose a
 //! branch; without poles they are continuous, so that a rate of 0 still makes them constant. Together with a pole, or in
-//! the cut of `atan2`, a branch may change. Nothing happens where the motion itself has no equations, or where what
-//! would vanish is itself constant or of one sign.
+//! the cut of `atan2`, a branch may change. No jump occurs where the motion itself has no equations, or where the
+//! argument that would vanish is constant or has one sign.
 
 use dalembert_expr::{ExprId, Function, Node, Pool};
 
 use crate::model::Model;
 
-/// Where `value` may jump, in words; `is_constant` tells whether an expression is constant along every motion, which
-/// itself has no equations where one of `singular` is 0.
+/// Places where `value` may jump, in words. `is_constant` tells whether an expression is constant along every motion.
+/// The motion has no equations where one of `singular` is 0.
 pub(super) fn possible_jump(
     model: &mut Model,
     value: ExprId,
@@ -56,7 +55,7 @@ fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
     }
 }
 
-/// What stands in denominators and logarithms, and the tangents.
+/// Denominators, arguments of logarithms, and tangents.
 pub(super) fn poles(pool: &Pool, parts: &[ExprId]) -> Vec<ExprId> {
     let mut poles = Vec::new();
     for id in parts {

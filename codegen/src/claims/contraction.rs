@@ -47,9 +47,9 @@ pub(super) fn contraction<P: ExpansionPoint>(
 /// The dependence of `P` on the velocities of D.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Dependence {
-    /// It is linear in them, with a constant part.
+    /// The map is linear in them, with a constant part.
     Linear,
-    /// It is not: a state from which steps lead to others that show it, and what is seen there.
+    /// The map is not linear: a state from which steps lead to states that show it, and the values there.
     Curved(Sample, Vec<(String, f64)>),
     /// Neither was shown.
     Unknown,

@@ -35,7 +35,7 @@ const FEW: usize = 80;
 const UNKNOWNS: usize = 160;
 /// Equations beyond the number of unknowns.
 const SURPLUS: usize = 8;
-/// Fresh points at which a factor is certified, and those of each branch where there are several.
+/// Number of fresh points at which a factor is certified, and of those of each branch if there are several.
 const CERTIFIED: (usize, usize) = (12, 3);
 /// Turns the seed of a search into that of a certificate: the fractional digits of the square root of 3.
 const FRESH: u64 = 0xbb67_ae85_84ca_a73b;
@@ -47,7 +47,7 @@ pub(super) struct Shape {
     pub(super) mass_exponent: Rational,
 }
 
-/// What is known at a point of D.
+/// Values at a point of D.
 struct Observation {
     field: Modulus,
     /// The value and the rate of each term.
@@ -75,7 +75,7 @@ impl Observation {
 /// Terms of a factor with their coefficients at frozen parameters, if these are small numbers.
 pub(super) type Support = Vec<(ExprId, Option<Rational>)>;
 
-/// What a search is about.
+/// Subject of a search.
 pub(super) struct Search<'s> {
     pub(super) problem: &'s Problem,
     pub(super) dynamics: &'s Dynamics,
@@ -89,24 +89,28 @@ impl Search<'_> {
         model: &Model,
         terms: &[ExprId],
     ) -> Result<Vec<(Shape, Support)>, Undecided> {
-        let parameters: Vec<_> = model.parameters.iter().map(|own| own.symbol).collect();
+        let parameters: Vec<_> = model
+            .parameters
+            .iter()
+            .map(|parameter| parameter.symbol)
+            .collect();
         let count = terms.len() + SURPLUS;
         let seen = self.observe(&model.pool, terms, &parameters, count)?;
-        let Some(field) = seen.first().map(|own| own.field) else {
+        let Some(field) = seen.first().map(|first| first.field) else {
             return Ok(Vec::new());
         };
         // What vanishes on D is no factor.
         let values = seen
             .iter()
-            .map(|own| own.terms.iter().map(|[value, _]| *value).collect())
+            .map(|observation| observation.terms.iter().map(|[value, _]| *value).collect())
             .collect();
         let independent = independent_columns(field, values);
         let mut found = Vec::new();
         for shape in shapes(terms.len()) {
             let rows: Option<Vec<Vec<u64>>> = seen
                 .iter()
-                .map(|own| {
-                    let row = own.row(&shape)?;
+                .map(|observation| {
+                    let row = observation.row(&shape)?;
                     Some(independent.iter().map(|column| row[*column]).collect())
                 })
                 .collect();
@@ -173,15 +177,15 @@ impl Search<'_> {
         for (slope, component) in slopes.iter().zip(&self.problem.variables) {
             mass_rate = field.add(mass_rate, field.mul(*slope, direction[*component]));
         }
-        // The drift comes first and counts once, then the independent velocities.
+        // The drift comes first and counts once. The independent velocities follow.
         let free = (0..self.problem.coordinates).filter(|i| !frame.dependent.contains(i));
         let mut coordinates: Vec<u64> = free.map(|i| motion.qdot[i]).collect();
         if coordinates.len() < frame.demands.len() {
             coordinates.insert(0, 1);
         }
         let mut demand = 0;
-        for (own, u) in frame.demands.iter().zip(coordinates) {
-            let value = own.last().and_then(|series| series.first().copied());
+        for (series, u) in frame.demands.iter().zip(coordinates) {
+            let value = series.last().and_then(|series| series.first().copied());
             demand = field.add(demand, field.mul(value.unwrap_or(0), u));
         }
         Some(Observation {
@@ -220,7 +224,10 @@ impl Search<'_> {
             .collect();
         let seen = self.observe(&model.pool, &terms, &[], terms.len() + SURPLUS)?;
         let field = seen[0].field;
-        let rows: Option<Vec<_>> = seen.iter().map(|own| own.row(shape)).collect();
+        let rows: Option<Vec<_>> = seen
+            .iter()
+            .map(|observation| observation.row(shape))
+            .collect();
         let Some(relation) = rows.and_then(|rows| first_relation(field, rows)) else {
             return Ok(None);
         };
@@ -243,11 +250,11 @@ impl Search<'_> {
                 .iter()
                 .any(|root| model.pool.depends_on(*root, *symbol))
         };
-        let symbols = model.parameters.iter().map(|own| own.symbol);
+        let symbols = model.parameters.iter().map(|parameter| parameter.symbol);
         symbols.filter(occurs).collect()
     }
 
-    /// Whether a factor solves the equation at fresh points, and does not vanish at all of them.
+    /// True if a factor solves the equation at fresh points, and does not vanish at all of them.
     pub(super) fn certify(
         &self,
         pool: &Pool,
@@ -321,7 +328,7 @@ mod tests {
         outputs { factor: dot(x) + dot(y); other: dot(x); none: dot(z) - (x + y)*dot(x); }
     }";
 
-    /// Whether the outputs are certified as factors for `s` and `k`.
+    /// True if the outputs are certified as factors for `s` and `k`.
     fn certified(s: (i64, i64), k: (i64, i64)) -> Vec<bool> {
         let spec = spec::parse(PARTICLE.parse().unwrap()).unwrap();
         let mut model = model::check(&spec).unwrap();
@@ -339,8 +346,8 @@ mod tests {
         };
         let outputs = model.outputs.iter();
         outputs
-            .map(|own| {
-                let certified = search.certify(&model.pool, &shape, own.value).unwrap();
+            .map(|output| {
+                let certified = search.certify(&model.pool, &shape, output.value).unwrap();
                 certified.is_some()
             })
             .collect()

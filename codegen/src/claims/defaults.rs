@@ -26,7 +26,7 @@ pub(super) struct Defaults {
 }
 
 impl Defaults {
-    /// Those of the parameters on which `roots` depend, without inputs.
+    /// Defaults of the parameters on which `roots` depend, without inputs.
     pub(super) fn of(model: &Model, roots: &[ExprId]) -> Self {
         let mut values = Vec::new();
         let mut texts = Vec::new();
@@ -52,12 +52,12 @@ impl Defaults {
         }
     }
 
-    /// True if no parameter has one.
+    /// True if no parameter has a default.
     pub(super) fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// Parameters and what replaces them.
+    /// Parameters and their replacements.
     pub(super) fn replacements(&self) -> &[(SymbolId, ExprId)] {
         &self.values
     }
@@ -148,7 +148,7 @@ pub(super) fn curvature_at_defaults(
     }
 }
 
-/// True if an obstruction is left at the defaults, or the closed form is one there too.
+/// True if an obstruction remains at the defaults, or if the closed form holds there as well.
 fn is_evident(
     model: &mut Model,
     declared: &Problem,

@@ -16,7 +16,7 @@ use super::frame::frame;
 use super::problem::Problem;
 use crate::model::Model;
 
-/// Rate and divergence are printed alike where their sum is below this part of them.
+/// Relative sum below which rate and divergence are printed as equal.
 const ALIKE: f64 = 1e-9;
 
 /// The verdict on `density = value`; `written` is the value as written.
@@ -94,7 +94,11 @@ pub(super) fn check_rates(
     (value, written): (ExprId, &str),
     seed: u64,
 ) -> Verdict {
-    let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+    let symbols: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
     let slopes = rates
         .iter()
         .zip(symbols)
@@ -229,7 +233,11 @@ impl Vanishing for Balance<'_> {
         let (value, _) = self.quantity.terms(model, &motion, point)?;
         let rate = rate_scale(&self.quantity, model, &motion, point) / value.abs();
         // The divergence is a combination of velocities whose coefficients have cancelled before.
-        let velocity = motion.qdot.iter().map(|own| own.abs()).sum::<f64>();
+        let velocity = motion
+            .qdot
+            .iter()
+            .map(|component| component.abs())
+            .sum::<f64>();
         Some(rate + velocity)
     }
 

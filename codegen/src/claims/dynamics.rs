@@ -68,8 +68,8 @@ impl Rows {
     }
 }
 
-/// A first-order system as one whose velocities are all prescribed: `dq^i - f^i dt = 0`, with `-(d_j f^i) qdot^j - d_t f^i`
-/// for curvatures.
+/// A first-order system in the form of constraints on all velocities: `dq^i - f^i dt = 0`, with the curvatures `-(d_j
+/// f^i) qdot^j - d_t f^i`.
 fn prescribed(model: &mut Model, rates: &[ExprId]) -> (Vec<Vec<ExprId>>, Vec<ExprId>) {
     let mut motion: Vec<(SymbolId, ExprId)> = Vec::new();
     for coordinate in &model.coordinates {
@@ -95,7 +95,7 @@ fn prescribed(model: &mut Model, rates: &[ExprId]) -> (Vec<Vec<ExprId>>, Vec<Exp
 impl Dynamics {
     /// The equations of a model.
     pub fn of(model: &mut Model, derivation: &Derivation) -> Self {
-        let curvature = |own: &ConstraintForm| own.curvature;
+        let curvature = |constraint: &ConstraintForm| constraint.curvature;
         let mut forms = Vec::new();
         for constraint in &derivation.constraints {
             let mut row = constraint.form.clone();
@@ -112,7 +112,7 @@ impl Dynamics {
             row.push(model.pool.sub(*force, *drift));
         }
         motion.push(curvatures);
-        let is_linear = |own: &usize| match model.constraints.get(*own) {
+        let is_linear = |index: &usize| match model.constraints.get(*index) {
             Some(constraint) => constraint.nonlinear.is_none(),
             None => true,
         };
@@ -121,14 +121,22 @@ impl Dynamics {
             branches: Vec::new(),
             forms: Rows::new(&model.pool, forms),
             motion: Rows::new(&model.pool, motion),
-            q: model.coordinates.iter().map(|own| own.q).collect(),
-            qdot: model.coordinates.iter().map(|own| own.qdot).collect(),
+            q: model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.q)
+                .collect(),
+            qdot: model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.qdot)
+                .collect(),
             time: model.time,
         }
     }
 
-    /// The equations on each part of D that a choice of roots of constraints gives that are not linear; `None` if one of these cannot
-    /// be solved, see [`branches()`].
+    /// Equations on each part of D that a choice of roots of nonlinear constraints gives; `None` if one of these
+    /// constraints cannot be solved, see [`branches()`].
     pub(super) fn on_branches(
         self,
         model: &mut Model,
@@ -148,7 +156,7 @@ impl Dynamics {
         Some((0..1 << branches.len()).map(with).collect())
     }
 
-    /// The velocities that constraints that are not linear are solved for.
+    /// Velocities for which nonlinear constraints are solved.
     pub(super) fn roots_of_branches(&self) -> impl Iterator<Item = SymbolId> {
         self.branches.iter().map(|branch| branch.velocity)
     }
@@ -160,8 +168,8 @@ impl Dynamics {
             .iter()
             .map(|branch| branch.substituted(pool, replacements))
             .collect();
-        let mut replaced = |own: &Rows| {
-            let rows = own.rows.iter();
+        let mut replaced = |block: &Rows| {
+            let rows = block.rows.iter();
             let rows = rows.map(|row| pool.substitute_all(row, replacements));
             let rows = rows.collect();
             Rows::new(pool, rows)
@@ -199,7 +207,11 @@ impl Dynamics {
         let space = JetSpace::new(0, 0, 1)?;
         let jets = Jets::new(point.field(), &space);
         let constants = |rows: Vec<Vec<Number<P>>>| -> Matrix<P::Field> {
-            let row = |row: Vec<_>| row.into_iter().map(|own| jets.constant(own)).collect();
+            let row = |row: Vec<_>| {
+                row.into_iter()
+                    .map(|number| jets.constant(number))
+                    .collect()
+            };
             rows.into_iter().map(row).collect()
         };
         let mut forms = constants(self.forms.at(pool, point)?);
@@ -215,14 +227,18 @@ impl Dynamics {
         let qdot = self
             .qdot
             .iter()
-            .map(|own| point.symbol(pool, *own))
+            .map(|symbol| point.symbol(pool, *symbol))
             .collect();
         let mut rows = self.motion.at(pool, point)?;
         let curvature = constants(vec![rows.pop()?]).pop()?;
         let rows = constants(rows);
         let [qddot, multipliers] = accelerate(&jets, rows, &forms, &curvature)?;
-        let numbers =
-            |series: Vec<Vec<_>>| series.iter().map(|own| jets.value(own)).collect::<Vec<_>>();
+        let numbers = |series: Vec<Vec<_>>| {
+            series
+                .iter()
+                .map(|entry| jets.value(entry))
+                .collect::<Vec<_>>()
+        };
         Some(Motion {
             qdot,
             qddot: numbers(qddot),
@@ -268,7 +284,7 @@ impl Dynamics {
         Some(())
     }
 
-    /// The rates of expressions of coordinates, velocities and time along a motion, at the point it was computed at.
+    /// Rates of expressions of coordinates, velocities and time along a motion, at the point at which it was computed.
     pub fn rates<P: ExpansionPoint>(
         &self,
         pool: &Pool,
@@ -280,7 +296,7 @@ impl Dynamics {
         Some(pairs.into_iter().map(|[_, rate]| rate).collect())
     }
 
-    /// As [`Dynamics::rates`], each rate after its value.
+    /// Same as [`Dynamics::rates`], with each rate after its value.
     pub fn values_and_rates<P: ExpansionPoint>(
         &self,
         pool: &Pool,
@@ -344,8 +360,8 @@ pub(super) fn accelerate<A: Arithmetic>(
     });
     let multipliers = column(&solve(jets, mass, lacking.collect())?.unknowns, 0);
     for (multiplier, dual) in multipliers.iter().zip(&raised) {
-        for (own, w) in qddot.iter_mut().zip(dual) {
-            *own = jets.add(own, &jets.mul(multiplier, w));
+        for (acceleration, w) in qddot.iter_mut().zip(dual) {
+            *acceleration = jets.add(acceleration, &jets.mul(multiplier, w));
         }
     }
     Some([qddot, multipliers])

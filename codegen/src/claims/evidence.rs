@@ -1,4 +1,4 @@
-//! Does something vanish at all states? What residues at random states and values at real states say.
+//! Evidence on whether something vanishes at all states: residues at random states, and values at real states.
 
 use dalembert_expr::{
     Arithmetic, BallPoint, Branches, Covered, EnclosedPoint, ExpansionPoint, ExprId, ModularPoint,
@@ -12,15 +12,16 @@ use super::sample::{self, Sample};
 use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
-/// Random states at which a sum must vanish, and those of each branch where there are several.
+/// Number of random states at which a sum must vanish, and of those of each branch if there are several.
 const STATES: (usize, usize) = (12, 3);
 /// Real states that are tried.
 const WITNESSES: usize = 48;
-/// States at which a sum is enclosed with more digits, whatever doubles say of it.
+/// Number of states at which a sum is enclosed with more digits, whatever its value in doubles.
 const ENCLOSED: usize = 12;
-/// Later ones are where doubles are above this part of its scale.
+/// Fraction of its scale that a sum in doubles must exceed before later states are enclosed.
 const VISIBLE: f64 = 1e-10;
-/// Beyond this part of its scale a sum in doubles is no rounding: what is not enclosed there is not proved to vanish.
+/// Fraction of its scale beyond which a sum in doubles is not rounding. If the sum is not enclosed there, it is not
+/// proved to vanish.
 const SUSPECT: f64 = 1e-6;
 /// A sum below this part of its scale has lost digits that a message shows.
 const VISIBLE_DIGITS: f64 = 1e-3;
@@ -29,11 +30,11 @@ const LEAST: f64 = 1e-200;
 
 /// A sum of terms at states that may vanish identically.
 pub(super) trait Vanishing {
-    /// Everything that is evaluated.
+    /// Expressions to be evaluated.
     fn roots(&self) -> Vec<ExprId>;
 
-    /// Whether the states relate what residues take for independent, so that a sum may vanish at all of them though its
-    /// residues do not.
+    /// True if the states relate quantities that residues treat as independent. A sum may then vanish at all states
+    /// although its residues do not.
     fn hides_relations(&self, model: &Model) -> bool {
         let _ = model;
         false
@@ -66,12 +67,12 @@ pub(super) trait Vanishing {
     /// The terms at a state.
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>>;
 
-    /// The size of what the terms were computed from at a real state: rounding is below this times `1e-16`, with
-    /// room for the conditioning of metric and constraints.
+    /// Size of the terms' ingredients at a real state. Rounding is below `1e-16` times this, with room for the
+    /// conditioning of metric and constraints.
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
-    /// Ranges that contain a state close to a real one: what is printed of it is exact but for what follows from the rest. `None` if it
-    /// is not certain that there is one. The dependent velocities follow from the others once more.
+    /// Ranges that contain a state close to a real one, so that printed values are exact. `None` if the existence of
+    /// such a state is not certain. The dependent velocities follow from the other values.
     fn enclosed<P: RangePoint>(&self, model: &Model, point: &RealPoint) -> Option<P> {
         let mut point = P::of(point);
         if let Some(dynamics) = self.dynamics() {
@@ -80,13 +81,13 @@ pub(super) trait Vanishing {
         Some(point)
     }
 
-    /// What a person is shown at a real state, given the terms and their sum.
+    /// Values shown to the user at a real state, given the terms and their sum.
     fn shown(&self, model: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
 
-/// What residues and real numbers say about a quantity that is claimed to vanish.
+/// Evidence from residues and real numbers about a quantity that is claimed to vanish.
 pub(super) struct Evidence {
-    /// Whether all residues are 0, with the primes; `None` if there were too few.
+    /// True if all residues are 0, with the primes; `None` if there were too few.
     pub(super) vanishes: Option<bool>,
     /// The number of random points.
     pub(super) points: usize,
@@ -96,22 +97,22 @@ pub(super) struct Evidence {
     pub(super) error: f64,
     /// A real point at which an enclosure excludes 0, with what is shown there.
     pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
-    /// Whether it has a value at any real point that was tried.
+    /// True if it has a value at any of the real points tried.
     pub(super) is_real: bool,
-    /// Whether doubles are far from 0 at a point at which no enclosure excludes 0.
+    /// True if doubles are far from 0 at a point where no enclosure excludes 0.
     pub(super) is_suspect: bool,
-    /// Why the question may be open.
+    /// Reason for which the question may stay open.
     pub(super) open: Undecided,
 }
 
 /// The two answers to a claim that something vanishes, or does not.
 #[derive(Debug, Default)]
 pub(super) struct Wording {
-    /// Said if it vanishes.
+    /// Sentence if the quantity vanishes.
     pub(super) vanishes: String,
-    /// Said if it does not.
+    /// Sentence if it does not.
     pub(super) differs: String,
-    /// What to write instead of a claim that it vanishes, and of one that it does not.
+    /// Advice against a claim that it vanishes, and against one that it does not.
     pub(super) help: [String; 2],
 }
 
@@ -137,7 +138,7 @@ impl Evidence {
         }
     }
 
-    /// Whether the sum is 0 at all states, of which there are some.
+    /// True if the sum is 0 at all states, and states exist.
     pub(super) fn shows_that_it_vanishes(&self) -> bool {
         self.is_real && self.vanishes == Some(true) && self.witness.is_none() && !self.is_suspect
     }
@@ -156,7 +157,7 @@ impl Evidence {
             let text = "it has no value at any of the real points that were tried";
             return Verdict::Undecided(text.to_owned());
         }
-        // A point that satisfies everything that is declared is needed: residues know no inequality.
+        // A point that satisfies every declared inequality is needed: residues know no inequality.
         let differs = self.witness.is_some();
         let vanishes = self.shows_that_it_vanishes();
         match (holds, vanishes, differs) {
@@ -242,7 +243,8 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     }
 }
 
-/// The answer of states of all branches modulo primes, which are noted, to whether a sum vanishes; an error if a branch is out of reach.
+/// Answer of states of all branches modulo primes to whether a sum vanishes, with the primes. An error if a branch
+/// cannot be sampled.
 fn residues(
     model: &Model,
     question: &impl Vanishing,
@@ -265,7 +267,7 @@ fn residues(
     Ok((covered.ok_or(Undecided::Degenerate)?, branches))
 }
 
-/// What is looked for at real points.
+/// Target of the search at real points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Search {
     /// A point where the sum has a value.
@@ -274,14 +276,14 @@ enum Search {
     Difference,
 }
 
-/// What was seen at real points.
+/// Observations at real points.
 #[derive(Default)]
 struct Real {
-    /// A point where the sum is certainly not 0, and what to show there.
+    /// A point where the sum is certainly not 0, and the values to show there.
     witness: Option<(Sample, Vec<(String, f64)>)>,
-    /// Whether it has a value at any.
+    /// True if it has a value at any.
     is_real: bool,
-    /// Whether doubles are far from 0 at one of which that is not certain.
+    /// True if doubles are far from 0 at a point that is not certain.
     is_suspect: bool,
 }
 
@@ -394,7 +396,7 @@ pub(super) fn in_arguments(pool: &Pool, roots: &[ExprId], symbols: &[SymbolId]) 
     })
 }
 
-/// True if a number is in the range in which others of its size have all their digits.
+/// True if doubles of this size have all their digits.
 pub(super) fn is_regular(sum: f64) -> bool {
     sum.is_finite() && sum.abs() > LEAST
 }
@@ -449,7 +451,7 @@ mod tests {
         let square = |model: &mut Model, of: ExprId| model.pool.pow(of, Rational::from(2));
         let sum = model.pool.add(x, y);
         let product = model.pool.mul(x, y);
-        let [whole, first, second] = [sum, x, y].map(|own| square(model, own));
+        let [whole, first, second] = [sum, x, y].map(|expr| square(model, expr));
         let minus = Rational::MINUS_ONE;
         vec![
             whole,

@@ -33,7 +33,7 @@ const FIRST_ORDER: usize = 3;
 /// Values that symbols are fixed to: conditions on parameters.
 pub(super) type Conditions = [(SymbolId, Fixed)];
 
-/// What a symbol is fixed to.
+/// Value to which a symbol is fixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fixed {
     /// A fraction.
@@ -42,10 +42,10 @@ pub(super) enum Fixed {
     Same(SymbolId),
 }
 
-/// Where the hull of the demands ended.
+/// Last state of the hull of the demands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Local {
-    /// Whether a local density exists at generic points.
+    /// True if a local density exists at generic points.
     pub exists: bool,
     /// The rank of the hull of D, drift included.
     pub rank: usize,
@@ -53,9 +53,9 @@ pub struct Local {
     pub extended_rank: usize,
     /// The rank after each depth of brackets, D itself first.
     pub growth: Vec<usize>,
-    /// Whether there is an obstruction on some branches only.
+    /// True if there is an obstruction on some branches only.
     pub is_partial: bool,
-    /// Whether an obstruction is certain, not only overwhelmingly likely.
+    /// True if an obstruction is certain, not only overwhelmingly likely.
     pub is_proof: bool,
     /// A bound of the chance that the answer is wrong.
     pub error: f64,
@@ -82,7 +82,7 @@ pub fn decide_local(pool: &Pool, problem: &Problem, seed: u64) -> Result<Local, 
     decide_local_where(pool, problem, seed, &[])
 }
 
-/// As [`decide_local`], in the frame of D whose dependent velocities are given: the verdict and the ranks are the same,
+/// Same as [`decide_local`], in the frame of D with these dependent velocities. Verdict and ranks are the same;
 /// brackets and obstruction are those of this frame.
 ///
 /// # Errors
@@ -96,7 +96,7 @@ pub fn decide_local_in(
     decide_local_from(pool, problem, seed, &[], Some(dependent))
 }
 
-/// As [`decide_local`], under conditions on symbols.
+/// Same as [`decide_local`], under conditions on symbols.
 pub(super) fn decide_local_where(
     pool: &Pool,
     problem: &Problem,
@@ -144,7 +144,7 @@ fn decide_local_from(
         return Err(failure);
     }
     let covered = covered.ok_or(Undecided::Degenerate)?;
-    // A density is one of all branches: an obstruction of any of them counts.
+    // A density must exist on all branches: an obstruction on any of them counts.
     let is_obstructed = |hull: &Hull| hull.rank < hull.extended_rank;
     let (hull, dependent) = found_in
         .into_values()
@@ -212,7 +212,7 @@ fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) -> Option
     Some(())
 }
 
-/// Whether the demands are those of a function at the first regular point under conditions; `None` if `attempts` points
+/// True if the demands are those of a function at the first regular point under conditions; `None` if `attempts` points
 /// are singular, or the hull is not closed within reach.
 pub(super) fn screen(
     pool: &Pool,
@@ -237,7 +237,7 @@ pub(super) fn screen(
         .map(|(hull, _)| hull.rank == hull.extended_rank)
 }
 
-/// Whether the demands at a point are those of a function; `None` at a singular point, or where the hull is not closed within reach.
+/// True if the demands at a point are those of a function; `None` at a singular point, or where the hull is not closed within reach.
 pub(super) fn exists_at(pool: &Pool, problem: &Problem, point: &mut ModularPoint) -> Option<bool> {
     let (hull, _) = sample(pool, problem, point, None, Until::Obstructed)?.ok()?;
     Some(hull.rank == hull.extended_rank)
@@ -284,14 +284,14 @@ fn chance_of_accident(profile: &Profile, problem: &Problem, depth: usize) -> f64
     minor / 2f64.powi(60)
 }
 
-/// Everything that is known about the densities of a model that depend on the configuration alone.
+/// Result about the densities of a model that depend on the configuration alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exactness {
-    /// Near generic points.
+    /// Result near generic points.
     pub local: Local,
     /// A density in closed form with its certificate, if one was found.
     pub density: Option<(Potential, Certified)>,
-    /// On all of Q; `None` if there is none locally.
+    /// Result on all of Q; `None` if no local density exists.
     pub global: Option<Global>,
 }
 
@@ -369,7 +369,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         ),
         None => without_closed_form(model, problem, &local, (&candidates, &parameters), seed),
     };
-    // A density that grows on a leaf on which the closed form is singular is another one near it.
+    // A density that grows on a leaf where the closed form is singular differs from it nearby.
     let density = singular.filter(|_| !matches!(global, Global::Many { .. }));
     Ok(Exactness {
         global: Some(regularity::restrict(model, problem, global)),
@@ -411,8 +411,8 @@ fn on_leaves(
         .unwrap_or(Global::Undecided(reason))
 }
 
-/// Whether regular candidates give a density for each value of the parameters, with coefficients that depend on them
-/// in ways that are not looked for.
+/// True if regular candidates give a density for each value of the parameters, with coefficients whose dependence on
+/// them is not among the forms tried.
 fn exists_for_each_parameter(
     model: &Model,
     problem: &Problem,
@@ -426,12 +426,15 @@ fn exists_for_each_parameter(
     let branches = sample_points(&model.pool, &roots, &profile, seed)
         .ok()
         .and_then(|points| branches_of(&model.pool, &roots, &profile, &points));
-    if !branches.is_some_and(|own| own.is_single()) {
+    if !branches.is_some_and(|branches| branches.is_single()) {
         return false;
     }
     (0..SAMPLES as u64).all(|k| {
         let seed = seed.wrapping_add(k);
-        let mut frozen: Vec<Frozen> = parameters.iter().map(|own| (*own, None)).collect();
+        let mut frozen: Vec<Frozen> = parameters
+            .iter()
+            .map(|parameter| (*parameter, None))
+            .collect();
         solve_for_coefficients(&model.pool, problem, &terms, &mut frozen, seed).is_some()
     })
 }

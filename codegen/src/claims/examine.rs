@@ -20,22 +20,22 @@ use super::{
 use crate::mechanics::Derivation;
 use crate::model::{Claim, Existence, Model, Statement};
 
-/// What became of the claims of a model.
+/// Findings about the claims of a model.
 #[derive(Debug, Default)]
 pub struct Examined {
     /// The verdicts, in order.
     pub findings: Vec<Finding>,
-    /// The invariant volume whose density is proved and can be emitted, a stated one before one that was found;
-    /// `None` if no claim is about one.
+    /// Invariant volume whose density is proved and can be emitted; a stated one takes precedence over one that was
+    /// found. `None` if no claim is about one.
     pub volume: Option<Volume>,
 }
 
-/// The verdicts on all claims about a model itself; without claims nothing is done.
+/// Verdicts on all claims about a model itself. Without claims nothing is computed.
 pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     examine_mode(model, derivation, &[])
 }
 
-/// As [`examine()`], for a mode of a model with the modes `others`, in order, itself among them.
+/// Same as [`examine()`], for a mode of a model with the modes `others`, in order, this one included.
 pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model]) -> Examined {
     let claims = model.own_claims();
     if claims.is_empty() {
@@ -64,8 +64,8 @@ pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model
         .collect();
     let volume = examiner.volume(&proved);
     if let Some(remark) = examiner.numeric(volume.as_ref()) {
-        let existence = |own: &&mut Finding| {
-            own.claim.starts_with("density: ") && matches!(own.verdict, Verdict::Proved(_))
+        let existence = |finding: &&mut Finding| {
+            finding.claim.starts_with("density: ") && matches!(finding.verdict, Verdict::Proved(_))
         };
         if let Some(finding) = findings.iter_mut().find(existence) {
             finding.remarks.insert(0, remark);
@@ -101,7 +101,7 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
         .collect()
 }
 
-/// As [`examine()`], for a scene: with `volume` a density is looked for where no claim is about one.
+/// Same as [`examine()`], for a scene. With `volume`, a density is looked for if no claim is about one.
 pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
     let mut examined = examine(model, derivation);
     if model.extras.volume && examined.volume.is_none() {
@@ -118,7 +118,7 @@ pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
     examined
 }
 
-/// What would be said of `density: exact`, claimed or not, and the volume if there is one that can be emitted.
+/// Finding about `density: exact`, claimed or not, and the volume if one can be emitted.
 pub fn examine_volume(
     model: &mut Model,
     derivation: &Derivation,
@@ -133,9 +133,9 @@ pub fn examine_volume(
         return (Verdict::Undecided(reason), Vec::new(), None);
     }
     let (verdict, remarks) = examiner.existence(Existence::Global);
-    // A density for indeterminate parameters alone is none of the declared model.
-    let is_special = |own: &Exactness| {
-        !matches!(verdict, Verdict::Proved(_)) && own.global == Some(Global::Exists)
+    // A density for indeterminate parameters alone is not one of the declared model.
+    let is_special = |exactness: &Exactness| {
+        !matches!(verdict, Verdict::Proved(_)) && exactness.global == Some(Global::Exists)
     };
     let volume = match &examiner.decision {
         Some(Ok(exactness)) if !is_special(exactness) => Volume::found(
@@ -150,7 +150,7 @@ pub fn examine_volume(
     (verdict, remarks, volume)
 }
 
-/// A claim that nothing was found out about.
+/// Finding for a claim that stays open.
 fn open(claim: &Claim, reason: Undecided) -> Finding {
     Finding {
         claim: claim.text.clone(),
@@ -162,7 +162,7 @@ fn open(claim: &Claim, reason: Undecided) -> Finding {
     }
 }
 
-/// What the verdicts on several claims share.
+/// Data shared by the verdicts on several claims.
 struct Examiner<'e> {
     model: &'e mut Model,
     derivation: &'e Derivation,
@@ -216,7 +216,7 @@ impl<'e> Examiner<'e> {
                 let written = claim
                     .text
                     .split_once("factor = ")
-                    .map_or("", |(_, own)| own);
+                    .map_or("", |(_, text)| text);
                 let value = explicit(self.model, *value);
                 let (model, around) = self.around();
                 let verdict = kept::check_factor(model, &around, *under, (value, written));
@@ -242,7 +242,7 @@ impl<'e> Examiner<'e> {
         }
     }
 
-    /// The verdict on a symmetry, with what becomes of its momentum along the motion and at surfaces.
+    /// Verdict on a symmetry, with the change of its momentum along the motion and at surfaces.
     fn symmetry(&mut self, field: &[ExprId]) -> (Verdict, Vec<String>) {
         let (verdict, mut remarks) =
             symmetry::check_symmetry(self.model, &self.dynamics, field, self.seed);
@@ -307,7 +307,7 @@ impl<'e> Examiner<'e> {
         let Some(Ok(exactness)) = self.decision.take() else {
             return (verdict, Vec::new());
         };
-        // A density for indeterminate parameters alone is none of the declared model.
+        // A density for indeterminate parameters alone is not one of the declared model.
         let is_special = match &verdict {
             Verdict::Proved(_) => false,
             Verdict::Undecided(_) => true,
@@ -330,7 +330,7 @@ impl<'e> Examiner<'e> {
     /// A verdict on a density of the motion, with the surfaces that do not keep its volume.
     fn qualified(&self, verdict: Verdict, effects: &[Effect]) -> Verdict {
         match verdict {
-            Verdict::Proved(own) => Verdict::Proved(kept::qualified(self.model, own, effects)),
+            Verdict::Proved(proof) => Verdict::Proved(kept::qualified(self.model, proof, effects)),
             other => other,
         }
     }
@@ -359,7 +359,7 @@ impl<'e> Examiner<'e> {
         self.stated_at_defaults(stated, generic)
     }
 
-    /// The verdict on one volume that all keep.
+    /// Verdict on one volume that all modes and surfaces keep.
     fn volume_kept(&mut self) -> (Verdict, Vec<String>) {
         let stated = kept::stated_or_one(self.model);
         let is_looked_for = stated.written.is_none() && self.model.field.is_none();
@@ -368,7 +368,10 @@ impl<'e> Examiner<'e> {
                 let flow = self.existence_of_the_motion(Existence::Global);
                 let density = match &self.decision {
                     Some(Ok(exactness)) => {
-                        let potential = exactness.density.as_ref().map(|(own, _)| own.clone());
+                        let potential = exactness
+                            .density
+                            .as_ref()
+                            .map(|(density, _)| density.clone());
                         kept::of_potential(&mut self.model.pool, potential.as_ref())
                     }
                     _ => stated,
@@ -447,9 +450,9 @@ impl<'e> Examiner<'e> {
         )
     }
 
-    /// The density that was found, as far as it is written out.
+    /// Density that was found, written out as far as possible.
     fn found_density(&mut self, exactness: &Exactness) -> Density {
-        let potential = exactness.density.as_ref().map(|(own, _)| own);
+        let potential = exactness.density.as_ref().map(|(density, _)| density);
         kept::of_potential(&mut self.model.pool, potential)
     }
 
@@ -460,11 +463,11 @@ impl<'e> Examiner<'e> {
     }
 
     fn sentences(&self, effects: &[Effect]) -> Vec<String> {
-        let sentence = |own: &Effect| own.sentence(self.model, self.derivation);
+        let sentence = |effect: &Effect| effect.sentence(self.model, self.derivation);
         effects.iter().map(sentence).collect()
     }
 
-    /// The model, and what is known beside it of impacts.
+    /// Model, with what else is known of impacts.
     fn around(&mut self) -> (&mut Model, Surroundings<'_>) {
         let around = Surroundings {
             derivation: self.derivation,
@@ -475,14 +478,14 @@ impl<'e> Examiner<'e> {
         (self.model, around)
     }
 
-    /// What becomes of a density that has no closed form.
+    /// Emission of a density without closed form, in words.
     fn numeric(&self, volume: Option<&Volume>) -> Option<String> {
         let exactness = self.decision.as_ref()?.as_ref().ok()?;
         if exactness.global.is_none() || exactness.density.is_some() {
             return None;
         }
         let spans = exactness.local.rank == self.problem.coordinates;
-        let reason = match volume.map(|own| own.integral.is_some()) {
+        let reason = match volume.map(|volume| volume.integral.is_some()) {
             Some(true) => return Some("G is emitted as an integral, by quadrature".to_owned()),
             Some(false) => return None,
             None if self.problem.is_time_dependent() => "G depends on time",
@@ -510,9 +513,9 @@ impl<'e> Examiner<'e> {
                 return stated;
             }
         }
-        let exists = |own: &&&Statement| {
+        let exists = |statement: &&&Statement| {
             matches!(
-                own,
+                statement,
                 Statement::Existence(Existence::Global | Existence::Local)
             )
         };

@@ -14,14 +14,14 @@ use super::obstruction::elements_at;
 use super::polynomial::{Polynomial, rational_function, roots};
 use super::problem::Problem;
 
-/// Values of delta after which its degrees are looked for, one after the other.
+/// Numbers of values of delta after which its degrees are determined, in order.
 const VALUES: [usize; 4] = [8, 16, 32, 48];
 /// Values beyond the number of coefficients.
 const SURPLUS: usize = 2;
 
-/// The small fractions at which delta has a root or a pole as a function of `parameter`; none if delta is no rational
-/// function of it, or of too high a degree. `trials` is how many values may be computed, and what is left of them;
-/// `None` if they did not suffice.
+/// Small fractions at which delta has a root or a pole as a function of `parameter`; empty if delta is not a rational
+/// function of it, or one of too high a degree. `trials` is the number of values that may still be computed; `None` if
+/// it did not suffice.
 pub(super) fn exceptional_values(
     pool: &Pool,
     problem: &Problem,
@@ -47,7 +47,7 @@ pub(super) fn exceptional_values(
         return Some(Vec::new());
     };
     let field = base.modulus();
-    let roots = functions.iter().flat_map(|own| roots(field, own));
+    let roots = functions.iter().flat_map(|function| roots(field, function));
     let mut found: Vec<_> = roots.filter_map(|root| reconstruct(field, root)).collect();
     found.sort();
     found.dedup();
@@ -65,7 +65,7 @@ pub(super) struct Column<'c> {
 }
 
 impl Column<'_> {
-    /// Whether the parameter occurs outside of roots and functions only.
+    /// True if the parameter occurs outside of roots and functions only.
     pub(super) fn is_rational(&self) -> bool {
         let depends = |id: ExprId| self.pool.depends_on(id, self.parameter);
         let order = self.pool.reachable(&self.problem.roots());
@@ -91,7 +91,7 @@ impl Column<'_> {
         })
     }
 
-    /// Numerator and denominator of delta, if there are any of low degree; `None` if `trials` do not suffice.
+    /// Numerator and denominator of delta, if their degrees are low; `None` if `trials` do not suffice.
     #[expect(
         clippy::option_option,
         reason = "no function of low degree is not the end of the trials"
@@ -121,17 +121,20 @@ impl Column<'_> {
         Some(None)
     }
 
-    /// What the obstructing element demands less what the combination of others demands that is the same vector field.
+    /// Demand of the obstructing element minus that of the combination of other elements that is the same vector field.
     fn delta(&self, point: &mut ModularPoint) -> Option<u64> {
         let field = point.modulus();
         let hull = &self.local.hull;
         let dependent = Some(self.local.dependent.as_slice());
         let elements = elements_at(self.pool, self.problem, hull, dependent, point)?;
-        let before = hull.basis.iter().filter(|own| **own < self.obstruction);
+        let before = hull
+            .basis
+            .iter()
+            .filter(|element| **element < self.obstruction);
         let columns: Vec<usize> = before.copied().chain([self.obstruction]).collect();
         let width = self.problem.components();
         let rows = (0..width)
-            .map(|i| columns.iter().map(|own| elements[*own][i]).collect())
+            .map(|i| columns.iter().map(|column| elements[*column][i]).collect())
             .collect();
         let relation = first_relation(field, rows)?;
         // The others are independent here too.

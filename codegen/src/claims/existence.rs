@@ -14,7 +14,7 @@ use super::sample::Sample;
 use super::undecided::Undecided;
 use crate::model::{Existence, Model};
 
-/// What was found out about densities, or why nothing was.
+/// Finding about densities, or the reason for which there is none.
 pub type Decision = Result<Exactness, Undecided>;
 
 /// The verdict on a claim of existence.
@@ -54,7 +54,7 @@ pub(super) fn check_existence(
     }
 }
 
-/// Why forces whose divergence is not linear in the velocities leave no density of the configuration.
+/// Reason for which forces whose divergence is not linear in the velocities exclude a density of the configuration.
 const CURVED: &str = "no density depends on q alone: the forces change volumes at a rate that is not linear in the velocities";
 
 /// The verdict where forces change volumes in a way that no function of the configuration balances, as states in a row show.
@@ -68,7 +68,7 @@ fn curved_forces(
         .coordinates
         .iter()
         .enumerate()
-        .map(|(i, own)| format!("dot({}) {:+}", own.name.display, real_step(i)))
+        .map(|(i, coordinate)| format!("dot({}) {:+}", coordinate.name.display, real_step(i)))
         .collect();
     let steps = format!(
         "a step is {}, where these are independent",
@@ -140,7 +140,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `, where k != 0`: the parameters that a closed form divides by and that may be 0.
+    /// `, where k != 0`: parameters by which a closed form divides and that may be 0.
     fn exceptions(&self, potential: &Potential) -> String {
         let pool = &self.model.pool;
         let mut divisors = Vec::new();
@@ -158,7 +158,7 @@ impl Writer<'_> {
         }
         let texts: Vec<String> = divisors
             .iter()
-            .map(|own| format!("{} != 0", pool.text(*own)))
+            .map(|divisor| format!("{} != 0", pool.text(*divisor)))
             .collect();
         match texts.is_empty() {
             true => String::new(),
@@ -341,7 +341,7 @@ impl Writer<'_> {
     }
 }
 
-/// Calls whose relations to each other residues do not show.
+/// Calls whose mutual relations are invisible to residues.
 fn unrelated_atoms(pool: &Pool, problem: &Problem) -> Vec<String> {
     let parts = pool.reachable(&problem.roots());
     let is_atom = |id: &dalembert_expr::ExprId| {

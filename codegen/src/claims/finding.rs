@@ -1,4 +1,4 @@
-//! What became of a claim: proved with a certificate, refuted with a witness, or left open with the reason.
+//! Result of a claim: proved with a certificate, refuted with a witness, or left open with the reason.
 
 use std::fmt;
 
@@ -12,13 +12,13 @@ use crate::spec::ItemId;
 pub struct Finding {
     /// The claim as written.
     pub claim: String,
-    /// Whether an open answer is accepted.
+    /// True if an open answer is accepted.
     pub is_assumed: bool,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
-    /// Whether it holds.
+    /// True if it holds.
     pub verdict: Verdict,
-    /// What else was found out: a momentum equation, what impacts do to the volume.
+    /// Further results: a momentum equation, the effect of impacts on the volume.
     pub remarks: Vec<String>,
     /// The density in closed form that a proof is about.
     pub density: Option<ClosedForm>,
@@ -33,27 +33,27 @@ pub struct ClosedForm {
     pub dependent: Vec<usize>,
 }
 
-/// Whether a claim holds.
+/// True if a claim holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
-    /// It does.
+    /// The claim holds.
     Proved(Certificate),
-    /// It does not.
+    /// The claim fails.
     Refuted(Witness),
     /// Neither was shown.
     Undecided(String),
 }
 
-/// How a claim was proved.
+/// Proof of a claim.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
-    /// What was shown, in a sentence.
+    /// Proved statement, a sentence.
     pub shown: String,
     /// Random points at which it was tested.
     pub points: usize,
     /// The primes modulo which.
     pub primes: Vec<u64>,
-    /// A bound of the chance that it is wrong; 0 for a proof without chance.
+    /// Upper bound of the probability that it is wrong; 0 for a proof without chance.
     pub error: f64,
     /// The seed of the points.
     pub seed: u64,
@@ -74,7 +74,7 @@ impl Certificate {
         }
     }
 
-    /// Adds the points, primes and chances of another proof that this one rests on.
+    /// Adds points, primes and error probabilities of another proof on which this one depends.
     pub(super) fn rest_on(&mut self, other: &Self) {
         self.points += other.points;
         self.error += other.error;
@@ -84,21 +84,21 @@ impl Certificate {
     }
 }
 
-/// Why a claim fails, at a point that a person can follow.
+/// Reason for which a claim fails, at a point that can be followed by hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {
-    /// What is wrong, in words.
+    /// Violated statement, in words.
     pub reason: String,
     /// The point, if one is needed.
     pub sample: Option<Sample>,
-    /// Names and values of what was computed there.
+    /// Names and values computed there.
     pub values: Vec<(String, f64)>,
-    /// What to write instead.
+    /// Advice on a claim that holds instead.
     pub help: String,
 }
 
 impl Finding {
-    /// Whether the build goes on.
+    /// True if the build goes on.
     pub fn is_accepted(&self) -> bool {
         match &self.verdict {
             Verdict::Proved(_) => true,
@@ -117,7 +117,7 @@ impl Finding {
         }
     }
 
-    /// Why: the certificate, the witness or the reason, in words.
+    /// Grounds in words: the certificate, the witness or the reason.
     pub fn grounds(&self) -> String {
         match &self.verdict {
             Verdict::Proved(certificate) => certificate.to_string(),
@@ -211,7 +211,7 @@ impl fmt::Display for Witness {
     }
 }
 
-/// Twelve digits, as a person compares them.
+/// Twelve digits, for comparison by hand.
 pub(super) fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -14,23 +14,23 @@ use super::potential::{Allowed, Candidates, Potential, Term};
 use super::problem::Problem;
 use super::undecided::{LARGEST_CHANCE, Undecided};
 
-/// Numerators and denominators of coefficients up to this size are believed.
+/// Largest numerator and denominator of a coefficient that is accepted.
 const LARGEST: i64 = 50;
-/// Fresh points at which a density is certified, and those of each branch where there are several.
+/// Number of fresh points at which a density is certified, and of those of each branch if there are several.
 const CERTIFIED: (usize, usize) = (12, 3);
-/// Points at which a solution must hold that were not used to find it.
+/// Number of points, not used to find a solution, at which the solution must hold.
 const FRESH_POINTS: usize = 3;
 /// Equations beyond the number of unknowns.
 const SURPLUS: usize = 8;
 
-/// Where and how a density was certified.
+/// Place and method of the certification of a density.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certified {
     /// Fresh points at which every demand was satisfied.
     pub points: usize,
     /// The primes.
     pub primes: Vec<u64>,
-    /// A bound of the chance that it is no density after all.
+    /// Upper bound of the probability that it is not a density.
     pub error: f64,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn fit(
     Some(Potential { terms: found })
 }
 
-/// Whether points are found at which all candidates have residues: many independent roots refuse almost all points.
+/// True if points are found at which all candidates have residues: many independent roots refuse almost all points.
 pub(super) fn has_points(
     pool: &Pool,
     problem: &Problem,
@@ -74,9 +74,9 @@ pub(super) fn has_points(
     })
 }
 
-/// As [`fit`], with coefficients that are products of powers of parameters.
+/// Same as [`fit`], with coefficients that are products of powers of parameters.
 ///
-/// Where a parameter is doubled, such a coefficient is multiplied by a power of 2.
+/// Doubling a parameter multiplies such a coefficient by a power of 2.
 pub(super) fn fit_with_parameters(
     pool: &mut Pool,
     problem: &Problem,
@@ -89,7 +89,10 @@ pub(super) fn fit_with_parameters(
         return None;
     }
     let candidates = candidates.allowed(allowed);
-    let mut frozen: Vec<_> = parameters.iter().map(|own| (*own, None)).collect();
+    let mut frozen: Vec<_> = parameters
+        .iter()
+        .map(|parameter| (*parameter, None))
+        .collect();
     let solution = solve_for_coefficients(pool, problem, &candidates, &mut frozen, seed)?;
     let field = solution.first()?.1;
     let (terms, before): (Vec<Term>, Vec<u64>) = candidates
@@ -102,8 +105,9 @@ pub(super) fn fit_with_parameters(
         let mut doubled = frozen.clone();
         doubled[i].1 = doubled[i].1.map(|value| field.add(value, value));
         let after = solve_for_coefficients(pool, problem, &terms, &mut doubled, seed)?;
-        for (own, (before, (after, _))) in exponents.iter_mut().zip(before.iter().zip(&after)) {
-            own.push(power_of_two(field, *before, *after)?);
+        for (exponent, (before, (after, _))) in exponents.iter_mut().zip(before.iter().zip(&after))
+        {
+            exponent.push(power_of_two(field, *before, *after)?);
         }
     }
     let mut found = Vec::new();
@@ -166,7 +170,7 @@ pub(super) fn solve_for_coefficients(
         rows.extend(at_next(&mut modulus)?);
     }
     let field = modulus?;
-    // Equations of one point may be trivial, so that as many as there are unknowns do not determine them.
+    // Equations at one point may be trivial, so as many as unknowns may not determine them.
     loop {
         let solution = solve_rows(field, rows.clone(), terms.len())?;
         let mut is_solved = true;
@@ -185,7 +189,7 @@ pub(super) fn solve_for_coefficients(
     }
 }
 
-/// Whether a row `(unknowns.. | right)` holds for a solution.
+/// True if a row `(unknowns.. | right)` holds for a solution.
 fn is_satisfied(field: Modulus, row: &[u64], solution: &[u64]) -> bool {
     let mut left = 0;
     for (entry, unknown) in row.iter().zip(solution) {
@@ -200,7 +204,7 @@ fn roots(problem: &Problem, terms: &[Term]) -> Vec<ExprId> {
     roots
 }
 
-/// For each demand `[X_i(b) for each term .., c_i]` at a point.
+/// Equations `[X_i(b) for each term .., c_i]` of each demand at a point.
 fn equations(
     pool: &Pool,
     problem: &Problem,
@@ -306,7 +310,7 @@ pub(super) fn reconstruct(field: Modulus, residue: u64) -> Option<Rational> {
     })
 }
 
-/// Whether a potential satisfies every demand, at fresh points modulo two primes and more.
+/// True if a potential satisfies every demand, at fresh points modulo two primes and more.
 ///
 /// # Errors
 /// [`Undecided`].

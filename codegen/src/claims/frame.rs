@@ -45,7 +45,7 @@ struct Dissipation<A: Arithmetic> {
     slope: Vec<Series<A>>,
 }
 
-/// What the expressions of a problem are at a point.
+/// Expansions of the expressions of a problem at a point.
 struct Expanded<A: Arithmetic> {
     metric: Matrix<A>,
     forms: Matrix<A>,
@@ -146,7 +146,7 @@ fn identity<A: Arithmetic>(jets: &Jets<'_, A>, size: usize) -> Matrix<A> {
         .collect()
 }
 
-/// A pivot below this part of the largest entry may be rounding.
+/// Fraction of the largest entry below which a pivot may be rounding.
 const PIVOT: f64 = 1e-9;
 
 /// The greedy choice of columns with an invertible minor, from the last column to the first.
@@ -164,7 +164,7 @@ pub(super) fn choose_dependent<A: Arithmetic>(
         .collect();
     let columns = forms.first().map_or(0, Vec::len);
     let entries = rows.iter().flatten();
-    let least = PIVOT * entries.fold(0.0, |size: f64, own| size.max(field.size(*own)));
+    let least = PIVOT * entries.fold(0.0, |size: f64, entry| size.max(field.size(*entry)));
     let mut chosen = Vec::new();
     for column in (0..columns).rev() {
         let free = chosen.len()..rows.len();
@@ -357,7 +357,7 @@ fn inverse_mass<A: Arithmetic>(
     solve(jets, mass, identity(jets, duals.len()))
 }
 
-/// Everything that the demand of the drift is made of.
+/// Ingredients of the demand of the drift.
 struct Geometry<'g, 's, A: Arithmetic> {
     calculus: Calculus<'g, 's, A>,
     expanded: &'g Expanded<A>,

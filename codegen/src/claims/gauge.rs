@@ -17,7 +17,13 @@ pub(super) fn conditions(model: &mut Model, rate: ExprId) -> Vec<(String, ExprId
     let coordinates: Vec<(String, SymbolId, SymbolId)> = model
         .coordinates
         .iter()
-        .map(|own| (own.name.display.clone(), own.q, own.qdot))
+        .map(|coordinate| {
+            (
+                coordinate.name.display.clone(),
+                coordinate.q,
+                coordinate.qdot,
+            )
+        })
         .collect();
     let motion = motion(model);
     let pool = &mut model.pool;
@@ -46,7 +52,7 @@ pub(super) fn antiderivative(model: &mut Model, rate: ExprId) -> Option<ExprId> 
     for coordinate in &model.coordinates {
         variables.push(coordinate.q);
         let slope = pool.diff(rate, coordinate.qdot);
-        let [q, qdot] = [coordinate.q, coordinate.qdot].map(|own| pool.variable(own));
+        let [q, qdot] = [coordinate.q, coordinate.qdot].map(|symbol| pool.variable(symbol));
         let part = pool.mul(slope, qdot);
         rest = pool.sub(rest, part);
         terms.push(pool.mul(slope, q));
@@ -84,7 +90,7 @@ pub(super) fn motion(model: &mut Model) -> Vec<(SymbolId, ExprId)> {
     motion
 }
 
-/// The degree of a monomial in variables; `None` if it is none, or if the degree is 0.
+/// Degree of a monomial in variables; `None` if it is not a monomial, or if the degree is 0.
 fn degree(pool: &Pool, monomial: ExprId, variables: &[SymbolId]) -> Option<i64> {
     let one = Rational::ONE;
     let factors = match pool.node(monomial) {
@@ -99,7 +105,7 @@ fn degree(pool: &Pool, monomial: ExprId, variables: &[SymbolId]) -> Option<i64> 
         let Node::Symbol(_) = pool.node(base) else {
             return None;
         };
-        degree += exponent.to_i64().filter(|own| *own > 0)?;
+        degree += exponent.to_i64().filter(|power| *power > 0)?;
     }
     (degree > 0).then_some(degree)
 }

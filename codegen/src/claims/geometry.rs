@@ -1,18 +1,18 @@
-//! The quantities of the criterion as numbers at a point, for whoever wants to check one.
+//! Quantities of the criterion as numbers at a point, for checks of it.
 
 use dalembert_expr::{JetSpace, Jets, Pool, RealPoint, SymbolId};
 
 use super::frame::frame;
 use super::problem::Problem;
 
-/// Values at a real point of what `X_i(G) = c_i` is made of; see `frame.rs` for the formulas.
+/// Values at a real point of the ingredients of `X_i(G) = c_i`; see `frame.rs` for the formulas.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
     /// The dependent velocities, one for each constraint.
     pub dependent: Vec<usize>,
     /// The frame of D, the drift first if there is one: N components each, and one for time if the model depends on it.
     pub frame: Vec<Vec<f64>>,
-    /// What an invariant density demands of the derivative of its logarithm along each.
+    /// Derivatives of the logarithm of an invariant density along each of the vectors.
     pub demands: Vec<f64>,
     /// `theta`, N components.
     pub theta: Vec<f64>,
@@ -40,18 +40,18 @@ pub fn geometry_at(
     let jets = Jets::new(dalembert_expr::Reals, &space);
     let found = frame(pool, problem, &jets, &mut point, dependent)?;
     let width = problem.components();
-    let numbers = |series: &[Vec<f64>]| series.iter().map(|own| jets.value(own)).collect();
+    let numbers = |series: &[Vec<f64>]| series.iter().map(|entry| jets.value(entry)).collect();
     Some(Geometry {
         dependent: found.dependent,
         frame: found
             .demands
             .iter()
-            .map(|own| numbers(&own[..width]))
+            .map(|row| numbers(&row[..width]))
             .collect(),
         demands: found
             .demands
             .iter()
-            .map(|own| jets.value(&own[width]))
+            .map(|row| jets.value(&row[width]))
             .collect(),
         theta: numbers(&found.theta),
         metric_determinant: jets.value(&found.metric_determinant),

@@ -1,4 +1,4 @@
-//! From local to global: is the density single-valued on the declared circles?
+//! Global existence from local existence: decides whether the density is single-valued on the declared circles.
 
 use std::f64::consts::TAU;
 
@@ -15,16 +15,16 @@ use super::regularity::LEAVES;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
-/// Whether the density exists on all of Q.
+/// True if the density exists on all of Q.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Global {
-    /// It does.
+    /// A single-valued density exists.
     Exists,
-    /// It is multiplied by `exp(period)` along a loop.
+    /// The density is multiplied by `exp(period)` along a loop.
     Many {
         /// The coordinates that run around their circles, with the number of turns.
         turns: Vec<(usize, i64)>,
-        /// How much `G` grows.
+        /// Growth of `G`.
         period: f64,
         /// The values of parameters (and of the other coordinates) at which it was computed.
         sample: Sample,
@@ -35,19 +35,19 @@ pub enum Global {
 
 /// Points of a loop at a first look.
 const PROBES: usize = 12;
-/// A sum over few points is small below this part of the integral of the absolute value.
+/// Fraction of the integral of the absolute value below which a sum over few points is small.
 const SMALL: f64 = 5e-2;
-/// Rounding, where everything else vanishes.
+/// Rounding error, relative to the integral of the absolute value, where all other terms vanish.
 const ROUNDING: f64 = 1e-12;
-/// Why a period was not found.
+/// Reason for which a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
-/// Why a period that is not 0 in double precision leaves the question open.
+/// Reason for which a period that is not 0 in double precision leaves the question open.
 const GROWS: &str = "G seems to grow along a circle, but so little beside its variation that no enclosure of the period excludes 0";
 /// The seed of the points at which symmetries are tested.
 const PERIODS: u64 = 7;
-/// Why a period that seems to be 0 leaves the question open.
+/// Reason for which a period that seems to be 0 leaves the question open.
 const NUMERIC: &str = "G was found in no closed form, and that its periods on the circles are 0 to rounding proves nothing: declare the angles of these circles as lines, or as intervals";
-/// A period counts from this part of the integral of the absolute value on.
+/// Fraction of the integral of the absolute value from which a period counts.
 const PERIOD: f64 = 1e-12;
 /// Samples at which periods are computed: the declared defaults, which may hide what depends on a parameter, and others.
 const ATTEMPTS: [usize; 2] = [0, 9];
@@ -81,8 +81,8 @@ pub(super) fn from_angles(
     let samples = ATTEMPTS.map(|attempt| {
         let sample = sample(model, attempt, uses(&model.pool, &coefficients));
         let ranges = model.pool.enclose(&order, &sample.ranges());
-        let own = |id: &ExprId| ranges[id.index()].unwrap_or(Interval::WHOLE);
-        let values: Vec<Interval> = coefficients.iter().map(own).collect();
+        let range = |id: &ExprId| ranges[id.index()].unwrap_or(Interval::WHOLE);
+        let values: Vec<Interval> = coefficients.iter().map(range).collect();
         (sample, values)
     });
     let is_whole = local.rank == problem.components();
@@ -97,7 +97,7 @@ pub(super) fn from_angles(
     for turns in loops(&angles(model, problem)) {
         let grown = samples.iter().find_map(|(sample, values)| {
             let weight = |((i, _), value): (&(usize, _), &Interval)| {
-                let turn = turns.iter().find(|(own, _)| own == i);
+                let turn = turns.iter().find(|(turn, _)| turn == i);
                 turn.map_or(Interval::ZERO, |(_, count)| {
                     *value * Interval::point(*count as f64)
                 })
@@ -320,7 +320,8 @@ pub(super) fn from_periods(
     }
 }
 
-/// True if a few points of a loop add up to little: then a proof that `G` does not grow along it is worth looking for.
+/// True if a few points of a loop add up to little. A proof that `G` does not grow along the loop is then worth a
+/// search.
 fn seems_closed(model: &Model, problem: &Problem, local: &Local, turns: &[(usize, i64)]) -> bool {
     let sample = sample(model, ATTEMPTS[0], uses(&model.pool, &problem.roots()));
     Loop::new(model, problem, local, turns)

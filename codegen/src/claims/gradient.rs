@@ -1,5 +1,5 @@
-//! The gradient of `ln` of a density that has no closed form: `beta` with `beta(Z) = c` for elements `(Z, c)` of the hull
-//! that span, as steps. Its line integrals are the logarithm.
+//! Gradient of `ln` of a density without closed form: `beta` with `beta(Z) = c` for elements `(Z, c)` of the hull that
+//! span, as steps. Its line integrals are the logarithm.
 
 use std::cell::RefCell;
 
@@ -15,7 +15,7 @@ use crate::model::Model;
 /// The linear system for the gradient, valid at almost all points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Gradient {
-    /// How its entries are computed from the position.
+    /// Computation of its entries from the position.
     pub trace: Trace,
     /// N vectors that span, N components each.
     pub vectors: Vec<Vec<Step>>,
@@ -28,11 +28,11 @@ pub struct Gradient {
 pub struct Integral {
     /// The gradient.
     pub gradient: Gradient,
-    /// Where the line begins, N coordinates: a regular configuration.
+    /// Start of the line, N coordinates: a regular configuration.
     pub reference: Vec<f64>,
 }
 
-/// Gradients of more steps are not emitted.
+/// Number of steps beyond which gradients are not emitted.
 const STEPS: usize = 20_000;
 
 impl Integral {
@@ -46,7 +46,10 @@ impl Integral {
                 let (hull, dependent) = (&local.hull, Some(local.dependent()));
                 elements_at(&model.pool, problem, hull, dependent, &mut point).is_some()
             };
-            let values = model.coordinates.iter().map(|own| sample.value(own.q));
+            let values = model
+                .coordinates
+                .iter()
+                .map(|coordinate| sample.value(coordinate.q));
             is_regular.then(|| values.collect::<Option<Vec<f64>>>())?
         })?;
         (gradient.trace.operations.len() <= STEPS).then_some(Self {
@@ -75,10 +78,14 @@ pub(super) fn gradient(
         let mut traced = TracedPoint::new(point.clone(), &trace);
         elements_at(pool, problem, hull, Some(dependent), &mut traced)
     })?;
-    let spanning: Vec<_> = hull.basis.iter().map(|own| &elements[*own]).collect();
+    let spanning: Vec<_> = hull
+        .basis
+        .iter()
+        .map(|element| &elements[*element])
+        .collect();
     Some(Gradient {
-        vectors: spanning.iter().map(|own| own[..n].to_vec()).collect(),
-        demands: spanning.iter().map(|own| own[n]).collect(),
+        vectors: spanning.iter().map(|vector| vector[..n].to_vec()).collect(),
+        demands: spanning.iter().map(|vector| vector[n]).collect(),
         trace: trace.into_inner(),
     })
 }

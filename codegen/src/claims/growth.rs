@@ -1,9 +1,9 @@
-//! The growth of `G` along a loop: as a sum over points, which tells where to look, and enclosed, which is a proof.
+//! Growth of `G` along a loop: as a sum over points, which tells where to look, and as an enclosure, which is a proof.
 //!
-//! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements, and `dG` of it is that combination of
-//! their demands. The enclosure parts the loop into cells, on which all coordinates of the loop are intervals, and in their
-//! middles; cells are halved until the sum of their parts excludes 0. Elements are those of a frame of D that may have poles on the loop: there
-//! another frame takes its place.
+//! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements. `dG` of the tangent is that
+//! combination of their demands. The enclosure divides the loop into cells, on which all coordinates of the loop are
+//! intervals, and halves cells until the sum over them excludes 0. The elements belong to a frame of D that may have poles
+//! on the loop; another frame replaces it there.
 
 use std::f64::consts::TAU;
 
@@ -25,22 +25,22 @@ use crate::model::Model;
 /// until the growth changes by no more than this part of the integral of the absolute value.
 const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
-/// Below this part of that integral doubles lack digits that are printed.
+/// Fraction of that integral below which doubles lack digits that are printed.
 const CANCELLED: f64 = 1e-2;
-/// Rounding, where everything else vanishes.
+/// Rounding error, relative to that integral, where all other terms vanish.
 const ROUNDING: f64 = 1e-12;
-/// Where between two multiples of the step the points lie.
+/// Position of the points between two multiples of the step.
 const SHIFT: f64 = 0.382;
-/// Cells of an enclosure at first, and the number of enclosures after which the question is left open.
+/// Number of cells of the first enclosure, and number of enclosures after which the question stays open.
 const CELLS: usize = 32;
 const ENCLOSURES: usize = 1024;
 /// Orders of the series in cells: the second one for growths that are small beside the variation of `G`.
 const ORDERS: [usize; 2] = [2, 8];
-/// Monomials beyond which a series is not computed.
+/// Number of monomials beyond which a series is not computed.
 const MONOMIALS: usize = 2000;
 /// The seed of the hull in other frames.
 const SEED: u64 = 7;
-/// Frames among which a regular one is looked for.
+/// Number of frames among which a regular one is sought.
 const FRAMES: usize = 4;
 
 /// A loop: of some coordinates, around their circles.
@@ -51,11 +51,11 @@ pub(super) struct Loop<'l> {
     turns: &'l [(usize, i64)],
     /// The hull in frames that are regular on parts of the loop.
     frames: Vec<Local>,
-    /// Everything below the rest of the Lagrangian and the forces: a motion exists where they have values.
+    /// Subexpressions of the rest of the Lagrangian and of the forces. A motion exists where all of them have values.
     defined: Vec<ExprId>,
 }
 
-/// Why the growth along a loop is not certified to differ from 0.
+/// Reason for which the growth along a loop is not certified to differ from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Uncertain {
     /// The loop may leave the domain of the declaration.
@@ -64,7 +64,7 @@ pub(super) enum Uncertain {
     Small,
 }
 
-/// A part of a loop, from one fraction of it to another, with what it adds to the growth.
+/// A part of a loop between two fractions of it, with its contribution to the growth.
 struct Cell {
     ends: [f64; 2],
     part: Option<Interval>,
@@ -100,8 +100,8 @@ impl<'l> Loop<'l> {
         }
     }
 
-    /// The growth with all digits that are printed, certified not to be 0 where all symbols of a sample have a value next to their own, or
-    /// one in a range that is given.
+    /// Growth with all printed digits, certified not to be 0 when every symbol of a sample has a value next to its own,
+    /// or a value in a given range.
     ///
     /// # Errors
     /// If it is not certified.
@@ -126,7 +126,7 @@ impl<'l> Loop<'l> {
         }
     }
 
-    /// The growth of `G`, and the integral of the absolute values of what its rate is made of; `None` if they do not converge.
+    /// Growth of `G`, and the integral of the absolute values of the terms of its rate; `None` if they do not converge.
     pub(super) fn converged(&self, sample: &Sample) -> Option<(f64, f64)> {
         let (growth, size, _) = self.converged_by(sample)?;
         Some((growth, size))
@@ -187,8 +187,8 @@ impl<'l> Loop<'l> {
         Some((sum * whole * step).nearest())
     }
 
-    /// The terms of the derivative of `G` along the loop, as series of an order; `None` where the elements of the hull
-    /// are dependent.
+    /// Terms of the derivative of `G` along the loop, as series of an order; `None` where the elements of the hull are
+    /// dependent.
     fn parts<P: ExpansionPoint>(
         &self,
         local: &Local,
@@ -330,8 +330,8 @@ impl<'l> Loop<'l> {
         found
     }
 
-    /// The integral of `r = dG/ds` over a part of length `h`: what is in both `h r` and Taylor's formula about the middle,
-    /// `sum of h^(j+1) / (2^j (j+1)!) r^(j)` over even `j`, with the last derivative anywhere in the part.
+    /// Integral of `r = dG/ds` over a part of length `h`: the intersection of `h r` and Taylor's formula about the
+    /// middle, `sum of h^(j+1) / (2^j (j+1)!) r^(j)` over even `j`, with the last derivative anywhere in the part.
     fn integral_in(&self, local: &Local, places: &Places, order: usize) -> Option<Interval> {
         let space = self.space(local, order)?;
         let jets = Jets::new(Enclosures, &space);

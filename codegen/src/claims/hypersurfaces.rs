@@ -1,8 +1,9 @@
 //! Polynomial conditions on parameters under which an obstruction vanishes.
 //!
-//! At a random point modulo a prime delta (see [`super::obstruction`]) is a rational function of one parameter. A root or pole of it that is one at
-//! other configurations too lies on a hypersurface of parameters over which there is a density. Such points, found for
-//! other values of the parameters too, determine the polynomial of low degree that vanishes at all of them.
+//! At a random point modulo a prime, delta (see [`super::obstruction`]) is a rational function of one parameter. A root or
+//! pole that delta has at other configurations as well lies on a hypersurface of parameters over which a density exists.
+//! Such points, for several values of the other parameters, determine the polynomial of low degree that vanishes at all
+//! of them.
 
 use dalembert_expr::{ExprId, ModularPoint, Rational, SymbolId};
 
@@ -15,16 +16,17 @@ use super::polynomial::roots;
 use super::problem::Problem;
 use crate::model::Model;
 
-/// Degrees of polynomials that are looked for.
+/// Degrees of the polynomials tried.
 const DEGREE: usize = 3;
 /// Points beyond the number of coefficients.
 const SURPLUS: usize = 2;
-/// Parameters that a condition may relate.
+/// Number of parameters that a condition may relate.
 const RELATED: usize = 3;
-/// Parameters up to which conditions are looked for.
+/// Number of parameters up to which conditions are sought.
 const PARAMETERS: usize = 6;
 
-/// The polynomials, each once. `trials` is how many values of delta may be computed, and what is left of them; `None` if they did not suffice.
+/// Polynomials, each once. `trials` is the number of values of delta that may still be computed; `None` if it did not
+/// suffice.
 pub(super) fn hypersurfaces(
     model: &mut Model,
     problem: &Problem,
@@ -62,7 +64,7 @@ pub(super) fn hypersurfaces(
             continue;
         };
         let polynomial = polynomial(model, &related, &points);
-        found.extend(polynomial.filter(|own| !found.contains(own)));
+        found.extend(polynomial.filter(|polynomial| !found.contains(polynomial)));
     }
     Some(found)
 }
@@ -119,9 +121,9 @@ impl Search<'_> {
         };
         let field = base.modulus();
         let mut points = Vec::new();
-        for root in functions.iter().flat_map(|own| roots(field, own)) {
+        for root in functions.iter().flat_map(|function| roots(field, function)) {
             let is_simple = reconstruct(field, root).is_some()
-                || self.others().any(|own| self.value(&base, own) == root);
+                || self.others().any(|other| self.value(&base, other) == root);
             if is_simple {
                 continue;
             }
@@ -148,25 +150,28 @@ impl Search<'_> {
         self.symbols
             .iter()
             .copied()
-            .filter(move |own| *own != parameter)
+            .filter(move |symbol| *symbol != parameter)
     }
 
     fn value(&self, point: &ModularPoint, symbol: SymbolId) -> u64 {
         point.value(symbol, self.column.pool.symbol_assumption(symbol))
     }
 
-    /// The parameters that cannot change alone, the one whose roots are looked for among them.
+    /// Parameters that cannot change alone, including the one whose roots are sought.
     fn related(&self, point: &ModularPoint, seed: u64) -> Vec<SymbolId> {
         let field = point.modulus();
-        let cannot_change = |own: &SymbolId| {
+        let cannot_change = |symbol: &SymbolId| {
             let mut changed = point.clone();
             // By a square factor: what is positive stays so.
-            changed.set(*own, field.mul(self.value(point, *own), field.integer(9)));
+            changed.set(
+                *symbol,
+                field.mul(self.value(point, *symbol), field.integer(9)),
+            );
             !self.has_density(&changed, seed)
         };
         let symbols = self.symbols.iter().copied();
         symbols
-            .filter(|own| *own == self.column.parameter || cannot_change(own))
+            .filter(|symbol| *symbol == self.column.parameter || cannot_change(symbol))
             .collect()
     }
 
@@ -218,7 +223,9 @@ fn polynomial(model: &mut Model, related: &[SymbolId], points: &[ModularPoint]) 
             .iter()
             .zip(&relation)
             .filter(|(_, coefficient)| **coefficient != 0)
-            .map(|(monomial, own)| Some((reconstruct(field, *own)?, one, *monomial)))
+            .map(|(monomial, coefficient)| {
+                Some((reconstruct(field, *coefficient)?, one, *monomial))
+            })
             .collect();
         let mut parts = parts?;
         parts.reverse();

@@ -1,4 +1,4 @@
-//! `conserved under SURFACE: e`: is a quantity the same before and after an impact?
+//! Claims `conserved under SURFACE: e`: comparison of a quantity before and after an impact.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
@@ -47,20 +47,20 @@ pub(super) fn check_conserved_under(
     }
 }
 
-/// The changes of a quantity that are looked for at real states.
+/// Changes of a quantity that are sought at real states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wanted {
     /// All.
     Any,
-    /// Those by which it grows.
+    /// Steps by which it grows.
     Growth,
 }
 
 /// The evidence on the changes of a quantity at a surface.
 pub(super) struct Changes {
-    /// By the law, the reset or the transition.
+    /// Evidence from the law, the reset or the transition.
     pub(super) found: Evidence,
-    /// By a reflection, where a transition may be one.
+    /// Evidence from a reflection, if a transition may be one.
     reflected: Option<Evidence>,
     is_solved: bool,
 }
@@ -70,7 +70,7 @@ impl Changes {
         self.is_solved || !self.found.is_real
     }
 
-    /// The evidence on all: what a reflection changes shows nothing, as it is not known where there is one.
+    /// Evidence on all changes. A change by a reflection shows nothing, because its existence at a state is not known.
     pub(super) fn together(self, holds: bool) -> Evidence {
         match self.reflected {
             Some(reflected) if holds => {
@@ -89,7 +89,7 @@ impl Changes {
 /// The evidence on whether a quantity, which may name `energy` and momenta, is the same before and after an impact.
 ///
 /// # Errors
-/// Why nothing is known of it.
+/// Reason for which nothing is known of it.
 pub(super) fn changes_at(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -97,14 +97,17 @@ pub(super) fn changes_at(
     (quantity, written): (ExprId, &str),
     wanted: Wanted,
 ) -> Result<Changes, String> {
-    let own = &model.surfaces[surface];
-    let name = own.name.display.clone();
-    if !own.instantaneous.is_empty() {
+    let declared = &model.surfaces[surface];
+    let name = declared.name.display.clone();
+    if !declared.instantaneous.is_empty() {
         return Err(format!(
             "what impacts at `{name}` with their instantaneous constraints do to a quantity is not examined"
         ));
     }
-    let enters = own.transition.as_ref().map(|own| own.enters);
+    let enters = declared
+        .transition
+        .as_ref()
+        .map(|transition| transition.enters);
     let wall = Wall::of(model, around.derivation, surface, around.others);
     let entered = enters.and_then(|enters| around.others.get(enters)).copied();
     let value = explicit(model, quantity);
@@ -140,11 +143,11 @@ pub(super) fn changes_at(
 /// The change of a quantity in an impact.
 struct Jump<'j> {
     value: ExprId,
-    /// Its value after the impact.
+    /// Value after the impact.
     after: ExprId,
-    /// True if that quantity is written in the velocities after the impact, not in those before it.
+    /// True if that quantity is written in the velocities after the impact instead of those before it.
     is_computed: bool,
-    /// Its derivatives by the velocities.
+    /// Derivatives with respect to the velocities.
     slopes: Vec<ExprId>,
     /// The same by the coordinates.
     by_position: Vec<(SymbolId, ExprId)>,
@@ -170,8 +173,14 @@ impl<'j> Jump<'j> {
         let coordinates = model.coordinates.clone();
         let mut by = |symbol| model.pool.diff(value, symbol);
         Self {
-            slopes: coordinates.iter().map(|own| by(own.qdot)).collect(),
-            by_position: coordinates.iter().map(|own| (own.q, by(own.q))).collect(),
+            slopes: coordinates
+                .iter()
+                .map(|coordinate| by(coordinate.qdot))
+                .collect(),
+            by_position: coordinates
+                .iter()
+                .map(|coordinate| (coordinate.q, by(coordinate.q)))
+                .collect(),
             after,
             is_computed,
             value,
@@ -182,7 +191,7 @@ impl<'j> Jump<'j> {
 }
 
 impl Jump<'_> {
-    /// How much the value changes per part of the position, which solves an equation up to rounding.
+    /// Relative change of the value with the position, which solves an equation up to rounding.
     fn slope_by_position(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let slopes: Vec<ExprId> = self.by_position.iter().map(|(_, slope)| *slope).collect();
         let values = point.values(&model.pool, &model.pool.reachable(&slopes))?;
@@ -219,9 +228,11 @@ impl AtImpact for Jump<'_> {
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
-        let largest = after.iter().fold(0.0, |size: f64, own| size.max(own.abs()));
+        let largest = after
+            .iter()
+            .fold(0.0, |size: f64, component| size.max(component.abs()));
         let values = point.values(&model.pool, &model.pool.reachable(&self.slopes))?;
-        let slopes = self.slopes.iter().map(|own| values[own.index()].abs());
+        let slopes = self.slopes.iter().map(|slope| values[slope.index()].abs());
         let by_velocity = slopes.sum::<f64>() * largest;
         let before = magnitude(model, point, self.value) + self.slope_by_position(model, point)?;
         let new = match self.is_computed {

@@ -1,8 +1,8 @@
-//! Do resets keep the constraints? The state after an impact must be in D at its new position, and on the same level of
-//! every integrable constraint: positions are brought back to it after every step.
+//! Check that resets keep the constraints. The state after an impact must be in D at its new position, and on the same
+//! level of every integrable constraint: positions are brought back to that level after every step.
 //!
-//! What residues and real points refute is refused here. That velocities satisfy the constraints may stay open, as every
-//! run checks it at every impact; that levels are kept must be proved, as no run does.
+//! A reset that residues and real points refute is refused. Constraints on velocities may stay open, because every run
+//! checks them at every impact. Levels must be proved to be kept, because no run checks them.
 
 use dalembert_expr::{ExprId, SymbolId};
 
@@ -15,10 +15,11 @@ use crate::mechanics::Derivation;
 use crate::model::{Model, Reset, Surface};
 use crate::spec::ItemId;
 
-/// Mistakes in resets: where, what, and what to write.
+/// Mistakes in resets: place, text and advice.
 pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId, String, String)> {
     let surfaces = model.surfaces.iter();
-    if derivation.constraints.is_empty() || surfaces.clone().all(|own| own.reset.is_none()) {
+    if derivation.constraints.is_empty() || surfaces.clone().all(|surface| surface.reset.is_none())
+    {
         return Vec::new();
     }
     if model.is_nonlinear() {
@@ -46,14 +47,15 @@ pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId
     mistakes
 }
 
-/// Where constraints are not linear in the velocities, every run checks velocities after a reset; of levels nothing is known.
+/// Remark on constraints that are not linear in the velocities: every run checks velocities after a reset, and levels
+/// are not examined.
 fn unexamined(model: &Model) -> Vec<(ItemId, String, String)> {
     let levels = model.constraints.iter();
-    let Some(level) = levels.clone().find(|own| own.level.is_some()) else {
+    let Some(level) = levels.clone().find(|constraint| constraint.level.is_some()) else {
         return Vec::new();
     };
     let moving = (model.surfaces.iter())
-        .filter_map(|own| Some((own, own.reset.as_ref()?)))
+        .filter_map(|surface| Some((surface, surface.reset.as_ref()?)))
         .filter(|(_, reset)| reset.moves());
     let mistake = |(surface, reset): (&Surface, &Reset)| {
         let (name, level) = (&surface.name.display, &level.name.display);
@@ -73,7 +75,7 @@ struct Landings<'l> {
 }
 
 impl Landings<'_> {
-    /// What is wrong with the velocities after it, and what to write, if that can be told.
+    /// Violation by the velocities after the reset, and advice, if known.
     fn check_velocity(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
         let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
         let residual = residual(model, a);
@@ -123,9 +125,13 @@ impl Landings<'_> {
 
 /// `eta(qdot) + eta_0` of a constraint.
 fn residual(model: &mut Model, constraint: usize) -> ExprId {
-    let velocities: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
-    let own = &model.constraints[constraint];
-    let (form, mut terms) = (own.form.clone(), vec![own.affine]);
+    let velocities: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.qdot)
+        .collect();
+    let declared = &model.constraints[constraint];
+    let (form, mut terms) = (declared.form.clone(), vec![declared.affine]);
     for (entry, symbol) in form.into_iter().zip(velocities) {
         let velocity = model.pool.variable(symbol);
         terms.push(model.pool.mul(entry, velocity));

@@ -1,10 +1,11 @@
 //! Closed leaves on which no density is single-valued.
 //!
-//! A density in closed form that is 0 or infinite where a function `f` vanishes has `X(f) = 0` there for all fields of D: the
-//! surface `f = 0` is made of leaves of the hull of D. Where the hull has one dimension less than Q it is one leaf. Every
-//! density, regular or not, grows on a loop in it by the same factor, as the growth is the integral of demands that are regular.
-//! A circle of an angle that `f` does not contain is such a loop. That `f` vanishes somewhere, once, is certified by
-//! enclosures of `f` and of its derivative; that the growth is not 0 by one of the growth over all places where the zero may be.
+//! A density in closed form that is 0 or infinite where a function `f` vanishes has `X(f) = 0` there for all fields of D:
+//! the surface `f = 0` consists of leaves of the hull of D. If the hull has one dimension less than Q, the surface is one
+//! leaf. Every density, regular or not, grows on a loop in it by the same factor, because the growth is the integral of
+//! regular demands. A circle of an angle that `f` does not contain is such a loop. Enclosures of `f` and of its derivative
+//! certify that `f` has a simple zero. An enclosure of the growth over all possible places of the zero certifies that the
+//! growth is not 0.
 
 use dalembert_expr::{Domain, ExprId, Interval, JetSpace, Jets, Reals, SymbolId, Zeros};
 
@@ -20,7 +21,7 @@ use crate::model::{Model, Topology};
 
 /// Halvings of a segment on which a function changes its sign: to the last digit.
 const BISECTIONS: usize = 200;
-/// The part of a coordinate around a zero in which the derivative must keep its sign.
+/// Relative size of the neighbourhood of a zero in which the derivative must keep its sign.
 const AROUND: f64 = 1e-7;
 
 /// The growth on a closed leaf where a density in closed form is singular, if one is found.
@@ -66,7 +67,7 @@ fn regular_there(model: &Model, problem: &Problem, sample: &Sample, seed: u64) -
     decide_local_in(&model.pool, problem, &frame.dependent, seed).ok()
 }
 
-/// A configuration where a function has a simple zero, but for one coordinate, and the range of that.
+/// Configuration at which a function has a simple zero, except for one coordinate, and the range of that coordinate.
 fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, Domain)> {
     let domain = domain(model, id);
     let slopes: Vec<ExprId> = domain
@@ -109,7 +110,7 @@ fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, 
     Some((sample, vec![zero]))
 }
 
-/// A zero with nine decimals, if it is one.
+/// A zero with nine decimals, if such a zero exists.
 fn shortened(model: &Model, id: ExprId, place: Vec<(SymbolId, f64)>) -> Vec<(SymbolId, f64)> {
     // Adding 0 takes the sign off a zero.
     let short = |x: f64| (x * 1e9).round() / 1e9 + 0.0;
@@ -125,13 +126,13 @@ fn shortened(model: &Model, id: ExprId, place: Vec<(SymbolId, f64)>) -> Vec<(Sym
 
 fn value(model: &Model, id: ExprId, place: &[(SymbolId, f64)]) -> f64 {
     let value = |symbol: SymbolId| {
-        let found = place.iter().find(|(own, _)| *own == symbol);
+        let found = place.iter().find(|(known, _)| *known == symbol);
         found.map_or(0.0, |(_, x)| *x)
     };
     model.pool.eval(&[id], &value)[0]
 }
 
-/// Where a function changes its sign on the segment between two points.
+/// Point on the segment between two points at which a function changes its sign.
 fn bisected(
     model: &Model,
     id: ExprId,

@@ -25,7 +25,7 @@ pub struct MomentumDensity {
     pub exponent: Rational,
     /// `k`, the exponent of `det m^{ab}`.
     pub mass_exponent: Rational,
-    /// Where it was certified.
+    /// Place of the certification.
     pub certified: Certified,
 }
 

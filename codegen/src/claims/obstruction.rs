@@ -1,5 +1,5 @@
-//! Why there is no density, in real numbers: a bracket that is a combination of others as a vector field, and the
-//! demand that is not.
+//! Reason for which there is no density, in real numbers: a bracket that is a combination of others as a vector field
+//! while its demand is not the same combination of theirs.
 
 use dalembert_expr::{
     Arithmetic, BallPoint, EnclosedPoint, ExpansionPoint, JetSpace, Jets, Pool, RangePoint,
@@ -17,37 +17,39 @@ use crate::model::Model;
 /// An obstruction at a real point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstruction {
-    /// Where.
+    /// Place of the obstruction.
     pub sample: Sample,
     /// The frame: the name of each generator and its components.
     pub frame: Vec<(String, Vec<f64>)>,
     /// The bracket, `[X2,[X1,X2]]`.
     pub bracket: String,
-    /// Its coefficients in the elements before it, as a vector field; those that are 0 are left out.
+    /// Coefficients of the bracket in the elements before it, as a vector field; zeros are left out.
     pub relation: Vec<(String, f64)>,
-    /// What the bracket demands of the derivative of `G` less what the combination demands.
+    /// Demand of the bracket on the derivative of `G` minus that of the combination.
     pub delta: f64,
     /// The size of what `delta` was computed from.
     pub scale: f64,
-    /// Whether there is an obstruction for certain: by an enclosure of `delta`, or by residues alone.
+    /// True if the obstruction is certain: by an enclosure of `delta`, or by residues alone.
     pub is_certain: bool,
 }
 
 /// Points that are tried.
 const ATTEMPTS: usize = 64;
-/// Series with more monomials are computed in doubles first, and taken from there if `delta` is no smaller part of its scale.
+/// Number of monomials beyond which series are computed in doubles first. The values in doubles are kept if `delta` is
+/// not a small fraction of its scale.
 const LARGE: usize = 200;
 const CLEAR_IN_DOUBLES: f64 = 1e-4;
-/// What doubles enclose to this part of it has the digits that are printed.
+/// Relative radius below which the printed digits are certain.
 const SHARP: f64 = 1e-9;
-/// A combination that may leave more than this part in doubles, or in balls, is none.
+/// Largest relative remainder, in doubles or in balls, of a combination that counts as one.
 const REMAINDER: f64 = 1e-9;
 const REMAINDER_OF_BALLS: f64 = 1e-30;
-/// Vectors whose elimination meets a smaller pivot count as dependent.
+/// Smallest pivot of an elimination; vectors with a smaller one count as dependent.
 const LEAST_PIVOT: f64 = 1e-9;
 
-/// The obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. Where the hull does not span, a
-/// combination of its elements is only known on the branches that residues saw: with roots it must show at all points that are tried.
+/// Obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. If the hull
+/// does not span, a combination of its elements is known only on the branches that residues saw. A density with roots
+/// must then show the obstruction at all points tried.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
     let spans = local.rank == problem.components();
@@ -91,7 +93,7 @@ impl Obstruction {
         obstruction_at(model, problem, local, sample)
     }
 
-    /// The same with numbers of which doubles are sure.
+    /// The same, as numbers that doubles represent with certainty.
     fn with_eight_digits(mut self) -> Self {
         self.delta = eight_digits(self.delta);
         for (_, value) in &mut self.relation {
@@ -140,7 +142,7 @@ struct Question<'q> {
     sample: Sample,
 }
 
-/// What an obstruction is made of.
+/// Parts of an obstruction.
 struct Parts<S> {
     /// The elements of the hull, the demand last.
     elements: Vec<Vec<S>>,
@@ -160,9 +162,9 @@ impl Question<'_> {
         let size = |values: &[f64]| {
             values
                 .iter()
-                .fold(0.0, |size: f64, own| size.max(own.abs()))
+                .fold(0.0, |size: f64, value| size.max(value.abs()))
         };
-        let whole = parts.elements.iter().map(|own| size(own));
+        let whole = parts.elements.iter().map(|element| size(element));
         if size(&parts.rest) > REMAINDER * whole.fold(0.0, f64::max) {
             return None;
         }
@@ -174,17 +176,17 @@ impl Question<'_> {
         })
     }
 
-    /// The obstruction in ranges, certain if that of `delta` excludes 0 and all that is shown is sharp; a combination may leave a part `least` of
-    /// the size of vectors.
+    /// Obstruction in ranges. It is certain if `delta` excludes 0 and all shown values are sharp. A combination may
+    /// leave a remainder of `least` times the size of the vectors.
     fn enclosed<P: RangePoint>(&self, least: f64) -> Option<Obstruction> {
         let parts = self.parts(&mut P::of(&self.sample.point()))?;
         let sizes = |ranges: &[Number<P>]| {
             let sizes = ranges
                 .iter()
-                .map(|own| P::nearest(*own).abs() + P::radius(*own));
+                .map(|range| P::nearest(*range).abs() + P::radius(*range));
             sizes.fold(0.0, f64::max)
         };
-        let whole = parts.elements.iter().map(|own| sizes(own));
+        let whole = parts.elements.iter().map(|element| sizes(element));
         // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
         let may_vanish = |range: &Number<P>| P::sign(*range).is_none();
         let is_combination = parts.rest.iter().all(may_vanish)
@@ -194,11 +196,14 @@ impl Question<'_> {
         }
         let is_seen = |coefficient| P::sign(coefficient).is_some();
         let is_sharp = |range| P::radius(range) <= SHARP * P::nearest(range).abs();
-        let mut seen = parts.relation.iter().filter(|(_, own)| is_seen(*own));
+        let mut seen = parts
+            .relation
+            .iter()
+            .filter(|(_, coefficient)| is_seen(*coefficient));
         Some(Obstruction {
             is_certain: is_seen(parts.delta)
                 && is_sharp(parts.delta)
-                && seen.all(|(_, own)| is_sharp(*own)),
+                && seen.all(|(_, coefficient)| is_sharp(*coefficient)),
             ..self.obstruction(&parts, P::nearest, is_seen)
         })
     }
@@ -242,10 +247,18 @@ impl Question<'_> {
         let hull = &self.local.hull;
         let drift = drift(self.problem, &self.model.pool);
         let names = names(hull, hull.elements.len(), drift);
-        let numbers = |values: &[S]| values.iter().map(|own| nearest(*own)).collect::<Vec<_>>();
+        let numbers = |values: &[S]| {
+            values
+                .iter()
+                .map(|value| nearest(*value))
+                .collect::<Vec<_>>()
+        };
         let sizes = |values: &[S]| numbers(values).into_iter().map(f64::abs);
-        let largest = parts.elements.iter().flat_map(|own| sizes(own));
-        let seen = parts.relation.iter().filter(|(_, own)| is_seen(*own));
+        let largest = parts.elements.iter().flat_map(|element| sizes(element));
+        let seen = parts
+            .relation
+            .iter()
+            .filter(|(_, coefficient)| is_seen(*coefficient));
         let generators = hull.elements.iter().enumerate();
         let generators = generators.filter(|(_, origin)| matches!(origin, Origin::Generator(_)));
         let frame = generators.map(|(element, _)| {
@@ -257,7 +270,7 @@ impl Question<'_> {
             sample: self.sample.clone(),
             bracket: names[hull.obstruction.unwrap_or_default()].clone(),
             relation: seen
-                .map(|(element, own)| (names[*element].clone(), nearest(*own)))
+                .map(|(element, coefficient)| (names[*element].clone(), nearest(*coefficient)))
                 .collect(),
             delta: nearest(parts.delta),
             scale: largest.fold(0.0, f64::max) + sizes(&parts.demands).sum::<f64>(),
@@ -275,19 +288,19 @@ fn remainder<A: Arithmetic>(
 ) -> Vec<A::Scalar> {
     let mut rest = target.to_vec();
     for (vector, coefficient) in vectors.iter().zip(coefficients) {
-        for (own, entry) in rest.iter_mut().zip(*vector) {
-            *own = field.sub(*own, field.mul(*coefficient, *entry));
+        for (entry_left, entry) in rest.iter_mut().zip(*vector) {
+            *entry_left = field.sub(*entry_left, field.mul(*coefficient, *entry));
         }
     }
     rest
 }
 
-/// A number rounded to eight digits, of which doubles are sure.
+/// Number rounded to eight digits, which doubles represent with certainty.
 fn eight_digits(value: f64) -> f64 {
     format!("{value:.7e}").parse().unwrap_or(value)
 }
 
-/// Whether the first generator is the drift.
+/// True if the first generator is the drift.
 fn drift(problem: &Problem, pool: &Pool) -> bool {
     problem.has_drift(pool)
 }
@@ -303,7 +316,8 @@ pub(super) fn elements_at<P: ExpansionPoint>(
     let space = JetSpace::new(problem.variables.len(), hull.growth.len(), usize::MAX)?;
     let jets = Jets::new(point.field(), &space);
     let elements = elements_in(pool, problem, &jets, (hull, dependent), point)?;
-    let values = |element: &Demand<P::Field>| element.iter().map(|own| jets.value(own)).collect();
+    let values =
+        |element: &Demand<P::Field>| element.iter().map(|entry| jets.value(entry)).collect();
     Some(elements.iter().map(values).collect())
 }
 

@@ -72,7 +72,7 @@ pub(super) fn rational_function(
         let factor = field.mul(missing, field.inv(value(field, &whole, *x))?);
         let minus: Vec<u64> = whole
             .iter()
-            .map(|own| field.neg(field.mul(factor, *own)))
+            .map(|coefficient| field.neg(field.mul(factor, *coefficient)))
             .collect();
         interpolant = sub(field, &interpolant, &minus);
         whole = mul(field, &whole, &[field.neg(*x), 1]);
@@ -92,9 +92,9 @@ pub(super) fn rational_function(
 
 /// The value of a polynomial.
 pub(super) fn value(field: Modulus, a: &[u64], x: u64) -> u64 {
-    a.iter()
-        .rev()
-        .fold(0, |sum, own| field.add(field.mul(sum, x), *own))
+    a.iter().rev().fold(0, |sum, coefficient| {
+        field.add(field.mul(sum, x), *coefficient)
+    })
 }
 
 /// The roots in the field, each once, in increasing order.
@@ -121,7 +121,7 @@ fn split_roots(field: Modulus, a: &[u64], shift: u64, roots: &mut Vec<u64>) {
         [] | [_] => {}
         [constant, slope] => {
             let inverse = field.inv(*slope);
-            roots.extend(inverse.map(|own| field.neg(field.mul(own, *constant))));
+            roots.extend(inverse.map(|inverse| field.neg(field.mul(inverse, *constant))));
         }
         _ => {
             let half = (field.prime() - 1) / 2;
@@ -169,7 +169,10 @@ mod tests {
     fn roots_are_found_each_once() {
         for expected in [vec![], vec![7], vec![0, 3], vec![1, 2, 3, 4, 5, 60]] {
             let found = roots(FIELD, &product(&expected));
-            let expected: Vec<u64> = expected.iter().map(|own| FIELD.integer(*own)).collect();
+            let expected: Vec<u64> = expected
+                .iter()
+                .map(|integer| FIELD.integer(*integer))
+                .collect();
             assert_eq!(found, expected);
         }
         assert_eq!(roots(FIELD, &product(&[2, 2, 5])), [2, 5]);

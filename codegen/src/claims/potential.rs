@@ -1,4 +1,4 @@
-//! The logarithm of a density in closed form: what it may be made of, and how it is written.
+//! Logarithm of a density in closed form: its possible terms, and its notation.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
 
@@ -37,27 +37,27 @@ impl Term {
 /// The logarithm of a density: a linear combination of terms with coefficients free of coordinates.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Potential {
-    /// Coefficients and what they multiply; empty for the density 1.
+    /// Coefficients and their terms; empty for the density 1.
     pub terms: Vec<(ExprId, Term)>,
 }
 
 /// Terms that may occur.
 #[derive(Debug)]
 pub(super) struct Candidates {
-    /// Those that are single-valued and finite wherever metric and constraints are regular.
+    /// Terms that are single-valued, and finite wherever metric and constraints are regular.
     regular: Vec<Term>,
     /// Multiples of angles.
     angles: Vec<Term>,
-    /// Single-valued ones that may be infinite where the model is regular.
+    /// Single-valued terms that may be infinite where the model is regular.
     singular: Vec<Term>,
 }
 
-/// Which terms are allowed.
+/// Set of terms that are allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Allowed {
-    /// Those that are regular.
+    /// Regular terms.
     Regular,
-    /// Those that are single-valued.
+    /// Single-valued terms.
     SingleValued,
     /// All of them.
     All,
@@ -72,11 +72,12 @@ impl Candidates {
         let is_angle = |symbol: &SymbolId| {
             coordinates
                 .iter()
-                .any(|own| own.q == *symbol && own.topology == Topology::Angle)
+                .any(|coordinate| coordinate.q == *symbol && coordinate.topology == Topology::Angle)
         };
         let (angles, lines): (Vec<_>, Vec<_>) = symbols.iter().partition(|s| is_angle(s));
-        let [angles, lines] = [angles, lines].map(|own| {
-            own.into_iter()
+        let [angles, lines] = [angles, lines].map(|symbols| {
+            symbols
+                .into_iter()
                 .map(|s| pool.variable(s))
                 .collect::<Vec<_>>()
         });
@@ -150,7 +151,7 @@ pub fn potential_text(pool: &Pool, potential: &Potential) -> String {
         if !number.abs().is_one() {
             factors.push(number.abs().to_string());
         }
-        factors.extend(rest.map(|own| factor_text(pool, own)));
+        factors.extend(rest.map(|rest| factor_text(pool, rest)));
         factors.push(term_text(pool, *term));
         text += &factors.join("*");
     }
@@ -160,7 +161,7 @@ pub fn potential_text(pool: &Pool, potential: &Potential) -> String {
     }
 }
 
-/// A number times the rest, if there is any.
+/// Product of a number and the remaining factors, if there are any.
 fn number_and_rest(pool: &Pool, id: ExprId) -> (Rational, Option<ExprId>) {
     match pool.as_number(id) {
         Some(number) => (number.clone(), None),

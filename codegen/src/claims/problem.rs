@@ -1,4 +1,4 @@
-//! What the density of a model depends on: metric, constraints, and how its forces depend on velocities.
+//! Ingredients of the density of a model: metric, constraints, and the dependence of its forces on velocities.
 
 use dalembert_expr::{ExprId, Node, Pool, SymbolId, Verdict};
 
@@ -59,8 +59,16 @@ impl Problem {
             .iter()
             .map(|constraint| constraint.affine)
             .collect();
-        let mut symbols: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
-        let velocities: Vec<_> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let mut symbols: Vec<_> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .collect();
+        let velocities: Vec<_> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .collect();
         let friction = friction(model, derivation, &velocities);
         let coordinates = symbols.len();
         symbols.push(model.time);
@@ -78,24 +86,28 @@ impl Problem {
         problem
     }
 
-    /// Finds out how the divergence of forces that are not quadratic depends on the velocities.
+    /// Determines the dependence of the divergence of forces that are not quadratic on the velocities.
     fn examine_forces(&mut self, model: &mut Model, derivation: &Derivation) {
-        let is_open = |own: &Friction| own.dependence == Dependence::Unknown;
+        let is_open = |friction: &Friction| friction.dependence == Dependence::Unknown;
         if !self.friction.as_ref().is_some_and(is_open) {
             return;
         }
         let seed = seed_of(&model.snake_name);
         let dynamics = Dynamics::of(model, derivation);
         let found = dependence(model, self, &dynamics, seed);
-        // What is linear is known from its derivatives at rest, if rest is on D and they exist there.
+        // The derivatives at rest determine a linear force, if rest is on D and they exist there.
         let has_rest = self
             .affine
             .iter()
-            .all(|own| model.pool.is_syntactic_zero(*own));
+            .all(|entry| model.pool.is_syntactic_zero(*entry));
         let Some(friction) = &mut self.friction else {
             return;
         };
-        let velocities: Vec<_> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let velocities: Vec<_> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .collect();
         let is_known = has_rest && friction.is_smooth_at_rest(&model.pool, &velocities);
         friction.dependence = match found {
             Dependence::Linear if !is_known => Dependence::Unknown,
@@ -105,7 +117,7 @@ impl Problem {
 
     /// `dF_i/dqdot^j` of all forces, as far as they are not 0.
     pub(super) fn force_slopes(&self) -> impl Iterator<Item = ExprId> {
-        let entries = self.friction.iter().flat_map(|own| &own.entries);
+        let entries = self.friction.iter().flat_map(|friction| &friction.entries);
         entries.map(|(_, slope)| *slope)
     }
 
@@ -153,12 +165,13 @@ impl Problem {
     /// [`Undecided::Forces`].
     pub(super) fn check_forces(&self) -> Result<(), Undecided> {
         match &self.friction {
-            Some(own) if own.dependence != Dependence::Linear => Err(Undecided::Forces),
+            Some(friction) if friction.dependence != Dependence::Linear => Err(Undecided::Forces),
             _ => Ok(()),
         }
     }
 
-    /// A state from which steps show that the divergence of the forces is not linear in the velocities, with what is seen there.
+    /// State from which steps show that the divergence of the forces is not linear in the velocities, with the values
+    /// seen there.
     pub(super) fn curved(&self) -> Option<(&Sample, &[(String, f64)])> {
         match &self.friction.as_ref()?.dependence {
             Dependence::Curved(sample, values) => Some((sample, values)),
@@ -176,7 +189,7 @@ impl Problem {
         (0..model.parameters.len()).filter(occurs).collect()
     }
 
-    /// Whether time occurs.
+    /// True if time occurs.
     pub(super) fn is_time_dependent(&self) -> bool {
         self.symbols.len() > self.coordinates
     }
@@ -203,7 +216,8 @@ impl Problem {
         roots
     }
 
-    /// Whether the motion on D has a part that does not vanish with the velocities, or the volume a rate at rest.
+    /// True if the motion on D has a part that does not vanish with the velocities, or if the volume has a rate at
+    /// rest.
     pub fn has_drift(&self, pool: &Pool) -> bool {
         self.is_time_dependent()
             || self.friction.is_some()
@@ -226,7 +240,8 @@ impl Friction {
     }
 }
 
-/// Whether velocities stand in sums, products and integer powers alone: `abs(v)*v` is smooth in pieces and none of this.
+/// True if velocities occur in sums, products and integer powers alone. `abs(v)*v` is smooth in pieces only, and does
+/// not qualify.
 fn is_rational(pool: &Pool, value: ExprId, velocities: &[SymbolId]) -> bool {
     let parts = pool.reachable(&[value]);
     parts.iter().all(|id| match pool.node(*id) {
@@ -268,7 +283,7 @@ fn friction(
     Some(Friction {
         at_rest,
         slope,
-        entries: entries.map(|own| (own.index, own.value)).collect(),
+        entries: entries.map(|entry| (entry.index, entry.value)).collect(),
         dependence: match is_quadratic {
             true => Dependence::Linear,
             false => Dependence::Unknown,

@@ -76,7 +76,7 @@ pub(super) fn has_no_period(
     };
     // An image may have another sign pattern of absolute values than its point; those of hidden squares are met at random.
     let branches = branches_of(&model.pool, &roots, &profile, &points);
-    if !branches.is_some_and(|own| own.is_single()) {
+    if !branches.is_some_and(|branches| branches.is_single()) {
         return false;
     }
     let circle = Circle {
@@ -126,9 +126,9 @@ impl Circle<'_> {
                 let Some((point, sum)) = known.get(k) else {
                     return false;
                 };
-                let moved = match map.iter().all(|(_, own)| *own == STAYS) {
+                let moved = match map.iter().all(|(_, turn)| *turn == STAYS) {
                     true => Some(*sum),
-                    false => image(model, point, map).and_then(|own| self.summed(turns, &own)),
+                    false => image(model, point, map).and_then(|image| self.summed(turns, &image)),
                 };
                 moved.is_some_and(|moved| point.modulus().add(*sum, moved) == 0)
             })

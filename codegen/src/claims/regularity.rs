@@ -20,10 +20,10 @@ use super::problem::Problem;
 use super::sample::{ATTEMPTS, sample, uses};
 use crate::model::{Assumption, Model, Topology};
 
-/// Why a singular density leaves the question open.
+/// Reason for which a singular density leaves the question open.
 pub(super) const SINGULAR: &str =
     "the density found is 0 or infinite at configurations where metric and constraints are regular";
-/// Why a circle without a regular turn does.
+/// Reason for which a circle without a regular turn leaves the question open.
 pub(super) const LEAVES: &str = "a circle leaves the domain where the constraints are regular and forces and Lagrangian have values";
 
 /// Points on a circle.
@@ -38,13 +38,13 @@ const LOW: f64 = 0.1;
 /// Values of coordinates, time and parameters.
 type Values = Vec<(SymbolId, f64)>;
 
-/// Whether the model is regular at any real point; roots and logarithms have residues where they have no real values.
+/// True if the model is regular at any real point; roots and logarithms have residues where they have no real values.
 pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     let roots = problem.roots();
     (0..ATTEMPTS).any(|attempt| {
         let values = sample(model, attempt, uses(&model.pool, &roots)).point_values();
         let geometry = geometry_at(&model.pool, problem, &values, None);
-        geometry.is_some_and(|own| own.demands.iter().all(|own| own.is_finite()))
+        geometry.is_some_and(|geometry| geometry.demands.iter().all(|demand| demand.is_finite()))
     })
 }
 
@@ -57,7 +57,7 @@ pub(super) fn is_regular(
     found: &Potential,
 ) -> bool {
     logarithms(model, problem, local, found)
-        .is_some_and(|terms| terms.into_iter().all(|own| is_never_zero(model, own)))
+        .is_some_and(|terms| terms.into_iter().all(|term| is_never_zero(model, term)))
 }
 
 /// The factors of a density in closed form that may be 0 somewhere.
@@ -70,9 +70,9 @@ pub(super) fn factors_with_zeros(
     let terms = logarithms(model, problem, local, found).unwrap_or_default();
     let mut factors: Vec<ExprId> = terms
         .into_iter()
-        .flat_map(|own| numerators(model, own))
+        .flat_map(|term| numerators(model, term))
         .collect();
-    factors.retain(|own| !is_never_zero(model, *own));
+    factors.retain(|factor| !is_never_zero(model, *factor));
     factors
 }
 
@@ -287,13 +287,13 @@ pub(super) fn restrict(model: &Model, problem: &Problem, global: Global) -> Glob
 
 fn numbers(model: &Model, ids: &[ExprId], values: &Values) -> Vec<f64> {
     let value = |symbol: SymbolId| {
-        let found = values.iter().find(|(own, _)| *own == symbol);
+        let found = values.iter().find(|(known, _)| *known == symbol);
         found.map_or(0.0, |(_, value)| *value)
     };
     model.pool.eval(ids, &value)
 }
 
-/// Whether the constraint mass matrix becomes singular on the way around a circle: its determinant is not negative, so
+/// True if the constraint mass matrix becomes singular on the way around a circle: its determinant is not negative, so
 /// its least value is looked for.
 fn leaves_domain(model: &Model, problem: &Problem, i: usize) -> bool {
     if problem.forms.is_empty() {
@@ -302,20 +302,20 @@ fn leaves_domain(model: &Model, problem: &Problem, i: usize) -> bool {
     let sample = sample(model, 0, uses(&model.pool, &problem.roots()));
     let mass = |angle: f64| {
         let mut values = sample.point_values();
-        let own = values
+        let found = values
             .iter_mut()
             .find(|(symbol, _)| *symbol == model.coordinates[i].q);
-        if let Some((_, value)) = own {
+        if let Some((_, value)) = found {
             *value = angle;
         }
         mass_determinant(model, problem, &values).map_or(0.0, f64::abs)
     };
     let step = TAU / POINTS as f64;
     let values: Vec<f64> = (0..POINTS).map(|k| mass(k as f64 * step)).collect();
-    let largest = values.iter().fold(0.0_f64, |size, own| size.max(*own));
+    let largest = values.iter().fold(0.0_f64, |size, value| size.max(*value));
     (0..POINTS).any(|k| {
-        let [before, own, after] = [POINTS - 1, 0, 1].map(|d| values[(k + d) % POINTS]);
-        let is_low = own <= LOW * largest && own <= before && own <= after;
+        let [before, here, after] = [POINTS - 1, 0, 1].map(|d| values[(k + d) % POINTS]);
+        let is_low = here <= LOW * largest && here <= before && here <= after;
         is_low && least(&mass, k as f64 * step, step) < SMALL * largest
     })
 }
@@ -327,7 +327,7 @@ fn mass_determinant(model: &Model, problem: &Problem, values: &Values) -> Option
     let matrix = |rows: &[Vec<ExprId>]| -> Vec<Vec<Vec<f64>>> {
         let row = |row: &Vec<ExprId>| {
             let numbers = numbers(model, row, values).into_iter();
-            numbers.map(|own| jets.constant(own)).collect()
+            numbers.map(|number| jets.constant(number)).collect()
         };
         rows.iter().map(row).collect()
     };

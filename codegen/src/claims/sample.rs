@@ -42,13 +42,13 @@ impl Sample {
 
     /// The value of a symbol.
     pub(super) fn value(&self, symbol: SymbolId) -> Option<f64> {
-        let position = self.symbols.iter().position(|own| *own == symbol)?;
+        let position = self.symbols.iter().position(|known| *known == symbol)?;
         Some(self.values[position].1)
     }
 
     /// Sets a symbol that the sample has.
     pub(super) fn set(&mut self, symbol: SymbolId, value: f64) {
-        if let Some(position) = self.symbols.iter().position(|own| *own == symbol) {
+        if let Some(position) = self.symbols.iter().position(|known| *known == symbol) {
             self.values[position].1 = value;
         }
     }
@@ -199,9 +199,9 @@ pub(super) fn move_between_knots(
 /// The values of a coordinate at which an argument that is linear in it is 0, in order.
 fn knots(model: &Model, arguments: &[ExprId], symbol: SymbolId, sample: &Sample) -> Vec<f64> {
     let at = |argument: ExprId, place: f64| {
-        let value = |own| match own == symbol {
+        let value = |asked| match asked == symbol {
             true => place,
-            false => sample.value(own).unwrap_or(0.0),
+            false => sample.value(asked).unwrap_or(0.0),
         };
         model.pool.eval(&[argument], &value)[0]
     };
@@ -240,7 +240,7 @@ fn round(value: f64) -> f64 {
     }
 }
 
-/// Whether any expression below `roots` contains a symbol.
+/// True if any expression below `roots` contains a symbol.
 pub(super) fn uses<'a>(pool: &'a Pool, roots: &'a [ExprId]) -> impl Fn(SymbolId) -> bool + 'a {
     move |symbol| roots.iter().any(|root| pool.depends_on(*root, symbol))
 }

@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::regularity::{determinant, is_never_zero};
 use crate::model::Model;
 
-/// Why a declaration that is not smooth leaves the question open.
+/// Reason for which a declaration that is not smooth leaves the question open.
 pub(super) const HOLES: &str = "G was found in no closed form, and G may grow along loops around configurations where the declaration is singular";
 
 /// Points of each branch.

@@ -58,7 +58,7 @@ pub(super) fn check_symmetry(
     }
     let jump = field
         .iter()
-        .find_map(|own| possible_jump(model, *own, &[], &mut |_, _| false));
+        .find_map(|expr| possible_jump(model, *expr, &[], &mut |_, _| false));
     if let Some(place) = jump {
         let text = format!("where it is smooth it is one, but it may jump {place}");
         return (Verdict::Undecided(text), Vec::new());
@@ -220,13 +220,14 @@ fn with_velocities(model: &Model, attempt: usize, roots: &[ExprId]) -> Sample {
     sample
 }
 
-/// What the momentum of the field does, as a sentence; `gauge` is the rate of the Lagrangian along the flow, a total derivative.
+/// Equation of the momentum of the field, as a sentence. `gauge` is the rate of the Lagrangian along the flow, a total
+/// derivative.
 fn momentum_equation(model: &mut Model, field: &[ExprId], gauge: Option<ExprId>) -> String {
     let whole = model.lagrangian.whole;
     let mut momentum = Vec::new();
     for (i, component) in field.iter().enumerate() {
-        let own = model.pool.diff(whole, model.coordinates[i].qdot);
-        momentum.push(model.pool.mul(*component, own));
+        let derivative = model.pool.diff(whole, model.coordinates[i].qdot);
+        momentum.push(model.pool.mul(*component, derivative));
     }
     let mut momentum = model.pool.sum(&momentum);
     let lost = gauge.and_then(|rate| gauge::antiderivative(model, rate));

@@ -26,7 +26,7 @@ impl Step {
     }
 }
 
-/// What a step computes; operands are earlier steps.
+/// Operation of a step; operands are earlier steps.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// A number.
@@ -246,7 +246,10 @@ impl<'t> ExpansionPoint for TracedPoint<'t> {
         argument: ExprId,
         values: &[Step],
     ) -> Option<(Step, Step)> {
-        let residues: Vec<u64> = values.iter().map(|own| self.tracer.residue(*own)).collect();
+        let residues: Vec<u64> = values
+            .iter()
+            .map(|value| self.tracer.residue(*value))
+            .collect();
         let (first, second) = self.point.pair(pool, function, argument, &residues)?;
         let functions = match function {
             Function::Sinh | Function::Cosh => [Function::Sinh, Function::Cosh],

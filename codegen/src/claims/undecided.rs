@@ -1,11 +1,11 @@
-//! Why a question stays open, in words.
+//! Reasons for which a question stays open, in words.
 
 use std::fmt;
 
 /// The largest chance of error with which something is proved.
 pub(super) const LARGEST_CHANCE: f64 = 1e-12;
 
-/// Why there is no answer.
+/// Reason for which there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Undecided {
     /// No point was found where metric, constraints and all expressions are regular.

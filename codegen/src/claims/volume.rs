@@ -20,14 +20,14 @@ use crate::model::Model;
 pub struct Volume {
     /// `G`, but for an integral.
     pub potential: Potential,
-    /// What `G` has besides, where it has no closed form.
+    /// Part of `G` without closed form.
     pub integral: Option<Integral>,
     /// The columns of the determinant in [`Term::DependentDeterminant`], one for each constraint.
     pub minor: Vec<usize>,
     /// The dependent velocities, one for each constraint, in increasing order. The other velocities are the
     /// coordinates of the volume besides the positions.
     pub dependent: Vec<usize>,
-    /// Whether `G` is a function on Q; else it is one of the angles as they are stored, unwrapped.
+    /// True if `G` is a function on Q; else it is one of the angles as they are stored, unwrapped.
     pub is_single_valued: bool,
 }
 
@@ -72,7 +72,11 @@ impl Volume {
         density: ExprId,
         seed: u64,
     ) -> Option<Self> {
-        let velocities: Vec<_> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let velocities: Vec<_> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .collect();
         if model.pool.depends_on_any(density, &velocities) {
             return None;
         }
@@ -124,7 +128,7 @@ fn logarithm(pool: &mut Pool, f: ExprId) -> Vec<(ExprId, Term)> {
         let term = match pool.node(factor) {
             Node::Product(powers) => {
                 let powers = powers.iter().rev();
-                factors.extend(powers.map(|(base, own)| (own * &exponent, *base)));
+                factors.extend(powers.map(|(base, power)| (power * &exponent, *base)));
                 continue;
             }
             Node::Call(Function::Abs, inner) => {
@@ -163,20 +167,20 @@ mod tests {
         let terms = logarithm(&mut pool, f);
         assert_eq!(terms.len(), 5);
         for (coefficient, term) in terms {
-            let (own, is_plain) = match term {
-                Term::Plain(own) => (own, true),
-                Term::Logarithm(own) => (own, false),
+            let (argument, is_plain) = match term {
+                Term::Plain(argument) => (argument, true),
+                Term::Logarithm(argument) => (argument, false),
                 _ => panic!("{term:?}"),
             };
             // exp(10 y) alone would be infinite.
             let value = |symbol| if symbol == symbols[0] { 0.7 } else { 100.0 };
-            let values = pool.eval(&[coefficient, own], &value);
-            let own = if is_plain {
+            let values = pool.eval(&[coefficient, argument], &value);
+            let term_value = if is_plain {
                 values[1]
             } else {
                 values[1].abs().ln()
             };
-            sum += values[0] * own;
+            sum += values[0] * term_value;
         }
         let expected = 3_f64.ln() - 70_f64.ln() / 2.0 + 1000.0 + 99_f64.ln();
         assert!((sum - expected).abs() < 1e-12, "{sum} for {expected}");

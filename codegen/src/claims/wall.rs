@@ -64,7 +64,8 @@ struct Normal<A: Arithmetic> {
 }
 
 impl<A: Arithmetic> Normal<A> {
-    /// Of a metric, the forms of the constraints and `dh`; `None` where the metric or the constraints are singular.
+    /// Geometry of a metric, the forms of the constraints and `dh`; `None` where the metric or the constraints are
+    /// singular.
     fn of(
         jets: &Jets<'_, A>,
         metric: &Matrix<A>,
@@ -94,8 +95,8 @@ impl<A: Arithmetic> Normal<A> {
         let share = solve(jets, mass, along)?.unknowns;
         let mut projected = gradient.clone();
         for (part, dual) in share.iter().zip(&duals) {
-            for (own, w) in projected.iter_mut().zip(dual) {
-                *own = jets.sub(own, &jets.mul(&part[0], w));
+            for (entry, w) in projected.iter_mut().zip(dual) {
+                *entry = jets.sub(entry, &jets.mul(&part[0], w));
             }
         }
         Some(Self {
@@ -105,14 +106,14 @@ impl<A: Arithmetic> Normal<A> {
     }
 }
 
-/// Where the position of a state is.
+/// Position of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// Anywhere: the map is a formula that makes sense off the surface too.
     Anywhere,
-    /// On the surface, where the position solves an equation of degree 2 by its first root.
+    /// The position is on the surface: the first root of an equation of degree 2.
     First,
-    /// By its second root, which may be on another component.
+    /// The position is on the surface: the second root, which may be on another component.
     Second,
 }
 
@@ -134,7 +135,7 @@ impl Wall {
         surface: usize,
         others: &[&Model],
     ) -> Self {
-        let own = &derivation.surfaces[surface];
+        let derived = &derivation.surfaces[surface];
         let law = model.surfaces[surface].law;
         let coefficient = match law {
             Law::Restitution(e) | Law::Newton(e) => e,
@@ -142,10 +143,19 @@ impl Wall {
             _ => model.pool.zero(),
         };
         let mut roots: Vec<ExprId> = model.lagrangian.metric.iter().flatten().copied().collect();
-        roots.extend(derivation.constraints.iter().flat_map(|own| &own.form));
-        roots.extend(&own.form);
-        roots.extend([own.rate, coefficient]);
-        let coordinates: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
+        roots.extend(
+            derivation
+                .constraints
+                .iter()
+                .flat_map(|constraint| &constraint.form),
+        );
+        roots.extend(&derived.form);
+        roots.extend([derived.rate, coefficient]);
+        let coordinates: Vec<_> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .collect();
         Self {
             passage: Passage::of(model, derivation, surface, others),
             roots,
@@ -153,16 +163,20 @@ impl Wall {
             is_affine: derivation
                 .constraints
                 .iter()
-                .any(|own| !model.pool.is_syntactic_zero(own.affine)),
-            gap: own.gap,
-            gap_rate: own.gap_rate,
-            slope: own.form.clone(),
-            rate: own.rate,
-            margins: own.margins.clone(),
+                .any(|constraint| !model.pool.is_syntactic_zero(constraint.affine)),
+            gap: derived.gap,
+            gap_rate: derived.gap_rate,
+            slope: derived.form.clone(),
+            rate: derived.rate,
+            margins: derived.margins.clone(),
             lists: lists(&model.surfaces[surface]),
-            polynomials: polynomials(model, own.gap, &coordinates),
+            polynomials: polynomials(model, derived.gap, &coordinates),
             coordinates,
-            velocities: model.coordinates.iter().map(|own| own.qdot).collect(),
+            velocities: model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.qdot)
+                .collect(),
             constraints: derivation.constraints.len(),
         }
     }
@@ -243,11 +257,11 @@ impl Wall {
         };
         let impulse = jets.mul(&factor, &jets.inverse(&steep)?);
         let after =
-            |(own, along): (&Series<A>, &Series<A>)| jets.sub(own, &jets.mul(&impulse, along));
+            |(before, along): (&Series<A>, &Series<A>)| jets.sub(before, &jets.mul(&impulse, along));
         Some(velocity.iter().zip(&projected).map(after).collect())
     }
 
-    /// By how much the map and the flux through the surface multiply `mu_C`, given the velocities after the impact.
+    /// Factor by which the map and the flux through the surface multiply `mu_C`, given the velocities after the impact.
     pub(super) fn jacobian<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -261,7 +275,7 @@ impl Wall {
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
         let value = |id: ExprId| values[id.index()];
         let (coefficient, moving) = (value(*self.roots.last()?), value(self.rate));
-        let slope: Vec<_> = self.slope.iter().map(|own| value(*own)).collect();
+        let slope: Vec<_> = self.slope.iter().map(|entry| value(*entry)).collect();
         let mut gap_rate = |velocity: &dyn Fn(usize, &mut P) -> Number<P>| {
             let along = |sum, (i, slope): (usize, &Number<P>)| {
                 field.add(sum, field.mul(*slope, velocity(i, point)))
@@ -300,8 +314,8 @@ impl Wall {
 
     /// True if the surface counts where its margins are on these sides of 0.
     fn counts(&self, margins: &[Option<Ordering>]) -> bool {
-        let (own, mut rest) = margins.split_at(self.lists.0);
-        own.iter().all(|side| *side == Some(Ordering::Greater))
+        let (listed, mut rest) = margins.split_at(self.lists.0);
+        listed.iter().all(|side| *side == Some(Ordering::Greater))
             && self.lists.1.iter().all(|&length| {
                 let (other, behind) = rest.split_at(length);
                 rest = behind;
@@ -311,19 +325,23 @@ impl Wall {
 
     /// A coordinate that follows from the others on the surface, and how.
     pub(super) fn solution(&self) -> Option<(SymbolId, ExprId)> {
-        let solved = |own: &Polynomial| Some((own.symbol, own.solution?));
+        let solved = |polynomial: &Polynomial| Some((polynomial.symbol, polynomial.solution?));
         self.polynomials.iter().find_map(solved)
     }
 
-    /// Whether a coordinate that is solved for stands in the argument of a function: residues of the function are drawn
+    /// True if a coordinate that is solved for stands in the argument of a function: residues of the function are drawn
     /// for an argument that is not on the surface. What vanishes for any argument does so there too; of what does not,
     /// they say nothing.
     pub(super) fn hides(&self, pool: &Pool, roots: &[ExprId]) -> bool {
-        let solved: Vec<SymbolId> = self.polynomials.iter().map(|own| own.symbol).collect();
+        let solved: Vec<SymbolId> = self
+            .polynomials
+            .iter()
+            .map(|polynomial| polynomial.symbol)
+            .collect();
         in_arguments(pool, roots, &solved)
     }
 
-    /// Whether there is a coordinate in which every component of the surface is reached.
+    /// True if there is a coordinate in which every component of the surface is reached.
     pub(super) fn is_solved(&self) -> bool {
         !self.polynomials.is_empty()
     }
@@ -377,7 +395,7 @@ impl Wall {
         let field = point.field();
         let values = point.values(&model.pool, &order)?;
         let slopes = self.slope.iter().enumerate();
-        let slopes = slopes.map(|(i, own)| (i, P::nearest(values[own.index()]).abs()));
+        let slopes = slopes.map(|(i, slope)| (i, P::nearest(values[slope.index()]).abs()));
         let (steepest, _) = slopes.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let symbol = self.coordinates[steepest];
         let mut root = P::midpoint(point.symbol(&model.pool, symbol));

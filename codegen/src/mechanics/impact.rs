@@ -44,7 +44,7 @@ pub struct SurfaceForm {
     pub margins: Vec<ExprId>,
     /// The constraints that hold in the moment of an impact only.
     pub instantaneous: Vec<InstantaneousForm>,
-    /// For a wall that stands still, `dh` without common factors that are never zero.
+    /// Direction of `dh` for a wall that stands still, without common factors that are never zero.
     pub ray: Option<Vec<ExprId>>,
     /// The ray of `X^T dh`, where it can be written out.
     pub ray_on_d: Option<Vec<ExprId>>,

@@ -315,7 +315,9 @@ impl<'s> Resolver<'s> {
     fn no_coordinate(&mut self, scalar: &Scalar) -> Option<usize> {
         let text = format!("`{scalar}` is not a coordinate");
         let coordinates = self.symbols.coordinates.iter();
-        let mut names: Vec<&str> = coordinates.map(|own| own.name.field.as_str()).collect();
+        let mut names: Vec<&str> = coordinates
+            .map(|coordinate| coordinate.name.field.as_str())
+            .collect();
         names.dedup();
         let help = match nearest(&scalar.to_string(), names.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),

@@ -1,4 +1,4 @@
-//! Where a fault of a whole expression comes from: the smallest part of what was written that has it.
+//! Origin of a fault of an expression: the smallest written part that has it.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 

@@ -8,7 +8,7 @@ use super::symbols::Meaning;
 use crate::diagnostics::Location;
 use crate::spec::{self, Index, Scalar, Word};
 
-/// What a name introduced by `let` stands for.
+/// Meaning of a name introduced by `let`.
 #[derive(Debug)]
 pub(super) enum Definition<'s> {
     /// One value.

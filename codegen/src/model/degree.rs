@@ -55,7 +55,7 @@ fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
     base.checked_mul(exponent)
 }
 
-/// Whether `expr` is written as a polynomial in `symbols` and has at most this degree: by its structure, or because
+/// True if `expr` is written as a polynomial in `symbols` and has at most this degree: by its structure, or because
 /// its derivative of the next order along a general direction is zero. What is no polynomial as written may not have
 /// a value where the symbols are 0, so that its coefficients cannot be read off.
 pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], degree: u32) -> bool {
@@ -76,7 +76,7 @@ pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], de
     is_zero(pool, derivative)
 }
 
-/// Whether an expression is proved to be zero.
+/// True if an expression is proved to be zero.
 pub(super) fn is_zero(pool: &Pool, expr: ExprId) -> bool {
     pool.is_syntactic_zero(expr) || pool.zero_test(expr) == Verdict::Proved
 }
@@ -90,7 +90,7 @@ pub(super) fn without_hidden_zero(pool: &Pool, expr: ExprId) -> ExprId {
     }
 }
 
-/// Whether an expression has a value wherever others have: each part that may have none by itself is a part of them.
+/// True if an expression has a value wherever others have: each part that may have none by itself is a part of them.
 pub(super) fn is_defined_with(pool: &Pool, expr: ExprId, others: &[ExprId]) -> bool {
     let known = pool.reachable(others);
     let is_known = |id: &ExprId| known.binary_search(id).is_ok();

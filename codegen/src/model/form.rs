@@ -17,18 +17,18 @@ pub(super) struct OneForm {
     pub(super) affine: ExprId,
     /// `f` with `df = eta + eta_0 dt`, where known.
     pub(super) level: Option<ExprId>,
-    /// What vanishes, where that is not linear in the velocities; then the form is its derivative by them.
+    /// Vanishing function that is not linear in the velocities; the form is then its derivative with respect to them.
     pub(super) nonlinear: Option<ExprId>,
-    /// Whether the equation is one of positions: `level = 0` itself is declared.
+    /// True if the equation is one of positions: `level = 0` itself is declared.
     pub(super) is_of_positions: bool,
 }
 
-/// How a constraint may depend on velocities.
+/// Admitted dependence of a constraint on velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dependence {
-    /// Linearly or affinely; what messages call the constraint.
+    /// Linear or affine; the text is the noun for the constraint in messages.
     Linear(&'static str),
-    /// In any way.
+    /// Any dependence.
     Any,
 }
 
@@ -346,7 +346,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Whether `d(..)` or `dot(..)` is written in an expression.
+/// True if `d(..)` or `dot(..)` is written in an expression.
 fn mentions_rate(scalar: &Scalar) -> bool {
     match &scalar.kind {
         ScalarKind::Number(..) | ScalarKind::Name(_) | ScalarKind::Member(..) => false,

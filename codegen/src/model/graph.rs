@@ -1,4 +1,7 @@
-//! A model with modes: each mode a model of its own, and how they hang together.
+//! Model with modes: each mode is a model, and transitions connect them.
+//!
+//! The model as a whole has the coordinates, constraints, surfaces, forces and outputs of all modes, one for each name.
+//! Coordinate `i` of a mode is coordinate `places.coordinates[i]` of the whole.
 //!
 //! Coordinates, constraints, surfaces, forces and outputs of the whole are those of all modes, one for each name; what a mode
 //! calls its coordinate `i` is the coordinate `places.coordinates[i]` of the whole.
@@ -19,83 +22,84 @@ pub struct ModeGraph {
     pub modes: Vec<Mode>,
     /// The coordinates of all modes.
     pub coordinates: Vec<Entry>,
-    /// Their constraints.
+    /// Constraints of all modes.
     pub constraints: Vec<Entry>,
-    /// Their quasi-velocities.
+    /// Quasi-velocities of all modes.
     pub frame: Vec<Entry>,
-    /// Their surfaces, transitions among them.
+    /// Surfaces of all modes, transitions included.
     pub surfaces: Vec<Entry>,
-    /// Their outputs.
+    /// Outputs of all modes.
     pub outputs: Vec<Entry>,
-    /// The names of their forces.
+    /// Names of the forces of all modes.
     pub forces: Vec<Entry>,
 }
 
 /// A mode.
 #[derive(Debug)]
 pub struct Mode {
-    /// Its names, as those of a scene.
+    /// Names, as for a scene.
     pub scene: Scene,
-    /// The mode as a model of its own.
+    /// The mode as a model.
     pub model: Model,
-    /// Where what it declares stands in the whole.
+    /// Indices of its declarations in the whole.
     pub places: Places,
 }
 
-/// Places in the whole, in the order of the mode.
+/// Indices in the whole, in the order of the mode.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
-    /// Of its coordinates.
+    /// Coordinates.
     pub coordinates: Vec<usize>,
-    /// Of its constraints.
+    /// Constraints.
     pub constraints: Vec<usize>,
-    /// Of its surfaces.
+    /// Surfaces.
     pub surfaces: Vec<usize>,
-    /// Of its outputs.
+    /// Outputs.
     pub outputs: Vec<usize>,
 }
 
-/// Something that was declared, with the first mode that has it and its place there.
+/// A declared name, with the first mode that has it and its index there.
 #[derive(Debug, Clone)]
 pub struct Entry {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// The first mode that has it.
     pub mode: usize,
-    /// Its place there.
+    /// Index in that mode.
     pub place: usize,
 }
 
 impl ModeGraph {
-    /// Whether the modes are first-order systems: then all of them are.
+    /// True if the modes are first-order systems. Either all of them are, or none.
     pub fn is_first_order(&self) -> bool {
         self.modes.iter().all(|mode| mode.model.is_first_order())
     }
 }
 
 impl ModeGraph {
-    /// Pairs of transitions between first-order modes that keep the state, at one surface from its two sides: the gap of
-    /// the second, as it is written, is that of the first with the other sign.
+    /// Pairs of transitions between first-order modes that cross one surface in opposite directions and keep the state.
+    /// The gap of the second, as written, is the negative of the first.
     pub fn opposites(&self) -> impl Iterator<Item = [usize; 2]> {
         let leaving = |index: usize| {
             let mode = &self.modes[index];
             let surfaces = mode.model.surfaces.iter().zip(&mode.places.surfaces);
-            surfaces
-                .filter_map(move |(own, place)| Some((mode, own, own.transition.as_ref()?, *place)))
+            surfaces.filter_map(move |(surface, place)| {
+                Some((mode, surface, surface.transition.as_ref()?, *place))
+            })
         };
         let all = (0..self.modes.len())
-            .flat_map(move |index| leaving(index).map(move |own| (index, own)));
+            .flat_map(move |index| leaving(index).map(move |departure| (index, departure)));
         let modes: Vec<_> = all
             .filter(|(_, (mode, _, transition, _))| {
                 mode.model.is_first_order() && transition.map.is_none()
             })
             .collect();
         let mut pairs = Vec::new();
-        for (from, (mode, own, transition, place)) in &modes {
+        for (from, (mode, surface, transition, place)) in &modes {
             let mut pool = mode.model.pool.clone();
-            let opposite = pool.neg(own.gap);
+            let opposite = pool.neg(surface.gap);
             let opposite = pool.text(opposite);
             pairs.extend(
                 modes
@@ -111,7 +115,7 @@ impl ModeGraph {
     }
 }
 
-/// Checks every mode and what they say of each other.
+/// Checks every mode and the relations between modes.
 ///
 /// # Errors
 /// Every mistake, each at the smallest part of the declaration that is wrong.
@@ -139,7 +143,7 @@ pub fn check_modes(declared: &spec::Modes) -> Result<ModeGraph, Diagnostics> {
     Ok(graph)
 }
 
-/// Refuses names that no type and module can go by.
+/// Refuses names that are not valid for a type and a module.
 fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     const MODULES: [&str; 7] = [
         "coordinate",
@@ -151,7 +155,7 @@ fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
         spec::WHOLE,
     ];
     let parameters = declared.modes[0].spec.parameters.iter();
-    for parameter in parameters.filter(|own| own.declared.name.text == "mode") {
+    for parameter in parameters.filter(|parameter| parameter.declared.name.text == "mode") {
         let text = "`mode` is the field that says where a run begins";
         let help = "choose another name";
         diagnostics
@@ -160,19 +164,22 @@ fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
     for (index, mode) in declared.modes.iter().enumerate() {
         let (name, at) = (mode.name.text.as_str(), mode.name.at);
-        let own = spec::camel_case(name);
-        let is_word = own.starts_with(char::is_alphabetic) && !spec::is_rust_keyword(&own);
+        let type_name = spec::camel_case(name);
+        let is_word =
+            type_name.starts_with(char::is_alphabetic) && !spec::is_rust_keyword(&type_name);
         if MODULES.contains(&name) {
             let text = format!("`{name}` cannot be the name of a mode");
             diagnostics.error(at, text).help("choose another name");
-        } else if own == name || !is_word {
+        } else if type_name == name || !is_word {
             let text = format!("`{name}` does not name a type and its module");
             let help =
                 "write a mode in snake case, like `double_support`; its type is `DoubleSupport`";
             diagnostics.error(at, text).help(help);
         } else if let Some(other) = declared.modes[..index].iter().find(|other| {
             let other = spec::camel_case(&other.name.text);
-            other == own || other == format!("{own}Global") || own == format!("{other}Global")
+            other == type_name
+                || other == format!("{type_name}Global")
+                || type_name == format!("{other}Global")
         }) {
             let text = format!(
                 "modes `{}` and `{name}` name the same type",
@@ -183,7 +190,7 @@ fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Refuses modes that no transition leads to, and transitions between modes that there are not.
+/// Refuses modes that no transition enters, and transitions whose source or target mode does not exist.
 fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     let names: Vec<&str> = (declared.modes.iter())
         .map(|mode| mode.name.text.as_str())
@@ -208,8 +215,8 @@ fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
             diagnostics.error(transition.to.at, text).help(help);
         }
         // Those of one mode are told apart with its other surfaces.
-        let is_same = |own: &spec::Transition| {
-            own.name.text == transition.name.text && own.from.text != transition.from.text
+        let is_same = |other: &spec::Transition| {
+            other.name.text == transition.name.text && other.from.text != transition.from.text
         };
         let is_first = !declared.transitions[..index].iter().any(is_same);
         if !is_first {
@@ -245,7 +252,7 @@ fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Refuses mechanical modes beside first-order ones: a run has an energy throughout or not at all.
+/// Refuses mechanical modes next to first-order ones: a run has an energy in all modes or in none.
 fn check_kind(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     let is_first_order = |mode: &&spec::Mode| mode.spec.field.is_some();
     let first = declared.modes.iter().find(is_first_order);
@@ -272,19 +279,19 @@ fn compare_lagrangians(models: &mut [Model]) {
     }
 }
 
-/// Metric, velocity-linear terms and potential as text. Expressions are kept in one order, so that equal texts are equal
-/// functions; two ways of writing one function may count as different.
+/// Metric, velocity-linear terms and potential as text. Expressions have one order, so equal texts are equal functions.
+/// Two ways of writing one function may count as different.
 fn lagrangian_text(model: &Model) -> Vec<String> {
-    let own = &model.lagrangian;
-    let parts = own.metric.iter().flatten().chain(&own.linear);
+    let lagrangian = &model.lagrangian;
+    let parts = lagrangian.metric.iter().flatten().chain(&lagrangian.linear);
     let text = |pool: &Pool, expr| pool.text(expr);
     parts
-        .chain([&own.potential])
+        .chain([&lagrangian.potential])
         .map(|expr| text(&model.pool, *expr))
         .collect()
 }
 
-/// What is noted of all modes is noted once, of the first; a parameter that one mode does not use another may.
+/// Keeps notes that all modes share once, from the first mode. A parameter may be unused in one mode.
 fn keep_common_notes(models: &mut [Model]) {
     let unused = |note: &String| note.ends_with("is not used");
     let lists: Vec<Vec<String>> = models.iter().map(|model| model.notes.clone()).collect();
@@ -312,7 +319,7 @@ fn joined(declared: &spec::Modes, models: Vec<Model>) -> ModeGraph {
                 let entries = model
                     .$list
                     .iter()
-                    .map(|own| (&own.name, own.documentation.as_slice()));
+                    .map(|entry| (&entry.name, entry.documentation.as_slice()));
                 place(&mut graph.$list, index, entries)
             }};
         }
@@ -323,7 +330,10 @@ fn joined(declared: &spec::Modes, models: Vec<Model>) -> ModeGraph {
             outputs: placed!(outputs),
         };
         placed!(frame);
-        let forces = model.forces.iter().map(|own| (&own.name, [].as_slice()));
+        let forces = model
+            .forces
+            .iter()
+            .map(|force| (&force.name, [].as_slice()));
         place(&mut graph.forces, index, forces);
         let scene = Scene {
             name: written.name.text.clone(),
@@ -344,7 +354,7 @@ fn joined(declared: &spec::Modes, models: Vec<Model>) -> ModeGraph {
     graph
 }
 
-/// Adds what is new of a mode's entries; returns the places of all of them.
+/// Adds the entries of a mode that are new; returns the indices of all its entries.
 fn place<'e>(
     list: &mut Vec<Entry>,
     mode: usize,
@@ -352,7 +362,7 @@ fn place<'e>(
 ) -> Vec<usize> {
     let mut places = Vec::new();
     for (place, (name, documentation)) in entries.enumerate() {
-        let known = list.iter().position(|own| own.name == *name);
+        let known = list.iter().position(|entry| entry.name == *name);
         places.push(known.unwrap_or_else(|| {
             list.push(Entry {
                 name: name.clone(),
@@ -377,17 +387,17 @@ fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Dia
         }
     };
     for (mode, written) in graph.modes.iter().zip(&declared.modes) {
-        for (own, place) in mode.model.coordinates.iter().zip(&mode.places.coordinates) {
+        for (coordinate, place) in mode.model.coordinates.iter().zip(&mode.places.coordinates) {
             let entry = &graph.coordinates[*place];
             let other = &graph.modes[entry.mode];
             let first = kind(&other.model, &other.model.coordinates[entry.place]);
-            let second = kind(&mode.model, own);
+            let second = kind(&mode.model, coordinate);
             if first != second {
                 let text = format!(
                     "`{}` is {second} here and {first} in `{}`",
-                    own.name.display, other.scene.name
+                    coordinate.name.display, other.scene.name
                 );
-                let at = written.spec.location(own.item);
+                let at = written.spec.location(coordinate.item);
                 diagnostics.error(at, text).help("choose another name");
             }
         }
@@ -395,18 +405,18 @@ fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Dia
     diagnostics.finish(())
 }
 
-/// Refuses surfaces of one name that are not the same in all modes that have them: events and laws go by their names.
+/// Refuses surfaces that differ between modes but share a name. Events and laws refer to surfaces by name.
 fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     let text = |model: &Model, surface: usize| {
-        let own = &model.surfaces[surface];
-        let conditions = own.conditions.iter();
+        let declared = &model.surfaces[surface];
+        let conditions = declared.conditions.iter();
         let conditions: Vec<(String, bool)> = conditions
-            .map(|own| (model.pool.text(own.margin), own.is_closed))
+            .map(|condition| (model.pool.text(condition.margin), condition.is_closed))
             .collect();
-        let is_otherwise = matches!(own.beside, Beside::Otherwise(_));
+        let is_otherwise = matches!(declared.beside, Beside::Otherwise(_));
         (
-            model.pool.text(own.gap),
+            model.pool.text(declared.gap),
             (conditions, is_otherwise),
             model.law_text(surface),
         )
@@ -416,13 +426,13 @@ fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagn
             let entry = &graph.surfaces[*place];
             let other = &graph.modes[entry.mode];
             if text(&mode.model, surface) != text(&other.model, entry.place) {
-                let own = &mode.model.surfaces[surface];
-                let name = &own.name.display;
+                let declared = &mode.model.surfaces[surface];
+                let name = &declared.name.display;
                 let text = format!(
                     "the surface `{name}` is another one in `{}`",
                     other.scene.name
                 );
-                let at = written.spec.location(own.item);
+                let at = written.spec.location(declared.item);
                 diagnostics.error(at, text).help("choose another name");
             }
         }

@@ -7,7 +7,7 @@ use super::symbols::Meaning;
 use crate::diagnostics::Diagnostics;
 use crate::spec::{Binder, Declared, FAMILY, Indices, STEPS, Scalar, ScalarKind, Spec, Word};
 
-/// What indices of families of modes stand for while they are read.
+/// Resolution of the indices of families of modes while they are read.
 pub const INDICES: Indices = Indices { members, value };
 
 fn members(spec: &Spec, declared: &Declared) -> Result<Vec<usize>, Diagnostics> {

@@ -22,7 +22,7 @@ pub enum Law {
     TotallyPlastic,
     /// `reset { .. }`: the map is [`Surface::reset`](super::Surface::reset).
     Reset,
-    /// Not a law that can be written: the surface leads to another mode, see
+    /// Not a law that can be written. The surface leads to another mode; see
     /// [`Surface::transition`](super::Surface::transition).
     Transition,
 }
@@ -42,7 +42,7 @@ impl Law {
         })
     }
 
-    /// Its name.
+    /// Name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Elastic => "elastic",
@@ -56,7 +56,7 @@ impl Law {
         }
     }
 
-    /// Its coefficient.
+    /// Coefficient.
     pub fn coefficient(self) -> Option<ExprId> {
         match self {
             Self::Restitution(e) | Self::Newton(e) => Some(e),
@@ -70,15 +70,15 @@ impl Law {
     }
 }
 
-/// What the law `reset` sets, by coordinate: expressions of the state before the impact, of parameters and of time.
-/// What has none stays.
+/// Values set by the law `reset`, by coordinate: expressions of the state before the impact, of parameters and of time.
+/// `None` keeps the value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reset {
     /// Positions after the impact.
     pub q: Vec<Option<ExprId>>,
     /// Velocities after the impact.
     pub qdot: Vec<Option<ExprId>>,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
@@ -92,20 +92,26 @@ impl Reset {
         }
     }
 
-    /// Whether a position is set.
+    /// True if a position is set.
     pub fn moves(&self) -> bool {
         self.q.iter().any(Option::is_some)
     }
 
-    /// Everything that is set.
+    /// All values that are set.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.q.iter().chain(&self.qdot).flatten().copied()
     }
 
-    /// What becomes of coordinates and velocities: the symbols that are set, with their values after the impact.
+    /// Replacements of coordinates and velocities: the symbols that are set, with their values after the impact.
     pub fn replacements(&self, coordinates: &[Coordinate]) -> Vec<(SymbolId, ExprId)> {
-        let positions = coordinates.iter().map(|own| own.q).zip(&self.q);
-        let velocities = coordinates.iter().map(|own| own.qdot).zip(&self.qdot);
+        let positions = coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .zip(&self.q);
+        let velocities = coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .zip(&self.qdot);
         positions
             .chain(velocities)
             .filter_map(|(symbol, value)| Some((symbol, (*value)?)))
@@ -122,8 +128,8 @@ impl Reset {
 }
 
 impl Model {
-    /// The law of a surface as it was declared, with the names of its instantaneous constraints:
-    /// `newton(e), instantaneous { no_slip }`.
+    /// Law of a surface as declared, with the names of its instantaneous constraints: `newton(e), instantaneous {
+    /// no_slip }`.
     pub fn law_text(&self, surface: usize) -> String {
         let Surface {
             law,
@@ -141,7 +147,7 @@ impl Model {
             (None, None) => law.name().to_owned(),
         };
         let names: Vec<&str> = (instantaneous.iter())
-            .map(|own| own.name.display.as_str())
+            .map(|constraint| constraint.name.display.as_str())
             .collect();
         match names.is_empty() {
             true => text,

@@ -1,4 +1,4 @@
-//! Stage 2, check: from what was written to a model with every name resolved and nothing derived yet.
+//! Stage 2, check: resolves every name of a declaration and checks every rule of the language. Nothing is derived yet.
 //!
 //! A [`Model`] can only be had from [`check()`], so it satisfies every rule a declaration must: the Lagrangian is
 //! natural, the metric is not degenerate, the constraints are independent, surfaces can be
@@ -67,7 +67,7 @@ pub struct Model {
     pub parameters: Vec<Parameter>,
     /// The Lagrangian and its parts.
     pub lagrangian: Lagrangian,
-    /// The rates of the coordinates of a first-order system, functions of `(t, q)`; its Lagrangian stands for none.
+    /// The rates of the coordinates of a first-order system, functions of `(t, q)`. The Lagrangian has no meaning then.
     pub field: Option<Vec<ExprId>>,
     /// Constraints, families expanded.
     pub constraints: Vec<Constraint>,
@@ -85,7 +85,7 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// The declared scenes; a scene itself has none.
     pub scenes: Vec<Scene>,
-    /// What is used besides forces and surfaces.
+    /// Extras in use besides forces and surfaces.
     pub extras: Extras,
     /// The declared claims.
     pub claims: Vec<Claim>,
@@ -96,7 +96,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Whether the rates of the coordinates were declared, in place of a Lagrangian.
+    /// True if the rates of the coordinates were declared, in place of a Lagrangian.
     pub fn is_first_order(&self) -> bool {
         self.field.is_some()
     }
@@ -104,19 +104,21 @@ impl Model {
     /// The inputs, with their indices among the parameters.
     pub fn inputs(&self) -> impl Iterator<Item = (usize, &Parameter)> {
         let all = self.parameters.iter().enumerate();
-        all.filter(|(_, own)| own.is_input)
+        all.filter(|(_, parameter)| parameter.is_input)
     }
 
-    /// Whether some constraint is not linear in the velocities.
+    /// True if some constraint is not linear in the velocities.
     pub fn is_nonlinear(&self) -> bool {
-        self.constraints.iter().any(|own| own.nonlinear.is_some())
+        self.constraints
+            .iter()
+            .any(|constraint| constraint.nonlinear.is_some())
     }
 }
 
 /// A name as the user knows it, and as Rust and formulas write it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
-    /// As messages and the command line write it: `theta`, `theta.3`.
+    /// Form in messages and on the command line: `theta`, `theta.3`.
     pub display: String,
     /// The Rust field or family: `theta`.
     pub field: String,
@@ -127,7 +129,7 @@ pub struct Name {
 /// A coordinate with its velocity.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -137,7 +139,7 @@ pub struct Coordinate {
     pub q: SymbolId,
     /// The symbol of its velocity; named `dot(x)`.
     pub qdot: SymbolId,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
@@ -160,20 +162,19 @@ pub enum Topology {
 /// A parameter.
 #[derive(Debug, Clone)]
 pub struct Parameter {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// The demand on its values.
     pub assumption: Assumption,
-    /// Its default, an expression without symbols.
+    /// Default, an expression without symbols.
     pub default: Option<ExprId>,
-    /// Whether it is an input: held like a parameter until the caller changes it, at every instant if need be. Inputs come
-    /// after all parameters.
+    /// True for an input: a parameter that the caller may change at every instant. Inputs come after all parameters.
     pub is_input: bool,
-    /// Its symbol.
+    /// Symbol.
     pub symbol: SymbolId,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
@@ -208,14 +209,14 @@ pub struct Lagrangian {
     pub linear: Vec<ExprId>,
     /// `V`, free of velocities.
     pub potential: ExprId,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
 /// `eta(qdot) + eta_0 = 0`.
 #[derive(Debug, Clone)]
 pub struct Constraint {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -228,9 +229,9 @@ pub struct Constraint {
     /// `phi(t, q, qdot)` of a constraint `phi = 0` that is not linear in the velocities. Its form is `dphi/dqdot`, its affine
     /// part `phi - eta(qdot)`, both functions of the velocities.
     pub nonlinear: Option<ExprId>,
-    /// Whether the equation itself is one of positions, `f = 0` with `f` the level.
+    /// True if the equation itself is one of positions, `f = 0` with `f` the level.
     pub is_of_positions: bool,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
@@ -244,46 +245,46 @@ impl Constraint {
 /// A force as a one-form; coefficients may depend on coordinates, velocities and time.
 #[derive(Debug, Clone)]
 pub struct Force {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// N entries.
     pub form: Vec<ExprId>,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
 /// A one-form whose value on the velocity is a quasi-velocity.
 #[derive(Debug, Clone)]
 pub struct QuasiForm {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// N entries.
     pub form: Vec<ExprId>,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// A condition on time and position: that a function of them is positive.
+/// A condition on time and position: a function of them is positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
     /// The function.
     pub margin: ExprId,
-    /// Whether it may be 0, too.
+    /// True if it may be 0, too.
     pub is_closed: bool,
 }
 
-/// How a surface goes with others of the same gap. A list of conditions holds where all of them hold.
+/// Relation of a surface to others with the same gap. A list of conditions holds if all of them hold.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Beside {
-    /// It counts by its own conditions.
+    /// The surface counts by its own conditions.
     #[default]
     Independent,
-    /// `otherwise`: it counts where none of these lists, those of the others, holds.
+    /// `otherwise`: the surface counts where none of these lists, those of the others, holds.
     Otherwise(Vec<Vec<Condition>>),
-    /// The last of several transitions of one gap: where neither its own conditions nor one of these lists holds, a motion
-    /// that comes to the surface ends.
+    /// The last of several transitions with one gap. Where neither its own conditions nor one of these lists holds, a
+    /// motion that reaches the surface ends.
     Last(Vec<Vec<Condition>>),
 }
 
@@ -298,35 +299,39 @@ impl Beside {
 }
 
 impl Surface {
-    /// All functions whose signs say where the surface counts: its own first, then those of the others, list after list.
+    /// All functions whose signs decide where the surface counts: its own first, then those of the others, list after
+    /// list.
     pub fn margins(&self) -> impl Iterator<Item = ExprId> {
         let others = self.beside.others().iter().flatten();
-        self.conditions.iter().chain(others).map(|own| own.margin)
+        self.conditions
+            .iter()
+            .chain(others)
+            .map(|condition| condition.margin)
     }
 }
 
 /// An impact surface `h = 0`; motion is allowed where `h >= 0`.
 #[derive(Debug, Clone)]
 pub struct Surface {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// `h(t, q)`.
     pub gap: ExprId,
-    /// What must hold for the surface to count.
+    /// Conditions under which the surface counts.
     pub conditions: Vec<Condition>,
-    /// What is said of the other surfaces of the same gap.
+    /// Relation to the other surfaces of the same gap.
     pub beside: Beside,
-    /// Its law.
+    /// Law.
     pub law: Law,
     /// The map of the law `reset`.
     pub reset: Option<Reset>,
     /// The mode that is entered here.
     pub transition: Option<Transition>,
-    /// Constraints that hold in the moment of an impact, and while the motion is held by the surface; without levels.
+    /// Constraints that hold at an impact, and while the surface holds the motion; without levels.
     pub instantaneous: Vec<Constraint>,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
@@ -341,7 +346,7 @@ pub struct Initial {
     pub until: Option<ExprId>,
 }
 
-/// What a picture shows.
+/// View of a picture.
 #[derive(Debug, Clone)]
 pub struct View {
     /// The point drawn, two functions of `(t, q)`.
@@ -357,52 +362,52 @@ pub struct View {
 /// A quantity carried to tables and plots.
 #[derive(Debug, Clone)]
 pub struct Output {
-    /// Its name.
+    /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// An expression of coordinates, velocities, parameters, time and [`DerivedSymbols`].
     pub value: ExprId,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
 /// A theorem about the model that its author states.
 #[derive(Debug, Clone)]
 pub struct Claim {
-    /// What is claimed.
+    /// Statement.
     pub statement: Statement,
     /// The claim as written: `conserved: energy`.
     pub text: String,
-    /// Whether an answer that stays open is accepted.
+    /// True if an open answer is accepted.
     pub is_assumed: bool,
-    /// The index of the scene that it is about; the model itself if there is none.
+    /// Index of the scene; `None` for the model itself.
     pub scene: Option<usize>,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// What is claimed; expressions of coordinates, velocities, parameters, time and [`DerivedSymbols`].
+/// Statement of a claim. Its expressions depend on coordinates, velocities, parameters, time and [`DerivedSymbols`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Statement {
-    /// Where a density of the configuration exists.
+    /// Extent to which a density of the configuration exists.
     Existence(Existence),
-    /// This function times `mu_C` is invariant.
+    /// The measure with this factor of `mu_C` is invariant.
     Density(ExprId),
     /// A quantity is conserved, or not.
     Conserved {
         /// The quantity.
         value: ExprId,
-        /// The index of the surface across which it is; along the motion if there is none.
+        /// Index of the surface across which it is conserved; `None` for the motion itself.
         under: Option<usize>,
-        /// Whether it is claimed to be conserved.
+        /// True if the quantity is claimed to be conserved.
         holds: bool,
     },
     /// The flow of this vector field, N components, keeps the Lagrangian and the constraints.
     Symmetry(Vec<ExprId>),
-    /// The motion and all that happens at surfaces keep a differential form.
+    /// The motion and every event at a surface keep a differential form.
     Invariant(ExteriorForm),
-    /// One invariant volume is kept by the motion and by all that happens at surfaces.
+    /// The motion and every event at a surface keep one invariant volume.
     VolumeKept,
     /// Factor of the volume at a surface.
     Factor {
@@ -411,14 +416,14 @@ pub enum Statement {
         /// The index of the surface.
         under: usize,
     },
-    /// The motion and all that happens at surfaces keep the symplectic form.
+    /// The motion and every event at a surface keep the symplectic form.
     Symplectic,
-    /// The energy after an impact at the surface of an index is not above that before.
+    /// The energy after an impact at the surface of this index is not above that before it.
     EnergyNotIncreasing(usize),
 }
 
 impl Statement {
-    /// What it is about.
+    /// Expressions of the statement.
     pub fn expressions(&self) -> Vec<ExprId> {
         match self {
             Self::Existence(_)
@@ -433,7 +438,7 @@ impl Statement {
         }
     }
 
-    /// The index of the surface that it names.
+    /// Index of the surface that it names.
     pub fn surface(&self) -> Option<usize> {
         match self {
             Self::Conserved { under, .. } => *under,
@@ -442,7 +447,7 @@ impl Statement {
         }
     }
 
-    /// The same about a surface of another index.
+    /// The same statement about a surface of another index.
     pub(crate) fn at_surface(self, surface: usize) -> Self {
         match self {
             Self::Conserved { value, holds, .. } => Self::Conserved {

@@ -17,8 +17,8 @@ impl Resolver<'_> {
         self.check_turns(written, scope, expr, is_periodic);
     }
 
-    /// As [`Resolver::check_periodic`], of an expression that is an angle itself: a turn of an angle makes a number of
-    /// whole turns of it.
+    /// Same as [`Resolver::check_periodic`], for an expression that is an angle itself: one turn of an angle changes it
+    /// by a whole number of turns.
     pub(super) fn check_periodic_angle(
         &mut self,
         written: &[&Scalar],
@@ -133,7 +133,7 @@ fn parent_of<'a>(whole: &'a Scalar, part: &Scalar) -> Option<&'a Scalar> {
         .find_map(|candidate| parent_of(candidate, part))
 }
 
-/// Those of `angles` that occur otherwise than as integer multiples inside of `sin`, `cos` or `tan`.
+/// Members of `angles` that occur other than as integer multiples inside of `sin`, `cos` or `tan`.
 fn bare_symbols(pool: &Pool, expr: ExprId, angles: &[SymbolId]) -> Vec<SymbolId> {
     let mut bare = Vec::new();
     if !pool.depends_on_any(expr, angles) {
@@ -187,7 +187,7 @@ fn after_a_turn(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> ExprId {
     pool.substitute(expr, &[(angle, turned)])
 }
 
-/// By how many turns `expr` grows in a turn of `angle`, as far as a point shows.
+/// Number of turns by which `expr` grows in a turn of `angle`, from its value at a point.
 fn turns(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> i64 {
     let after = after_a_turn(pool, expr, angle);
     let values = pool.eval(&[after, expr], &|symbol| point(symbol, 0));
@@ -195,7 +195,7 @@ fn turns(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> i64 {
     ((values[0] - values[1]) / core::f64::consts::TAU).round() as i64
 }
 
-/// Whether `expr` does not change when `angle` grows by `2*pi`: proved, or seen at several points.
+/// True if `expr` does not change when `angle` grows by `2*pi`: proved, or seen at several points.
 fn is_periodic(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> bool {
     let after = after_a_turn(pool, expr, angle);
     let change = pool.sub(after, expr);
@@ -209,7 +209,7 @@ fn point(symbol: SymbolId, seed: u32) -> f64 {
     0.3 + spread.fract()
 }
 
-/// Whether two expressions have the same value at a point, up to rounding; points outside their domain say nothing.
+/// True if two expressions have the same value at a point, up to rounding; points outside their domain say nothing.
 fn agrees_at(pool: &Pool, left: ExprId, right: ExprId, seed: u32) -> bool {
     let values = pool.eval(&[left, right], &|symbol| point(symbol, seed));
     let [left, right] = values.as_slice() else {

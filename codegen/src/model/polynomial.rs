@@ -53,7 +53,7 @@ impl Polynomial {
         left
     }
 
-    /// Whether there is a real root strictly between two numbers, or beyond all numbers where there is none.
+    /// True if there is a real root strictly between two numbers, or beyond all numbers where there is none.
     pub(super) fn has_root_between(&self, low: Option<&Rational>, high: Option<&Rational>) -> bool {
         if self.degree() == 0 {
             return false;

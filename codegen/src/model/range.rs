@@ -28,7 +28,7 @@ impl Range {
         }
     }
 
-    /// Whether every value lies in `[low, high]`.
+    /// True if every value lies in `[low, high]`.
     pub(super) fn is_within(self, low: f64, high: f64) -> bool {
         low <= self.low && self.high <= high
     }
@@ -77,7 +77,7 @@ impl Range {
         )
     }
 
-    /// Of an increasing function.
+    /// Image under an increasing function.
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Self {
             low: f(self.low),

@@ -49,7 +49,7 @@ impl Scope {
         self.locals.pop();
     }
 
-    /// What `name` stands for here.
+    /// Meaning of `name` in this scope.
     pub(super) fn get(&self, name: &str) -> Option<Value> {
         self.locals
             .iter()
@@ -64,12 +64,12 @@ impl Scope {
     }
 }
 
-/// Where an expression stands, as far as it decides which derived quantities it may name.
+/// Section of an expression, as far as it decides which derived quantities the expression may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DerivedNames {
-    /// Where none may be named.
+    /// None.
     Nowhere,
-    /// In `outputs`: all.
+    /// In `outputs`: all of them.
     Outputs,
     /// In `claims`: `energy` and `momentum`.
     Claims,
@@ -89,13 +89,13 @@ pub(super) struct Resolver<'s> {
     pub(super) calls: BTreeMap<(&'s str, Vec<ExprId>), Option<Value>>,
     /// The symbols of multipliers by the display name of their constraint.
     pub(super) multipliers: BTreeMap<String, SymbolId>,
-    /// Which derived quantities may be named.
+    /// Derived quantities that may be named.
     pub(super) derived_names: DerivedNames,
     /// The fields `partial(x)` of the coordinates, where they may be named.
     pub(super) partials: Vec<SymbolId>,
     parts: usize,
     depth: usize,
-    /// Where the budget of the pool ended.
+    /// Place at which the budget of the pool ended.
     pub(super) exhausted: Option<Location>,
 }
 
@@ -197,7 +197,7 @@ impl<'s> Resolver<'s> {
         self.within_budget(scalar.at)
     }
 
-    /// What is too large about an expression, and what to do.
+    /// Limit that an expression exceeds, and advice.
     fn beyond_limits(&self, scalar: &Scalar, expr: ExprId) -> Option<(String, &'static str)> {
         if self.pool.number_bits(expr) > NUMBER_BITS {
             return Some((too_long(), FEWER_DIGITS));
@@ -219,7 +219,7 @@ impl<'s> Resolver<'s> {
         })
     }
 
-    /// Whether algebra may go on; the place where it could not is remembered.
+    /// True if algebra may go on; the place where it could not is remembered.
     pub(super) fn within_budget(&mut self, at: Location) -> bool {
         if self.pool.is_exhausted() && self.exhausted.is_none() {
             self.exhausted = Some(at);
@@ -309,7 +309,7 @@ impl<'s> Resolver<'s> {
         Some(self.pool.sum(&levels))
     }
 
-    /// Whether an expression consists of numbers and parameters.
+    /// True if an expression consists of numbers and parameters.
     pub(super) fn is_constant(&self, expr: ExprId) -> bool {
         !self.pool.depends_on_any(expr, &self.symbols.moving())
     }

@@ -7,30 +7,30 @@ use crate::spec::ItemId;
 /// A declared scene: what of the model it uses.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// Its name, which is that of its module of indices: `with_drag`.
+    /// Name of the scene and of its module of indices: `with_drag`.
     pub name: String,
     /// The name of its type: `WithDrag`.
     pub type_name: String,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// What it uses.
+    /// Forces, surfaces and extras in use.
     pub parts: Parts,
-    /// Where it was declared.
+    /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// What a scene uses: indices of forces and surfaces in order of declaration, and the extras.
+/// Forces, surfaces and extras of a scene. Indices are in order of declaration.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Parts {
     /// The forces.
     pub forces: Vec<usize>,
     /// The surfaces.
     pub surfaces: Vec<usize>,
-    /// What it uses besides.
+    /// Extras.
     pub extras: Extras,
 }
 
-/// What a scene uses besides forces and surfaces. The model itself uses all of it.
+/// Extras of a scene besides forces and surfaces. The model itself has all of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Extras {
     /// The return to the constraints after steps.
@@ -42,7 +42,7 @@ pub struct Extras {
 }
 
 impl Extras {
-    /// Those of the model itself.
+    /// Extras of the model itself.
     pub const ALL: Self = Self {
         projection: true,
         volume: true,
@@ -59,15 +59,21 @@ impl Model {
             surfaces,
             extras,
         } = &scene.parts;
-        let claims = self.claims.iter().filter(|own| own.scene == Some(index));
+        let claims = self
+            .claims
+            .iter()
+            .filter(|claim| claim.scene == Some(index));
         Self {
             documentation: scene.documentation.clone(),
-            forces: forces.iter().map(|own| self.forces[*own].clone()).collect(),
+            forces: forces
+                .iter()
+                .map(|force| self.forces[*force].clone())
+                .collect(),
             surfaces: surfaces
                 .iter()
-                .map(|own| self.surfaces[*own].clone())
+                .map(|surface| self.surfaces[*surface].clone())
                 .collect(),
-            claims: claims.map(|own| own.on_surfaces(surfaces)).collect(),
+            claims: claims.map(|claim| claim.on_surfaces(surfaces)).collect(),
             scenes: Vec::new(),
             extras: *extras,
             notes: Vec::new(),
@@ -75,10 +81,13 @@ impl Model {
         }
     }
 
-    /// What a scene uses, in words.
+    /// Forces, surfaces and extras of a scene, in words.
     pub fn used(&self, parts: &Parts) -> String {
-        let forces = parts.forces.iter().map(|own| &self.forces[*own].name);
-        let surfaces = parts.surfaces.iter().map(|own| &self.surfaces[*own].name);
+        let forces = parts.forces.iter().map(|force| &self.forces[*force].name);
+        let surfaces = parts
+            .surfaces
+            .iter()
+            .map(|surface| &self.surfaces[*surface].name);
         let names = forces.chain(surfaces).map(|name| name.display.as_str());
         let Extras {
             projection,
@@ -99,8 +108,8 @@ impl Model {
 
     /// The claims about the model itself.
     pub fn own_claims(&self) -> Vec<Claim> {
-        let own = self.claims.iter().filter(|own| own.scene.is_none());
-        own.cloned().collect()
+        let claims = self.claims.iter().filter(|claim| claim.scene.is_none());
+        claims.cloned().collect()
     }
 }
 
@@ -111,7 +120,7 @@ impl Claim {
         let mut claim = self.clone();
         claim.scene = None;
         if let Some(surface) = claim.statement.surface() {
-            let place = surfaces.iter().position(|own| *own == surface);
+            let place = surfaces.iter().position(|kept| *kept == surface);
             claim.statement = claim.statement.at_surface(place.unwrap_or(surface));
         }
         claim

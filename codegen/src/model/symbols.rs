@@ -8,7 +8,7 @@ use super::latex::{latex, latex_velocity};
 use super::{Coordinate, DerivedSymbols, Name, Parameter};
 use crate::diagnostics::Location;
 
-/// What a name stands for. A family names its members, which are consecutive.
+/// Meaning of a name. A family names its members, which are consecutive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// `const N = 8;`
@@ -52,7 +52,7 @@ pub(super) struct Symbols {
     pub(super) parameters: Vec<Parameter>,
     /// Quantities that are derived later.
     pub(super) derived: DerivedSymbols,
-    /// What each declared name means, and where it was declared.
+    /// Meaning and place of each declared name.
     pub(super) names: BTreeMap<String, (Meaning, Location)>,
 }
 
@@ -98,7 +98,7 @@ impl Symbols {
         differentials
     }
 
-    /// Everything that changes in time, differentials included; the rest are parameters.
+    /// Symbols that change in time, differentials included; the others are parameters.
     pub(super) fn moving(&self) -> Vec<SymbolId> {
         let mut moving = self.positions();
         moving.extend(self.velocities());
@@ -109,13 +109,16 @@ impl Symbols {
         moving
     }
 
-    /// What the caller supplies.
+    /// Symbols that the caller supplies.
     pub(super) fn inputs(&self) -> Vec<SymbolId> {
-        let inputs = self.parameters.iter().filter(|own| own.is_input);
-        inputs.map(|own| own.symbol).collect()
+        let inputs = self
+            .parameters
+            .iter()
+            .filter(|parameter| parameter.is_input);
+        inputs.map(|input| input.symbol).collect()
     }
 
-    /// Where each coordinate goes, and time: the directions of a total time derivative.
+    /// Index of the coordinate that a symbol is. Coordinates and time are the directions of a total time derivative.
     pub(super) fn coordinate_of(&self, symbol: SymbolId) -> Option<usize> {
         self.coordinates
             .iter()

@@ -230,18 +230,22 @@ fn constraints_written_as_a_derivative_keep_their_level() {
 #[test]
 fn equations_of_positions_are_constraints() {
     let model = constrained("circle + t = l^2");
-    let own = &model.constraints[0];
+    let constraint = &model.constraints[0];
     let values = |symbol: SymbolId| 2.0 + symbol.index() as f64;
     let at = |id: ExprId| model.pool.eval(&[id], &values)[0];
     let [x, y, _] = [0, 1, 2].map(|index: usize| values(model.coordinates[index].q));
     let (l, t) = (values(model.parameters[2].symbol), values(model.time));
-    assert!(own.is_of_positions);
-    assert_eq!(own.level.map(at), Some(x * x + y * y + t - l * l));
+    assert!(constraint.is_of_positions);
+    assert_eq!(constraint.level.map(at), Some(x * x + y * y + t - l * l));
     assert_eq!(
-        own.form.iter().map(|entry| at(*entry)).collect::<Vec<_>>(),
+        constraint
+            .form
+            .iter()
+            .map(|entry| at(*entry))
+            .collect::<Vec<_>>(),
         [2.0 * x, 2.0 * y, 0.0]
     );
-    assert_eq!(at(own.affine), 1.0);
+    assert_eq!(at(constraint.affine), 1.0);
     assert!(!constrained("d(circle) = 0").constraints[0].is_of_positions);
 }
 
@@ -263,9 +267,9 @@ fn differences_that_lose_their_digits_are_noted() {
             "P {{ coordinates {{ x; theta: angle; }} parameters {{ k > 0; s; }}
                 lagrangian = (dot(x)^2 + dot(theta)^2)/2 - s*x - ({potential}); }}"
         );
-        let own = model(&source).notes.into_iter();
-        let own = own.filter(|note| note.contains("loses its digits"));
-        own.collect::<Vec<_>>().join("; ")
+        let notes = model(&source).notes.into_iter();
+        let notes = notes.filter(|note| note.contains("loses its digits"));
+        notes.collect::<Vec<_>>().join("; ")
     };
     for (potential, note) in [
         (

@@ -4,18 +4,18 @@ use dalembert_expr::{ExprId, Pool};
 
 use super::{Name, Topology};
 
-/// What happens at a surface that leads to another mode.
+/// Transition at a surface that leads to another mode.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Transition {
     /// The index of the mode that is entered.
     pub enters: usize,
-    /// Its name.
+    /// Name.
     pub mode: String,
     /// The state that it is entered with; where none was declared, what mechanics makes of the state.
     pub map: Option<Map>,
-    /// Whether the surface counts from both sides: the opposite of its gap belongs to a transition of the same mode.
+    /// True if the surface counts from both sides: the opposite of its gap belongs to a transition of the same mode.
     pub has_no_side: bool,
-    /// Whether both modes have the same Lagrangian, so that only constraints and forces change.
+    /// True if both modes have the same Lagrangian, so that only constraints and forces change.
     pub keeps_lagrangian: bool,
 }
 
@@ -32,19 +32,19 @@ pub struct Map {
 }
 
 impl Map {
-    /// Everything that is given.
+    /// All given values.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.q.iter().chain(&self.qdot).copied()
     }
 }
 
 impl Transition {
-    /// Everything that is given.
+    /// All given values.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.map.iter().flat_map(Map::expressions)
     }
 
-    /// What happens, as text: `-> rough`, `-> rough, reset { x = -x; }`.
+    /// Transition as text: `-> rough`, `-> rough, reset { x = -x; }`.
     pub(super) fn text(&self, pool: &Pool) -> String {
         let mut text = format!("-> {}", self.mode);
         let Some(map) = &self.map else {
@@ -63,13 +63,13 @@ impl Transition {
     }
 }
 
-/// What other modes need to know of a mode before it is checked.
+/// Data of a mode that other modes need before it is checked.
 #[derive(Debug, Clone)]
 pub(super) struct Peer {
-    /// Its name.
+    /// Name.
     pub(super) name: String,
     /// Its coordinates.
     pub(super) coordinates: Vec<(Name, Topology)>,
-    /// Whether it is a first-order system.
+    /// True if it is a first-order system.
     pub(super) is_first_order: bool,
 }

@@ -1,4 +1,4 @@
-//! What to say of a name that nothing declares: misspelt, pasted from a paper, or written as in another language.
+//! Advice on names that nothing declares: misspelt, pasted from a paper, or written as in another language.
 
 use super::latex::greek_name;
 use super::resolve::{DerivedNames, Resolver, Scope, Value};
@@ -208,7 +208,7 @@ impl Resolver<'_> {
         Some(help.to_owned())
     }
 
-    /// How a coordinate is written in an expression: its name, or a member of the family.
+    /// Notation of a coordinate in an expression: its name, or a member of the family.
     fn member_or_name(&self, field: &str) -> String {
         match self.symbols.names.get(field) {
             Some((Meaning::Coordinates(..), _)) => format!("{field}[1]"),

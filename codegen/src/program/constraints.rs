@@ -83,7 +83,7 @@ impl<'a> Kernel<'a> {
         self.with_constraints(|builder, ldlt, factors| factors.solve(builder, ldlt, y, s))
     }
 
-    /// As [`Kernel::constraint_solve`] with `b = 0`, for some of the constraints only.
+    /// Same as [`Kernel::constraint_solve`] with `b = 0`, for some of the constraints.
     pub fn partial_solve(&mut self, which: &[usize], s: &[Value]) -> Vec<Value> {
         let factors = self.factor_constraints(which);
         let zero = self.builder.zero();

@@ -1,4 +1,4 @@
-//! From a derivation to the program: one function per item of the contract.
+//! Lowering of a derivation to the program: one function per item of the contract.
 
 use super::jet::{Jet, degree};
 use super::recipes::{constrained, declared, geometry, impact, motion, powers, reduced, volume};

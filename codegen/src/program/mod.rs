@@ -126,7 +126,7 @@ pub enum Guard {
         /// The entry of the matrix.
         diagonal: Value,
     },
-    /// As [`Guard::Constraint`] for the form of a quasi-velocity, else `SingularFrame`.
+    /// Same as [`Guard::Constraint`] for the form of a quasi-velocity; the fault is `SingularFrame`.
     Frame {
         /// Number of the quasi-velocity.
         quasi: usize,
@@ -148,11 +148,11 @@ pub enum Guard {
 }
 
 impl Guard {
-    /// Below this ratio of squared norms two constraint forms count as dependent: the square of
-    /// `4 * 2^-52`, where the projected form consists of rounding errors only.
+    /// Ratio of squared norms below which two constraint forms count as dependent: the square of `4 * 2^-52`, where the
+    /// projected form consists of rounding errors only.
     pub const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
-    /// Below this ratio of a pivot of the constraint mass matrix to its entry the solve loses more than six digits.
+    /// Ratio of a pivot of the constraint mass matrix to its entry below which the solve loses more than six digits.
     pub const LEAST_PIVOT_RATIO: f64 = 1e-6;
 
     /// The values the guard reads.
@@ -269,20 +269,20 @@ pub struct Program {
     pub energy: Function,
     /// `(t, q, qdot) -> f = dL/dq + F`
     pub force: Function,
-    /// In reduced form.
+    /// Functions of the reduced form.
     pub reduced: Option<Reduced>,
     /// Derived quantities at a state, by name: all of them in global form, which also holds off the constraints; in
     /// reduced form those of the frame.
     pub geometry: recipes::Geometry,
-    /// With constraints.
+    /// Functions of constraints.
     pub constrained: Option<Constrained>,
-    /// With surfaces.
+    /// Functions of surfaces.
     pub impacting: Option<Impacting>,
-    /// Where volumes are asked for.
+    /// Functions of the density form, if volumes are asked for.
     pub density: Option<Density>,
-    /// With an invariant volume.
+    /// Functions of an invariant volume.
     pub volume: Option<InvariantVolume>,
-    /// With named forces, what changes the energy.
+    /// Functions of the power of named forces.
     pub powers: Option<Powers>,
     /// The declared outputs: `(t, s) -> values`.
     pub outputs: Option<Function>,

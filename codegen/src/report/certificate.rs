@@ -1,5 +1,5 @@
-//! What claims are about and what their proofs rest on, for a program that checks them: the declaration written out in
-//! coordinates, and each verdict with its grounds.
+//! Certificate of the claims for an independent checker: the declaration in coordinates, and each verdict with its
+//! grounds.
 //!
 //! Expressions are texts of the language: `+ - * / ^`, the functions of `docs/language.md`, names of coordinates and parameters,
 //! velocities `dot(x)`, `energy`, `momentum(x)` and `t`. Nothing here is derived but the density that was found: whoever checks a
@@ -77,22 +77,25 @@ impl Writer<'_> {
     }
 
     fn expressions(&self, ids: &[ExprId]) -> Tree {
-        Tree::list(ids.iter().map(|own| self.expression(*own)))
+        Tree::list(ids.iter().map(|id| self.expression(*id)))
     }
 
     fn optional(&self, id: Option<ExprId>) -> Tree {
-        id.map_or(Tree::Absent, |own| self.expression(own))
+        id.map_or(Tree::Absent, |id| self.expression(id))
     }
 
     fn coordinates(&self) -> Tree {
-        let entry = |own: &Coordinate| {
-            let (kind, low, high) = match own.topology {
+        let entry = |coordinate: &Coordinate| {
+            let (kind, low, high) = match coordinate.topology {
                 Topology::Line => ("line", None, None),
                 Topology::Angle => ("angle", None, None),
                 Topology::Interval { low, high } => ("interval", Some(low), Some(high)),
             };
             Tree::Record(vec![
-                ("name", Tree::text(self.model.pool.symbol_name(own.q))),
+                (
+                    "name",
+                    Tree::text(self.model.pool.symbol_name(coordinate.q)),
+                ),
                 ("kind", Tree::text(kind)),
                 ("low", self.optional(low)),
                 ("high", self.optional(high)),
@@ -102,8 +105,8 @@ impl Writer<'_> {
     }
 
     fn parameters(&self) -> Tree {
-        let entry = |own: &Parameter| {
-            let assumption = match &own.assumption {
+        let entry = |parameter: &Parameter| {
+            let assumption = match &parameter.assumption {
                 Assumption::Finite => Tree::text("finite"),
                 Assumption::Positive => Tree::text("positive"),
                 Assumption::NonNegative => Tree::text("nonnegative"),
@@ -114,10 +117,13 @@ impl Writer<'_> {
                 ]),
             };
             Tree::Record(vec![
-                ("name", Tree::text(self.model.pool.symbol_name(own.symbol))),
+                (
+                    "name",
+                    Tree::text(self.model.pool.symbol_name(parameter.symbol)),
+                ),
                 ("assumption", assumption),
-                ("default", self.optional(own.default)),
-                ("is_input", Tree::Flag(own.is_input)),
+                ("default", self.optional(parameter.default)),
+                ("is_input", Tree::Flag(parameter.is_input)),
             ])
         };
         Tree::list(self.model.parameters.iter().map(entry))
@@ -125,7 +131,7 @@ impl Writer<'_> {
 
     /// `rates` of a first-order system; else `1/2 g(qdot, qdot) + A(qdot) - V` and the forces.
     fn motion(&self) -> Tree {
-        let own = &self.model.lagrangian;
+        let lagrangian = &self.model.lagrangian;
         if let Some(rates) = &self.model.field {
             return Tree::Record(vec![("rates", self.expressions(rates))]);
         }
@@ -133,28 +139,28 @@ impl Writer<'_> {
             .model
             .forces
             .iter()
-            .map(|own| self.expressions(&own.form));
+            .map(|force| self.expressions(&force.form));
         Tree::Record(vec![
             (
                 "metric",
-                Tree::list(own.metric.iter().map(|row| self.expressions(row))),
+                Tree::list(lagrangian.metric.iter().map(|row| self.expressions(row))),
             ),
-            ("linear", self.expressions(&own.linear)),
-            ("potential", self.expression(own.potential)),
+            ("linear", self.expressions(&lagrangian.linear)),
+            ("potential", self.expression(lagrangian.potential)),
             ("forces", Tree::list(forces)),
         ])
     }
 
     fn constraints(&self, constraints: &[Constraint]) -> Tree {
-        let entry = |own: &Constraint| {
+        let entry = |constraint: &Constraint| {
             Tree::Record(vec![
-                ("name", Tree::text(own.name.display.clone())),
-                ("form", self.expressions(&own.form)),
-                ("affine", self.expression(own.affine)),
-                ("nonlinear", self.optional(own.nonlinear)),
+                ("name", Tree::text(constraint.name.display.clone())),
+                ("form", self.expressions(&constraint.form)),
+                ("affine", self.expression(constraint.affine)),
+                ("nonlinear", self.optional(constraint.nonlinear)),
                 (
                     "position",
-                    self.optional(own.level.filter(|_| own.is_of_positions)),
+                    self.optional(constraint.level.filter(|_| constraint.is_of_positions)),
                 ),
             ])
         };
@@ -162,29 +168,40 @@ impl Writer<'_> {
     }
 
     fn surfaces(&self) -> Tree {
-        let entry = |own: &Surface| {
+        let entry = |surface: &Surface| {
             let symbols = self.model.coordinates.iter();
-            let reset = own.reset.as_ref().map(|reset| {
+            let reset = surface.reset.as_ref().map(|reset| {
                 let mut after: Vec<Tree> = Vec::new();
-                for (given, symbol) in reset.q.iter().zip(symbols.clone().map(|own| own.q)) {
+                for (given, symbol) in reset
+                    .q
+                    .iter()
+                    .zip(symbols.clone().map(|coordinate| coordinate.q))
+                {
                     after.push(self.after(*given, symbol));
                 }
-                for (given, symbol) in reset.qdot.iter().zip(symbols.clone().map(|own| own.qdot)) {
+                for (given, symbol) in reset
+                    .qdot
+                    .iter()
+                    .zip(symbols.clone().map(|coordinate| coordinate.qdot))
+                {
                     after.push(self.after(*given, symbol));
                 }
                 Tree::List(after)
             });
-            let margins = own.conditions.iter().map(|own| self.expression(own.margin));
+            let margins = surface
+                .conditions
+                .iter()
+                .map(|condition| self.expression(condition.margin));
             Tree::Record(vec![
-                ("name", Tree::text(own.name.display.clone())),
-                ("gap", self.expression(own.gap)),
+                ("name", Tree::text(surface.name.display.clone())),
+                ("gap", self.expression(surface.gap)),
                 ("when", Tree::list(margins)),
-                ("law", Tree::text(own.law.name())),
-                ("coefficient", self.optional(own.law.coefficient())),
+                ("law", Tree::text(surface.law.name())),
+                ("coefficient", self.optional(surface.law.coefficient())),
                 ("reset", reset.unwrap_or(Tree::Absent)),
-                ("instantaneous", self.constraints(&own.instantaneous)),
-                ("excluded", self.excluded(&own.beside)),
-                ("transition", self.transition(own.transition.as_ref())),
+                ("instantaneous", self.constraints(&surface.instantaneous)),
+                ("excluded", self.excluded(&surface.beside)),
+                ("transition", self.transition(surface.transition.as_ref())),
             ])
         };
         Tree::list(self.model.surfaces.iter().map(entry))
@@ -237,13 +254,13 @@ impl Writer<'_> {
                 ("grounds", Tree::text(finding.grounds())),
             ];
             entry.extend(self.statement(&claim.statement));
-            if let Verdict::Proved(own) = &finding.verdict {
-                let primes = own.primes.iter().map(|prime| Tree::Integer(*prime));
-                entry.push(("points", Tree::Integer(own.points as u64)));
+            if let Verdict::Proved(proof) = &finding.verdict {
+                let primes = proof.primes.iter().map(|prime| Tree::Integer(*prime));
+                entry.push(("points", Tree::Integer(proof.points as u64)));
                 entry.push(("primes", Tree::list(primes)));
-                entry.push(("chance_of_error", Tree::Number(own.error)));
-                entry.push(("at", own.at.as_ref().map_or(Tree::Absent, point)));
-                entry.push(("seed", Tree::text(format!("{:#018x}", own.seed))));
+                entry.push(("chance_of_error", Tree::Number(proof.error)));
+                entry.push(("at", proof.at.as_ref().map_or(Tree::Absent, point)));
+                entry.push(("seed", Tree::text(format!("{:#018x}", proof.seed))));
             }
             if let Some(density) = &finding.density {
                 entry.push(("density", self.density(density)));
@@ -276,7 +293,7 @@ impl Writer<'_> {
                 ("value", self.expression(*value)),
                 (
                     "under",
-                    under.map_or(Tree::Absent, |own| Tree::Integer(own as u64)),
+                    under.map_or(Tree::Absent, |index| Tree::Integer(index as u64)),
                 ),
                 ("holds", Tree::Flag(*holds)),
             ],
@@ -314,8 +331,12 @@ impl Writer<'_> {
 
     /// The density that the claims of the model or mode state.
     fn stated(&self) -> Tree {
-        let mut claims = self.model.claims.iter().filter(|own| own.scene.is_none());
-        self.optional(claims.find_map(|own| match own.statement {
+        let mut claims = self
+            .model
+            .claims
+            .iter()
+            .filter(|claim| claim.scene.is_none());
+        self.optional(claims.find_map(|claim| match claim.statement {
             Statement::Density(value) => Some(value),
             _ => None,
         }))
@@ -340,7 +361,7 @@ impl Writer<'_> {
         let dependent = density
             .dependent
             .iter()
-            .map(|own| Tree::Integer(*own as u64));
+            .map(|index| Tree::Integer(*index as u64));
         Tree::Record(vec![
             ("terms", Tree::list(terms)),
             ("dependent", Tree::list(dependent)),

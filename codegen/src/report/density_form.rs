@@ -22,7 +22,7 @@ pub fn density_form(model: &mut Model, derivation: &Derivation) -> Option<Vec<Ex
     let forms: Matrix = derivation
         .constraints
         .iter()
-        .map(|own| own.form.clone())
+        .map(|constraint| constraint.form.clone())
         .collect();
     let duals: Matrix = forms
         .iter()
@@ -69,10 +69,10 @@ pub fn density_form(model: &mut Model, derivation: &Derivation) -> Option<Vec<Ex
             }
         }
     }
-    let sums: Vec<_> = terms.iter().map(|own| pool.sum(own)).collect();
-    let written = |own: ExprId| match pool.zero_test(own) {
+    let sums: Vec<_> = terms.iter().map(|term| pool.sum(term)).collect();
+    let written = |expr: ExprId| match pool.zero_test(expr) {
         Verdict::Proved => pool.zero(),
-        Verdict::Refuted | Verdict::Undecided => tidy(pool, own),
+        Verdict::Refuted | Verdict::Undecided => tidy(pool, expr),
     };
     Some(sums.into_iter().map(written).collect())
 }
@@ -103,7 +103,7 @@ fn inverse(pool: &mut Pool, matrix: &Matrix) -> Option<Matrix> {
                     block
                         .iter()
                         .copied()
-                        .filter(|own| *own != omitted)
+                        .filter(|index| *index != omitted)
                         .collect()
                 };
                 let cofactor = minor(pool, matrix, &without(*column), &without(*row));
@@ -125,7 +125,7 @@ fn blocks(pool: &Pool, matrix: &Matrix) -> Vec<Vec<usize>> {
     while let Some(first) = left.first().copied() {
         let mut block = vec![first];
         let mut visited = 0;
-        left.retain(|own| *own != first);
+        left.retain(|index| *index != first);
         while let Some(row) = block.get(visited).copied() {
             visited += 1;
             let (connected, rest): (Vec<usize>, Vec<usize>) = left
@@ -154,7 +154,7 @@ fn minor(pool: &mut Pool, matrix: &Matrix, rows: &[usize], columns: &[usize]) ->
         let others: Vec<usize> = columns
             .iter()
             .copied()
-            .filter(|own| own != column)
+            .filter(|other| other != column)
             .collect();
         let below = minor(pool, matrix, rest, &others);
         let product = pool.mul(matrix[*row][*column], below);

@@ -263,7 +263,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What a reset sets, one formula each.
+    /// Formulas of a reset, one for each value that it sets.
     fn reset(&mut self, s: usize, name: &str, subscript: &str) -> Vec<Item> {
         let Some(reset) = self.model.surfaces[s].reset.clone() else {
             return Vec::new();
@@ -287,14 +287,18 @@ impl Writer<'_> {
         let mut items = Vec::new();
         for b in 0..derivation.surfaces[s].instantaneous.len() {
             let name = self.model.surfaces[s].instantaneous[b].name.display.clone();
-            let own = &derivation.surfaces[s].instantaneous[b];
-            let row = own.form.iter().map(|&entry| self.print(entry)).collect();
+            let surface = &derivation.surfaces[s].instantaneous[b];
+            let row = surface
+                .form
+                .iter()
+                .map(|&entry| self.print(entry))
+                .collect();
             let superscript = format!("^{{\\text{{{}}}}}", escape(&name));
             items.push(Item::Matrix {
                 left: [format!("psi[{name}]"), format!("\\psi{superscript}")],
                 rows: vec![row],
             });
-            for (label, value) in [("psi_0", own.affine), ("curvature", own.curvature)] {
+            for (label, value) in [("psi_0", surface.affine), ("curvature", surface.curvature)] {
                 if !self.is_zero(value) {
                     let latex = match label {
                         "psi_0" => format!("\\psi_0{superscript}"),

@@ -76,7 +76,7 @@ impl Writer<'_> {
         self.model.pool.sum(&terms)
     }
 
-    /// How the velocities of a block are found; nothing of a velocity that is a quasi-velocity itself.
+    /// Equation for the velocities of a block; `None` for a velocity that is a quasi-velocity itself.
     fn block(&mut self, block: &Block) -> Option<Item> {
         let velocities: Vec<String> = block
             .columns

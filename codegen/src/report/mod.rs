@@ -42,26 +42,26 @@ use crate::{Compiled, CompiledModes, compile_modes, compile_spec, read};
 pub struct Report {
     /// The name in snake case, of the model or of the scene.
     pub name: String,
-    /// Its doc comment.
+    /// Doc comment.
     pub documentation: String,
     /// The parts, in the order of the derivation.
     pub sections: Vec<Section>,
     /// The verdicts on its claims, in order.
     pub findings: Vec<Finding>,
-    /// What the claims are about and what the verdicts rest on.
+    /// Claims with the grounds of their verdicts.
     pub certificate: Tree,
-    /// Those of its scenes, in order.
+    /// Reports of its scenes, in order.
     pub scenes: Vec<Report>,
 }
 
 /// A part of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Section {
-    /// Its title.
+    /// Title.
     pub title: &'static str,
     /// The equation it is about, as text and as LaTeX; empty if there is none.
     pub equation: [&'static str; 2],
-    /// Its lines.
+    /// Lines.
     pub items: Vec<Item>,
 }
 
@@ -101,10 +101,10 @@ pub enum Item {
     },
 }
 
-/// Why a text gives no report.
+/// Reason for which a text gives no report.
 #[derive(Debug)]
 pub enum ReportError {
-    /// It is not a sequence of Rust tokens.
+    /// The text is not a sequence of Rust tokens.
     Tokens(String),
     /// The macro would refuse the declaration.
     Declaration(Diagnostics),
@@ -135,7 +135,7 @@ pub fn report(source: &str) -> Result<Report, ReportError> {
     report_of_declaration(declaration(source)?)
 }
 
-/// As [`report`], without looking at the claims of the model.
+/// Same as [`report`], without the claims of the model.
 ///
 /// # Errors
 /// [`ReportError`].
@@ -177,7 +177,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
     let model = &graph.modes[0].model;
     let coordinates = |mode: &Mode| {
         let names = mode.model.coordinates.iter();
-        let names: Vec<&str> = names.map(|own| own.name.display.as_str()).collect();
+        let names: Vec<&str> = names.map(|name| name.name.display.as_str()).collect();
         names.join(", ")
     };
     let lines = graph.modes.iter().map(|mode| {
@@ -195,7 +195,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
     ];
     let (name, documentation) = (model.snake_name.clone(), text_of(&model.documentation));
     let scenes = graph.modes.iter().zip(modes);
-    let scenes = scenes.map(|(mode, own)| report_of(own, mode.scene.name.clone()));
+    let scenes = scenes.map(|(mode, scene)| report_of(scene, mode.scene.name.clone()));
     Ok(Report {
         name,
         documentation,
@@ -206,7 +206,7 @@ fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
     })
 }
 
-/// Where each transition leads, when, and with which state.
+/// Target, condition and entry state of each transition.
 fn transitions(graph: &ModeGraph) -> Vec<Item> {
     let mut items = Vec::new();
     for mode in &graph.modes {
@@ -223,9 +223,9 @@ fn transitions(graph: &ModeGraph) -> Vec<Item> {
                 (None, false) => "refracted, or reflected where there is not enough energy",
             };
             let conditions = surface.conditions.iter();
-            let conditions = conditions.map(|own| {
-                let sign = if own.is_closed { ">=" } else { ">" };
-                format!(" when {} {sign} 0", mode.model.pool.text(own.margin))
+            let conditions = conditions.map(|condition| {
+                let sign = if condition.is_closed { ">=" } else { ">" };
+                format!(" when {} {sign} 0", mode.model.pool.text(condition.margin))
             });
             items.push(Item::Words(format!(
                 "{}: {} {} when {} <= 0{}, {kind}",
@@ -286,7 +286,7 @@ fn report_of(compiled: Compiled, name: String) -> Report {
     }
 }
 
-/// What each scene uses.
+/// Forces, surfaces and extras of each scene.
 fn scenes(model: &Model) -> Section {
     let items = model.scenes.iter().map(|scene| {
         let used = model.used(&scene.parts);
@@ -328,7 +328,10 @@ fn work(model: &Model, program: &Program) -> Section {
 
 /// The verdicts on what is claimed.
 fn claims(findings: &[Finding]) -> Section {
-    let items = findings.iter().map(|own| Item::Words(own.note())).collect();
+    let items = findings
+        .iter()
+        .map(|finding| Item::Words(finding.note()))
+        .collect();
     Section::plain("Claims", items)
 }
 

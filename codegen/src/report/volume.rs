@@ -11,7 +11,7 @@ use crate::claims::{Potential, Term, Verdict, examine_volume, potential_text};
 const LONGEST: usize = 240;
 
 impl Writer<'_> {
-    /// What is known of invariant volumes; nothing where neither constraints nor claims ask for it.
+    /// Invariant volumes; empty if neither constraints nor claims ask for them.
     pub(super) fn volume(&mut self) -> Section {
         let mut items = Vec::new();
         let is_constrained = !self.derivation.constraints.is_empty();
@@ -36,12 +36,12 @@ impl Writer<'_> {
     fn density_form(&mut self, items: &mut Vec<Item>) {
         let theta = density_form(self.model, self.derivation);
         let is_short = |id: &ExprId| self.model.pool.text(*id).len() <= LONGEST;
-        let Some(theta) = theta.filter(|own| own.iter().all(is_short)) else {
+        let Some(theta) = theta.filter(|theta| theta.iter().all(is_short)) else {
             let words = "theta is too long to be read; `eval` prints its value at a state";
             items.push(Item::Words(words.to_owned()));
             return;
         };
-        if theta.iter().all(|own| self.is_zero(*own)) {
+        if theta.iter().all(|entry| self.is_zero(*entry)) {
             let zero = self.model.pool.zero();
             items.push(self.formula("theta", r"\theta", zero));
         }

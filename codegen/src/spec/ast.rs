@@ -1,4 +1,5 @@
-//! What was written, with the place of every part. Nothing is resolved: names are words, indices are expressions.
+//! Syntax tree: the declaration as written, with the place of every part. Nothing is resolved: names are words, indices
+//! are expressions.
 
 use dalembert_expr::Rational;
 use proc_macro2::Span;
@@ -14,9 +15,9 @@ pub struct ItemId(u32);
 pub struct Spec {
     /// The type's name.
     pub name: Word,
-    /// Its snake case, which names the module of indices.
+    /// Snake case of the name, which names the module of indices.
     pub snake_name: String,
-    /// Nothing, `pub`, `pub(crate)`.
+    /// Empty, `pub` or `pub(crate)`.
     pub visibility: String,
     /// Lines of the doc comment.
     pub documentation: Vec<String>,
@@ -102,7 +103,7 @@ impl Spec {
         ItemId(u32::try_from(self.items.len() - 1).unwrap_or(u32::MAX))
     }
 
-    /// Where a declaration was written; the model's name for an id of another model.
+    /// Place of a declaration; the model's name for an id of another model.
     pub fn location(&self, item: ItemId) -> Location {
         self.items
             .get(item.0 as usize)
@@ -121,7 +122,7 @@ impl Spec {
 pub struct Word {
     /// The name.
     pub text: String,
-    /// Its place.
+    /// Place.
     pub at: Location,
 }
 
@@ -130,11 +131,11 @@ pub struct Word {
 pub struct Declared {
     /// The name.
     pub name: Word,
-    /// What stands in brackets behind it.
+    /// Index in brackets.
     pub index: Option<Index>,
 }
 
-/// What stands in the brackets behind a declared name.
+/// Contents of the brackets after a declared name.
 #[derive(Debug, Clone)]
 pub enum Index {
     /// `[N]`: a size where a family is declared, one member elsewhere.
@@ -143,7 +144,8 @@ pub enum Index {
     Each(Binder),
 }
 
-/// What indices stand for, of the constants of a model. The next stage says it, which knows what names mean.
+/// Meaning of indices, given the constants of a model. The next stage supplies it, because it knows the meaning of
+/// names.
 #[derive(Debug, Clone, Copy)]
 pub struct Indices {
     /// The members that a declared name with its index stands for, counted from 1.
@@ -157,18 +159,18 @@ pub struct Indices {
 pub struct Binder {
     /// The index.
     pub name: Word,
-    /// Its first value.
+    /// First value.
     pub low: Box<Scalar>,
-    /// Its last value.
+    /// Last value.
     pub high: Box<Scalar>,
 }
 
 /// An expression.
 #[derive(Debug, Clone)]
 pub struct Scalar {
-    /// What it is.
+    /// Kind.
     pub kind: ScalarKind,
-    /// Where it stands.
+    /// Place.
     pub at: Location,
 }
 
@@ -196,7 +198,7 @@ pub enum ScalarKind {
     SumOver(Binder, Box<Scalar>),
 }
 
-/// What stands before a factor; the first of a product has `Times`.
+/// Operator before a factor; the first factor of a product has `Times`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
     /// `*`
@@ -210,16 +212,16 @@ pub enum Operator {
 /// `const N = 8;`
 #[derive(Debug)]
 pub struct Constant {
-    /// Its name.
+    /// Name.
     pub name: Word,
-    /// Its value, an integer.
+    /// Value, an integer.
     pub value: Scalar,
 }
 
 /// `theta: angle;`
 #[derive(Debug)]
 pub struct Coordinate {
-    /// Its name; the index is the size of the family.
+    /// Name; the index is the size of the family.
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -229,7 +231,7 @@ pub struct Coordinate {
     pub item: ItemId,
 }
 
-/// What was written of the set that a coordinate runs through.
+/// Declared set of a coordinate.
 #[derive(Debug)]
 pub enum Topology {
     /// `x;`
@@ -243,13 +245,13 @@ pub enum Topology {
 /// `m[N] > 0 = [1, 2];`
 #[derive(Debug)]
 pub struct Parameter {
-    /// Its name; the index is the size of the family.
+    /// Name; the index is the size of the family.
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// The demand on its values.
     pub assumption: Assumption,
-    /// Its default.
+    /// Default.
     pub default: Option<ParameterDefault>,
     /// The declaration.
     pub item: ItemId,
@@ -258,7 +260,7 @@ pub struct Parameter {
 /// `thrust[2];`, an input.
 #[derive(Debug)]
 pub struct Supplied {
-    /// Its name; the index is the size of the family.
+    /// Name; the index is the size of the family.
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -266,10 +268,10 @@ pub struct Supplied {
     pub item: ItemId,
 }
 
-/// What was written of the values of a parameter.
+/// Declared assumption on a parameter.
 #[derive(Debug)]
 pub enum Assumption {
-    /// Nothing.
+    /// No assumption.
     Finite,
     /// `> 0`
     Positive,
@@ -293,18 +295,18 @@ pub enum ParameterDefault {
 /// `let name = e;`, `let name(args) = e;`, `let X[i in 1..=N] = e;`
 #[derive(Debug)]
 pub struct Definition {
-    /// Its name, with the index of a family.
+    /// Name, with the index of a family.
     pub declared: Declared,
-    /// Its arguments, if it is a function.
+    /// Arguments, if it is a function.
     pub arguments: Option<Vec<Word>>,
-    /// Its value.
+    /// Value.
     pub value: Scalar,
 }
 
 /// `lagrangian = e;`
 #[derive(Debug)]
 pub struct Lagrangian {
-    /// Its value.
+    /// Value.
     pub value: Scalar,
     /// The declaration.
     pub item: ItemId,
@@ -324,14 +326,14 @@ pub struct Field {
 pub struct Rate {
     /// The coordinate with its index.
     pub declared: Declared,
-    /// Its rate.
+    /// Rate.
     pub value: Scalar,
 }
 
 /// `name: left = right;`
 #[derive(Debug)]
 pub struct Equation {
-    /// Its name, with the index of a family.
+    /// Name, with the index of a family.
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -346,11 +348,11 @@ pub struct Equation {
 /// `name: e;`
 #[derive(Debug)]
 pub struct Quantity {
-    /// Its name, with the index of a family.
+    /// Name, with the index of a family.
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// Its value.
+    /// Value.
     pub value: Scalar,
     /// The declaration.
     pub item: ItemId,
@@ -363,7 +365,7 @@ pub struct Comparison {
     pub greater: Scalar,
     /// The side that is not greater.
     pub less: Scalar,
-    /// Whether both may be equal.
+    /// True if both may be equal.
     pub is_closed: bool,
     /// The whole.
     pub at: Location,
@@ -372,17 +374,17 @@ pub struct Comparison {
 /// `name: h >= 0 when g > 0 => LAW, instantaneous { .. };`
 #[derive(Debug)]
 pub struct Surface {
-    /// Its name, with the index of a family.
+    /// Name, with the index of a family.
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
     /// The allowed side.
     pub gap: Comparison,
-    /// Where the surface counts.
+    /// Conditions under which the surface counts.
     pub conditions: Vec<Comparison>,
-    /// Whether it counts where no other surface of the same gap does.
+    /// True if it counts where no other surface of the same gap does.
     pub is_otherwise: bool,
-    /// Its law; elastic if there is none.
+    /// Law; elastic if there is none.
     pub law: Option<Law>,
     /// The mode that is entered here, of a transition.
     pub enters: Option<Word>,
@@ -392,7 +394,7 @@ pub struct Surface {
     pub item: ItemId,
 }
 
-/// What one `model!` declares.
+/// Contents of one `model!`.
 #[derive(Debug)]
 pub enum Declaration {
     /// A model, in one piece.
@@ -429,9 +431,9 @@ pub struct Modes {
 /// that leave it.
 #[derive(Debug)]
 pub struct Mode {
-    /// Its name: `rough`, of a member of a family `spoke3`.
+    /// Name: `rough`, or `spoke3` for a member of a family.
     pub name: Word,
-    /// As a declaration writes it: `rough`, `spoke[3]`.
+    /// Name as written in a declaration: `rough`, `spoke[3]`.
     pub written: String,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -439,10 +441,10 @@ pub struct Mode {
     pub spec: Spec,
 }
 
-/// Which modes a transition connects.
+/// Modes that a transition connects.
 #[derive(Debug)]
 pub struct Transition {
-    /// Its name.
+    /// Name.
     pub name: Word,
     /// The mode that is left.
     pub from: Word,
@@ -453,11 +455,11 @@ pub struct Transition {
 /// `newton(0.8)`
 #[derive(Debug)]
 pub struct Law {
-    /// Its name.
+    /// Name.
     pub name: Word,
-    /// Its coefficients.
+    /// Coefficients.
     pub arguments: Vec<Scalar>,
-    /// What stands in the braces of `reset { .. }`.
+    /// Contents of the braces of `reset { .. }`.
     pub assignments: Option<Vec<Assignment>>,
     /// The declaration.
     pub item: ItemId,
@@ -466,15 +468,15 @@ pub struct Law {
 /// `theta = e;` or `dot(theta[i in 1..=N]) = e;` of a reset.
 #[derive(Debug)]
 pub struct Assignment {
-    /// What is given.
+    /// Target.
     pub target: AssignmentTarget,
     /// The coordinate with its index.
     pub declared: Declared,
-    /// Its value after the impact.
+    /// Value after the impact.
     pub value: Scalar,
 }
 
-/// What an entry of a reset gives.
+/// Target of an entry of a reset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AssignmentTarget {
     /// A position.
@@ -486,15 +488,15 @@ pub enum AssignmentTarget {
 /// `theta = e;`, `dot(theta[i in 1..=N]) = e;`, `until = e;`
 #[derive(Debug)]
 pub struct InitialValue {
-    /// What is given.
+    /// Target.
     pub target: InitialTarget,
     /// The coordinate with its index, or `until`.
     pub declared: Declared,
-    /// Its value.
+    /// Value.
     pub value: Scalar,
 }
 
-/// What an entry of `initial` gives.
+/// Target of an entry of `initial`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InitialTarget {
     /// A position.
@@ -517,7 +519,7 @@ pub struct View {
 /// `windy: billiard, drag;`
 #[derive(Debug)]
 pub struct Scene {
-    /// Its name.
+    /// Name.
     pub name: Word,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
@@ -530,9 +532,9 @@ pub struct Scene {
 /// A theorem about the model, to be proved or refuted while it builds.
 #[derive(Debug)]
 pub struct Claim {
-    /// What is claimed.
+    /// Statement.
     pub statement: Statement,
-    /// Whether an answer that stays open is accepted: `assume ..`.
+    /// True if an answer that stays open is accepted: `assume ..`.
     pub is_assumed: bool,
     /// The scene it is about; the whole model if there is none.
     pub scene: Option<Word>,
@@ -540,7 +542,7 @@ pub struct Claim {
     pub item: ItemId,
 }
 
-/// What is claimed.
+/// Statement of a claim.
 #[derive(Debug)]
 pub enum Statement {
     /// `density: exact`
@@ -553,7 +555,7 @@ pub enum Statement {
         value: Scalar,
         /// The surface across which it is conserved; along the motion if there is none.
         under: Option<Declared>,
-        /// Whether it is claimed to be conserved.
+        /// True if it is claimed to be conserved.
         holds: bool,
     },
     /// `symmetry: e`, with `partial(x)` for the fields of the coordinates.
@@ -575,7 +577,7 @@ pub enum Statement {
     EnergyNotIncreasing(Declared),
 }
 
-/// Where a density that depends on the configuration alone exists.
+/// Extent to which a density of the configuration alone exists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existence {
     /// On all of Q.

@@ -19,7 +19,7 @@ pub(super) struct Cursor<'a> {
     tokens: &'a [TokenTree],
     next: usize,
     last: Location,
-    /// How many exponents stand above each other; see [`super::limits::NESTING`].
+    /// Number of nested exponents; see [`super::limits::NESTING`].
     pub(super) exponents: usize,
     pub(super) diagnostics: &'a mut Diagnostics,
 }
@@ -74,7 +74,7 @@ impl<'a> Cursor<'a> {
         Some(token)
     }
 
-    /// Whether all tokens were read.
+    /// True if all tokens were read.
     pub(super) fn is_at_end(&self) -> bool {
         self.next >= self.tokens.len()
     }
@@ -101,7 +101,7 @@ impl<'a> Cursor<'a> {
         self.peek().map_or(self.last, Location::of)
     }
 
-    /// Whether the next tokens are these punctuation marks, as one operator and not the beginning of a longer one.
+    /// True if the next tokens are these punctuation marks, as one operator and not the beginning of a longer one.
     pub(super) fn is_operator(&self, operator: &str) -> bool {
         let length = operator.chars().count();
         let matches = operator.chars().enumerate().all(|(offset, expected)| {
@@ -111,7 +111,7 @@ impl<'a> Cursor<'a> {
         matches && !self.goes_on(self.next + length - 1)
     }
 
-    /// Whether the mark at `index` and the next one form a longer operator of comparison or range.
+    /// True if the mark at `index` and the next one form a longer operator of comparison or range.
     fn goes_on(&self, index: usize) -> bool {
         let Some(TokenTree::Punct(punct)) = self.tokens.get(index) else {
             return false;
@@ -161,7 +161,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Whether the next token is this word.
+    /// True if the next token is this word.
     pub(super) fn is_word(&self, word: &str) -> bool {
         matches!(self.peek(), Some(TokenTree::Ident(ident)) if *ident == word)
     }

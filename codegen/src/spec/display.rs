@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::ast::{Binder, Index, Operator, Scalar, ScalarKind};
 
-/// How tightly the outermost operation of an expression binds.
+/// Precedence of the outermost operation of an expression.
 #[derive(PartialEq, PartialOrd)]
 enum Level {
     Sum,

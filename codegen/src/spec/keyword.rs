@@ -129,14 +129,14 @@ pub const LAWS: [(&str, usize); 7] = [
 /// The law that is a map: `reset { x = ..; dot(x) = ..; }`.
 pub const RESET: &str = "reset";
 
-/// In place of `when`: where no other surface of the same gap counts.
+/// Replacement of `when`: the surface counts where no other surface of the same gap counts.
 pub const OTHERWISE: &str = "otherwise";
 
 /// The word before the constraints that hold in the moment of an impact only: `=> LAW, instantaneous { .. }`.
 pub const INSTANTANEOUS: &str = "instantaneous";
 
-/// What a scene may use besides named forces and surfaces: the return to the constraints after steps, and density form,
-/// divergence and invariant volume.
+/// Extras of a scene besides named forces and surfaces: the projection to the constraints after steps, density form,
+/// divergence and invariant volume, and variations.
 pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 
 /// The scene that the model itself is: everything that was declared.
@@ -167,7 +167,7 @@ const RUST: [&str; 52] = [
     "override", "priv", "try", "typeof", "unsized", "virtual", "yield",
 ];
 
-/// Whether Rust has this word for itself.
+/// True if Rust has this word for itself.
 pub fn is_rust_keyword(name: &str) -> bool {
     RUST.contains(&name)
 }
@@ -181,7 +181,7 @@ pub fn is_function(name: &str) -> bool {
         )
 }
 
-/// Why `name` cannot be declared, if it cannot.
+/// Reason for which `name` cannot be declared, if there is one.
 pub fn reserved(name: &str) -> Option<&'static str> {
     if RUST.contains(&name) || name.starts_with("r#") || name == "_" {
         Some("a word of Rust")
@@ -192,7 +192,7 @@ pub fn reserved(name: &str) -> Option<&'static str> {
     }
 }
 
-/// What to write instead of a declaration of another language.
+/// Advice on a declaration of another language.
 pub fn foreign_section(word: &str) -> Option<&'static str> {
     FOREIGN_SECTIONS
         .iter()
@@ -200,7 +200,7 @@ pub fn foreign_section(word: &str) -> Option<&'static str> {
         .map(|(_, instead)| *instead)
 }
 
-/// What to write instead of a function of another language.
+/// Advice on a function of another language.
 pub fn foreign_function(name: &str) -> Option<&'static str> {
     FOREIGN_FUNCTIONS
         .iter()
@@ -208,7 +208,7 @@ pub fn foreign_function(name: &str) -> Option<&'static str> {
         .map(|(_, instead)| *instead)
 }
 
-/// Whether `name` is a function that has no derivative everywhere.
+/// True if `name` is a function that has no derivative everywhere.
 pub fn is_not_differentiable(name: &str) -> bool {
     NOT_DIFFERENTIABLE.contains(&name)
 }

@@ -77,13 +77,13 @@ impl Cursor<'_> {
     }
 }
 
-/// Whether the nearest double is finite, and not zero or denormal unless the number is zero.
+/// True if the nearest double is finite, and not zero or denormal unless the number is zero.
 fn is_a_double(value: &Rational) -> bool {
     let double = value.to_f64();
     value.is_zero() || double.is_normal()
 }
 
-/// How much of a literal is the number; the rest is its suffix.
+/// Length of the number in a literal; the rest is its suffix.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = digits_from(bytes, 0);

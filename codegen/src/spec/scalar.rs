@@ -177,7 +177,7 @@ impl Cursor<'_> {
         })
     }
 
-    /// What begins with a name.
+    /// Expression that begins with a name.
     fn named(&mut self, ident: &Ident) -> Read<Scalar> {
         let name = self.word(ident)?;
         if matches!(name.text.as_str(), "if" | "match" | "else") {

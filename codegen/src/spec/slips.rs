@@ -1,4 +1,4 @@
-//! What to say of tokens that another notation would have here: slips that are common enough to be known.
+//! Advice on tokens of other notations: frequent slips.
 
 use proc_macro2::{Delimiter, TokenTree};
 
@@ -10,7 +10,7 @@ use crate::diagnostics::Location;
 /// Signs that end an expression where a relation is not allowed, and make it a matter of cases.
 const COMPARISONS: [&str; 10] = ["<=", ">=", "==", "!=", "<", ">", "&&", "||", "&", "|"];
 
-/// How numbers are written.
+/// Notation of numbers.
 pub(super) const NUMBERS: &str = "numbers are written `12`, `0.5`, `1.25e-7`";
 
 impl Cursor<'_> {
@@ -45,7 +45,7 @@ impl Cursor<'_> {
         COMPARISONS.into_iter().find(|sign| self.is_operator(sign))
     }
 
-    /// What follows an expression without an operator between the two.
+    /// Refuses an expression that follows another without an operator.
     pub(super) fn missing_operator(&mut self) -> Refused {
         if self.is_word("and") || self.is_word("or") {
             let help = "several conditions are written `when a > 0 when b > 0`";
@@ -71,7 +71,7 @@ impl Cursor<'_> {
         )
     }
 
-    /// What stands where an expression begins and begins none.
+    /// Refuses tokens that begin no expression where one is expected.
     pub(super) fn missing_expression(&mut self) -> Refused {
         if self.is_operator("+") {
             return self.refuse(self.here(), "there is no unary plus", "leave the sign out");

@@ -55,7 +55,7 @@ impl Hybrid<'_> {
         run(self.after, &(self.map)(&hit), time - t1)
     }
 
-    /// The derivatives of the end by the components of the start.
+    /// Derivatives of the end with respect to the components of the start.
     pub(super) fn columns(&self, start: &[f64], time: f64) -> Vec<State> {
         let n = start.len();
         (0..n)

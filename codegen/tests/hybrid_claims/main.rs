@@ -27,13 +27,13 @@ use dalembert_codegen::{mechanics, model, read, spec};
 /// Expected verdict on a claim.
 #[derive(Debug, Clone, Copy)]
 enum Expected {
-    /// It is proved.
+    /// Proved.
     True,
-    /// It is refuted, with this in the message.
+    /// Refuted, with this in the message.
     False(&'static str),
-    /// It is refuted with a value of this name, which is this number.
+    /// Refuted with a value of this name, which is this number.
     Shown(&'static str, f64),
-    /// It stays open, with this in the reason.
+    /// Open, with this in the reason.
     Open(&'static str),
 }
 
@@ -43,7 +43,7 @@ enum Expected {
 /// If it is refused before its claims are looked at.
 fn findings(source: &str) -> Vec<Finding> {
     let refused = |errors: &dalembert_codegen::diagnostics::Diagnostics| -> ! {
-        let texts: Vec<&str> = errors.iter().map(|own| own.message()).collect();
+        let texts: Vec<&str> = errors.iter().map(|error| error.message()).collect();
         panic!("{texts:?}\n{source}");
     };
     match read(source.parse().expect("tokens")) {
@@ -55,7 +55,7 @@ fn findings(source: &str) -> Vec<Finding> {
         }
         Ok(spec::Declaration::Modes(modes)) => {
             let graph = model::check_modes(&modes).unwrap_or_else(|errors| refused(&errors));
-            let all: Vec<&model::Model> = graph.modes.iter().map(|own| &own.model).collect();
+            let all: Vec<&model::Model> = graph.modes.iter().map(|mode| &mode.model).collect();
             let each = graph.modes.iter().flat_map(|mode| {
                 let mut model = mode.model.clone();
                 let derivation = mechanics::derive(&mut model);
@@ -72,7 +72,7 @@ fn check(declaration: &str, claim: &str, expected: Expected) {
     let source = declaration.replace("CLAIM", &format!("claims {{ {claim}; }}"));
     // Densities are stated for other claims.
     let mut found = findings(&source);
-    found.retain(|own| !own.claim.starts_with("density = "));
+    found.retain(|finding| !finding.claim.starts_with("density = "));
     assert!(!found.is_empty(), "{source}");
     for finding in found {
         let matches = match (&finding.verdict, expected) {
@@ -82,8 +82,8 @@ fn check(declaration: &str, claim: &str, expected: Expected) {
             }
             (Verdict::Refuted(witness), Expected::Shown(name, value)) => {
                 let mut values = witness.values.iter();
-                let is_it = |(own, shown): &(String, f64)| {
-                    own == name && (shown - value).abs() <= 1e-12 * value.abs()
+                let is_it = |(known, shown): &(String, f64)| {
+                    known == name && (shown - value).abs() <= 1e-12 * value.abs()
                 };
                 witness.sample.is_some() && values.any(is_it)
             }

@@ -160,7 +160,7 @@ thread_local! {
 }
 
 impl NativeSeries {
-    /// As [`Series::begin`].
+    /// Same as [`Series::begin`].
     ///
     /// # Errors
     /// The guard that does not hold.
@@ -180,7 +180,7 @@ impl NativeSeries {
         self.begin.run(at, firsts)
     }
 
-    /// As [`Series::advance`].
+    /// Same as [`Series::advance`].
     ///
     /// # Panics
     /// If a slice is shorter than the extent that is read.

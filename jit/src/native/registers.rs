@@ -273,7 +273,7 @@ impl Allocation {
         register
     }
 
-    /// As [`Self::register`], from memory where nothing else reads the value.
+    /// Same as [`Self::register`], from memory where nothing else reads the value.
     fn operand(&mut self, value: Value) -> Operand {
         match (self.found(value), self.reads[value.index()].len()) {
             (Operand::Register(_), _) | (_, 2..) => Operand::Register(self.register(value)),

@@ -28,7 +28,7 @@ impl Component {
             true => &[],
             false => coordinates.as_slice(),
         };
-        let velocities: Vec<String> = given.iter().map(|own| names::velocity(own)).collect();
+        let velocities: Vec<String> = given.iter().map(|name| names::velocity(name)).collect();
         let accepted = coordinates.iter().copied();
         let accepted = accepted.chain(velocities.iter().map(String::as_str));
         let index = names::find("coordinate or velocity", name, accepted)?;

@@ -123,7 +123,7 @@ impl Subject<'_> {
         for (index, value) in self.values.iter().enumerate() {
             system.set_parameter(index, *value);
         }
-        let own = system.form();
+        let declared = system.form();
         if request.form == Form::Global {
             system = system.global();
         }
@@ -131,7 +131,7 @@ impl Subject<'_> {
         // For a model with modes, the form of its first mode.
         let known = form.forms.first().copied().unwrap_or(form);
         if known.kernels::<Interval>().is_none() {
-            let why = match (form.tables.varies, own.tables.varies) {
+            let why = match (form.tables.varies, declared.tables.varies) {
                 (true, _) => Uncertified::Compiled,
                 (false, true) => Uncertified::OnlyReduced,
                 (false, false) => Uncertified::WithoutVariations,

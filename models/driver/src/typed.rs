@@ -206,7 +206,7 @@ impl<M: Model> AnyModel for Typed<M> {
         named: &[bool],
     ) -> Result<Vec<f64>, StateError> {
         let zero = self.model.zero_vector();
-        let [q, qdot, named] = [q, qdot, &marks(named)].map(|own| vector(&zero, own));
+        let [q, qdot, named] = [q, qdot, &marks(named)].map(|values| vector(&zero, values));
         let completed = self.model.complete_velocity(0.0, &q, &qdot, &named)?;
         Ok(completed.as_slice().to_vec())
     }
@@ -411,14 +411,14 @@ pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
     let mode = description.modes.get(model.mode(state));
     // A mode may lack some coordinates of the model.
     let has = |index: usize| mode.is_none_or(|mode| mode.coordinates.contains(&index));
-    let own = |values: &[f64]| -> Vec<f64> {
+    let masked = |values: &[f64]| -> Vec<f64> {
         let numbered = values.iter().enumerate();
         numbered
             .map(|(index, &value)| if has(index) { value } else { f64::NAN })
             .collect()
     };
     let components = |values: Result<M::Vector, Fault>| match values {
-        Ok(values) => own(values.as_slice()),
+        Ok(values) => masked(values.as_slice()),
         Err(_) => vec![f64::NAN; model.coordinate_count()],
     };
     let mut outputs = vec![f64::NAN; description.outputs.len()];
@@ -427,7 +427,7 @@ pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
     }
     Point {
         mode: mode.map(|mode| mode.name),
-        q: own(model.position(state).as_slice()),
+        q: masked(model.position(state).as_slice()),
         qdot: components(model.velocity(t, state)),
         p: components(model.momentum(t, state)),
         energy: model.energy(t, state).unwrap_or(f64::NAN),

@@ -520,12 +520,12 @@ impl End {
 /// derivative `bend`, plus four units in the last place of the time.
 pub fn location(t: f64, eta: f64, rate: f64, bend: f64) -> f64 {
     let clear = rate * rate >= 2.0 * bend.abs() * eta;
-    let own = if clear {
+    let spread = if clear {
         2.0 * eta / rate.abs()
     } else {
         2.0 * (2.0 * eta / bend.abs()).sqrt()
     };
-    own + 4.0 * U * t.abs()
+    spread + 4.0 * U * t.abs()
 }
 
 /// A deterministic sequence of pseudorandom numbers: splitmix64.

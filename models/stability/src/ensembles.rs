@@ -106,9 +106,9 @@ fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {
             });
         }
     });
-    hashes
-        .into_iter()
-        .fold(0, |hash: u64, own| hash.wrapping_mul(31) ^ own)
+    hashes.into_iter().fold(0, |hash: u64, hash_of_run| {
+        hash.wrapping_mul(31) ^ hash_of_run
+    })
 }
 
 fn threads(setting: Setting, report: &mut Report) {
@@ -166,9 +166,15 @@ fn uniform(report: &mut Report) {
     report.class(&end.outcome, "impact_budget");
     let areas = free_areas();
     let (total, area): (f64, f64) = (cells.counts.iter().sum(), areas.iter().sum());
-    let used = || cells.counts.iter().zip(areas).filter(|(_, own)| *own > 0.0);
+    let used = || {
+        cells
+            .counts
+            .iter()
+            .zip(areas)
+            .filter(|(_, free)| *free > 0.0)
+    };
     let chi: f64 = used()
-        .map(|(count, own)| (count - total * own / area).powi(2) / (total * own / area))
+        .map(|(count, free)| (count - total * free / area).powi(2) / (total * free / area))
         .sum();
     let freedom = used().count() as f64 - 1.0;
     report.error(

@@ -51,7 +51,9 @@ fn bounces<const PARTS: usize>([q, v]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
         At::of(0.0, &state),
         1e3,
         |impact| {
-            let [x, y, ..] = impact.before.map(|own: Extended<PARTS>| own.nearest());
+            let [x, y, ..] = impact
+                .before
+                .map(|extended: Extended<PARTS>| extended.nearest());
             places.push([x, y]);
             ControlFlow::Continue(())
         },

@@ -131,7 +131,7 @@ type Derived = (Ran<<Model as VectorField>::State>, Vec<Vec<f64>>);
 
 /// The entries of a derivative, or a failure in the report.
 fn matrix(report: &mut Report, varied: Option<Varied>) -> Option<Derived> {
-    let varied = varied.filter(|own| own.columns.is_ok());
+    let varied = varied.filter(|varied| varied.columns.is_ok());
     report.equal("has derivatives", varied.is_some(), true);
     let Varied { run, columns } = varied?;
     let length = run.state.count();
@@ -229,7 +229,7 @@ fn axes_of_an_ellipse(report: &mut Report) {
         // The conserved energy adds a multiplier 1.
         report.near(format!("trace, {name} axis"), sum - 1.0, trace, 1e-10);
         let columns = orbit.derivative[..orbit.dimension].iter();
-        let columns = columns.map(|own| own.as_slice()[..orbit.dimension].to_vec());
+        let columns = columns.map(|column| column.as_slice()[..orbit.dimension].to_vec());
         report.near(
             format!("determinant, {name} axis"),
             determinant(columns.collect()),
@@ -287,8 +287,8 @@ fn grazes(report: &mut Report) {
         vary(&ball, (&[start], &[-2.0]), (3.0, None), columns)
     };
     for off in [0.0, 1e-15, -1e-15] {
-        let undefined = through(1.0 - off).and_then(|own| own.columns.err());
-        let kind = undefined.map_or("defined", |own| own.kind());
+        let undefined = through(1.0 - off).and_then(|varied| varied.columns.err());
+        let kind = undefined.map_or("defined", |error| error.kind());
         report.equal(format!("derivative, {off:e} from the graze"), kind, "graze");
     }
     for off in [1e-4, 1e-8] {
@@ -335,7 +335,7 @@ fn two_at_the_end(report: &mut Report) {
     let apart = pairs.fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
     report.error("derivatives in both orders", apart, 1e-11);
     report.near("dx/dx0", found[0][0], -1.0, 64.0 * U);
-    let undefined = at(0.0).and_then(|own| own.columns.err());
-    let kind = undefined.map_or("defined", |own| own.kind());
+    let undefined = at(0.0).and_then(|varied| varied.columns.err());
+    let kind = undefined.map_or("defined", |error| error.kind());
     report.equal("at one time", kind, "corner");
 }

@@ -201,7 +201,7 @@ fn outwards(lo: f64, hi: f64, part: f64) -> Interval {
     }
 }
 
-/// As [`outwards`], and by the smallest normal number: more than the loss of a product that underflows.
+/// Same as [`outwards`], and by the smallest normal number: more than the loss of a product that underflows.
 #[inline(always)]
 fn widest(lo: f64, hi: f64, part: f64) -> Interval {
     let (lo, hi) = (

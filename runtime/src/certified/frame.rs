@@ -117,7 +117,7 @@ impl<Sys: Variational> Matrix<Sys> {
     }
 
     pub(super) fn at(&self, i: usize, j: usize) -> Interval {
-        let [lo, hi] = [&self.lo, &self.hi].map(|own| own.as_ref()[j].as_slice()[i]);
+        let [lo, hi] = [&self.lo, &self.hi].map(|vector| vector.as_ref()[j].as_slice()[i]);
         Interval::new(lo, hi)
     }
 
@@ -428,7 +428,7 @@ fn components<Sys: Variational>(
         let linear = product(&transpose, matrix).times_bounds(rest);
         image = Bounds::of(n, |i| image.at(i) + linear.at(i));
     }
-    let added = |own: &Bounds<Sys::State>| defect.times_bounds(own);
+    let added = |bounds: &Bounds<Sys::State>| defect.times_bounds(bounds);
     let first = added(&image);
     let wide = Bounds::of(n, |i| {
         let reach = 4.0 * first.at(i).magnitude() + f64::MIN_POSITIVE;

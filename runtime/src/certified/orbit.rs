@@ -347,10 +347,10 @@ fn inverted<Sys: Variational>(n: usize, mut columns: Sys::Columns) -> Option<Sys
                 *entry /= value;
             }
         }
-        let (own, own_inverse) = (columns.as_ref()[row], inverse.as_ref()[row]);
+        let (column, own_inverse) = (columns.as_ref()[row], inverse.as_ref()[row]);
         for j in (0..n).filter(|&j| j != row) {
             let factor = columns.as_ref()[j].as_slice()[row];
-            subtract(&mut columns.as_mut()[j], factor, &own);
+            subtract(&mut columns.as_mut()[j], factor, &column);
             subtract(&mut inverse.as_mut()[j], factor, &own_inverse);
         }
     }
@@ -358,7 +358,7 @@ fn inverted<Sys: Variational>(n: usize, mut columns: Sys::Columns) -> Option<Sys
 }
 
 fn subtract<S: StateVector>(from: &mut S, factor: f64, vector: &S) {
-    for (entry, own) in from.as_mut_slice().iter_mut().zip(vector.as_slice()) {
-        *entry -= factor * own;
+    for (entry, component) in from.as_mut_slice().iter_mut().zip(vector.as_slice()) {
+        *entry -= factor * component;
     }
 }

@@ -134,9 +134,9 @@ impl<const C: usize> TaylorField for Erased<C> {
                 self.lengths(),
                 (parameters, t, state),
                 firsts,
-                |parameters, t, state, own| {
-                    let own = &mut own.as_mut_slice()[..known];
-                    begin(form, parameters.as_slice(), t, state.as_slice(), own)
+                |parameters, t, state, firsts| {
+                    let firsts = &mut firsts.as_mut_slice()[..known];
+                    begin(form, parameters.as_slice(), t, state.as_slice(), firsts)
                 },
             )?;
         }
@@ -171,10 +171,17 @@ impl<const C: usize> TaylorField for Erased<C> {
                 (mode, known),
                 expansion,
                 (coefficients, gaps),
-                |parameters, unit, firsts, own, own_gaps| {
+                |parameters, unit, firsts, coefficients, own_gaps| {
                     let firsts = &firsts.as_slice()[..known];
                     let parameters = parameters.as_slice();
-                    advance::<L, C>(form, parameters, (unit, order), firsts, own, own_gaps);
+                    advance::<L, C>(
+                        form,
+                        parameters,
+                        (unit, order),
+                        firsts,
+                        coefficients,
+                        own_gaps,
+                    );
                 },
             );
         }

@@ -273,14 +273,14 @@ impl<const C: usize> Documented for Erased<C> {
         state: &[f64],
         report: &mut dyn Report,
     ) -> Result<(), Fault> {
-        let own = self.of_mode(mode).ok_or(Fault::NotDerived)?;
-        let state = Bounded::of(&state[..own.form.tables.dimensions.state]);
-        own.inspect(t, &state, report)
+        let part = self.of_mode(mode).ok_or(Fault::NotDerived)?;
+        let state = Bounded::of(&state[..part.form.tables.dimensions.state]);
+        part.inspect(t, &state, report)
     }
 
     fn set_argument(&mut self, index: usize, value: f64) {
-        if let Some(own) = self.values.as_mut().get_mut(index) {
-            *own = value;
+        if let Some(entry) = self.values.as_mut().get_mut(index) {
+            *entry = value;
         }
     }
 }

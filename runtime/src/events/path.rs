@@ -267,7 +267,7 @@ impl<S: StateVector> Path<S> {
         for (k, &power) in powers[..terms].iter().enumerate() {
             let term = scale * power;
             match cubic.get_mut(k) {
-                Some(own) => *own = term,
+                Some(entry) => *entry = term,
                 None => {
                     error += term.abs();
                     slope += k as f64 * term.abs();

@@ -61,8 +61,8 @@ pub(crate) fn error_within<Sys: Impacting>(
 ) -> f64 {
     let share = tolerance.absolute() / tolerance.relative();
     let mut units = *sizes;
-    for (own, scale) in units.as_mut_slice().iter_mut().zip(scale.as_slice()) {
-        *own = own.abs() + share * scale;
+    for (unit, scale) in units.as_mut_slice().iter_mut().zip(scale.as_slice()) {
+        *unit = unit.abs() + share * scale;
     }
     let here = system.gaps(t, state).as_slice()[surface];
     tolerance.relative() * sum_of_terms(system, surface, (t, state), here, &units, evaluations)

@@ -52,8 +52,8 @@ pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
 /// Doubles as a row of extended numbers.
 pub(super) fn widened<const PARTS: usize, R: Row<Extended<PARTS>>>(values: &[f64]) -> R {
     let mut row = R::zeros(R::CAPACITY);
-    for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
-        *own = Extended::from(*value);
+    for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
+        *entry = Extended::from(*value);
     }
     row
 }
@@ -83,7 +83,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         let all = [state.as_slice(), self.expansion.rate()];
         for numbers in all {
             let is_finite = |number: &Extended<PARTS>| number.nearest().is_finite();
-            if let Some(component) = numbers.iter().position(|own| !is_finite(own)) {
+            if let Some(component) = numbers.iter().position(|number| !is_finite(number)) {
                 return Err(StepFailure::NonFinite { component });
             }
         }
@@ -118,11 +118,11 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         let rows = &self.expansion.coefficients[..=self.order];
         for ([size], row) in sizes.iter_mut().zip(rows) {
             for (entry, scale) in row.as_slice().iter().zip(scale.as_slice()) {
-                let own = (entry.nearest() / scale).abs();
-                if !own.is_finite() {
+                let relative = (entry.nearest() / scale).abs();
+                if !relative.is_finite() {
                     return None;
                 }
-                *size = f64::max(*size, own);
+                *size = f64::max(*size, relative);
             }
         }
         reach(
@@ -143,8 +143,8 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         let [change, slope] = self.expansion.change(self.order, theta);
         let mut at = self.ends[0];
         at.t = at.t + theta * Extended::from(self.unit);
-        for (own, change) in at.state.as_mut_slice().iter_mut().zip(change.as_slice()) {
-            *own = *own + *change;
+        for (entry, change) in at.state.as_mut_slice().iter_mut().zip(change.as_slice()) {
+            *entry = *entry + *change;
         }
         (at, slope)
     }
@@ -307,8 +307,8 @@ fn undefined(failure: StepFailure, t: f64) -> Undefined {
 /// The state rounded to doubles.
 pub(super) fn rounded<S: StateVector, const PARTS: usize>(row: &[Extended<PARTS>]) -> S {
     let mut values = S::zeros(S::CAPACITY);
-    for (own, number) in values.as_mut_slice().iter_mut().zip(row) {
-        *own = number.nearest();
+    for (value, number) in values.as_mut_slice().iter_mut().zip(row) {
+        *value = number.nearest();
     }
     values
 }

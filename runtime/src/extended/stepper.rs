@@ -82,8 +82,8 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
             round_into(self.gaps[k].as_mut_slice(), gaps);
         }
         let start = flight.ends[0].state.as_slice();
-        for (own, number) in self.rest.as_mut_slice().iter_mut().zip(start) {
-            *own = (*number - Extended::from(number.nearest())).nearest();
+        for (entry, number) in self.rest.as_mut_slice().iter_mut().zip(start) {
+            *entry = (*number - Extended::from(number.nearest())).nearest();
         }
     }
 }
@@ -98,8 +98,8 @@ fn instant<const PARTS: usize>(t: Extended<PARTS>) -> Instant {
 }
 
 fn round_into<const PARTS: usize>(doubles: &mut [f64], numbers: &[Extended<PARTS>]) {
-    for (own, number) in doubles.iter_mut().zip(numbers) {
-        *own = number.nearest();
+    for (double, number) in doubles.iter_mut().zip(numbers) {
+        *double = number.nearest();
     }
 }
 
@@ -253,8 +253,8 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
 
     fn powers(&self, coefficients: &mut [Sys::State; LENGTH]) -> usize {
         let mut power = 1.0;
-        let own = &self.coefficients[..=self.order];
-        for (to, from) in coefficients.iter_mut().zip(own) {
+        let known = &self.coefficients[..=self.order];
+        for (to, from) in coefficients.iter_mut().zip(known) {
             let scaled = to.as_mut_slice().iter_mut().zip(from.as_slice());
             scaled.for_each(|(to, from)| *to = power * from);
             power *= self.theta;

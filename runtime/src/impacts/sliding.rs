@@ -27,7 +27,7 @@ pub(super) struct Slide {
 
 /// Both fields at a state, and the gap rates at which they lead into the surface.
 struct Sides<Sys: Impacting> {
-    own: Sys::State,
+    here: Sys::State,
     other: Sys::State,
     /// `[r_b, r_a]`
     rates: [f64; 2],
@@ -59,7 +59,7 @@ impl Slide {
         let back = system.gap_rates(t, state)?.as_slice()[self.back];
         let across = system.gap_rates(t, &other)?.as_slice()[self.across];
         Ok(Sides {
-            own: rates[0],
+            here: rates[0],
             other: rates[1],
             rates: [back, across],
         })
@@ -87,11 +87,11 @@ impl Slide {
         state: &Sys::State,
         rate: &mut Sys::State,
     ) -> Result<(), Fault> {
-        let Sides { own, other, rates } = self.sides(system, t, state)?;
+        let Sides { here, other, rates } = self.sides(system, t, state)?;
         let share = rates[0] / (rates[0] + rates[1]);
-        let pairs = own.as_slice().iter().zip(other.as_slice());
-        for (rate, (own, other)) in rate.as_mut_slice().iter_mut().zip(pairs) {
-            *rate += share * (other - own);
+        let pairs = here.as_slice().iter().zip(other.as_slice());
+        for (rate, (here, other)) in rate.as_mut_slice().iter_mut().zip(pairs) {
+            *rate += share * (other - here);
         }
         Ok(())
     }
@@ -104,14 +104,14 @@ impl Slide {
         state: &mut Sys::State,
     ) -> Result<(), Fault> {
         let gap = system.gaps(t, state).as_slice()[self.back];
-        let Sides { own, other, rates } = self.sides(system, t, state)?;
+        let Sides { here, other, rates } = self.sides(system, t, state)?;
         let step = gap / (rates[0] + rates[1]);
         if !step.is_finite() {
             return Ok(());
         }
-        let pairs = own.as_slice().iter().zip(other.as_slice());
-        for (value, (own, other)) in state.as_mut_slice().iter_mut().zip(pairs) {
-            *value += step * (other - own);
+        let pairs = here.as_slice().iter().zip(other.as_slice());
+        for (value, (here, other)) in state.as_mut_slice().iter_mut().zip(pairs) {
+            *value += step * (other - here);
         }
         Ok(())
     }

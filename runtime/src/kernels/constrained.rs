@@ -23,15 +23,15 @@ fn write_forms<S: Declared>(
     let Ok(both) = part.several(kernel, t, [q.as_slice(), qdot.as_slice()]) else {
         return;
     };
-    let (own, rest) = both.as_slice()[..n * m + m].split_at(n * m);
+    let (entries, rest) = both.as_slice()[..n * m + m].split_at(n * m);
     affine.as_mut_slice()[..m].copy_from_slice(rest);
     if part.mode().is_none() {
-        forms.copy_from_slice(own);
+        forms.copy_from_slice(entries);
         return;
     }
     forms.fill(0.0);
-    for (row, own) in forms.chunks_exact_mut(all).zip(own.chunks_exact(n)) {
-        for (i, entry) in own.iter().enumerate() {
+    for (row, form) in forms.chunks_exact_mut(all).zip(entries.chunks_exact(n)) {
+        for (i, entry) in form.iter().enumerate() {
             row[part.coordinate(i)] = *entry;
         }
     }

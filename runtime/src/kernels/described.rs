@@ -98,9 +98,9 @@ impl<S: Documented> Instance for S {
         let documentation = part
             .mode()
             .map_or(self.documentation(), |mode| mode.documentation);
-        let [placed, named] = [documentation.placed, documentation.named].map(|own| {
+        let [placed, named] = [documentation.placed, documentation.named].map(|declared| {
             let mut marks = self.zero_vector();
-            for (mark, &is_declared) in marks.as_mut_slice().iter_mut().zip(own) {
+            for (mark, &is_declared) in marks.as_mut_slice().iter_mut().zip(declared) {
                 *mark = f64::from(u8::from(is_declared));
             }
             part.spread(marks)
@@ -128,10 +128,10 @@ impl<S: Documented> Instance for S {
         if count == 0 {
             return Ok(());
         }
-        let own = part.several((S::Kernels::outputs, count), t, places)?;
-        for (&place, own) in mode.outputs.iter().zip(own.as_slice()) {
+        let computed = part.several((S::Kernels::outputs, count), t, places)?;
+        for (&place, output) in mode.outputs.iter().zip(computed.as_slice()) {
             if let Some(value) = values.get_mut(place) {
-                *value = *own;
+                *value = *output;
             }
         }
         Ok(())
@@ -201,12 +201,12 @@ fn report_geometry<S: Documented>(
     Part::start(system).write(S::Kernels::geometry, t, places, values.as_mut_slice())?;
     let mut rest = values.as_slice();
     for Quantity { name, shape } in geometry {
-        let (own, others) = rest.split_at(shape.count());
+        let (entries, others) = rest.split_at(shape.count());
         rest = others;
         match *shape {
-            Shape::Scalar => report.scalar(name, own[0]),
-            Shape::Vector(_) => report.vector(name, own),
-            Shape::Matrix(rows, columns) => report.matrix(name, rows, columns, own),
+            Shape::Scalar => report.scalar(name, entries[0]),
+            Shape::Vector(_) => report.vector(name, entries),
+            Shape::Matrix(rows, columns) => report.matrix(name, rows, columns, entries),
         }
     }
     Ok(())

@@ -38,8 +38,9 @@ fn gap_over<S: Declared, L: Numbers>(
         false => 0,
     };
     let part = Part::numbered(system, number);
-    let own = part.surface(surface);
-    let Some((own, declared)) = own.and_then(|own| Some((own, part.tables.surfaces.get(own)?)))
+    let local = part.surface(surface);
+    let Some((local, declared)) =
+        local.and_then(|local| Some((local, part.tables.surfaces.get(local)?)))
     else {
         return L::of(1.0);
     };
@@ -58,15 +59,15 @@ fn gap_over<S: Declared, L: Numbers>(
     };
     let mut gap = [L::ZERO];
     // The kernel of a gap has no guards, so it does not fail.
-    let _ = part.kernels.gap(own, at, &mut gap);
+    let _ = part.kernels.gap(local, at, &mut gap);
     gap[0]
 }
 
 /// True if all conditions of a list hold; their margins come first in `margins`. Also returns the remaining margins.
 #[inline(always)]
 fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
-    let (own, rest) = margins.split_at(conditions.len());
-    let all = conditions.iter().zip(own).all(|(condition, &margin)| {
+    let (listed, rest) = margins.split_at(conditions.len());
+    let all = conditions.iter().zip(listed).all(|(condition, &margin)| {
         let is_closed = condition.is_closed;
         margin > 0.0 || (is_closed && margin >= 0.0)
     });
@@ -76,18 +77,18 @@ fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
 /// True if the conditions of a surface of a part hold; true if those of one of its other lists hold.
 fn conditions<S: Declared>(
     part: &Part<'_, S>,
-    (own, surface): (usize, &Surface),
+    (local, surface): (usize, &Surface),
     t: f64,
     state: &S::State,
 ) -> [bool; 2] {
-    let others = surface.others.iter().map(|own| own.len()).sum::<usize>();
+    let others = surface.others.iter().map(|list| list.len()).sum::<usize>();
     let count = surface.conditions.len() + others;
     if count == 0 {
         return [true, false];
     }
     let kernel = (
         |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-            kernels.conditions(own, at, values)
+            kernels.conditions(local, at, values)
         },
         count,
     );
@@ -97,8 +98,8 @@ fn conditions<S: Declared>(
     };
     let (holds, mut rest) = hold(surface.conditions, &margins.as_slice()[..count]);
     let mut other = false;
-    for own in surface.others {
-        let (found, behind) = hold(own, rest);
+    for list in surface.others {
+        let (found, behind) = hold(list, rest);
         other |= found;
         rest = behind;
     }
@@ -120,10 +121,10 @@ fn counts_along<S: Declared>(
     let Some(surface) = part.surface(surface) else {
         return Some(false);
     };
-    let Some(own) = part.tables.surfaces.get(surface) else {
+    let Some(declared) = part.tables.surfaces.get(surface) else {
         return Some(true);
     };
-    let count = lists(own).map(<[Condition]>::len).sum::<usize>();
+    let count = lists(declared).map(<[Condition]>::len).sum::<usize>();
     if count == 0 {
         return Some(true);
     }
@@ -145,7 +146,7 @@ fn counts_along<S: Declared>(
         Some(margins)
     };
     let (along, rounding) = (margins(t, component)?, margins(moment, rounded)?);
-    let mut holds = lists_hold(own, |place, _| {
+    let mut holds = lists_hold(declared, |place, _| {
         let margin = along.as_slice()[place].range();
         let floor = rounding.as_slice()[place].range().width();
         let (is_true, is_false) = (margin.lo > floor, margin.hi <= floor);
@@ -153,7 +154,7 @@ fn counts_along<S: Declared>(
     });
     let own_holds = holds.next().flatten();
     let none = certain::none(holds);
-    match own.beside {
+    match declared.beside {
         Beside::Independent => own_holds,
         Beside::Otherwise => none,
         Beside::Last => certain::none([own_holds, none].into_iter()).map(|neither| !neither),
@@ -186,13 +187,13 @@ fn lists_hold<'a>(
 #[inline]
 pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
     let part = Part::of(system, state.as_slice());
-    let Some(own) = part.surface(surface) else {
+    let Some(local) = part.surface(surface) else {
         return false;
     };
-    let Some(declared) = part.tables.surfaces.get(own) else {
+    let Some(declared) = part.tables.surfaces.get(local) else {
         return true;
     };
-    let [holds, other] = conditions(&part, (own, declared), t, state);
+    let [holds, other] = conditions(&part, (local, declared), t, state);
     match declared.beside {
         Beside::Independent => holds,
         Beside::Otherwise => !other,
@@ -212,10 +213,10 @@ pub(super) fn counts_throughout<S: Declared>(
     let Some(surface) = part.surface(surface) else {
         return Some(false);
     };
-    let Some(own) = part.tables.surfaces.get(surface) else {
+    let Some(declared) = part.tables.surfaces.get(surface) else {
         return Some(true);
     };
-    let count = lists(own).map(<[Condition]>::len).sum::<usize>();
+    let count = lists(declared).map(<[Condition]>::len).sum::<usize>();
     if count == 0 {
         return Some(true);
     }
@@ -228,11 +229,11 @@ pub(super) fn counts_throughout<S: Declared>(
     let mut margins = S::Room::<Interval>::zeros(count);
     let margins = &mut margins.as_mut_slice()[..count];
     part.kernels.conditions(surface, at, margins).ok()?;
-    let mut holds = lists_hold(own, |place, condition| {
+    let mut holds = lists_hold(declared, |place, condition| {
         certain::holds(margins[place], condition.is_closed)
     });
     let own_holds = holds.next().flatten();
-    match own.beside {
+    match declared.beside {
         Beside::Independent => own_holds,
         Beside::Otherwise => certain::none(holds),
         Beside::Last => certain::last(own_holds, certain::none(holds)),
@@ -282,9 +283,9 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     fn gaps(&self, t: f64, state: &S::State) -> S::Gaps {
         let part = Part::of(self, state.as_slice());
         let mut gaps = self.zero_gaps();
-        let own = &mut gaps.as_mut_slice()[..part.tables.dimensions.surfaces];
+        let entries = &mut gaps.as_mut_slice()[..part.tables.dimensions.surfaces];
         // The kernel of the gaps has no guards, so it does not fail.
-        let _ = part.write(S::Kernels::gaps, t, [state.as_slice(), &[]], own);
+        let _ = part.write(S::Kernels::gaps, t, [state.as_slice(), &[]], entries);
         part.of_surfaces(gaps, 1.0)
     }
 
@@ -346,11 +347,11 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     }
 
     fn has_conditions(&self, surface: usize) -> bool {
-        let Some((part, own)) = Part::of_surface(self, surface) else {
+        let Some((part, local)) = Part::of_surface(self, surface) else {
             return false;
         };
-        let declared = part.tables.surfaces.get(own);
-        declared.is_some_and(|own| lists(own).any(|list| !list.is_empty()))
+        let declared = part.tables.surfaces.get(local);
+        declared.is_some_and(|declared| lists(declared).any(|list| !list.is_empty()))
     }
 
     fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
@@ -360,12 +361,12 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     #[inline]
     fn takes(&self, surface: usize, t: f64, state: &S::State) -> bool {
         let part = Part::of(self, state.as_slice());
-        let Some(own) = part.surface(surface) else {
+        let Some(local) = part.surface(surface) else {
             return true;
         };
-        match part.tables.surfaces.get(own) {
+        match part.tables.surfaces.get(local) {
             Some(declared) if declared.beside == Beside::Last => {
-                conditions(&part, (own, declared), t, state)[0]
+                conditions(&part, (local, declared), t, state)[0]
             }
             _ => true,
         }
@@ -373,10 +374,10 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn law(&self, surface: usize) -> Law {
-        let Some(own) = self.tables().surfaces.get(surface) else {
+        let Some(declared) = self.tables().surfaces.get(surface) else {
             return Law::Elastic;
         };
-        match own.law {
+        match declared.law {
             Law::Restitution(_) => Law::Restitution(coefficient(self, surface)),
             Law::Newton(_) => Law::Newton(coefficient(self, surface)),
             law => law,
@@ -385,11 +386,17 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     #[inline]
     fn is_passable(&self, surface: usize) -> bool {
-        let is_reset =
-            || self.tables().surfaces.get(surface).map(|own| own.law) == Some(Law::Reset);
+        let is_reset = || {
+            self.tables()
+                .surfaces
+                .get(surface)
+                .map(|declared| declared.law)
+                == Some(Law::Reset)
+        };
         let has_no_side = || {
             let (part, _) = Part::of_surface(self, surface)?;
-            part.transition(surface).map(|(_, own)| own.has_no_side)
+            part.transition(surface)
+                .map(|(_, transition)| transition.has_no_side)
         };
         is_reset() || has_modes(self) && has_no_side() == Some(true)
     }
@@ -406,14 +413,15 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
     ) -> Result<Option<Jump<S::Vector>>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
-        if !matches!(part.tables.surfaces.get(own), Some(own) if own.law == Law::Reset) {
+        let local = part.known(surface)?;
+        if !matches!(part.tables.surfaces.get(local), Some(declared) if declared.law == Law::Reset)
+        {
             return Ok(None);
         }
         let places = [state.as_slice(), &[][..]];
         let [position, velocity] = part.pair(
             |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.reset(own, at, values)
+                kernels.reset(local, at, values)
             },
             t,
             places,
@@ -423,9 +431,9 @@ impl<S: Declared + HasSurfaces> Impacting for S {
 
     fn focus(&self, surface: usize, t: f64, state: &S::State) -> Result<Option<S::Impulse>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
+        let local = part.known(surface)?;
         let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-            kernels.focus(own, at, values)
+            kernels.focus(local, at, values)
         };
         known(part.impulse(kernel, t, [state.as_slice(), &[]], self.impulse_len()))
     }
@@ -438,9 +446,9 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         motion: &S::Impulse,
     ) -> Result<Option<S::Impulse>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
+        let local = part.known(surface)?;
         let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-            kernels.trace(own, at, values)
+            kernels.trace(local, at, values)
         };
         let places = [state.as_slice(), motion.as_slice()];
         known(part.impulse(kernel, t, places, self.impulse_len()))
@@ -454,7 +462,7 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     ) -> Result<Landing<S::State>, Outcome> {
         let part = Part::of(self, state.as_slice());
         match part.transition(surface) {
-            Some((own, transition)) => passage(self, (surface, own, transition), t, state),
+            Some((local, transition)) => passage(self, (surface, local, transition), t, state),
             None => {
                 let here = part.starting_here();
                 after_reset(&here, surface, t, state).map(Landing::from)
@@ -465,11 +473,11 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     #[inline]
     fn blow(&self, surface: usize, t: f64, state: &S::State) -> Result<Blow<S::Impulse>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
+        let local = part.known(surface)?;
         let count = 2 + part.lengths()[1];
         let kernel = (
             |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.blow(own, at, values)
+                kernels.blow(local, at, values)
             },
             count,
         );
@@ -495,11 +503,11 @@ impl<S: Declared + HasSurfaces> Impacting for S {
         state: &S::State,
     ) -> Result<Contact<S::Impulse>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
+        let local = part.known(surface)?;
         let count = 5 + part.lengths()[1];
         let kernel = (
             |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-                kernels.contact(own, at, values)
+                kernels.contact(local, at, values)
             },
             count,
         );

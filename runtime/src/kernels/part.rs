@@ -83,11 +83,11 @@ impl<'s, S: Declared> Part<'s, S> {
             return Some((Self::numbered(system, 0), surface));
         }
         let mut modes = system.tables().modes.iter().enumerate();
-        let (number, own) = modes.find_map(|(number, mode)| {
-            let own = mode.surfaces.iter().position(|&place| place == surface)?;
-            Some((number, own))
+        let (number, local) = modes.find_map(|(number, mode)| {
+            let local = mode.surfaces.iter().position(|&place| place == surface)?;
+            Some((number, local))
         })?;
-        Some((Self::numbered(system, number), own))
+        Some((Self::numbered(system, number), local))
     }
 
     /// The mode; `None` if the part is the model itself.
@@ -157,15 +157,15 @@ impl<'s, S: Declared> Part<'s, S> {
 
     /// Target mode and transition of a surface of the model, if it leads to another mode.
     pub(crate) fn transition(&self, surface: usize) -> Option<(usize, Transition)> {
-        let own = self.surface(surface)?;
-        let transition = self.mode()?.transitions.get(own).copied().flatten()?;
-        Some((own, transition))
+        let local = self.surface(surface)?;
+        let transition = self.mode()?.transitions.get(local).copied().flatten()?;
+        Some((local, transition))
     }
 
     /// Index in the model of a coordinate of the part.
     #[inline(always)]
-    pub(crate) fn coordinate(&self, own: usize) -> usize {
-        self.mode().map_or(own, |mode| mode.coordinates[own])
+    pub(crate) fn coordinate(&self, local: usize) -> usize {
+        self.mode().map_or(local, |mode| mode.coordinates[local])
     }
 
     /// Moves values, one per coordinate of the part, from the beginning of a vector to the places of these
@@ -269,9 +269,9 @@ impl<'s, S: Declared> Part<'s, S> {
     }
 
     /// Index in the model of a constraint of the part.
-    fn constraint(&self, own: usize) -> usize {
+    fn constraint(&self, local: usize) -> usize {
         let places = self.mode().map_or(&[][..], |mode| mode.constraints);
-        places.get(own).copied().unwrap_or(own)
+        places.get(local).copied().unwrap_or(local)
     }
 
     /// Renumbers the constraint of a refusal from the part to the model.
@@ -352,8 +352,8 @@ impl<S: Declared> Part<'_, S> {
         places: [&[f64]; 2],
     ) -> Result<V, Fault> {
         let mut values = V::zeros(length);
-        let own = &mut values.as_mut_slice()[..count];
-        self.write(kernel, t, places, own)?;
+        let entries = &mut values.as_mut_slice()[..count];
+        self.write(kernel, t, places, entries)?;
         Ok(values)
     }
 

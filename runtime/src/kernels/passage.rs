@@ -41,7 +41,7 @@ const GRAZE: f64 = 64.0 * f64::EPSILON;
 /// or off its constraints.
 pub(super) fn passage<S: Declared + HasSurfaces>(
     system: &S,
-    (surface, own, transition): (usize, usize, Transition),
+    (surface, local, transition): (usize, usize, Transition),
     t: f64,
     state: &S::State,
 ) -> Result<Landing<S::State>, Outcome> {
@@ -51,7 +51,7 @@ pub(super) fn passage<S: Declared + HasSurfaces>(
         return Err(Outcome::Untaken { surface });
     }
     let after = match transition.passage {
-        Passage::Declared => declared((&left, own), &entered, surface, t, state)?,
+        Passage::Declared => declared((&left, local), &entered, surface, t, state)?,
         Passage::Kept => Part::start(&entered).joined(state.as_slice(), &[]),
         Passage::Focused => focused(system, &entered, t, state)?,
         Passage::Refracted => return refracted(system, &left, &entered, surface, t, state),
@@ -92,7 +92,7 @@ fn checked<S: Declared>(
 
 /// The declared entry state; its velocities satisfy the constraints of the mode.
 fn declared<S: Declared>(
-    (left, own): (&Part<'_, S>, usize),
+    (left, local): (&Part<'_, S>, usize),
     entered: &S,
     surface: usize,
     t: f64,
@@ -104,8 +104,9 @@ fn declared<S: Declared>(
         Form::FirstOrder => n,
         _ => 2 * n,
     };
-    let kernel =
-        |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| kernels.entry(own, at, values);
+    let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
+        kernels.entry(local, at, values)
+    };
     let both = left.several((kernel, count), t, [state.as_slice(), &[]])?;
     let (mut q, mut qdot) = (entered.zero_vector(), entered.zero_vector());
     let (positions, velocities) = both.as_slice()[..count].split_at(n);
@@ -245,8 +246,8 @@ fn covector<S: Declared>(
     let rest = system.momentum(t, &kicked)?;
     system.kick(&mut kicked, 1.0, direction);
     let mut covector = system.momentum(t, &kicked)?;
-    for (own, rest) in covector.as_mut_slice().iter_mut().zip(rest.as_slice()) {
-        *own -= rest;
+    for (entry, rest) in covector.as_mut_slice().iter_mut().zip(rest.as_slice()) {
+        *entry -= rest;
     }
     Ok(covector)
 }
@@ -294,8 +295,8 @@ impl<V: StateVector> Along<V> {
     /// `p + c d`
     fn at(&self, c: f64) -> V {
         let mut p = self.p;
-        for (own, d) in p.as_mut_slice().iter_mut().zip(self.direction.as_slice()) {
-            *own += c * d;
+        for (entry, d) in p.as_mut_slice().iter_mut().zip(self.direction.as_slice()) {
+            *entry += c * d;
         }
         p
     }

@@ -25,11 +25,11 @@ impl<S: Declared> VectorField for S {
     fn rate(&self, t: f64, state: &S::State, rate: &mut S::State) -> Result<(), Fault> {
         let places = [state.as_slice(), &[]];
         let part = Part::of(self, places[0]);
-        let (own, others) = rate
+        let (entries, others) = rate
             .as_mut_slice()
             .split_at_mut(part.tables.dimensions.state);
         others.fill(0.0);
-        part.write(S::Kernels::rate, t, places, own)
+        part.write(S::Kernels::rate, t, places, entries)
     }
 
     #[inline]
@@ -37,12 +37,12 @@ impl<S: Declared> VectorField for S {
         let mut scale = state.zeroed();
         let places = [state.as_slice(), &[]];
         let part = Part::of(self, places[0]);
-        let (own, others) = scale
+        let (entries, others) = scale
             .as_mut_slice()
             .split_at_mut(part.tables.dimensions.state);
         others.fill(1.0);
         // The kernel of the units has no guards, so it does not fail.
-        let _ = part.write(S::Kernels::scale, t, places, own);
+        let _ = part.write(S::Kernels::scale, t, places, entries);
         scale
     }
 
@@ -74,10 +74,10 @@ impl<S: Declared> VectorField for S {
             first: state.as_slice(),
             second: &[],
         };
-        let own = &mut rates.as_mut_slice()[..part.tables.dimensions.state];
-        part.kernels.rate(at, own)?;
-        for (i, own) in rates.as_slice().iter().enumerate() {
-            rate(i, *own);
+        let entries = &mut rates.as_mut_slice()[..part.tables.dimensions.state];
+        part.kernels.rate(at, entries)?;
+        for (i, component) in rates.as_slice().iter().enumerate() {
+            rate(i, *component);
         }
         Ok(())
     }
@@ -106,9 +106,9 @@ pub fn nearest_of_declared<S: Declared + HasConstraints>(
     qdot: &S::Vector,
 ) -> Result<S::State, Fault> {
     let part = Part::start(system);
-    let own = part.gathered(q);
+    let positions = part.gathered(q);
     nearest_by_steps(system, t, q, qdot, |qdot| {
-        part.state_by(S::Kernels::nearest, t, &own, &part.gathered(qdot))
+        part.state_by(S::Kernels::nearest, t, &positions, &part.gathered(qdot))
     })
 }
 
@@ -324,11 +324,11 @@ impl<S: Declared> System for S {
 
 /// The coefficient of restitution of a surface's law; NaN for a law without one.
 pub(super) fn coefficient<S: Declared>(system: &S, surface: usize) -> f64 {
-    let Some((part, own)) = Part::of_surface(system, surface) else {
+    let Some((part, local)) = Part::of_surface(system, surface) else {
         return f64::NAN;
     };
     let kernel = |kernels: &S::Kernels, at: At<'_, f64>, values: &mut [f64]| {
-        kernels.coefficient(own, at, values)
+        kernels.coefficient(local, at, values)
     };
     part.number_by(kernel, 0.0, [&[], &[]]).unwrap_or(f64::NAN)
 }

@@ -45,8 +45,8 @@ impl<S: Declared> Part<'_, S> {
         places: [&[L]; 2],
     ) -> Result<R, Fault> {
         let mut values = R::zeros(length);
-        let own = &mut values.as_mut_slice()[..count];
-        self.write_over(kernel, arguments, places, own)?;
+        let entries = &mut values.as_mut_slice()[..count];
+        self.write_over(kernel, arguments, places, entries)?;
         Ok(values)
     }
 
@@ -118,31 +118,33 @@ impl<S: Declared> Part<'_, S> {
     /// The numbers of a contact at a surface of the part, followed by the direction.
     fn collision<L: Numbers, R: Row<L>>(
         &self,
-        own: usize,
+        local: usize,
         arguments: Arguments<'_, L>,
         state: &[L],
     ) -> Result<R, Fault> {
         let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-            kernels.contact(own, at, values)
+            kernels.contact(local, at, values)
         };
         let counts = [self.system_dimensions().motion, self.lengths()[1]];
         let counts = counts.map(|motion| 5 + motion);
         let found = self.row((kernel, counts), arguments, [state, &[]]);
-        found.map_err(|fault| self.fault(no_impulse(self.tables, fault, own)))
+        found.map_err(|fault| self.fault(no_impulse(self.tables, fault, local)))
     }
 
     /// Positions and velocities after the reset of a surface of the part; `None` if its law is not a reset.
     fn landed<L: Numbers>(
         &self,
-        own: usize,
+        local: usize,
         arguments: Arguments<'_, L>,
         state: &[L],
     ) -> Result<Option<[S::Positions<L>; 2]>, Fault> {
-        if !matches!(self.tables.surfaces.get(own), Some(own) if own.law == Law::Reset) {
+        if !matches!(self.tables.surfaces.get(local), Some(declared) if declared.law == Law::Reset)
+        {
             return Ok(None);
         }
-        let kernel =
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| kernels.reset(own, at, values);
+        let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+            kernels.reset(local, at, values)
+        };
         let n = self.lengths()[0];
         let both: S::Room<L> = self.row((kernel, [2 * n; 2]), arguments, [state, &[]])?;
         let (q, qdot) = both.as_slice()[..2 * n].split_at(n);
@@ -158,7 +160,7 @@ impl<S: Declared> Part<'_, S> {
     /// of either mode holds no momenta.
     fn passed_into<L: Numbers, R: Row<L>>(
         &self,
-        (own, transition): (usize, Transition),
+        (local, transition): (usize, Transition),
         arguments: Arguments<'_, L>,
         state: &R,
     ) -> Result<Option<R>, Fault> {
@@ -167,7 +169,7 @@ impl<S: Declared> Part<'_, S> {
         let entered = match transition.passage {
             Passage::Declared => {
                 let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-                    kernels.entry(own, at, values)
+                    kernels.entry(local, at, values)
                 };
                 let n = right.lengths()[0];
                 let count = match right.tables.form {
@@ -183,7 +185,7 @@ impl<S: Declared> Part<'_, S> {
                 let qdot = self.row_of_coordinates(S::Kernels::velocity, arguments, places)?;
                 right.nearest(arguments, [places[0], qdot.as_slice()])?
             }
-            Passage::Refracted => return self.refracted(&right, own, arguments, state),
+            Passage::Refracted => return self.refracted(&right, local, arguments, state),
         };
         Ok(Some(entered))
     }
@@ -193,7 +195,7 @@ impl<S: Declared> Part<'_, S> {
     fn refracted<L: Numbers, R: Row<L>>(
         &self,
         right: &Part<'_, S>,
-        own: usize,
+        local: usize,
         arguments: Arguments<'_, L>,
         state: &R,
     ) -> Result<Option<R>, Fault> {
@@ -201,7 +203,7 @@ impl<S: Declared> Part<'_, S> {
             return Ok(None);
         }
         let n = self.lengths()[0];
-        let collision: S::Room<L> = self.collision(own, arguments, state.as_slice())?;
+        let collision: S::Room<L> = self.collision(local, arguments, state.as_slice())?;
         // NOTE: the third number of a contact is the rate of the surface itself; the direction follows the fifth.
         let (surface_rate, direction) = (collision.as_slice()[2], &collision.as_slice()[5..5 + n]);
         let with_momenta = |momenta: &dyn Fn(usize) -> L| {
@@ -325,10 +327,10 @@ impl<S: HasVariations> Variational for S {
             Form::Global => dimensions.constraints,
             _ => 0,
         };
-        let own = off + dimensions.levels;
+        let count = off + dimensions.levels;
         let length = match has_modes(self) {
             true => self.tables().dimensions.state - 1,
-            false => own,
+            false => count,
         };
         let mut values = <S as HasVariations>::Deviations::<L>::zeros(length);
         if off > 0 {
@@ -338,13 +340,13 @@ impl<S: HasVariations> Variational for S {
             values.as_mut_slice()[..off].copy_from_slice(&both.as_slice()[..off]);
         }
         if dimensions.levels > 0 {
-            let levels = &mut values.as_mut_slice()[off..own];
+            let levels = &mut values.as_mut_slice()[off..count];
             part.write_over(S::Kernels::levels, arguments, [state, &[]], levels)?;
         }
         if has_modes(self) {
             // The components that the mode does not use, and its number.
             let unused = &state[dimensions.state..];
-            let places = values.as_mut_slice()[own..].iter_mut();
+            let places = values.as_mut_slice()[count..].iter_mut();
             places
                 .zip(unused)
                 .for_each(|(place, value)| *place = *value);
@@ -379,8 +381,8 @@ impl<S: HasVariations> Variational for S {
         state: &RowOf<S, L>,
     ) -> Result<<S as HasVariations>::Collision<L>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
-        part.collision(own, (parameters.as_slice(), t), state.as_slice())
+        let local = part.known(surface)?;
+        part.collision(local, (parameters.as_slice(), t), state.as_slice())
     }
 
     fn focus<L: Numbers>(
@@ -391,9 +393,10 @@ impl<S: HasVariations> Variational for S {
         state: &RowOf<S, L>,
     ) -> Result<Option<RowOf<S, L>>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
-        let kernel =
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| kernels.focus(own, at, values);
+        let local = part.known(surface)?;
+        let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+            kernels.focus(local, at, values)
+        };
         let places = [state.as_slice(), &[][..]];
         part.added(kernel, (parameters.as_slice(), t), places, state)
     }
@@ -407,9 +410,10 @@ impl<S: HasVariations> Variational for S {
         rate: &RowOf<S, L>,
     ) -> Result<Option<RowOf<S, L>>, Fault> {
         let part = Part::of(self, state.as_slice());
-        let own = part.known(surface)?;
-        let kernel =
-            |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| kernels.trace(own, at, values);
+        let local = part.known(surface)?;
+        let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
+            kernels.trace(local, at, values)
+        };
         let motion = &rate.as_slice()[part.lengths()[0]..];
         let places = [state.as_slice(), motion];
         part.added(kernel, (parameters.as_slice(), t), places, rate)
@@ -441,8 +445,8 @@ impl<S: HasVariations> Variational for S {
         if let Some(transition) = part.transition(surface) {
             return part.passed_into(transition, arguments, state);
         }
-        let own = part.known(surface)?;
-        let Some([q, qdot]) = part.landed(own, arguments, state.as_slice())? else {
+        let local = part.known(surface)?;
+        let Some([q, qdot]) = part.landed(local, arguments, state.as_slice())? else {
             return Ok(None);
         };
         let places = [q.as_slice(), qdot.as_slice()];
@@ -454,14 +458,14 @@ impl<S: HasVariations> Variational for S {
         parameters: &<S as TaylorField>::Parameters<L>,
         surface: usize,
     ) -> (Law, L) {
-        let (Some(declared), Some((part, own))) = (
+        let (Some(declared), Some((part, local))) = (
             self.tables().surfaces.get(surface),
             Part::of_surface(self, surface),
         ) else {
             return (Law::Elastic, L::ZERO);
         };
         let kernel = |kernels: &S::Kernels, at: At<'_, L>, values: &mut [L]| {
-            kernels.coefficient(own, at, values)
+            kernels.coefficient(local, at, values)
         };
         let mut coefficient = [L::ZERO];
         let arguments = (parameters.as_slice(), L::ZERO);

@@ -145,9 +145,9 @@ impl<
         match mode.checked_sub(1) {
             Some(mode) => Rest::inspect(whole, mode, t, state, report),
             None => {
-                let own = M::from(*whole);
-                let state = own_state(&own, state);
-                Instance::inspect(&own, t, &state, report)
+                let system = M::from(*whole);
+                let state = own_state(&system, state);
+                Instance::inspect(&system, t, &state, report)
             }
         }
     }
@@ -161,12 +161,12 @@ impl<
         if let Some(mode) = mode.checked_sub(1) {
             return Rest::rank_drop(whole, mode, motion, reach);
         }
-        let own = M::from(*whole);
+        let system = M::from(*whole);
         let along = |theta: f64| {
             let (t, state) = motion(theta);
-            (t, own_state(&own, state.as_slice()))
+            (t, own_state(&system, state.as_slice()))
         };
-        own.rank_drop_along(along, reach)
+        system.rank_drop_along(along, reach)
     }
 }
 
@@ -189,14 +189,14 @@ fn begin<
     at: (&[L], L, &[L]),
     firsts: &mut [L],
 ) -> Result<(), Fault> {
-    let own = M::from(*whole);
-    let known = own.firsts_len();
+    let system = M::from(*whole);
+    let known = system.firsts_len();
     series::begin::<L, M::Parameters<L>, M::Row<L>, M::Firsts<L>>(
         (mode, known),
         lengths,
         at,
         firsts,
-        |parameters, t, state, firsts| own.begin(parameters, t, state, firsts),
+        |parameters, t, state, firsts| system.begin(parameters, t, state, firsts),
     )
 }
 
@@ -215,15 +215,15 @@ fn advance<
     gaps: &mut [G; LENGTH],
     jets: &mut M::Jets<L>,
 ) {
-    let own = M::from(*whole);
-    let known = own.firsts_len();
+    let system = M::from(*whole);
+    let known = system.firsts_len();
     let order = expansion.order;
     series::advance::<L, M::Parameters<L>, M::Firsts<L>, _, _, _, _>(
         (mode, known),
         expansion,
         (coefficients, gaps),
         |parameters, unit, firsts, state, own_gaps: &mut [<M as TaylorField>::Gaps<L>; LENGTH]| {
-            own.advance(parameters, unit, order, firsts, state, own_gaps, jets);
+            system.advance(parameters, unit, order, firsts, state, own_gaps, jets);
         },
     );
 }

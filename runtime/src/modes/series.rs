@@ -100,9 +100,9 @@ pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
     let Some(lanes) = Lanes::of(number, &modes) else {
         return Ok(());
     };
-    let own = &mode.tables.dimensions;
+    let dimensions = &mode.tables.dimensions;
     let parameters: P = row(parameters, &lanes, &modes);
-    let state: R = row(&state[..own.state], &lanes, &modes);
+    let state: R = row(&state[..dimensions.state], &lanes, &modes);
     let mut own_firsts = F::zeros(known);
     expand(
         &parameters,
@@ -110,7 +110,7 @@ pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
         &state,
         &mut own_firsts,
     )?;
-    let (rates, rest) = own_firsts.as_slice()[..known].split_at(own.state);
+    let (rates, rest) = own_firsts.as_slice()[..known].split_at(dimensions.state);
     let (gaps, rest) = rest.split_at(own_gaps(mode, lengths));
     let mut put = |place: usize, value: L| {
         firsts[place] = lanes.merged(firsts[place], value, &modes);
@@ -179,24 +179,28 @@ pub(crate) fn advance<
         };
         *value = lanes.picked(firsts[from], &modes);
     }
-    let mut own = [OwnR::zeros(d); LENGTH];
-    own[0] = row(&coefficients[0].as_slice()[..d], &lanes, &modes);
+    let mut expanded = [OwnR::zeros(d); LENGTH];
+    expanded[0] = row(&coefficients[0].as_slice()[..d], &lanes, &modes);
     let mut of_gaps = [OwnG::zeros(g); LENGTH];
     let unit = lanes.picked(unit, &modes);
-    expand(&parameters, unit, &own_firsts, &mut own, &mut of_gaps);
+    expand(&parameters, unit, &own_firsts, &mut expanded, &mut of_gaps);
     let last = order.min(LENGTH - 1);
-    for (all, own) in coefficients[1..=last].iter_mut().zip(&own[1..]) {
+    for (all, coefficient) in coefficients[1..=last].iter_mut().zip(&expanded[1..]) {
         for (place, value) in all.as_mut_slice().iter_mut().enumerate() {
-            let new = own.as_slice().get(place).copied().unwrap_or(L::ZERO);
+            let new = coefficient
+                .as_slice()
+                .get(place)
+                .copied()
+                .unwrap_or(L::ZERO);
             *value = lanes.merged(*value, new, &modes);
         }
     }
-    for (k, (all, own)) in gaps[..=last].iter_mut().zip(&of_gaps).enumerate() {
+    for (k, (all, gap)) in gaps[..=last].iter_mut().zip(&of_gaps).enumerate() {
         for value in all.as_mut_slice() {
             let constant = if k == 0 { L::of(1.0) } else { L::ZERO };
             *value = lanes.merged(*value, constant, &modes);
         }
-        for (new, &place) in own.as_slice()[..g].iter().zip(mode.surfaces) {
+        for (new, &place) in gap.as_slice()[..g].iter().zip(mode.surfaces) {
             let value = &mut all.as_mut_slice()[place];
             *value = lanes.merged(*value, *new, &modes);
         }
@@ -207,8 +211,8 @@ pub(crate) fn advance<
 #[inline(always)]
 fn row<L: Numbers, R: Row<L>>(values: &[L], lanes: &Lanes, modes: &L) -> R {
     let mut row = R::zeros(values.len());
-    for (own, value) in row.as_mut_slice().iter_mut().zip(values) {
-        *own = lanes.picked(*value, modes);
+    for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
+        *entry = lanes.picked(*value, modes);
     }
     row
 }

@@ -79,15 +79,15 @@ impl<Sys: Variational> Neighbours<Sys> {
 
     /// True if all neighbours are on a surface whenever the motion is.
     pub(super) fn share_gap(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
-        self.share(|own| {
-            let gaps = system.clearances(&own.parameters, own.t, &own.state)?;
+        self.share(|dual| {
+            let gaps = system.clearances(&dual.parameters, dual.t, &dual.state)?;
             Ok(gaps.as_slice()[surface])
         })
     }
 
     fn share_gap_rate(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
-        self.share(|own| {
-            let collision = system.collision(&own.parameters, surface, own.t, &own.state)?;
+        self.share(|dual| {
+            let collision = system.collision(&dual.parameters, surface, dual.t, &dual.state)?;
             Ok(collision.as_slice()[0])
         })
     }
@@ -98,11 +98,11 @@ impl<Sys: Variational> Neighbours<Sys> {
             return Ok(true);
         };
         let (mut errors, mut sizes) = ([0.0; DIRECTIONS], [0.0_f64; DIRECTIONS]);
-        for (own, focused) in self.state.as_slice().iter().zip(focused.as_slice()) {
-            let slopes = own.slopes().into_iter().zip(focused.slopes());
-            for ((own, focused), (error, size)) in slopes.zip(errors.iter_mut().zip(&mut sizes)) {
-                *error += (focused - own).abs();
-                *size = size.max(own.abs());
+        for (component, focused) in self.state.as_slice().iter().zip(focused.as_slice()) {
+            let slopes = component.slopes().into_iter().zip(focused.slopes());
+            for ((slope, focused), (error, size)) in slopes.zip(errors.iter_mut().zip(&mut sizes)) {
+                *error += (focused - slope).abs();
+                *size = size.max(slope.abs());
             }
         }
         let mut pairs = errors.into_iter().zip(sizes);

@@ -54,8 +54,8 @@ impl<Sys: Variational> Fixed<Sys> {
         let row = dual_state::<Sys>(point, &[]);
         let found = system.deviations(&parameters, Dual::of(t), &row)?;
         let mut kept = Sys::Deviations::<f64>::zeros(found.as_slice().len());
-        for (own, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
-            *own = found.value;
+        for (entry, found) in kept.as_mut_slice().iter_mut().zip(found.as_slice()) {
+            *entry = found.value;
         }
         Ok(Self { surface, kept })
     }
@@ -75,8 +75,8 @@ impl<Sys: Variational> Fixed<Sys> {
         take(0, gaps.as_slice()[self.surface]);
         let deviations = system.deviations(&parameters, Dual::of(t), &row)?;
         let kept = deviations.as_slice().iter().zip(self.kept.as_slice());
-        for (k, (own, kept)) in kept.enumerate() {
-            take(k + 1, *own - Dual::of(*kept));
+        for (k, (entry, kept)) in kept.enumerate() {
+            take(k + 1, *entry - Dual::of(*kept));
         }
         Ok(())
     }
@@ -97,13 +97,13 @@ impl<Sys: Variational> Chart<Sys> {
         for first in (0..system.state_len()).step_by(DIRECTIONS) {
             let along: [Tangent<Sys>; DIRECTIONS] = core::array::from_fn(|k| {
                 let mut tangent = Tangent::<Sys>::of_component(first + k);
-                for (own, scale) in tangent
+                for (entry, scale) in tangent
                     .state
                     .as_mut_slice()
                     .iter_mut()
                     .zip(scale.as_slice())
                 {
-                    *own *= scale;
+                    *entry *= scale;
                 }
                 tangent
             });
@@ -119,8 +119,8 @@ impl<Sys: Variational> Chart<Sys> {
         let mut correction = system.zero_state();
         let left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
         complete(frame.as_mut(), left_out);
-        for (own, scale) in correction.as_mut_slice().iter_mut().zip(scale.as_slice()) {
-            *own *= scale;
+        for (entry, scale) in correction.as_mut_slice().iter_mut().zip(scale.as_slice()) {
+            *entry *= scale;
         }
         let chart = Self {
             frame,
@@ -159,12 +159,12 @@ impl<Sys: Variational> Chart<Sys> {
     /// A direction, in units of the state.
     pub(super) fn direction(&self, index: usize) -> Sys::State {
         let mut direction = self.frame.as_ref()[self.left_out + index];
-        for (own, scale) in direction
+        for (entry, scale) in direction
             .as_mut_slice()
             .iter_mut()
             .zip(self.scale.as_slice())
         {
-            *own *= scale;
+            *entry *= scale;
         }
         direction
     }
@@ -172,13 +172,13 @@ impl<Sys: Variational> Chart<Sys> {
     /// The components of a change of the state along the directions.
     pub(super) fn components(&self, change: &Sys::State) -> Sys::State {
         let mut scaled = *change;
-        for (own, scale) in scaled.as_mut_slice().iter_mut().zip(self.scale.as_slice()) {
-            *own /= scale;
+        for (entry, scale) in scaled.as_mut_slice().iter_mut().zip(self.scale.as_slice()) {
+            *entry /= scale;
         }
         let mut components = change.zeroed();
         let directions = &self.frame.as_ref()[self.left_out..];
-        for (own, direction) in components.as_mut_slice().iter_mut().zip(directions) {
-            *own = dot(&scaled, direction);
+        for (component, direction) in components.as_mut_slice().iter_mut().zip(directions) {
+            *component = dot(&scaled, direction);
         }
         components
     }
@@ -186,8 +186,8 @@ impl<Sys: Variational> Chart<Sys> {
     /// The size of a change of the state, in units of its components.
     pub(super) fn size(&self, change: &Sys::State) -> f64 {
         let parts = change.as_slice().iter().zip(self.scale.as_slice());
-        parts.fold(0.0, |size, (own, scale)| {
-            f64::max(size, (own / scale).abs())
+        parts.fold(0.0, |size, (component, scale)| {
+            f64::max(size, (component / scale).abs())
         })
     }
 }
@@ -222,8 +222,8 @@ fn orthonormalise<S: StateVector>(
         let is_new = left > DEPENDENT * before;
         rows[index] = row.zeroed();
         if is_new {
-            for own in row.as_mut_slice() {
-                *own /= left;
+            for entry in row.as_mut_slice() {
+                *entry /= left;
             }
             add(correction, missing / left, &row);
             rows[kept] = row;
@@ -255,8 +255,8 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
         }
         let (left, mut row) = best;
         let norm = math::sqrt(left);
-        for own in row.as_mut_slice() {
-            *own /= norm;
+        for entry in row.as_mut_slice() {
+            *entry /= norm;
         }
         rows[kept] = row;
     }
@@ -331,7 +331,7 @@ pub(super) fn dot<S: StateVector>(a: &S, b: &S) -> f64 {
 
 /// Adds `factor * direction`.
 pub(super) fn add<S: StateVector>(sum: &mut S, factor: f64, direction: &S) {
-    for (own, entry) in sum.as_mut_slice().iter_mut().zip(direction.as_slice()) {
-        *own += factor * entry;
+    for (component, entry) in sum.as_mut_slice().iter_mut().zip(direction.as_slice()) {
+        *component += factor * entry;
     }
 }

@@ -270,7 +270,7 @@ mod tests {
     fn operations_of_two_carry_their_derivatives() {
         macro_rules! operations {
             ($($name:literal: |$x:ident| $expression:expr),* $(,)?) => {
-                $(check($name, 0.7, |$x: Dual| $expression(Dual::of), |$x: f64| $expression(|own: f64| own));)*
+                $(check($name, 0.7, |$x: Dual| $expression(Dual::of), |$x: f64| $expression(|value: f64| value));)*
             };
         }
         type Of<L> = fn(f64) -> L;

@@ -76,7 +76,7 @@ impl<S: StateVector> Square<'_, S> {
 
     /// Computes `H A H` with the reflection `H` that takes `x`, in the rows from `first` on, to its first entry.
     fn reflect(&mut self, first: usize, x: &[f64]) {
-        let norm = math::sqrt(x.iter().map(|own| own * own).sum());
+        let norm = math::sqrt(x.iter().map(|component| component * component).sum());
         if norm == 0.0 {
             return;
         }
@@ -188,7 +188,7 @@ pub(super) fn eigenvalues<S: StateVector>(
             2 => matrix
                 .pair(start)
                 .into_iter()
-                .for_each(|own| found.add(own)),
+                .for_each(|root| found.add(root)),
             _ => {
                 steps += 1;
                 if steps > STEPS {
@@ -248,7 +248,8 @@ mod tests {
         let mut columns = columns.map(SVector::<f64, 3>::from);
         let found = eigenvalues(&mut columns, 3).expect("eigenvalues");
         for root in [[1.0, 0.0], [-half, side], [-half, -side]] {
-            let near = |own: [f64; 2]| (own[0] - root[0]).abs() + (own[1] - root[1]).abs() < 1e-14;
+            let near =
+                |found: [f64; 2]| (found[0] - root[0]).abs() + (found[1] - root[1]).abs() < 1e-14;
             assert!(found.iter().any(near), "{found:?}");
         }
     }

@@ -58,10 +58,10 @@ impl<Sys: Variational> Flow<Sys> {
         let size = end
             .as_slice()
             .iter()
-            .fold(0.0, |size: f64, own| size.max(own.abs()));
+            .fold(0.0, |size: f64, component| size.max(component.abs()));
         let mut pairs = state.as_slice().iter().zip(end.as_slice());
         // Another force holds the motion as well.
-        if !pairs.all(|(own, end)| (own.value - end).abs() <= KNOWN * size) {
+        if !pairs.all(|(component, end)| (component.value - end).abs() <= KNOWN * size) {
             return Err(holder.undefined(until));
         }
         take_slopes(&state, tangents);

@@ -186,8 +186,8 @@ pub(super) fn dual_state<Sys: Variational>(
 pub(super) fn take_slopes<Sys: Variational>(state: &Sys::Row<Dual>, tangents: &mut [Tangent<Sys>]) {
     for (k, tangent) in tangents.iter_mut().enumerate() {
         let entries = state.as_slice().iter();
-        for (own, entry) in tangent.state.as_mut_slice().iter_mut().zip(entries) {
-            *own = entry.slopes()[k];
+        for (component, entry) in tangent.state.as_mut_slice().iter_mut().zip(entries) {
+            *component = entry.slopes()[k];
         }
     }
 }

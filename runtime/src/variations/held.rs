@@ -154,12 +154,12 @@ impl<Sys: Variational> Flow<Sys> {
         t: f64,
         state: &Sys::Row<Dual>,
     ) -> Result<Sys::Row<Dual>, Undefined> {
-        let (own, leaves) = self.free(system, parameters, (back, 1), t, state)?;
+        let (rate_here, leaves) = self.free(system, parameters, (back, 1), t, state)?;
         let other = system.passed(parameters, back, Dual::of(t), state)?;
         let other = other.ok_or(Undefined::Unlawful { t, surface: back })?;
         let (other, enters) = self.free(system, parameters, (across, 1), t, &other)?;
         let share = leaves / (leaves + enters);
-        let mut rate = own;
+        let mut rate = rate_here;
         for (entry, other) in rate.as_mut_slice().iter_mut().zip(other.as_slice()) {
             *entry = share.mul_add(*other - *entry, *entry);
         }
@@ -188,8 +188,8 @@ impl<Sys: Variational> Flow<Sys> {
 /// Values of a row of dual numbers.
 fn values<Sys: Variational>(row: &Sys::Row<Dual>) -> Sys::State {
     let mut values = Sys::State::zeros(row.as_slice().len());
-    for (own, entry) in values.as_mut_slice().iter_mut().zip(row.as_slice()) {
-        *own = entry.value;
+    for (value, entry) in values.as_mut_slice().iter_mut().zip(row.as_slice()) {
+        *value = entry.value;
     }
     values
 }

@@ -284,10 +284,10 @@ fn amplification<Sys: Variational>(trial: &Trial<Sys>) -> f64 {
 /// Removes full turns from the changes of angles.
 fn close_angles<Sys: Instance>(system: &Sys, change: &mut Sys::State) {
     let coordinates = system.description().coordinates.iter();
-    for (own, coordinate) in change.as_mut_slice().iter_mut().zip(coordinates) {
+    for (difference, coordinate) in change.as_mut_slice().iter_mut().zip(coordinates) {
         if coordinate.topology == Topology::Circle {
             let turn = 2.0 * core::f64::consts::PI;
-            *own -= turn * libm::round(*own / turn);
+            *difference -= turn * libm::round(*difference / turn);
         }
     }
 }

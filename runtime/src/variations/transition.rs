@@ -59,8 +59,8 @@ pub(super) fn cross<Sys: Variational>(
         let after = now.state;
         for (k, tangent) in some.iter_mut().enumerate() {
             let parts = after.as_slice().iter().zip(rate.as_slice());
-            for (own, (entry, rate)) in tangent.state.as_mut_slice().iter_mut().zip(parts) {
-                *own = entry.slopes()[k] - rate * t.slopes()[k];
+            for (entry_of, (entry, rate)) in tangent.state.as_mut_slice().iter_mut().zip(parts) {
+                *entry_of = entry.slopes()[k] - rate * t.slopes()[k];
             }
         }
         check_finite(last, some)?;
@@ -145,7 +145,7 @@ pub(super) fn depends_on_time<Sys: Variational>(
     Ok(parts
         .into_iter()
         .flatten()
-        .any(|own| own.slopes()[0] != 0.0))
+        .any(|component| component.slopes()[0] != 0.0))
 }
 
 /// A time as a dual number, varied along the first direction.
@@ -316,7 +316,7 @@ pub(crate) fn check_near<S: StateVector, L: Numbers>(
     let components = states.into_iter().flat_map(StateVector::as_slice);
     let size = components.fold(0.0, |size, value| f64::max(size, value.abs()));
     let mut pairs = state.iter().zip(run.as_slice());
-    match pairs.all(|(own, run)| (own.lane(0) - run).abs() <= LAWFUL * size) {
+    match pairs.all(|(component, run)| (component.lane(0) - run).abs() <= LAWFUL * size) {
         true => Ok(()),
         false => Err(Undefined::Unlawful {
             t: event.t,

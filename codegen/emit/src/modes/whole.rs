@@ -191,7 +191,7 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
     let modes = quote!((0, <Self as ::dalembert::declaration::Emitted>::TABLES.modes));
     let numbers = quote!(L: ::dalembert::numbers::Numbers);
     quote! {
-        /// What is known at a moment: rates, gaps, and the rest of the mode that knows most.
+        /// Number of initial terms: rates, gaps, and the other initial terms of the mode with the most of them.
         const __FIRSTS: usize = #state + #gaps + ::dalembert::__private::modes::longest(&[
             #(::dalembert::__private::modes::rest::<#types>()),*
         ]);

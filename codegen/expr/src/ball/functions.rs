@@ -162,7 +162,7 @@ impl Ball {
     }
 }
 
-/// At least `2 t^k/k!` for every `t` inside.
+/// Upper bound of `2 t^k/k!` for every `t` inside.
 fn left_out(ball: Ball, k: u64) -> f64 {
     let size = ball.magnitude();
     let mut term = 2.0;

@@ -118,12 +118,12 @@ impl Ball {
         }
     }
 
-    /// At least the largest absolute value.
+    /// Upper bound of the largest absolute value.
     pub fn magnitude(self) -> f64 {
         bound::sum(self.middle.at_most(), self.radius)
     }
 
-    /// At most the smallest absolute value, which is 0 where that is too small for doubles.
+    /// Lower bound of the smallest absolute value; 0 if that is too small for doubles.
     pub fn mignitude(self) -> f64 {
         bound::difference(self.middle.at_least(), self.radius)
     }

@@ -102,12 +102,12 @@ impl Wide {
         }
     }
 
-    /// At least the absolute value.
+    /// Upper bound of the absolute value.
     pub(super) fn at_most(&self) -> f64 {
         self.leading(1, f64::INFINITY, f64::MIN_POSITIVE)
     }
 
-    /// At most the absolute value.
+    /// Lower bound of the absolute value.
     pub(super) fn at_least(&self) -> f64 {
         self.leading(0, power_of_two(1023), 0.0)
     }

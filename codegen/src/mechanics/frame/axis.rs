@@ -16,7 +16,7 @@ pub struct Axis {
     pub factor: ExprId,
     /// The entries without `factor`.
     pub entries: Vec<ExprId>,
-    /// Their squared norm, never zero.
+    /// Squared norm of the axis, never zero.
     pub squared: ExprId,
     /// Bound of `|factor|` where the factor may vanish, with sines and cosines counted as 1.
     pub bound: Option<ExprId>,

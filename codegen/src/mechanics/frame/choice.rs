@@ -13,7 +13,7 @@ use crate::model::Model;
 
 /// Velocities that a constraint makes dependent.
 enum Dependent {
-    /// This velocity follows from the others.
+    /// One velocity follows from the others.
     One(usize),
     /// The velocity along the constraint is left of these two.
     Pair(usize, usize),

@@ -44,7 +44,7 @@ pub struct Frame {
 /// `u = alpha(qdot)`
 #[derive(Debug)]
 pub struct QuasiVelocity {
-    /// Its name: as declared, `x_dot` for the velocity of `x`.
+    /// Name: as declared, or `x_dot` for the velocity of `x`.
     pub name: String,
     /// The coordinate whose velocity it is, if it is one.
     pub coordinate: Option<usize>,
@@ -63,7 +63,7 @@ pub enum Unreduced {
     Free,
     /// No choice of dependent velocities is regular at every configuration; the constraints that stand in the way.
     NoRegularFrame(Vec<usize>),
-    /// These constraints are not linear in the velocities.
+    /// Constraints that are not linear in the velocities.
     Nonlinear(Vec<usize>),
 }
 

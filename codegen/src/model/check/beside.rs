@@ -10,7 +10,10 @@ use crate::spec::Spec;
 /// Finds for each surface those of the same gap, where it matters: for `otherwise`, and for the last of several transitions.
 pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
     let spec = resolver.spec;
-    let otherwise: Vec<bool> = surfaces.iter().map(|own| is_otherwise(spec, own)).collect();
+    let otherwise: Vec<bool> = surfaces
+        .iter()
+        .map(|surface| is_otherwise(spec, surface))
+        .collect();
     for index in 0..surfaces.len() {
         let is_transition = surfaces[index].transition.is_some();
         if !otherwise[index] && !is_transition {
@@ -32,7 +35,12 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
         let is_last = same
             .iter()
             .all(|&other| surfaces[other].transition.is_none() || other < index);
-        let passes = |own: &Surface| own.transition.as_ref().is_some_and(|own| own.has_no_side);
+        let passes = |surface: &Surface| {
+            surface
+                .transition
+                .as_ref()
+                .is_some_and(|transition| transition.has_no_side)
+        };
         let is_open = !passes(&surfaces[index])
             && !same.iter().any(|&other| otherwise[other])
             && !surfaces[index].conditions.is_empty()
@@ -77,7 +85,7 @@ fn left_out(pool: &mut Pool, first: &Surface, second: &Surface) -> Option<String
 
 fn is_otherwise(spec: &Spec, surface: &Surface) -> bool {
     let mut declared = spec.surfaces.iter();
-    declared.any(|own| own.item == surface.item && own.is_otherwise)
+    declared.any(|other| other.item == surface.item && other.is_otherwise)
 }
 
 /// Refuses `otherwise` where there is nothing else, nothing left, or two of them.

@@ -21,7 +21,7 @@ struct Cancellation {
 /// Factors of a product with their exponents.
 type Powers = Vec<(ExprId, Rational)>;
 
-/// What may cancel in a sum.
+/// Difference that may cancel in a sum.
 enum Candidate {
     /// `p f(e) - p`
     Call(Function, ExprId),
@@ -54,15 +54,19 @@ pub(super) fn notes(
     let moving = resolver.symbols.moving();
     let mut notes = BTreeMap::new();
     for (place, candidate) in found {
-        let Some(own) = cancellation(&mut pool, &candidate) else {
+        let Some(cancelled) = cancellation(&mut pool, &candidate) else {
             continue;
         };
-        let never = matches!(pool.sign(own.argument), Sign::Positive | Sign::Negative);
-        if never || !pool.depends_on_any(own.argument, &moving) {
+        let never = matches!(
+            pool.sign(cancelled.argument),
+            Sign::Positive | Sign::Negative
+        );
+        if never || !pool.depends_on_any(cancelled.argument, &moving) {
             continue;
         }
-        let [text, zero, safe] = [own.difference, own.argument, own.safe].map(|id| pool.text(id));
-        notes.entry(own.difference).or_insert_with(|| {
+        let [text, zero, safe] =
+            [cancelled.difference, cancelled.argument, cancelled.safe].map(|id| pool.text(id));
+        notes.entry(cancelled.difference).or_insert_with(|| {
             format!("`{text}` in `{place}` loses its digits near `{zero} = 0`: write `{safe}`")
         });
     }
@@ -72,7 +76,7 @@ pub(super) fn notes(
     notes.into_values().collect()
 }
 
-/// What was declared, by name.
+/// Declared expressions, by name.
 fn places<'a>(
     lagrangian: &Lagrangian,
     parts: &'a Parts,
@@ -87,13 +91,15 @@ fn places<'a>(
     let outputs = parts.outputs.iter();
     [("lagrangian", vec![lagrangian.whole])]
         .into_iter()
-        .chain(constraints.map(move |own| (own.name.display.as_str(), form(own))))
-        .chain(forces.map(|own| (own.name.display.as_str(), own.form.clone())))
-        .chain(surfaces.map(|own| (own.name.display.as_str(), vec![own.gap])))
-        .chain(outputs.map(|own| (own.name.display.as_str(), vec![own.value])))
+        .chain(
+            constraints.map(move |constraint| (constraint.name.display.as_str(), form(constraint))),
+        )
+        .chain(forces.map(|force| (force.name.display.as_str(), force.form.clone())))
+        .chain(surfaces.map(|surface| (surface.name.display.as_str(), vec![surface.gap])))
+        .chain(outputs.map(|output| (output.name.display.as_str(), vec![output.value])))
 }
 
-/// Those among the summands of an expression.
+/// Candidates among the summands of an expression.
 fn candidates(pool: &Pool, id: ExprId) -> Vec<Candidate> {
     if !matches!(pool.node(id), Node::Sum { .. }) {
         return Vec::new();
@@ -102,12 +108,12 @@ fn candidates(pool: &Pool, id: ExprId) -> Vec<Candidate> {
     let powers: Vec<Powers> = terms.iter().map(|(_, term)| powers(pool, *term)).collect();
     let of_terms = powers.iter().cloned().zip(&terms);
     let summands: BTreeMap<Powers, (Option<ExprId>, &Rational)> = of_terms
-        .map(|(powers, (own, term))| (powers, (Some(*term), own)))
+        .map(|(powers, (coefficient, term))| (powers, (Some(*term), coefficient)))
         .chain([(Powers::new(), (None, &constant))])
         .collect();
     let mut found = Vec::new();
-    for ((own, term), powers) in terms.iter().zip(&powers) {
-        let cancels = |other: &Rational| *other == -own.clone();
+    for ((coefficient, term), powers) in terms.iter().zip(&powers) {
+        let cancels = |other: &Rational| *other == -coefficient.clone();
         for (index, (base, exponent)) in powers.iter().enumerate() {
             if let Node::Call(function, argument) = pool.node(*base)
                 && is_one_at_zero(*function)
@@ -127,7 +133,7 @@ fn candidates(pool: &Pool, id: ExprId) -> Vec<Candidate> {
             && *exponent == Rational::new(1, 2)
         {
             let shares = summands.values().filter_map(|(other, subtracted)| {
-                Some((*other, subtracted.checked_div(&-own.clone())?))
+                Some((*other, subtracted.checked_div(&-coefficient.clone())?))
             });
             let root = |(other, share)| Candidate::Root {
                 root: *term,
@@ -148,7 +154,7 @@ fn powers(pool: &Pool, term: ExprId) -> Powers {
     }
 }
 
-/// Whether the function is 1 where its argument is 0, and has another form of its difference from 1.
+/// True if the function is 1 where its argument is 0, and has another form of its difference from 1.
 fn is_one_at_zero(function: Function) -> bool {
     matches!(function, Function::Cos | Function::Cosh | Function::Exp)
 }
@@ -207,7 +213,7 @@ fn root_less(pool: &mut Pool, root: ExprId, radicand: ExprId, p: ExprId) -> Opti
     })
 }
 
-/// How many terms a sum has.
+/// Number of terms of a sum.
 fn summands(pool: &Pool, id: ExprId) -> usize {
     let (constant, terms) = pool.linear_form(id);
     terms.len() + usize::from(constant != Rational::from(0))

@@ -154,11 +154,17 @@ impl Resolver<'_> {
             return Some(());
         };
         let peer = &self.modes[transition.enters];
-        let is_unknown = |(i, own): &(usize, &Coordinate)| {
+        let is_unknown = |(i, coordinate): &(usize, &Coordinate)| {
             let momentum = self.symbols.derived.momenta.get(*i).copied();
-            let symbols: Vec<_> = [own.q, own.qdot].into_iter().chain(momentum).collect();
+            let symbols: Vec<_> = [coordinate.q, coordinate.qdot]
+                .into_iter()
+                .chain(momentum)
+                .collect();
             self.pool.depends_on_any(expr, &symbols)
-                && peer.coordinates.iter().all(|(name, _)| *name != own.name)
+                && peer
+                    .coordinates
+                    .iter()
+                    .all(|(name, _)| *name != coordinate.name)
         };
         let mut coordinates = self.symbols.coordinates.iter().enumerate();
         let Some((_, unknown)) = coordinates.find(is_unknown) else {
@@ -186,14 +192,14 @@ impl Resolver<'_> {
 
     /// The index of the scene of this name.
     fn scene(&mut self, word: &spec::Word, scenes: &[Scene]) -> Option<usize> {
-        let found = scenes.iter().position(|own| own.name == word.text);
+        let found = scenes.iter().position(|scene| scene.name == word.text);
         found.or_else(|| {
             // A scene that was refused is missing; its own mistake has been told.
             if self
                 .spec
                 .scenes
                 .iter()
-                .any(|own| own.name.text == word.text)
+                .any(|scene| scene.name.text == word.text)
             {
                 return None;
             }
@@ -201,7 +207,7 @@ impl Resolver<'_> {
                 [] if word.text == spec::WHOLE => "write `claims { .. }`".to_owned(),
                 [] => "the model declares no scenes".to_owned(),
                 _ => {
-                    let names = scenes.iter().map(|own| own.name.as_str());
+                    let names = scenes.iter().map(|scene| scene.name.as_str());
                     format!("the scenes are {}", listed(names))
                 }
             };
@@ -210,7 +216,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Whether a scene uses the surface that a claim about it names, and says so where it does not.
+    /// True if a scene uses the surface that a claim about it names, and says so where it does not.
     fn check_surface_of(
         &mut self,
         claim: &spec::Claim,
@@ -238,14 +244,15 @@ impl Resolver<'_> {
         let display = &name.display;
         // A member of a family of transitions has its number behind its name.
         let member = name.member.map(|member| format!("{}{member}", name.field));
-        let is_member =
-            |own: &Surface| own.transition.is_some() && member.as_ref() == Some(&own.name.display);
+        let is_member = |surface: &Surface| {
+            surface.transition.is_some() && member.as_ref() == Some(&surface.name.display)
+        };
         let mut all = surfaces.iter();
-        let found = all.position(|own| own.name.display == *display || is_member(own));
+        let found = all.position(|surface| surface.name.display == *display || is_member(surface));
         found.or_else(|| {
             let names: Vec<&str> = surfaces
                 .iter()
-                .map(|own| own.name.display.as_str())
+                .map(|surface| surface.name.display.as_str())
                 .collect();
             let help = if names.is_empty() {
                 "the model declares no surfaces".to_owned()
@@ -263,7 +270,7 @@ impl Resolver<'_> {
             .symbols
             .coordinates
             .iter()
-            .map(|own| format!("partial({})", own.name.display))
+            .map(|coordinate| format!("partial({})", coordinate.name.display))
             .collect();
         let partials: Vec<_> = partials
             .iter()
@@ -289,7 +296,7 @@ impl Resolver<'_> {
             .all(|component| !self.pool.depends_on_any(*component, &moving))
             && super::super::degree::is_zero(&self.pool, rest);
         let vanishes =
-            |own: &ExprId| matches!(self.pool.node(*own), Node::Number(n) if n.is_zero());
+            |expr: &ExprId| matches!(self.pool.node(*expr), Node::Number(n) if n.is_zero());
         if !is_field || components.iter().all(vanishes) {
             let text = format!("`{written}` is not a vector field");
             let help = "write a sum such as `partial(theta) - y*partial(x) + x*partial(y)`";

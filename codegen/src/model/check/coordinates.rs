@@ -61,7 +61,7 @@ impl<'s> Resolver<'s> {
         self.symbols.derived.momenta.push(momentum);
     }
 
-    /// What the interval of a coordinate shows of its sign.
+    /// Sign of a coordinate that follows from its interval.
     fn known(&self, topology: Topology) -> Known {
         match topology {
             Topology::Interval { low, .. } if self.constant_value(low) >= 0.0 => Known::Positive,

@@ -1,7 +1,7 @@
 //! First-order systems: the rate of every coordinate in place of a Lagrangian.
 //!
-//! What belongs to mechanics alone is refused here: constraints, forces and frames, impulses at surfaces, velocities
-//! that are set.
+//! Declarations that belong to mechanics are refused here: constraints, forces and frames, impulses at surfaces,
+//! velocities that are set.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -92,10 +92,12 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
     let entries = [
         (
             "constraints",
-            spec.constraints.first().map(|own| &own.declared),
+            spec.constraints
+                .first()
+                .map(|constraint| &constraint.declared),
         ),
-        ("forces", spec.forces.first().map(|own| &own.declared)),
-        ("frame", spec.frame.first().map(|own| &own.declared)),
+        ("forces", spec.forces.first().map(|force| &force.declared)),
+        ("frame", spec.frame.first().map(|force| &force.declared)),
     ];
     for (what, declared) in entries {
         if let Some(Declared { name, .. }) = declared {
@@ -139,7 +141,7 @@ pub(super) fn check_surfaces(resolver: &mut Resolver<'_>) {
         return;
     }
     // Of a transition without a reset the state stays.
-    let takes_reset = |own: &&spec::Surface| own.enters.is_none() || own.law.is_some();
+    let takes_reset = |surface: &&spec::Surface| surface.enters.is_none() || surface.law.is_some();
     for surface in spec.surfaces.iter().filter(takes_reset) {
         match &surface.law {
             Some(law) if law.name.text == RESET => {

@@ -43,7 +43,10 @@ impl Resolver<'_> {
     /// Refuses a quasi-velocity that is called like a coordinate.
     fn check_not_a_velocity(&mut self, entry: &Quantity, name: &Name) {
         let coordinates = &self.symbols.coordinates;
-        if coordinates.iter().any(|own| own.name.field == name.field) {
+        if coordinates
+            .iter()
+            .any(|coordinate| coordinate.name.field == name.field)
+        {
             let text = format!("`{}` is a coordinate", name.field);
             let help = "choose another name for the quasi-velocity";
             self.refuse::<()>(entry.declared.name.at, text, help);
@@ -61,7 +64,7 @@ impl Resolver<'_> {
             self.symbols.differentials.clone(),
             self.symbols.velocities(),
         );
-        let has = |own: &Self, symbols: &[_]| own.pool.depends_on_any(expr, symbols);
+        let has = |resolver: &Self, symbols: &[_]| resolver.pool.depends_on_any(expr, symbols);
         let by = match (has(self, &differentials), has(self, &velocities)) {
             (true, true) => {
                 let help = "use either `d(..)` or `dot(..)` throughout";

@@ -128,7 +128,7 @@ impl Resolver<'_> {
         )
     }
 
-    /// Whether a value may lie in the set that a coordinate runs through; one that depends on parameters may.
+    /// True if a value may lie in the set that a coordinate runs through; one that depends on parameters may.
     fn is_in_chart(&self, topology: Topology, value: ExprId) -> bool {
         let Topology::Interval { low, high } = topology else {
             return true;

@@ -50,11 +50,14 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
         let Some(input) = resolver.acting_input(forces, &scene.parts) else {
             continue;
         };
-        let declared = spec.scenes.iter().find(|own| own.name.text == scene.name);
-        let volume = declared.map(|own| {
-            let mut parts = own.parts.iter();
+        let declared = spec
+            .scenes
+            .iter()
+            .find(|declared| declared.name.text == scene.name);
+        let volume = declared.map(|declared| {
+            let mut parts = declared.parts.iter();
             let part = parts.find(|part| part.name.text == "volume");
-            part.map_or(own.name.at, |part| part.name.at)
+            part.map_or(declared.name.at, |part| part.name.at)
         });
         if let Some(at) = volume {
             let text = format!("{}: no volume is known beside inputs", may_depend(&input));
@@ -66,12 +69,16 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
 impl Resolver<'_> {
     /// The first input that acts in one of the forces that a scene uses.
     fn acting_input(&self, forces: &[Force], parts: &Parts) -> Option<String> {
-        let inputs = self.symbols.parameters.iter().filter(|own| own.is_input);
+        let inputs = self
+            .symbols
+            .parameters
+            .iter()
+            .filter(|parameter| parameter.is_input);
         let acts = |input: &&Parameter| {
             let mut used = parts.forces.iter().filter_map(|force| forces.get(*force));
             used.any(|force| {
                 let mut form = force.form.iter();
-                form.any(|own| self.pool.depends_on(*own, input.symbol))
+                form.any(|expr| self.pool.depends_on(*expr, input.symbol))
             })
         };
         let mut acting = inputs.filter(acts);

@@ -62,7 +62,10 @@ pub(super) fn check_independent(
             .chain(&surface.instantaneous)
             .cloned()
             .collect();
-        let mut rows: Vec<Vec<ExprId>> = all.iter().map(|own| own.form.clone()).collect();
+        let mut rows: Vec<Vec<ExprId>> = all
+            .iter()
+            .map(|constraint| constraint.form.clone())
+            .collect();
         let gradient = positions
             .iter()
             .map(|position| resolver.pool.diff(surface.gap, *position));
@@ -81,10 +84,11 @@ pub(super) fn check_independent(
 
 /// An error at an instantaneous constraint that keeps the gap.
 fn refuse_blocking(resolver: &mut Resolver<'_>, surface: &Surface, constraint: &Constraint) {
-    let (name, own) = (&surface.name.display, &constraint.name.display);
+    let (name, blocking) = (&surface.name.display, &constraint.name.display);
     let law = surface.law.name();
     let at = resolver.spec.location(constraint.item);
-    let text = format!("`{own}` leaves nothing to `{law}`: it settles how `{name}` is approached");
+    let text =
+        format!("`{blocking}` leaves nothing to `{law}`: it settles how `{name}` is approached");
     let help = "leave it out; `impact_plastic` stops the motion across a surface";
     resolver.refuse::<()>(at, text, help);
 }

@@ -67,7 +67,7 @@ impl Curl {
             .all(|entry| is_zero(pool, *entry))
     }
 
-    /// Whether every component of `omega ^ d omega` is zero.
+    /// True if every component of `omega ^ d omega` is zero.
     fn is_integrable(&self, pool: &mut Pool, form: &[ExprId]) -> bool {
         let involved = |index: usize| {
             !pool.is_syntactic_zero(form[index])

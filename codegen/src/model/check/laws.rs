@@ -111,10 +111,10 @@ pub(super) fn notes(
 ) -> Vec<String> {
     let mut notes = Vec::new();
     let all = |surface: &'_ Surface| -> Vec<ExprId> {
-        let own = constraints.iter().chain(&surface.instantaneous);
-        own.map(|constraint| constraint.affine).collect()
+        let constraints = constraints.iter().chain(&surface.instantaneous);
+        constraints.map(|constraint| constraint.affine).collect()
     };
-    let constrained = surfaces.iter().filter(|own| !all(own).is_empty());
+    let constrained = surfaces.iter().filter(|surface| !all(surface).is_empty());
     notes.extend(constrained.filter_map(plastic_note));
     let is_affine = |surface: &&Surface| {
         let mut parts = all(surface).into_iter();

@@ -45,10 +45,10 @@ use crate::diagnostics::{self, Diagnostics};
 use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};
 use names::Names;
 
-/// What the entries of `field` are called: of all functions of the position they alone take inputs.
+/// Noun for the entries of `field`. They are the only functions of the position that take inputs.
 const RATES: &str = "rates";
 
-/// What was declared of the motion, resolved.
+/// Declared motion, resolved.
 struct Parts {
     lagrangian: Option<Lagrangian>,
     field: Option<Vec<ExprId>>,
@@ -71,12 +71,12 @@ pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
     check_within(spec, STEPS)
 }
 
-/// As [`check()`], with this budget for the algebra of this and the later stages.
+/// Same as [`check()`], with this budget for the algebra of this and the later stages.
 pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics> {
     check_mode(spec, &[], steps)
 }
 
-/// As [`check()`], of one of these modes.
+/// Same as [`check()`], for one of these modes.
 pub(in crate::model) fn check_mode(
     spec: &Spec,
     modes: &[Peer],
@@ -120,7 +120,7 @@ pub(in crate::model) fn check_mode(
     Ok(model(resolver, lagrangian, parts))
 }
 
-/// What other modes need to know of a mode; what is wrong with it is told when it is checked.
+/// Data of a mode that other modes need. Its mistakes are reported when it is checked itself.
 pub(in crate::model) fn peer(name: &str, spec: &Spec) -> Peer {
     let mut resolver = Resolver::new(spec, STEPS);
     resolver.constants();
@@ -129,7 +129,7 @@ pub(in crate::model) fn peer(name: &str, spec: &Spec) -> Peer {
     Peer {
         name: name.to_owned(),
         coordinates: coordinates
-            .map(|own| (own.name.clone(), own.topology))
+            .map(|coordinate| (coordinate.name.clone(), coordinate.topology))
             .collect(),
         is_first_order: spec.field.is_some(),
     }
@@ -173,7 +173,10 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         symbols,
         ..
     } = resolver;
-    let nonlinear = parts.constraints.iter().any(|own| own.nonlinear.is_some());
+    let nonlinear = parts
+        .constraints
+        .iter()
+        .any(|constraint| constraint.nonlinear.is_some());
     let extras = match parts.field {
         Some(_) => Extras {
             variations: true,
@@ -279,7 +282,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
             .flatten(),
     );
     used.extend(outputs.iter().map(|output| output.value));
-    used.extend(claims.iter().flat_map(|own| own.statement.expressions()));
+    used.extend(claims.iter().flat_map(|claim| claim.statement.expressions()));
     used.extend(
         view.iter()
             .flat_map(|view| view.path.iter().copied().chain(view.region)),
@@ -350,7 +353,7 @@ fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
 
 impl Resolver<'_> {
     /// Makes the variables in the order in which a person writes a product: parameters, coordinates, velocities.
-    /// What is made first is printed first.
+    /// Symbols that are made first are printed first.
     fn order_symbols(&mut self) {
         let (parameters, coordinates) = (&self.symbols.parameters, &self.symbols.coordinates);
         let parameters = parameters.iter().map(|parameter| parameter.symbol);

@@ -10,12 +10,12 @@ use crate::spec::{Declared, Index, Scalar, Word};
 pub(super) struct Names {
     noun: &'static str,
     met: Vec<(Name, Location)>,
-    /// How many errors there were before the section.
+    /// Number of errors before the section.
     errors: usize,
 }
 
 impl Names {
-    /// Of a section whose entries are called `noun`.
+    /// Names of a section whose entries are called `noun`.
     pub(super) fn new(resolver: &Resolver<'_>, noun: &'static str) -> Self {
         Self {
             noun,

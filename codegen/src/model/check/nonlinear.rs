@@ -8,12 +8,15 @@ use crate::spec::{Declared, RESET, Statement};
 
 /// Refuses what such constraints leave undefined.
 pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
-    let Some(first) = constraints.iter().find(|own| own.nonlinear.is_some()) else {
+    let Some(first) = constraints
+        .iter()
+        .find(|constraint| constraint.nonlinear.is_some())
+    else {
         return;
     };
     let (spec, name) = (resolver.spec, &first.name.display);
     let because = format!("`{name}` is not linear in the velocities");
-    if let Some(Declared { name: at, .. }) = spec.frame.first().map(|own| &own.declared) {
+    if let Some(Declared { name: at, .. }) = spec.frame.first().map(|entry| &entry.declared) {
         let text = format!("{because}: no frame reduces it");
         resolver.refuse::<()>(at.at, text, "leave the frame out");
     }
@@ -45,9 +48,11 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
 
 /// Remarks on their forces.
 pub(super) fn notes(constraints: &[Constraint]) -> impl Iterator<Item = String> + '_ {
-    let nonlinear = constraints.iter().filter(|own| own.nonlinear.is_some());
-    nonlinear.map(|own| {
-        let name = &own.name.display;
+    let nonlinear = constraints
+        .iter()
+        .filter(|constraint| constraint.nonlinear.is_some());
+    nonlinear.map(|constraint| {
+        let name = &constraint.name.display;
         format!(
             "`{name}` is not linear in the velocities: its force is a multiple of its derivative by them (Chetaev's rule)"
         )

@@ -14,7 +14,9 @@ pub(super) fn notes(
     field: Option<&[ExprId]>,
 ) -> Vec<String> {
     let mut pool = resolver.pool.clone();
-    let surfaces = surfaces.iter().filter(|own| own.transition.is_none());
+    let surfaces = surfaces
+        .iter()
+        .filter(|surface| surface.transition.is_none());
     surfaces
         .filter(|surface| passes(&mut pool, resolver, surface, field))
         .map(|surface| {

@@ -74,11 +74,11 @@ fn perfect_power(resolver: &Resolver<'_>, gap: ExprId) -> Option<ExprId> {
     base.filter(|_| all_multiple)
 }
 
-/// What is wrong with a polynomial.
+/// Fault of a polynomial.
 enum Fault {
-    /// It has no zero in the charts.
+    /// No zero in the charts.
     NeverZero,
-    /// It has a repeated factor with zeros in the charts.
+    /// A repeated factor with zeros in the charts.
     Repeated,
 }
 
@@ -119,7 +119,7 @@ struct Line {
     /// Symbol, point, direction.
     coordinates: Vec<(SymbolId, Rational, Rational)>,
     others: Random,
-    /// Where the line leaves the charts.
+    /// Ends of the line in the charts.
     ends: [Option<Rational>; 2],
 }
 

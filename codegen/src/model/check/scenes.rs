@@ -14,7 +14,7 @@ const MODULES: [&str; 5] = [
     "output",
 ];
 
-/// What scenes are made of.
+/// Declarations that scenes may name.
 struct Material<'m> {
     forces: &'m [Force],
     surfaces: &'m [Surface],
@@ -61,16 +61,16 @@ pub(super) fn resolve(
     material.scenes
 }
 
-/// Whether two scenes would name the same type, that of their global form among them.
+/// True if two scenes would name the same type, that of their global form among them.
 fn share_a_type(a: &str, b: &str) -> bool {
     a == b || *a == format!("{b}Global") || *b == format!("{a}Global")
 }
 
 impl Resolver<'_> {
-    /// Whether a scene can go by its name, and says why where it cannot.
+    /// True if a scene can go by its name, and says why where it cannot.
     fn check_scene_name(&mut self, scene: &spec::Scene, material: &Material<'_>) -> bool {
         let (name, at) = (scene.name.text.as_str(), scene.name.at);
-        let own = spec::camel_case(name);
+        let type_name = spec::camel_case(name);
         if name == WHOLE {
             let text = format!("`{WHOLE}` is the model itself");
             let help = "leave it out: the model's type uses everything that is declared";
@@ -80,8 +80,9 @@ impl Resolver<'_> {
             let text = format!("`{name}` is the module of indices next to which a scene stands");
             return self.refuse::<()>(at, text, "choose another name").is_some();
         }
-        let is_word = own.starts_with(|c: char| c.is_alphabetic()) && !spec::is_rust_keyword(&own);
-        if own == name || !is_word {
+        let is_word = type_name.starts_with(|c: char| c.is_alphabetic())
+            && !spec::is_rust_keyword(&type_name);
+        if type_name == name || !is_word {
             let text = format!("`{name}` does not name a type and its module");
             let help = "write a scene in snake case, like `with_drag`; its type is `WithDrag`";
             return self.refuse::<()>(at, text, help).is_some();
@@ -90,7 +91,7 @@ impl Resolver<'_> {
         let taken = material
             .scenes
             .iter()
-            .find(|other| share_a_type(&other.type_name, &own));
+            .find(|other| share_a_type(&other.type_name, &type_name));
         if let Some(other) = taken {
             let text = match other.name == name {
                 true => format!("scene `{name}` declared again"),
@@ -121,15 +122,15 @@ impl Resolver<'_> {
             None => name.field == field,
             Some(_) => members.contains(&name.display),
         };
-        let forces = places(material.forces.iter().map(|own| names(&own.name)));
-        let surfaces = places(material.surfaces.iter().map(|own| names(&own.name)));
+        let forces = places(material.forces.iter().map(|force| names(&force.name)));
+        let surfaces = places(material.surfaces.iter().map(|surface| names(&surface.name)));
         let scene = material
             .scenes
             .iter()
-            .find(|own| part.index.is_none() && own.name == field);
+            .find(|scene| part.index.is_none() && scene.name == field);
         let extra = EXTRAS
             .iter()
-            .find(|own| part.index.is_none() && **own == field);
+            .find(|extra| part.index.is_none() && **extra == field);
         let kinds = [
             (!forces.is_empty()).then_some("a force"),
             (!surfaces.is_empty()).then_some("a surface"),
@@ -163,7 +164,11 @@ impl Resolver<'_> {
     fn refuse_scene_part(&mut self, part: &Declared, material: &Material<'_>) {
         let field = part.name.text.as_str();
         let at: Location = part.name.at;
-        let is_later = self.spec.scenes.iter().any(|own| own.name.text == field);
+        let is_later = self
+            .spec
+            .scenes
+            .iter()
+            .any(|scene| scene.name.text == field);
         if is_later && part.index.is_none() {
             let text = format!("scene `{field}` is not declared before it is used");
             self.refuse::<()>(
@@ -173,11 +178,11 @@ impl Resolver<'_> {
             );
             return;
         }
-        let forces = material.forces.iter().map(|own| &own.name);
-        let surfaces = material.surfaces.iter().map(|own| &own.name);
+        let forces = material.forces.iter().map(|force| &force.name);
+        let surfaces = material.surfaces.iter().map(|surface| &surface.name);
         let mut known: Vec<&str> = Vec::new();
-        let scenes = material.scenes.iter().map(|own| own.name.as_str());
-        let names = forces.chain(surfaces).map(|own| own.field.as_str());
+        let scenes = material.scenes.iter().map(|scene| scene.name.as_str());
+        let names = forces.chain(surfaces).map(|force| force.field.as_str());
         for name in names.chain(scenes).chain(EXTRAS) {
             if !known.contains(&name) {
                 known.push(name);
@@ -205,13 +210,13 @@ fn places(marks: impl Iterator<Item = bool>) -> Vec<usize> {
 impl Parts {
     /// Uses what another one uses, too.
     fn add(&mut self, other: &Self) {
-        for (own, others) in [
+        for (indices, others) in [
             (&mut self.forces, &other.forces),
             (&mut self.surfaces, &other.surfaces),
         ] {
-            own.extend(others);
-            own.sort_unstable();
-            own.dedup();
+            indices.extend(others);
+            indices.sort_unstable();
+            indices.dedup();
         }
         self.extras.projection |= other.extras.projection;
         self.extras.volume |= other.extras.volume;

@@ -48,18 +48,21 @@ struct Start<'a, 'b> {
 
 impl<'a, 'b> Start<'a, 'b> {
     fn new(resolver: &'a Resolver<'b>, initial: &'a Initial, constraints: &[Constraint]) -> Self {
-        let equations = constraints.iter().filter(|own| own.is_of_positions);
+        let equations = constraints
+            .iter()
+            .filter(|constraint| constraint.is_of_positions);
         let involved: Vec<SymbolId> = equations
-            .filter_map(|own| own.level)
+            .filter_map(|constraint| constraint.level)
             .flat_map(|level| resolver.pool.symbols(level))
             .collect();
         let coordinates = resolver.symbols.coordinates.iter().zip(&initial.q);
-        let open = coordinates.filter(|(own, value)| value.is_none() && involved.contains(&own.q));
+        let open = coordinates
+            .filter(|(coordinate, value)| value.is_none() && involved.contains(&coordinate.q));
         Self {
             resolver,
             pool: resolver.pool.clone(),
             initial,
-            solved_for: open.map(|(own, _)| own.q).collect(),
+            solved_for: open.map(|(coordinate, _)| coordinate.q).collect(),
         }
     }
 
@@ -85,14 +88,15 @@ impl<'a, 'b> Start<'a, 'b> {
 
     /// True if a surface clearly counts at the start.
     fn counts(&self, surface: &Surface) -> bool {
-        let has_sign = |own: &Condition, sign: f64| self.clear_sign(own.margin) == Some(sign);
-        let mut own = surface.conditions.iter();
-        own.all(|own| has_sign(own, 1.0))
+        let has_sign =
+            |condition: &Condition, sign: f64| self.clear_sign(condition.margin) == Some(sign);
+        let mut conditions = surface.conditions.iter();
+        conditions.all(|condition| has_sign(condition, 1.0))
             && surface
                 .beside
                 .others()
                 .iter()
-                .all(|other| other.iter().any(|own| has_sign(own, -1.0)))
+                .all(|other| other.iter().any(|condition| has_sign(condition, -1.0)))
     }
 
     /// Constraints that declared positions and velocities alone violate.
@@ -140,12 +144,12 @@ impl<'a, 'b> Start<'a, 'b> {
         let coordinates = self.resolver.symbols.coordinates.iter();
         let values = coordinates.zip(self.initial.q.iter().zip(&self.initial.qdot));
         let mut named: Vec<(InitialTarget, &str)> = Vec::new();
-        for (own, (q, qdot)) in values {
-            let field = own.name.field.as_str();
-            if q.is_some() && symbols.contains(&own.q) {
+        for (coordinate, (q, qdot)) in values {
+            let field = coordinate.name.field.as_str();
+            if q.is_some() && symbols.contains(&coordinate.q) {
                 named.push((InitialTarget::Position, field));
             }
-            if qdot.is_some() && symbols.contains(&own.qdot) {
+            if qdot.is_some() && symbols.contains(&coordinate.qdot) {
                 named.push((InitialTarget::Velocity, field));
             }
         }
@@ -177,10 +181,16 @@ impl<'a, 'b> Start<'a, 'b> {
         if symbol == self.resolver.symbols.time {
             return 0.0;
         }
-        if let Some(index) = coordinates.iter().position(|own| own.q == symbol) {
+        if let Some(index) = coordinates
+            .iter()
+            .position(|coordinate| coordinate.q == symbol)
+        {
             return self.initial.q[index].map_or(0.0, |value| self.of_parameters(value));
         }
-        if let Some(index) = coordinates.iter().position(|own| own.qdot == symbol) {
+        if let Some(index) = coordinates
+            .iter()
+            .position(|coordinate| coordinate.qdot == symbol)
+        {
             return self.initial.qdot[index].map_or(f64::NAN, |value| self.of_parameters(value));
         }
         self.default(symbol)

@@ -190,28 +190,28 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
     }
 }
 
-/// Whether a surface counts where others do not; those it goes with are checked elsewhere.
+/// True if a surface counts where others do not; those it goes with are checked elsewhere.
 fn is_otherwise(surface: &Surface) -> bool {
     matches!(surface.beside, Beside::Otherwise(_))
 }
 
-/// Whether a transition has the opposite gap of another, under the same conditions.
+/// True if a transition has the opposite gap of another, under the same conditions.
 pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second: &Surface) -> bool {
     first.conditions == second.conditions
         && is_proportional(resolver, first.gap, second.gap)
         && count_both_ways(&resolver.pool, first, second)
 }
 
-/// Whether two surfaces with resets or transitions, the same up to a constant factor, lie opposite: one counts what falls,
+/// True if two surfaces with resets or transitions, the same up to a constant factor, lie opposite: one counts what falls,
 /// the other what rises.
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
-    let passes = |own: &Surface| matches!(own.law, Law::Reset | Law::Transition);
+    let passes = |surface: &Surface| matches!(surface.law, Law::Reset | Law::Transition);
     let are_resets = passes(first) && passes(second);
     let gaps = pool.eval(&[first.gap, second.gap], &generic);
     are_resets && gaps[0] * gaps[1] < 0.0
 }
 
-/// Whether two gaps are the same up to a positive factor.
+/// True if two gaps are the same up to a positive factor.
 pub(super) fn have_same_gap(
     resolver: &mut Resolver<'_>,
     first: &Surface,
@@ -226,7 +226,7 @@ fn generic(symbol: SymbolId) -> f64 {
     0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract()
 }
 
-/// Whether the quotient of two functions is constant: `f d(g) - g d(f) = 0`.
+/// True if the quotient of two functions is constant: `f d(g) - g d(f) = 0`.
 fn is_proportional(resolver: &mut Resolver<'_>, f: ExprId, g: ExprId) -> bool {
     let pool = &mut resolver.pool;
     let symbols = pool.symbols(f);

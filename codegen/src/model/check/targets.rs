@@ -5,14 +5,14 @@ use super::super::symbols::Meaning;
 use crate::diagnostics::{Location, nearest};
 use crate::spec::{Declared, Index, Word};
 
-/// Where values are assigned.
+/// Section that assigns values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Section {
-    /// In `initial`.
+    /// `initial`.
     Initial,
-    /// In a law `reset`.
+    /// A law `reset`.
     Reset,
-    /// In `field`.
+    /// `field`.
     Field,
 }
 
@@ -125,7 +125,7 @@ impl Resolver<'_> {
 }
 
 impl Section {
-    /// What to write instead of a name that is known nowhere.
+    /// Advice on a name that is unknown everywhere.
     fn help(self, name: &str) -> &'static str {
         match (self, name) {
             (Self::Initial, "t") => "a run starts at time 0",

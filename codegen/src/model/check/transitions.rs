@@ -20,8 +20,8 @@ impl Resolver<'_> {
             return Some(None);
         };
         let modes = self.modes;
-        let Some(enters) = modes.iter().position(|own| own.name == word.text) else {
-            let names = modes.iter().map(|own| own.name.as_str());
+        let Some(enters) = modes.iter().position(|mode| mode.name == word.text) else {
+            let names = modes.iter().map(|mode| mode.name.as_str());
             let help = match nearest(&word.text, names.clone()) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("the modes are {}", listed(names)),
@@ -56,9 +56,13 @@ impl Resolver<'_> {
 
     /// Without a reset a mode is entered with the same positions: refuses other coordinates.
     fn check_same_coordinates(&mut self, peer: &Peer, at: Location) -> Option<()> {
-        let own = self.symbols.coordinates.iter().map(|own| &own.name.display);
+        let names = self
+            .symbols
+            .coordinates
+            .iter()
+            .map(|coordinate| &coordinate.name.display);
         let others = peer.coordinates.iter().map(|(name, _)| &name.display);
-        if own.eq(others) {
+        if names.eq(others) {
             return Some(());
         }
         let text = format!("`{}` has other coordinates", peer.name);
@@ -109,7 +113,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// What was not given stays, if the mode that is left has a coordinate of the same name.
+    /// Values that are not given: they are kept if the mode that is left has a coordinate of the same name.
     fn kept(
         &mut self,
         given: Vec<Option<ExprId>>,
@@ -120,14 +124,14 @@ impl Resolver<'_> {
         let mut values = Vec::new();
         let mut missing = Vec::new();
         for (value, (name, _)) in given.into_iter().zip(&peer.coordinates) {
-            let own = self
+            let counterpart = self
                 .symbols
                 .coordinates
                 .iter()
-                .find(|own| own.name == *name);
-            let symbol = own.map(|own| match target {
-                AssignmentTarget::Position => own.q,
-                AssignmentTarget::Velocity => own.qdot,
+                .find(|coordinate| coordinate.name == *name);
+            let symbol = counterpart.map(|coordinate| match target {
+                AssignmentTarget::Position => coordinate.q,
+                AssignmentTarget::Velocity => coordinate.qdot,
             });
             match (value, symbol) {
                 (Some(value), _) => values.push(value),
@@ -178,7 +182,7 @@ impl Resolver<'_> {
     ) -> Vec<(usize, Scope)> {
         let (field, at) = (declared.name.text.as_str(), declared.name.at);
         let fields = peer.coordinates.iter().map(|(name, _)| name.field.as_str());
-        if !fields.clone().any(|own| own == field) {
+        if !fields.clone().any(|known| known == field) {
             let help = match nearest(field, fields.clone()) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("its coordinates are {}", listed(fields)),
@@ -226,11 +230,11 @@ impl Resolver<'_> {
 /// Marks the transitions that count from both sides.
 pub(super) fn mark_sides(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
     for index in 0..surfaces.len() {
-        let is_transition = |own: &Surface| own.law == Law::Transition;
+        let is_transition = |surface: &Surface| surface.law == Law::Transition;
         let has_opposite = is_transition(&surfaces[index])
-            && surfaces
-                .iter()
-                .any(|own| is_transition(own) && are_opposite(resolver, own, &surfaces[index]));
+            && surfaces.iter().any(|surface| {
+                is_transition(surface) && are_opposite(resolver, surface, &surfaces[index])
+            });
         if let Some(transition) = &mut surfaces[index].transition {
             transition.has_no_side = has_opposite;
         }

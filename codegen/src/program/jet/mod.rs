@@ -27,7 +27,7 @@ use degree::Degree;
 /// Rule for coefficient `k >= 1` of a value, from lower ones of all values and those of order `k` of its operands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recurrence {
-    /// It vanishes.
+    /// The derivative vanishes.
     Constant,
     /// Time itself.
     Time,

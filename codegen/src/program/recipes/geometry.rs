@@ -1,4 +1,4 @@
-//! Everything that is derived at a state, by name: for tables, tests and the command line's `eval`.
+//! All quantities derived at a state, by name: for tables, tests and the command line's `eval`.
 //!
 //! Formulas of the density form and the divergence: [`crate::mechanics::density`].
 
@@ -14,9 +14,9 @@ use crate::program::{Form, Function, Value};
 /// A named group of results.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Group {
-    /// Its name, as `eval` prints it.
+    /// Name in the output of `eval`.
     pub name: String,
-    /// Its shape.
+    /// Shape.
     pub shape: Shape,
 }
 
@@ -25,7 +25,7 @@ pub struct Group {
 pub struct Geometry {
     /// The function.
     pub function: Function,
-    /// Its results.
+    /// Results.
     pub groups: Vec<Group>,
 }
 

@@ -57,7 +57,7 @@ fn topology(cursor: &mut Cursor<'_>, declared: &Declared) -> Read<Topology> {
     Err(cursor.refuse(last, "expected `;`", HELP))
 }
 
-/// Nothing stands behind `angle`: the size of a family stands at its name, and an angle has no interval.
+/// Refuses tokens after `angle`: the size of a family belongs to its name, and an angle has no interval.
 fn check_end_of_angle(cursor: &mut Cursor<'_>, name: &Word) -> Read<()> {
     if let Some(TokenTree::Group(group)) = cursor.peek()
         && group.delimiter() == Delimiter::Bracket

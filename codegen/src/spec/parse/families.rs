@@ -9,11 +9,11 @@ use super::written_out::Bound;
 use super::{declarations, index};
 use crate::diagnostics::{Diagnostics, listed, nearest};
 
-/// What stands outside of `modes`, as far as it says what an index is.
+/// Declarations outside of `modes` that indices may depend on.
 pub(super) struct Constants {
     shared: Spec,
     indices: Indices,
-    /// Whether it was read without a mistake, of which those in indices may be consequences.
+    /// True if it was read without a mistake, of which those in indices may be consequences.
     is_sound: bool,
 }
 
@@ -26,9 +26,9 @@ pub(super) struct Entry {
 
 /// A mode with everything that stands in its braces.
 pub(super) struct Member {
-    /// Its name: `rough`, `spoke3`.
+    /// Name: `rough`, `spoke3`.
     pub(super) name: Word,
-    /// Its family, and which one it is.
+    /// Family and index in it.
     family: Option<(String, usize)>,
     pub(super) documentation: Vec<String>,
     pub(super) inside: Vec<TokenTree>,
@@ -37,7 +37,7 @@ pub(super) struct Member {
 /// The modes, in the order in which they are met.
 pub(super) struct Members {
     pub(super) list: Vec<Member>,
-    /// Whether all are there: else a reference to one that is not may be right.
+    /// True if all are there: else a reference to one that is not may be right.
     is_complete: bool,
 }
 
@@ -50,10 +50,10 @@ impl Constants {
         diagnostics: &mut Diagnostics,
     ) -> Self {
         let mut spec = header.beginning();
-        let mut own = Diagnostics::new();
-        declarations(shared, body, &mut spec, &mut own);
-        let is_sound = own.is_empty();
-        diagnostics.extend_once(own);
+        let mut mistakes = Diagnostics::new();
+        declarations(shared, body, &mut spec, &mut mistakes);
+        let is_sound = mistakes.is_empty();
+        diagnostics.extend_once(mistakes);
         Self {
             shared: spec,
             indices,
@@ -103,7 +103,7 @@ fn written(family: &str, member: impl std::fmt::Display) -> String {
 }
 
 impl Member {
-    /// As a declaration writes it.
+    /// Name as written in a declaration.
     pub(super) fn written(&self) -> String {
         match &self.family {
             Some((family, member)) => written(family, member),
@@ -119,19 +119,19 @@ impl Members {
         constants: &Constants,
         diagnostics: &mut Diagnostics,
     ) -> Self {
-        let mut own = Diagnostics::new();
+        let mut mistakes = Diagnostics::new();
         let mut members = Self {
             list: Vec::new(),
             is_complete: false,
         };
         for entry in entries {
-            members.add_entry(entry, constants, &mut own);
+            members.add_entry(entry, constants, &mut mistakes);
         }
-        if own.is_empty() {
-            members.check_gaps(&mut own);
+        if mistakes.is_empty() {
+            members.check_gaps(&mut mistakes);
         }
-        members.is_complete = own.is_empty() && constants.is_sound;
-        diagnostics.extend(own);
+        members.is_complete = mistakes.is_empty() && constants.is_sound;
+        diagnostics.extend(mistakes);
         members
     }
 
@@ -174,7 +174,7 @@ impl Members {
         let base = &entry.declared.name;
         let family = member.map(|member| (base.text.clone(), member));
         let name = member.map_or_else(|| base.clone(), |member| member_word(base, member));
-        let same = |own: &&mut Member| family.is_some() && own.family == family;
+        let same = |member: &&mut Member| family.is_some() && member.family == family;
         if let Some(known) = self.list.iter_mut().find(same) {
             known
                 .documentation
@@ -207,12 +207,13 @@ impl Members {
         member: Option<usize>,
         diagnostics: &mut Diagnostics,
     ) -> bool {
-        let is_alone_and_family = |own: &Member| match (&own.family, member) {
+        let is_alone_and_family = |earlier: &Member| match (&earlier.family, member) {
             (Some((family, _)), None) => *family == base.text,
-            (None, Some(_)) => own.name.text == base.text,
+            (None, Some(_)) => earlier.name.text == base.text,
             _ => false,
         };
-        let is_taken = |own: &&Member| own.name.text == name.text || is_alone_and_family(own);
+        let is_taken =
+            |member: &&Member| member.name.text == name.text || is_alone_and_family(member);
         let Some(first) = self.list.iter().find(is_taken) else {
             return false;
         };
@@ -221,10 +222,10 @@ impl Members {
             (text, None)
         } else {
             let text = format!("mode `{}` declared again", name.text);
-            let own = member.map(|member| written(&base.text, member));
+            let shown = member.map(|member| written(&base.text, member));
             (
                 text,
-                own.or_else(|| first.family.is_some().then(|| first.written())),
+                shown.or_else(|| first.family.is_some().then(|| first.written())),
             )
         };
         let help = match called {
@@ -239,22 +240,23 @@ impl Members {
 
     /// Refuses families that lack a member before their last.
     fn check_gaps(&self, diagnostics: &mut Diagnostics) {
-        for own in &self.list {
-            let Some((family, member)) = &own.family else {
+        for mode in &self.list {
+            let Some((family, member)) = &mode.family else {
                 continue;
             };
             let before = Some((family.clone(), member - 1));
             if *member > 1 && !self.list.iter().any(|other| other.family == before) {
                 let text = format!("mode `{}` is not declared", written(family, member - 1));
                 let help = format!("the members of `{family}` are counted from 1 without a gap");
-                diagnostics.error_once(own.name.at, text, help);
+                diagnostics.error_once(mode.name.at, text, help);
             }
         }
     }
 
-    /// How many members a family has.
+    /// Number of members of a family.
     fn size(&self, family: &str) -> usize {
-        let is_of = |own: &&Member| matches!(&own.family, Some((other, _)) if other == family);
+        let is_of =
+            |member: &&Member| matches!(&member.family, Some((other, _)) if other == family);
         self.list.iter().filter(is_of).count()
     }
 
@@ -291,8 +293,8 @@ impl Members {
             return Err(cursor.refuse(name.at, text, &help));
         }
         let mut others = self.list.iter();
-        let own = others.find(|own| own.name.text == name.text);
-        let Some((family, member)) = own.and_then(|own| own.family.as_ref()) else {
+        let found = others.find(|other| other.name.text == name.text);
+        let Some((family, member)) = found.and_then(|mode| mode.family.as_ref()) else {
             return Ok(name);
         };
         let text = format!("unknown mode `{}`", name.text);
@@ -312,8 +314,8 @@ impl Members {
             return Err(Refused);
         };
         let number = usize::try_from(member).unwrap_or(0);
-        let own = Some((name.text.clone(), number));
-        if let Some(found) = self.list.iter().find(|found| found.family == own) {
+        let wanted = Some((name.text.clone(), number));
+        if let Some(found) = self.list.iter().find(|found| found.family == wanted) {
             let (text, at) = (found.name.text.clone(), name.at.to(cursor.last()));
             return Ok(Word { text, at });
         }
@@ -323,7 +325,7 @@ impl Members {
             let help = format!("`{}` has the members 1 to {size}", name.text);
             return Err(cursor.refuse(index.at, text, &help));
         }
-        if self.list.iter().any(|own| own.name.text == name.text) {
+        if self.list.iter().any(|other| other.name.text == name.text) {
             let text = format!("`{}` is not a family", name.text);
             return Err(cursor.refuse(name.at, text, &format!("write `{}`", name.text)));
         }
@@ -333,7 +335,7 @@ impl Members {
     }
 }
 
-/// What to say of a mode that there is not; `names` are the modes as declarations write them.
+/// Advice on a mode that does not exist; `names` are the modes as written in declarations.
 pub fn mode_help(name: &str, names: &[String]) -> String {
     let names = || names.iter().map(String::as_str);
     let bases = names().map(|name| name.split('[').next().unwrap_or(name));

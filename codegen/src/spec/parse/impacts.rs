@@ -60,7 +60,7 @@ pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<(Vec<Compa
     Ok((conditions, false))
 }
 
-/// Whether equality is allowed.
+/// True if equality is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Strictness {
     /// `>=`, `<=`

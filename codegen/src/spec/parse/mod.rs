@@ -49,7 +49,7 @@ pub fn read(tokens: TokenStream, indices: Indices) -> Result<Declaration, Diagno
 /// Reads the declaration of a model in one piece.
 ///
 /// # Errors
-/// As [`read`]; modes are refused.
+/// Same as [`read`]; modes are refused.
 pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     let (spec, body, mut diagnostics) = header(tokens)?;
     let tokens = tokens_of(body.stream());
@@ -64,7 +64,7 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     one_piece(spec, &tokens, &body, diagnostics)
 }
 
-/// What stands before the braces of a model, and these.
+/// Header of a model, and its braces.
 fn header(tokens: TokenStream) -> Result<(Spec, Group, Diagnostics), Diagnostics> {
     check_nesting(&tokens)?;
     let tokens = source::flatten_header(tokens);
@@ -146,7 +146,7 @@ fn split(tokens: &[TokenTree]) -> impl Iterator<Item = &[TokenTree]> {
     })
 }
 
-/// How many tokens belong to the first declaration: up to a `;`, a section's braces, or what begins another one.
+/// Number of tokens of the first declaration: up to a `;`, a section's braces, or the beginning of another declaration.
 fn declaration_length(tokens: &[TokenTree]) -> usize {
     let documentation = documentation_length(tokens);
     for (index, token) in tokens.iter().enumerate() {
@@ -164,7 +164,7 @@ fn declaration_length(tokens: &[TokenTree]) -> usize {
     tokens.len()
 }
 
-/// How many tokens belong to the attributes at the beginning, doc comments among them.
+/// Number of tokens of the attributes at the beginning, doc comments included.
 fn documentation_length(tokens: &[TokenTree]) -> usize {
     let is_attribute = |pair: &&[TokenTree]| {
         matches!(pair, [TokenTree::Punct(hash), TokenTree::Group(group)]
@@ -173,7 +173,7 @@ fn documentation_length(tokens: &[TokenTree]) -> usize {
     2 * tokens.chunks(2).take_while(is_attribute).count()
 }
 
-/// Whether this word, followed by this token, can only be the beginning of a declaration.
+/// True if this word, followed by this token, can only be the beginning of a declaration.
 fn begins_declaration(word: &Ident, next: Option<&TokenTree>) -> bool {
     let word = word.to_string();
     let known = SECTIONS.contains(&word.as_str());
@@ -189,7 +189,7 @@ fn begins_declaration(word: &Ident, next: Option<&TokenTree>) -> bool {
     }
 }
 
-/// Whether a declaration ends with the braces of a section.
+/// True if a declaration ends with the braces of a section.
 fn is_section(declaration: &[TokenTree]) -> bool {
     matches!(declaration.last(), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace)
 }
@@ -286,7 +286,7 @@ fn claims_section(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> R
     read
 }
 
-/// How many tokens stand before the next `;`.
+/// Number of tokens before the next `;`.
 fn entry_length(tokens: &[TokenTree]) -> usize {
     let is_end =
         |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ';');
@@ -367,7 +367,7 @@ fn labelled(cursor: &mut Cursor<'_>, entry: &str, form: &str) -> Read<(Vec<Strin
     Ok((documentation, declared))
 }
 
-/// Whether the first token of an entry can be its name: what comes next, behind an index, is no part of an
+/// True if the first token of an entry can be its name: what comes next, behind an index, is no part of an
 /// expression.
 fn begins_with_name(tokens: &[TokenTree]) -> bool {
     let is_index = |token: &TokenTree| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket);

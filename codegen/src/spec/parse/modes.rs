@@ -38,9 +38,9 @@ const SHARED: [(&str, &str); 4] = [
 /// The parts of a model with modes, as tokens.
 #[derive(Default)]
 struct Parts {
-    /// What stands outside of `modes` and `transitions`.
+    /// Tokens outside of `modes` and `transitions`.
     shared: Vec<TokenTree>,
-    /// What stands in `modes`.
+    /// Entries of `modes`.
     entries: Vec<Entry>,
     /// The braces of `transitions`.
     transitions: Vec<Group>,
@@ -48,7 +48,7 @@ struct Parts {
     first: Option<Word>,
 }
 
-/// Whether a declaration is one of modes.
+/// True if a declaration is one of modes.
 pub(super) fn are_declared(tokens: &[TokenTree]) -> bool {
     split(tokens).any(|declaration| {
         matches!(
@@ -90,13 +90,14 @@ pub(super) fn read(
         transitions: Vec::new(),
     };
     for member in &members.list {
-        let mut own = Diagnostics::new();
-        refuse_shared(&member.inside, &mut own);
+        let mut mistakes = Diagnostics::new();
+        refuse_shared(&member.inside, &mut mistakes);
         let mut spec = header.beginning();
         let together = [&*parts.shared, &*member.inside].concat();
-        declarations(&together, body, &mut spec, &mut own);
-        read.transitions = written.read(&members, &constants, &member.name, &mut spec, &mut own);
-        diagnostics.extend_once(own);
+        declarations(&together, body, &mut spec, &mut mistakes);
+        read.transitions =
+            written.read(&members, &constants, &member.name, &mut spec, &mut mistakes);
+        diagnostics.extend_once(mistakes);
         read.modes.push(Mode {
             name: member.name.clone(),
             written: member.written(),

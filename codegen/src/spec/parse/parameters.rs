@@ -100,7 +100,7 @@ fn default(cursor: &mut Cursor<'_>) -> Read<Option<ParameterDefault>> {
     )))
 }
 
-/// Whether a comma separates the tokens of a group.
+/// True if a comma separates the tokens of a group.
 fn is_list(group: &Group) -> bool {
     let is_comma =
         |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ',');

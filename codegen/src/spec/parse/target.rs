@@ -1,4 +1,4 @@
-//! What an entry gives: a coordinate, or `dot(..)` of one.
+//! Target of an assignment: a coordinate, or `dot(..)` of one.
 
 use proc_macro2::{Delimiter, TokenTree};
 
@@ -6,7 +6,7 @@ use super::super::ast::Declared;
 use super::super::cursor::{Cursor, Read, tokens_of};
 use super::index;
 
-/// Whether the next word is followed by parentheses.
+/// True if the next word is followed by parentheses.
 pub(super) fn is_call(cursor: &Cursor<'_>) -> bool {
     matches!(cursor.peek_second(), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis)
 }

@@ -22,7 +22,7 @@ struct Entry<'a> {
     tokens: Vec<TokenTree>,
     /// The braces it stands in.
     group: &'a Group,
-    /// Whether a `;` follows.
+    /// True if a `;` follows.
     is_ended: bool,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Transitions<'a> {
         diagnostics: &mut Diagnostics,
     ) -> Vec<Transition> {
         let mut transitions = Vec::new();
-        for entry in self.entries.iter().filter(|own| !own.tokens.is_empty()) {
+        for entry in self.entries.iter().filter(|entry| !entry.tokens.is_empty()) {
             let before = Location::opening(entry.group);
             let mut cursor = Cursor::new(&entry.tokens, before, diagnostics);
             let Ok((transition, surface)) = transition(&mut cursor, spec, members, constants)

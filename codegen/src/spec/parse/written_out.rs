@@ -13,11 +13,11 @@ pub(super) struct Bound<'a> {
     pub(super) family: &'a Word,
     /// The name of the index.
     pub(super) index: &'a Word,
-    /// Its value.
+    /// Value.
     pub(super) member: usize,
 }
 
-/// Whether a name stands for the index, or for an index or argument that hides it.
+/// True if a name stands for the index, or for an index or argument that hides it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sight {
     Seen,
@@ -39,7 +39,7 @@ impl<'a> Bound<'a> {
         regrouped(Delimiter::Bracket, range, vec![value])
     }
 
-    /// What stands in the braces of a mode.
+    /// Contents of the braces of a mode.
     pub(super) fn declarations(
         &self,
         tokens: &[TokenTree],
@@ -165,12 +165,12 @@ impl<'a> Bound<'a> {
         })
     }
 
-    /// Whether tokens begin with `i in`.
+    /// True if tokens begin with `i in`.
     fn binds(&self, tokens: &[TokenTree]) -> bool {
         matches!(tokens, [name, TokenTree::Ident(word), ..] if self.is_index(name) && *word == "in")
     }
 
-    /// Whether brackets with `i in a..=b` are here or inside of parentheses, as in `dot(theta[i in 1..=N])`.
+    /// True if brackets with `i in a..=b` are here or inside of parentheses, as in `dot(theta[i in 1..=N])`.
     fn is_bound_in(&self, token: &TokenTree) -> bool {
         let TokenTree::Group(group) = token else {
             return false;
@@ -183,7 +183,7 @@ impl<'a> Bound<'a> {
         }
     }
 
-    /// Whether these are parentheses with an argument of this name.
+    /// True if these are parentheses with an argument of this name.
     fn is_argument_in(&self, token: &TokenTree) -> bool {
         matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis
             && tokens_of(group.stream()).iter().any(|token| self.is_index(token)))
@@ -197,7 +197,7 @@ impl<'a> Bound<'a> {
     }
 }
 
-/// How many tokens of a sum belong to its range.
+/// Number of tokens of the range of a sum.
 fn range_length(tokens: &[TokenTree]) -> usize {
     let is_end =
         |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ':');

@@ -131,7 +131,7 @@ fn references_name_one_mode() {
     );
 }
 
-/// What follows from a mistake elsewhere is not told.
+/// Consequences of a mistake elsewhere are not reported.
 #[test]
 fn consequences_are_not_told() {
     refused_hopper(

@@ -1,4 +1,4 @@
-//! What the parser reads; what it says of what it cannot read is in `refusals`.
+//! Tests of the parser; its refusals are tested in `refusals`.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 

@@ -69,7 +69,9 @@ pub fn run(
     let examined = Examined {
         checks,
         notes: notes(model, derived.as_ref()),
-        claims: derived.map(|own| findings(model, own)).unwrap_or_default(),
+        claims: derived
+            .map(|derived| findings(model, derived))
+            .unwrap_or_default(),
     };
     match args.format {
         Format::Text => write_text(output, model, &examined)?,
@@ -85,7 +87,7 @@ fn findings(model: &dyn AnyModel, report: report::Report) -> Vec<(&'static str, 
     let all = [report.findings].into_iter().chain(of_scenes);
     let named = model.description().scenes.iter().zip(all);
     named
-        .flat_map(|(scene, findings)| findings.into_iter().map(|own| (*scene, own)))
+        .flat_map(|(scene, findings)| findings.into_iter().map(|finding| (*scene, finding)))
         .collect()
 }
 

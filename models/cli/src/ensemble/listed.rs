@@ -155,7 +155,7 @@ fn columns(
             let is_other = OTHERS.contains(&name) || description.outputs.contains(&name);
             let is_input = Quantity::all(description)
                 .iter()
-                .any(|(own, _)| own == name);
+                .any(|(known, _)| known == name);
             (is_input || !is_other).then(|| name.to_owned())
         }
     };

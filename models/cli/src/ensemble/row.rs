@@ -98,7 +98,7 @@ impl Columns {
 
     /// The position of a column.
     pub fn position(&self, name: &str) -> Option<usize> {
-        self.columns.iter().position(|(own, _)| own == name)
+        self.columns.iter().position(|(known, _)| known == name)
     }
 
     /// The header as a line of CSV.

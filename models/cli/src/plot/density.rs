@@ -145,12 +145,14 @@ fn paths(chart: &Chart<'_, '_>, density: &Density, counts: &[u64], scale: &Scale
         let mut from = 0;
         while from < x.bins {
             let level = |i: usize| (row[i] > 0).then(|| scale.level(row[i]));
-            let own = level(from);
-            let to = (from..x.bins).find(|&i| level(i) != own).unwrap_or(x.bins);
-            if let Some(own) = own {
+            let shade = level(from);
+            let to = (from..x.bins)
+                .find(|&i| level(i) != shade)
+                .unwrap_or(x.bins);
+            if let Some(shade) = shade {
                 let (left, bottom) = chart.backend_coord(&(x.edge(from), y.edge(j)));
                 let (right, top) = chart.backend_coord(&(x.edge(to), y.edge(j + 1)));
-                levels[own] += &format!("M{left} {top}H{right}V{bottom}H{left}z");
+                levels[shade] += &format!("M{left} {top}H{right}V{bottom}H{left}z");
             }
             from = to;
         }

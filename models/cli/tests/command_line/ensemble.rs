@@ -50,7 +50,7 @@ fn column(table: &str, name: &str) -> Vec<String> {
         .headers()
         .unwrap()
         .iter()
-        .position(|own| own == name)
+        .position(|known| known == name)
         .unwrap_or_else(|| panic!("no column {name}"));
     let records = reader.records().map(Result::unwrap);
     records.map(|record| record[index].to_owned()).collect()

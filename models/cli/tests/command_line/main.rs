@@ -22,7 +22,7 @@ mod verify;
 use dalembert_cli::{Entry, Exit, Streams, models, run_with};
 use serde_json::Value;
 
-/// What a command line did.
+/// Result of a command line.
 struct Done {
     exit: Exit,
     output: String,

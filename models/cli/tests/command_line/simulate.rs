@@ -359,7 +359,7 @@ fn a_table_has_samples_and_impacts_in_order_of_time() {
     assert_eq!(events, ["floor", "floor"]);
 }
 
-/// What a run wrote is there before the run has ended.
+/// Rows of a run are in the file before the run has ended.
 #[test]
 fn a_table_is_written_while_the_run_goes_on() {
     struct Full {

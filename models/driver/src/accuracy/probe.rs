@@ -166,14 +166,14 @@ impl Track {
 
     /// Describes the first difference between the events of both runs, under these names of the runs.
     pub fn difference_from(&self, other: &Self, names: [&str; 2]) -> Option<String> {
-        let [own, others] = names;
+        let [this, others] = names;
         match self.difference(other)? {
             Difference::Impact(met) => {
                 let [met, other_met] = met.map(|met| self.told(met));
-                Some(format!("{own} {met}, {others} {other_met}"))
+                Some(format!("{this} {met}, {others} {other_met}"))
             }
             Difference::End => Some(format!(
-                "{own} ends as {} after {} impacts, {others} as {} after {}",
+                "{this} ends as {} after {} impacts, {others} as {} after {}",
                 self.outcome.kind(),
                 self.counters.impacts,
                 other.outcome.kind(),
@@ -188,8 +188,8 @@ impl Track {
         let surfaces = |[a, b]: [Option<Met>; 2]| [a, b].map(|met| met.map(|met| met.surface));
         let mut pairs = (0..longest).map(at);
         let differs = |pair: &[Option<Met>; 2]| {
-            let [own, others] = surfaces(*pair);
-            own != others
+            let [this, others] = surfaces(*pair);
+            this != others
         };
         if let Some(pair) = pairs.find(differs) {
             return Some(Difference::Impact(pair));
@@ -221,7 +221,7 @@ impl Track {
         let mut pairs = self.last.iter().zip(&ending.last.q);
         self.t == ending.t
             && self.outcome.kind() == ending.outcome.kind()
-            && pairs.all(|(own, right)| own == right || right.is_nan())
+            && pairs.all(|(left, right)| left == right || right.is_nan())
     }
 
     /// The largest relative difference of a position or of the time at the end, with respect to `reference`. Infinite
@@ -232,9 +232,9 @@ impl Track {
             .collect();
         let pairs = self.positions.iter().zip(&reference.positions);
         let pairs = pairs.chain([(&self.last, &reference.last)]);
-        let differences = pairs.flat_map(|(own, right)| {
-            let components = own.iter().zip(right).zip(&scales);
-            components.map(|((own, right), scale)| (own - right).abs() / scale)
+        let differences = pairs.flat_map(|(left, right)| {
+            let components = left.iter().zip(right).zip(&scales);
+            components.map(|((left, right), scale)| (left - right).abs() / scale)
         });
         let late = (self.t - reference.t).abs();
         // Two runs of length 0 have equal ends.

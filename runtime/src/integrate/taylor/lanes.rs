@@ -66,8 +66,8 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
     /// Sets the parameters of the system in each lane.
     pub(crate) fn set_parameters(&mut self, fields: &[&F]) {
         let mut of_lanes = [fields[0].parameters(); MOST];
-        for (lane, own) in of_lanes.iter_mut().enumerate() {
-            *own = fields[lane.min(fields.len() - 1)].parameters();
+        for (lane, parameters) in of_lanes.iter_mut().enumerate() {
+            *parameters = fields[lane.min(fields.len() - 1)].parameters();
         }
         gather(&mut self.parameters, |lane, i| of_lanes[lane].as_slice()[i]);
     }
@@ -201,8 +201,8 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         taylor.next_unit = power_of_two(taylor.length(plan.reach));
         scatter(&mut taylor.expansion.firsts, &self.expansion.firsts, lane);
         let rows = taylor.expansion.gaps.iter_mut().zip(&self.expansion.gaps);
-        for (own, row) in rows.take(order + 1) {
-            scatter(own, row, lane);
+        for (target, row) in rows.take(order + 1) {
+            scatter(target, row, lane);
         }
         counters.expansions += 1;
         counters.coefficients += order as u64;
@@ -214,8 +214,8 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
     fn hand_over_coefficients(&self, lane: usize, taylor: &mut Taylor<F>) {
         let rows = taylor.expansion.coefficients.iter_mut();
         let rows = rows.zip(&self.expansion.coefficients);
-        for (own, row) in rows.take(taylor.order + 1) {
-            scatter(own, row, lane);
+        for (target, row) in rows.take(taylor.order + 1) {
+            scatter(target, row, lane);
         }
     }
 }
@@ -246,8 +246,8 @@ fn gather<L: Numbers>(row: &mut impl Row<L>, of_lane: impl Fn(usize, usize) -> f
 }
 
 #[inline(always)]
-fn scatter<L: Numbers>(own: &mut impl Row<f64>, row: &impl Row<L>, lane: usize) {
-    for (entry, lanes) in own.as_mut_slice().iter_mut().zip(row.as_slice()) {
+fn scatter<L: Numbers>(target: &mut impl Row<f64>, row: &impl Row<L>, lane: usize) {
+    for (entry, lanes) in target.as_mut_slice().iter_mut().zip(row.as_slice()) {
         *entry = lanes.lane(lane);
     }
 }

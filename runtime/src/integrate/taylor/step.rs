@@ -167,8 +167,8 @@ impl<F: TaylorField> Stepper<F> for Taylor<F> {
     fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize {
         let part = self.ends.length() / self.unit;
         let mut power = 1.0;
-        let own = &self.expansion.coefficients[..=self.order];
-        for (to, from) in coefficients.iter_mut().zip(own) {
+        let known = &self.expansion.coefficients[..=self.order];
+        for (to, from) in coefficients.iter_mut().zip(known) {
             let scaled = to.as_mut_slice().iter_mut().zip(from.as_slice());
             scaled.for_each(|(to, from)| *to = power * from);
             power *= part;

@@ -13,17 +13,18 @@ use crate::json::number;
 /// # Errors
 /// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, report: Option<&Report>) -> io::Result<()> {
-    let entry = |own: &Report| json!({ "name": own.name, "content": value(&own.certificate) });
+    let entry =
+        |report: &Report| json!({ "name": report.name, "content": value(&report.certificate) });
     let parts: Vec<Value> = match report {
         Some(report) => [report]
             .into_iter()
             .chain(&report.scenes)
-            .filter(|own| own.certificate != Tree::Absent)
+            .filter(|report| report.certificate != Tree::Absent)
             .map(entry)
             .collect(),
         None => Vec::new(),
     };
-    let name = report.map(|own| own.name.as_str());
+    let name = report.map(|report| report.name.as_str());
     let document = json!({ "format": FORMAT, "model": name, "parts": parts });
     serde_json::to_writer_pretty(&mut *output, &document)?;
     writeln!(output)
@@ -32,15 +33,15 @@ pub fn write(output: &mut dyn Write, report: Option<&Report>) -> io::Result<()> 
 fn value(tree: &Tree) -> Value {
     match tree {
         Tree::Absent => Value::Null,
-        Tree::Flag(own) => Value::from(*own),
-        Tree::Number(own) => number(*own),
-        Tree::Integer(own) => Value::from(*own),
-        Tree::Text(own) => Value::from(own.as_str()),
-        Tree::List(own) => own.iter().map(value).collect(),
-        Tree::Record(own) => {
-            let pairs = own
+        Tree::Flag(flag) => Value::from(*flag),
+        Tree::Number(value) => number(*value),
+        Tree::Integer(integer) => Value::from(*integer),
+        Tree::Text(text) => Value::from(text.as_str()),
+        Tree::List(list) => list.iter().map(value).collect(),
+        Tree::Record(record) => {
+            let pairs = record
                 .iter()
-                .map(|(name, own)| ((*name).to_owned(), value(own)));
+                .map(|(name, entry)| ((*name).to_owned(), value(entry)));
             Value::Object(pairs.collect::<Map<_, _>>())
         }
     }

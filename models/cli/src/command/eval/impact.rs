@@ -31,7 +31,7 @@ pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &
         Some(impulse) => {
             let state = model.kick(moment.state, impulse);
             let singular = Fault::SingularSurface { surface: index };
-            let found = match impulse.iter().all(|own| own.is_finite()) {
+            let found = match impulse.iter().all(|value| value.is_finite()) {
                 true => Collected::at(model, moment.t, &state),
                 false => Err(singular),
             };

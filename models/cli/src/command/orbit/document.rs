@@ -50,7 +50,10 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     document.field("residual", number(found.residual))?;
     document.field("iterations", found.iterations)?;
     document.field("components", components(&description))?;
-    document.rows("directions", found.directions.iter().map(|own| vector(own)))?;
+    document.rows(
+        "directions",
+        found.directions.iter().map(|direction| vector(direction)),
+    )?;
     let derivative = matrix(found.directions.len(), &found.derivative);
     document.field("derivative", derivative)?;
     let multipliers = found.multipliers.iter().map(

@@ -26,7 +26,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
             let (kind, details) = outcome::missed(&description, missed);
             let details: String = details
                 .iter()
-                .map(|(name, own)| format!(", {name} {own}"))
+                .map(|(name, detail)| format!(", {name} {detail}"))
                 .collect();
             return writeln!(output, "  outcome      {}{details}", kind);
         }
@@ -52,7 +52,11 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
         "  after        {}",
         state(&description, &found.after)
     )?;
-    let multipliers: Vec<String> = found.multipliers.iter().map(|own| complex(*own)).collect();
+    let multipliers: Vec<String> = found
+        .multipliers
+        .iter()
+        .map(|multiplier| complex(*multiplier))
+        .collect();
     writeln!(output, "  multipliers  {}", multipliers.join(", "))
 }
 
@@ -65,7 +69,7 @@ pub(super) fn components(description: &Description) -> Vec<String> {
     let quasi = description.quasi_velocities.iter();
     match description.quasi_velocities.is_empty() {
         false => positions
-            .chain(quasi.map(|own| (*own).to_owned()))
+            .chain(quasi.map(|quasi| (*quasi).to_owned()))
             .collect(),
         true => {
             let momenta = names::coordinates(description).map(names::momentum);

@@ -25,7 +25,7 @@ use particle::{Particle, field, free, particle, system};
 pub use pushed::Pushed;
 pub use unsure::Unsure;
 
-/// What every model reports.
+/// Quantities that every model reports.
 fn inspect_common<S: System>(
     system: &S,
     t: f64,

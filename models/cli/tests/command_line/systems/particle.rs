@@ -1,6 +1,6 @@
-//! What the systems share: the motion of a particle, by a macro since lengths of vectors are part of the types.
+//! Common part of the systems: the motion of a particle, as a macro because lengths of vectors are part of the types.
 
-/// What differs between the systems: mass, force and potential.
+/// Distinct parts of the systems: mass, force and potential.
 pub(super) trait Particle<const N: usize> {
     fn mass(&self) -> f64;
     fn force(&self, q: &[f64; N]) -> [f64; N];

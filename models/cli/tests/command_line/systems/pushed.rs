@@ -65,7 +65,7 @@ impl TaylorField for Pushed {
         Ok(())
     }
 
-    /// Of `f' = -2 u u' f` with constant `u'`.
+    /// Density of `f' = -2 u u' f` with constant `u'`.
     fn advance<L: Numbers>(
         &self,
         _parameters: &Self::Parameters<L>,

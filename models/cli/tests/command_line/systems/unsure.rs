@@ -276,7 +276,7 @@ pub struct NineSamples {
     left: Option<usize>,
 }
 
-/// Where a step is looked at.
+/// Points at which a step is evaluated.
 const PLACES: [f64; 9] = [0.0, 0.038, 0.146, 0.309, 0.5, 0.691, 0.854, 0.962, 1.0];
 
 impl<M: Impacting> Effect<Unsure<M>> for NineSamples {
