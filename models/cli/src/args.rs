@@ -23,15 +23,21 @@ pub use file::{BuildArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
 pub use orbit::OrbitArgs;
 
+/// Order of a help text: purpose, first example, usage, flags, remarks and further examples.
+const HELP: &str =
+    "{about-with-newline}\n{before-help}{usage-heading} {usage}\n\n{all-args}{after-help}";
+
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]
 #[command(
     version,
     arg_required_else_help = true,
+    help_template = HELP,
+    before_help = "Example: dalembert simulate rolling_disk --until 40 --plot disk.svg",
     after_help = "Exit status: 0 the requested end was reached, 1 any other outcome, 2 bad flags or input."
 )]
 pub struct CommandLine {
-    /// What to do.
+    /// Command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -40,46 +46,82 @@ pub struct CommandLine {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the models with their numbers of coordinates (N), constraints (M) and surfaces (S).
-    #[command(after_help = LIST_EXAMPLES)]
+    #[command(help_template = HELP, before_help = "Example: dalembert list", after_help = LIST_EXAMPLES)]
     List(ListArgs),
-    /// Print what is derived from a model: metric, constraints, field, impact maps.
-    #[command(after_help = DERIVE_EXAMPLES)]
+    /// Print the derived equations of a model: metric, constraints, field, impact maps.
+    #[command(help_template = HELP, before_help = "Example: dalembert derive rolling_disk", after_help = DERIVE_EXAMPLES)]
     Derive(DeriveArgs),
-    /// Check what a model declares.
-    #[command(after_help = CHECK_EXAMPLES)]
+    /// Check the declared values and the claims of a model.
+    #[command(help_template = HELP, before_help = "Example: dalembert check rolling_disk", after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
     /// Run a model from a state to an end time or a number of impacts.
-    #[command(after_help = [SIMULATE_EXAMPLES, certify::EXAMPLES].concat())]
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert simulate rolling_disk --until 40 --plot disk.svg",
+        after_help = [SIMULATE_EXAMPLES, certify::EXAMPLES].concat()
+    )]
     Simulate(Box<SimulateArgs>),
     /// Run many members of one scene: initial states and parameters on a grid, at random or from a file.
-    #[command(after_help = ensemble::EXAMPLES)]
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert ensemble bouncing_ball --vary x=0.5..2:20 --until 10",
+        after_help = ensemble::EXAMPLES
+    )]
     Ensemble(Box<EnsembleArgs>),
-    /// Measure what accuracy costs: error, work and time of every integrator over tolerances.
+    /// Measure the cost of accuracy: error, work and time of every integrator at a series of tolerances.
     ///
-    /// Errors are differences from a reference whose impacts are audited by enclosures, without the search that found them. If
-    /// they are not confirmed nothing is measured, and the exit status is 1.
-    #[command(after_help = ACCURACY_EXAMPLES)]
+    /// An error is the difference from a reference run. The impacts of the reference are checked by interval enclosures,
+    /// independently of event location. If the check fails, nothing is measured and the exit status is 1.
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert accuracy double_pendulum --until 10",
+        after_help = ACCURACY_EXAMPLES
+    )]
     Accuracy(Box<AccuracyArgs>),
     /// Find a periodic orbit by its returns to a surface, and its Floquet multipliers.
-    #[command(after_help = orbit::EXAMPLES)]
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert orbit dimensionless_walker --surface step",
+        after_help = orbit::EXAMPLES
+    )]
     Orbit(Box<OrbitArgs>),
-    /// Evaluate everything that is derived at given states.
-    #[command(after_help = EVAL_EXAMPLES)]
+    /// Evaluate all derived quantities at given states.
+    #[command(
+        help_template = HELP,
+        before_help = "Example: echo '[{\"q\": [1], \"qdot\": [-2]}]' | dalembert eval bouncing_ball",
+        after_help = EVAL_EXAMPLES
+    )]
     Eval(EvalArgs),
     /// Write a file with a commented declaration to begin with.
-    #[command(after_help = file::NEW_EXAMPLES)]
+    #[command(help_template = HELP, before_help = "Example: dalembert new pendulum", after_help = file::NEW_EXAMPLES)]
     New(NewArgs),
     /// Run a model of a file again whenever the file is saved.
-    #[command(after_help = file::WATCH_EXAMPLES)]
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert new pendulum && dalembert watch pendulum.dal",
+        after_help = file::WATCH_EXAMPLES
+    )]
     Watch(Box<WatchArgs>),
     /// Write a crate that compiles the models of a file.
-    #[command(after_help = file::BUILD_EXAMPLES)]
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert new pendulum && dalembert build pendulum.dal",
+        after_help = file::BUILD_EXAMPLES
+    )]
     Build(BuildArgs),
-    /// Draw figures of the models, on one page.
-    #[command(after_help = gallery::EXAMPLES)]
+    /// Draw figures of the models on one page.
+    #[command(
+        help_template = HELP,
+        before_help = "Example: dalembert gallery pictures bouncing_ball --quick",
+        after_help = gallery::EXAMPLES
+    )]
     Gallery(GalleryArgs),
-    /// Run the hard cases, and say which keep their bounds.
-    #[command(after_help = STABILITY_EXAMPLES)]
+    /// Run the hard cases and report which of them keep their bounds.
+    #[command(
+        help_template = HELP,
+        before_help = "Example: cargo run --release -p dalembert-stability -- stability --section A",
+        after_help = STABILITY_EXAMPLES
+    )]
     Stability(StabilityArgs),
 }
 
@@ -111,58 +153,54 @@ impl Command {
     }
 }
 
-const LIST_EXAMPLES: &str = "Examples:
-  dalembert list
+const LIST_EXAMPLES: &str = "More examples:
   dalembert list --format json";
 
-const DERIVE_EXAMPLES: &str = "Examples:
-  dalembert derive rolling_disk
-  dalembert derive rolling_disk --format latex > rolling_disk.tex";
+const DERIVE_EXAMPLES: &str = "More examples:
+  dalembert derive rolling_disk --format latex > rolling_disk.tex
+  dalembert derive chaplygin_sleigh --format json";
 
-const CHECK_EXAMPLES: &str = "Examples:
-  dalembert check rolling_disk
+const CHECK_EXAMPLES: &str = "More examples:
   dalembert check rolling_disk --format json
-  dalembert check rolling_disk --certificate proofs.json && python3 python/check_certificate.py proofs.json";
+  dalembert check rolling_disk --certificate proofs.json
+  python3 python/check_certificate.py proofs.json";
 
 const SIMULATE_EXAMPLES: &str =
     "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
 
-Examples:
+More examples:
   dalembert simulate rolling_disk
-  dalembert simulate rolling_disk --until 40 --plot disk.svg
   dalembert simulate rolling_disk --until 40 --plot momenta.svg --axes p_theta,p_phi
   dalembert simulate rolling_disk --set ta=0.3 --initial phi=pi/3,theta_dot=12
   dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
+  dalembert simulate rolling_disk --until 40 --max-step 0.05
+  dalembert simulate rolling_disk --verify
   dalembert simulate double_pendulum --integrator gauss6 --step 0.01 --until 1000
   dalembert simulate chaplygin_sleigh --integrator dla4 --step pi/200
-  dalembert simulate rolling_disk --until 40 --max-step 0.05
   dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv
   dalembert simulate bouncing_ball --law newton:0.5 --rest contact --until 10";
 
-const ACCURACY_EXAMPLES: &str = "An error is the largest difference of a position from a reference run at 64 equally spaced times and at the end,
-as a share of the largest absolute value of that coordinate (of an angle, at least 1). Times are those of this machine.
-Exit status: 0, or 1 if nothing reaches the error that is wanted.
+const ACCURACY_EXAMPLES: &str = "The error is the largest difference of a position from the reference run, at 64 equally spaced times and at the
+end, relative to the largest absolute value of that coordinate (of an angle, at least 1). Times are measured on this
+machine. Exit status: 0, or 1 if no integrator reaches the error of --wanted.
 
-Examples:
-  dalembert accuracy double_pendulum --until 10
+More examples:
   dalembert accuracy rolling_disk --until 2 --wanted 1e-9
-  dalembert accuracy chaplygin_sleigh --integrator dop853 --integrator taylor --csv sleigh.csv --plot sleigh.svg";
+  dalembert accuracy chaplygin_sleigh --integrator dop853 --integrator taylor --plot sleigh.svg";
 
-const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\"
-if the model depends on time. Numbers may be decimal strings. Output: an array of the same length; a
-state at which something does not exist gives {\"error\": ..} and exit status 1.
+const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\" if the model
+depends on time. Numbers may be decimal strings. Output: an array of the same length. A state at which a quantity does
+not exist gives {\"error\": ..} and exit status 1.
 
-Examples:
-  echo '[{\"q\": [1], \"qdot\": [-2]}]' | dalembert eval bouncing_ball
+More examples:
   dalembert eval rolling_disk --set m=2 --newton 0.5 --input states.json";
 
-const STABILITY_EXAMPLES: &str = "Each case has a right answer that is a closed form, an exact count or a class of outcome. Exit status: 0 every
-case passes or is pending, 1 some case fails.
+const STABILITY_EXAMPLES: &str = "Each case has a right answer: a closed form, an exact count or a class of outcome. The cases of dalembert belong to
+the package `dalembert-stability`. Exit status: 0 every case passes or is pending, 1 some case fails.
 
-Examples:
-  dalembert stability
-  dalembert stability --section A --integrator dopri5
-  dalembert stability --case C11 --case C13 --html report.html";
+More examples:
+  cargo run --release -p dalembert-stability -- stability --section A --integrator dopri5
+  cargo run --release -p dalembert-stability -- stability --case C11 --case C13 --html report.html";
 
 /// Text for people or JSON for programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -173,7 +211,7 @@ pub enum Format {
     Json,
 }
 
-/// How a derivation is printed.
+/// Format of a derivation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum DeriveFormat {
     /// For people.
@@ -187,7 +225,7 @@ pub enum DeriveFormat {
 /// `list`
 #[derive(Debug, Args)]
 pub struct ListArgs {
-    /// How to print.
+    /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }
@@ -197,10 +235,10 @@ pub struct ListArgs {
 pub struct DeriveArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// The scene.
+    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
-    /// How to print.
+    /// Output format.
     #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
     pub format: DeriveFormat,
 }
@@ -210,10 +248,10 @@ pub struct DeriveArgs {
 pub struct CheckArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// How to print.
+    /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
-    /// Write what the claims are about and what their proofs rest on, as JSON; `python/check_certificate.py` checks it.
+    /// Write the claims with the grounds of their proofs as JSON, for the checker `python/check_certificate.py`.
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
 }
@@ -223,16 +261,16 @@ pub struct CheckArgs {
 pub struct ModelArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// The scene.
+    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
-    /// Set a parameter; may be repeated.
+    /// Set a parameter. May be repeated.
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
-    /// Run a model of a file without looking at its claims.
+    /// Do not examine the claims of a model of a file.
     #[arg(long)]
     pub no_claims: bool,
-    /// The mode to begin in, of a model with modes; without it the first.
+    /// First mode of the run, for a model with modes. Default: the mode declared first.
     #[arg(long, value_name = "MODE")]
     pub mode: Option<String>,
 }
@@ -240,14 +278,14 @@ pub struct ModelArgs {
 /// The state to start from.
 #[derive(Debug, Args)]
 pub struct StateArgs {
-    /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`;
-    /// what nobody names follows from the constraints.
+    /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`. Values that are not
+    /// given here or by the model follow from the constraints.
     #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true, conflicts_with_all = ["q", "qdot", "p"])]
     pub initial: Vec<String>,
-    /// All positions, in the order of the coordinates; needs --qdot or --p.
+    /// All positions, in the order of the coordinates. Needs --qdot or --p.
     #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
     pub q: Option<String>,
-    /// All velocities; needs --q.
+    /// All velocities. Needs --q.
     #[arg(
         long,
         value_name = "V,..",
@@ -255,10 +293,10 @@ pub struct StateArgs {
         conflicts_with = "p"
     )]
     pub qdot: Option<String>,
-    /// All momenta; needs --q.
+    /// All momenta. Needs --q.
     #[arg(long, value_name = "V,..", allow_hyphen_values = true)]
     pub p: Option<String>,
-    /// What to do with positions or a velocity that violate the constraints.
+    /// Treatment of initial positions or velocities that violate the constraints.
     #[arg(long, value_parser = choice::off_constraint(), default_value = "error")]
     pub off_constraint: OffConstraint,
 }
@@ -272,63 +310,64 @@ pub enum Switch {
     Off,
 }
 
-/// What to do on a surface that the motion presses into.
+/// Treatment of a surface that the motion presses into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum RestPolicy {
-    /// End the run, as `contact`, or as `zeno` where impacts accumulate.
+    /// End the run with the outcome `contact`, or `zeno` if impacts accumulate.
     #[default]
     Stop,
-    /// Go on along the surface without friction, until it would have to pull.
+    /// Continue along the surface without friction, until the surface would have to pull.
     Contact,
 }
 
-/// What to do after a law that leaves the state approaching.
+/// Treatment of a law that leaves the state approaching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum PenetrationPolicy {
-    /// End the run, as `still_penetrating`.
+    /// End the run with the outcome `still_penetrating`.
     #[default]
     Stop,
-    /// Repeat the law for ever: its limit is `impact_plastic`.
+    /// Use the limit of the repeated law, which is `impact_plastic`.
     Repeat,
-    /// The same, and go on along the surface as with `--rest contact`.
+    /// The same, and continue along the surface as with `--rest contact`.
     Contact,
 }
 
-/// What to do where several surfaces are hit at one time, and their order matters.
+/// Treatment of impacts at several surfaces at one time whose order matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum CornerPolicy {
-    /// End the run, as `ambiguous`.
+    /// End the run with the outcome `ambiguous`.
     #[default]
     Stop,
-    /// Always first the surface declared first.
+    /// Process the surface declared first before the others.
     Ascending,
-    /// Always first the surface declared last.
+    /// Process the surface declared last before the others.
     Descending,
 }
 
-/// What to do at a transition that the motion can go on from in more than one way.
+/// Treatment of a transition after which more than one motion is possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum SplitPolicy {
-    /// Go on refracted, where that is possible.
+    /// Continue with the refracted motion, if it is possible.
     #[default]
     First,
-    /// End the run, as `ambiguous`.
+    /// End the run with the outcome `ambiguous`.
     Stop,
 }
 
-/// What impacts do where a law alone does not tell how to go on.
+/// Treatment of impacts after which the law alone does not determine the motion.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct PolicyArgs {
-    /// On a surface that the motion presses into: after impacts that accumulate, after a plastic impact, at the start.
+    /// Treatment of a surface that the motion presses into: after a plastic impact, after impacts that accumulate, or at
+    /// the start.
     #[arg(long, value_enum, default_value_t)]
     pub rest: RestPolicy,
-    /// After a law that leaves the state approaching.
+    /// Treatment of a law that leaves the state approaching the surface.
     #[arg(long, value_enum, default_value_t)]
     pub penetration: PenetrationPolicy,
-    /// At several surfaces at one time whose order matters.
+    /// Treatment of impacts at several surfaces at one time whose order matters.
     #[arg(long, value_enum, default_value_t)]
     pub corner: CornerPolicy,
-    /// At a transition that the motion can go on from refracted or reflected.
+    /// Treatment of a transition after which the motion may be refracted or reflected.
     #[arg(long, value_enum, default_value_t)]
     pub split: SplitPolicy,
 }
@@ -364,38 +403,38 @@ fn law_help() -> String {
         false => name.to_owned(),
     });
     format!(
-        "Use this impact law, at one surface or at all; may be repeated. Laws: {}, with E in [0, 1]; reset where one is \
-         declared",
+        "Use this impact law at one surface, or at all surfaces. May be repeated. Laws: {}, with E in [0, 1]. A reset must \
+         be declared",
         laws.join(", ")
     )
 }
 
-/// A run but for its integrator.
+/// A run except for its integrator.
 #[derive(Debug, Args)]
 pub struct RunArgs {
     /// The model.
     #[command(flatten)]
     pub model: ModelArgs,
-    /// Hold an input at a value, 0 if it is not given; may be repeated.
+    /// Set an input to a constant value; 0 by default. May be repeated.
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub input: Vec<String>,
     /// The state.
     #[command(flatten)]
     pub state: StateArgs,
-    /// End time; without it the model's `until`.
+    /// End time. Default: the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// The laws to use instead of the declared ones.
+    /// Laws in place of the declared ones.
     #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
     pub law: Vec<String>,
-    /// Where a law alone does not tell how to go on.
+    /// Treatment of impacts after which the law alone does not determine the motion.
     #[command(flatten)]
     pub policies: PolicyArgs,
-    /// The form of the equations. Without it reduced where the model has such a form; global for states that are kept
-    /// off the constraints and with --projection.
+    /// Form of the equations. Default: reduced if the model has that form, but global with --off-constraint keep and with
+    /// --projection.
     #[arg(long, value_parser = choice::form())]
     pub form: Option<Form>,
-    /// Whether to project on the constraints after each step, in global form; without it as the scene declares.
+    /// Projection to the constraints after each step, in global form. Default: as the scene declares.
     #[arg(long, value_enum)]
     pub projection: Option<Switch>,
 }
@@ -403,22 +442,21 @@ pub struct RunArgs {
 /// The integrator of a run, and what ends it before its time.
 #[derive(Debug, Args)]
 pub struct CourseArgs {
-    /// Stop after this many impacts. Without --until the run may then take up to 3600 units of time, or the
-    /// model's `until` if that is longer, to get there.
+    /// Stop after this many impacts. Without --until the end time is then 3600, or the model's `until` if that is later.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
     pub impacts: Option<u64>,
-    /// The integrator.
+    /// Integrator.
     #[arg(long, value_parser = choice::integrator(), default_value = Integrator::Dop853.name())]
     pub integrator: Integrator,
-    /// The step of an integrator of fixed step. Without it, one that suits --tol where the run starts, of which about
-    /// four million make the run at most; the summary says which.
+    /// Step of an integrator of fixed step. Default: a step that satisfies --tol at the start, but not so short that the
+    /// run takes more than about four million steps. The summary prints it.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub step: Option<f64>,
-    /// The largest step that dop853, dopri5 and taylor may take. A force that acts for a short time is stepped over unless it
-    /// lasts longer than this.
+    /// Largest step of dop853, dopri5 and taylor. A force that acts for a time shorter than the step may be missed: choose a
+    /// largest step below its duration.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub max_step: Option<f64>,
-    /// Relative error allowed per step, between 1e-15 and 0.1.
+    /// Tolerance: relative local error per step, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-10", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,
     /// Stop after this many steps, with the outcome `step_budget`.
@@ -429,34 +467,34 @@ pub struct CourseArgs {
 /// `simulate`
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// The run.
+    /// Run.
     #[command(flatten)]
     pub run: RunArgs,
-    /// Its integrator and its end.
+    /// Integrator and end of the run.
     #[command(flatten)]
     pub course: CourseArgs,
     /// Certified motion.
     #[command(flatten)]
     pub certify: CertifyArgs,
-    /// Measure the error of the run against a reference as exact as `f64` allows, which takes three more runs. The impacts of
-    /// all of them are audited by enclosures, without the search that found them; where they are not confirmed, or differ, the
-    /// run is `not verified` and the exit status is 1.
+    /// Measure the error of the run against a reference at the smallest tolerance. This takes three more runs. The impacts of
+    /// all runs are checked by interval enclosures, independently of event location. If the check fails, or if the runs have
+    /// different impacts, the run is `not verified` and the exit status is 1.
     #[arg(long)]
     pub verify: bool,
     /// Number of equally spaced times from 0 to the end, both included, to record (at most 1000000).
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(0..=1_000_000), default_value_t = 1000)]
     pub samples: u64,
-    /// Write samples and impacts as a table; `-` is the standard output.
+    /// Write samples and impacts as a table. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Write everything as one JSON document; `-` is the standard output.
+    /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Draw the run: what --axes says; without it the declared view, or all coordinates against time.
+    /// Draw the run: the axes of --axes, else the declared view, else all coordinates against time.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Draw these: `t` or another quantity along x, one or more along y. Quantities: t, coordinates, velocities `x_dot`,
-    /// momenta `p_x`, energy, energy_error, outputs; q, qdot, p and outputs stand for all of their kind.
+    /// Quantities of the picture: one along x, one or more along y. Quantities are `t`, coordinates, velocities `x_dot`,
+    /// momenta `p_x`, `energy`, `energy_error` and outputs. `q`, `qdot`, `p` and `outputs` stand for all of their kind.
     #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
     pub axes: Option<String>,
     /// Width of the picture, in pixels.
@@ -470,22 +508,22 @@ pub struct AccuracyArgs {
     /// The runs.
     #[command(flatten)]
     pub run: RunArgs,
-    /// The error that is wanted: say which integrator reaches it in the least time.
+    /// Error for which the fastest integrator is reported.
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub wanted: Option<f64>,
-    /// Only this integrator; may be repeated.
+    /// Measure only this integrator. May be repeated.
     #[arg(long, value_parser = choice::integrator())]
     pub integrator: Vec<Integrator>,
-    /// How often each case is timed; the median counts.
+    /// Number of timings of each case; the median counts.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 5)]
     pub rounds: u32,
-    /// Seconds that a run may take; an integrator is not tried at tighter tolerances once it takes longer.
+    /// Largest time of a run in seconds. An integrator that takes longer is not run at smaller tolerances.
     #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive), default_value = "1")]
     pub patience: f64,
-    /// Write what was measured as a table; `-` is the standard output.
+    /// Write the measurements as a table. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Write everything as one JSON document; `-` is the standard output.
+    /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Draw the work-precision diagram: time against error.
@@ -499,10 +537,10 @@ pub struct EvalArgs {
     /// The model.
     #[command(flatten)]
     pub model: ModelArgs,
-    /// Evaluate the law `restitution` too, with this coefficient in [0, 1].
+    /// Evaluate the law `restitution` as well, with this coefficient in [0, 1].
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::coefficient))]
     pub restitution: Option<f64>,
-    /// Evaluate the law `newton` too, with this coefficient in [0, 1].
+    /// Evaluate the law `newton` as well, with this coefficient in [0, 1].
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::coefficient))]
     pub newton: Option<f64>,
     /// Read the states from a file instead of the standard input; `-` is the standard input.
@@ -513,19 +551,19 @@ pub struct EvalArgs {
 /// `stability`
 #[derive(Debug, Args)]
 pub struct StabilityArgs {
-    /// Only this case; may be repeated.
+    /// Run only this case. May be repeated.
     #[arg(long, value_name = "ID")]
     pub case: Vec<String>,
-    /// Only the cases of this section; may be repeated.
+    /// Run only the cases of this section. May be repeated.
     #[arg(long, value_name = "LETTER")]
     pub section: Vec<String>,
-    /// The long cases too.
+    /// Run the long cases as well.
     #[arg(long)]
     pub nightly: bool,
-    /// Only by this integrator; otherwise each case is run by all.
+    /// Run only with this integrator. Default: all of them.
     #[arg(long, value_parser = choice::integrator())]
     pub integrator: Option<Integrator>,
-    /// Write the findings as one JSON document; `-` is the standard output.
+    /// Write the findings as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Write the findings as a page with plots, in one file.

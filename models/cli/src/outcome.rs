@@ -30,6 +30,92 @@ fn value(fact: Fact) -> Value {
     }
 }
 
+/// Lines about a run that did not reach its end, each with a title: the event, and a remedy if there is one.
+pub fn remarks(description: &Description, outcome: &Outcome) -> Vec<(&'static str, String)> {
+    let reason = outcome::explanation(description, outcome);
+    let remedy = remedy(outcome).map(str::to_owned);
+    [("reason", reason), ("try", remedy)]
+        .into_iter()
+        .filter_map(|(title, text)| Some((title, text?)))
+        .collect()
+}
+
+/// A remedy against the end of a run, in terms of flags and declarations.
+const fn remedy(outcome: &Outcome) -> Option<&'static str> {
+    Some(match outcome {
+        Outcome::Zeno { .. } => {
+            "--rest contact, which continues along the surface after the accumulation"
+        }
+        Outcome::Contact { .. } => "--rest contact, which continues along the surface",
+        Outcome::Spasmodic { .. } => "another --law, unless impacts are meant to add energy",
+        Outcome::Ambiguous { .. } => {
+            "--corner ascending or --corner descending; at a transition, --split first"
+        }
+        Outcome::StillPenetrating { .. } => "another --law, or --penetration repeat",
+        Outcome::ResetOffConstraint { .. } => {
+            "a reset whose velocities satisfy the constraint at the new position"
+        }
+        Outcome::NoReset { .. } => "another --law",
+        Outcome::LeftMode { .. } => "a run of the whole model",
+        Outcome::Untaken { .. } => "a transition for the remaining case, declared with `otherwise`",
+        Outcome::Trapped { .. } => "resets or surfaces that separate the modes",
+        Outcome::TangentialCrossing { .. } => {
+            "another start: the motion does not depend continuously on this one"
+        }
+        Outcome::StartsInside { .. } => "a start, or a reset, with positive gap",
+        Outcome::BeginsBehind { .. } => {
+            "a second surface for the other case, declared with `otherwise`"
+        }
+        Outcome::LeftChart { .. } => "a larger interval, or other coordinates",
+        Outcome::MetricNotPositive { .. } => "other parameters, or a corrected Lagrangian",
+        Outcome::SingularConstraint { .. } => {
+            "a start that stays away from states with dependent constraints"
+        }
+        Outcome::SingularFrame { .. } => "--form global, or another frame",
+        Outcome::SingularSurface { .. } => {
+            "a gap that the motion can change within the constraints"
+        }
+        Outcome::NonFinite { .. } | Outcome::LeftDomain => {
+            "a shorter --step or another start: a function has no value beyond this state"
+        }
+        Outcome::StepUnderflow { .. } => {
+            "a start away from the singularity; for a stiff motion, --integrator gauss6"
+        }
+        Outcome::NotConverged { .. } => "a shorter --step",
+        Outcome::StepBudget => "a larger --steps",
+        Outcome::ImpactBudget => "a larger --impacts",
+        Outcome::ProjectionFailed { .. } => "a smaller --tol, or a shorter --step",
+        _ => return None,
+    })
+}
+
+/// The reason for a failed search for an orbit, and a remedy if there is one, each with a title.
+pub fn remarks_on_orbit(
+    description: &Description,
+    error: &OrbitError,
+) -> Vec<(&'static str, String)> {
+    let (reason, remedy) = match error {
+        OrbitError::Section(SectionError::Ended(Outcome::Done)) => (
+            "the motion did not return to the surface in time".to_owned(),
+            Some("a larger --until, or a start whose motion reaches the surface"),
+        ),
+        OrbitError::Section(SectionError::Ended(outcome)) => {
+            return remarks(description, outcome);
+        }
+        OrbitError::NotConverged { .. } => (
+            "Newton's method did not converge".to_owned(),
+            Some("a start closer to the orbit, another --period, or a smaller --tol"),
+        ),
+        OrbitError::DependsOnTime => (
+            error.to_string(),
+            Some("a coordinate with constant rate in place of the time"),
+        ),
+        other => (other.to_string(), None),
+    };
+    let remedy = remedy.map(|text| ("try", text.to_owned()));
+    [("reason", reason)].into_iter().chain(remedy).collect()
+}
+
 /// The kind of a failed search for an orbit, and its details by name.
 pub fn missed(description: &Description, error: &OrbitError) -> Told {
     match error {
@@ -68,5 +154,64 @@ fn place(description: &Description, undefined: &Undefined) -> Details {
         }
         Undefined::NotFinite { t } => vec![("after", json::number(t))],
         _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Outcomes that may end a run of the command line before its end.
+    const OUTCOMES: [Outcome; 24] = [
+        Outcome::Zeno { t: 1.0, surface: 0 },
+        Outcome::Spasmodic { t: 1.0, surface: 0 },
+        Outcome::Ambiguous { surfaces: [0, 1] },
+        Outcome::StillPenetrating {
+            surface: 0,
+            rho: 0.5,
+        },
+        Outcome::ResetOffConstraint {
+            surface: 0,
+            constraint: 0,
+        },
+        Outcome::NoReset { surface: 0 },
+        Outcome::LeftMode { surface: 0 },
+        Outcome::Untaken { surface: 0 },
+        Outcome::Trapped { surface: 0 },
+        Outcome::Contact { surface: 0 },
+        Outcome::TangentialCrossing { surface: 0 },
+        Outcome::StartsInside {
+            surface: 0,
+            gap: -1.0,
+        },
+        Outcome::BeginsBehind {
+            surface: 0,
+            gap: -1.0,
+        },
+        Outcome::LeftChart { coordinate: 0 },
+        Outcome::MetricNotPositive {
+            pivot: 0,
+            value: 0.0,
+        },
+        Outcome::SingularConstraint {
+            constraint: 0,
+            condition: 1e20,
+        },
+        Outcome::SingularFrame { quasi: 0 },
+        Outcome::SingularSurface { surface: 0 },
+        Outcome::NonFinite { component: 0 },
+        Outcome::StepUnderflow { t: 1.0 },
+        Outcome::LeftDomain,
+        Outcome::NotConverged { t: 1.0 },
+        Outcome::StepBudget,
+        Outcome::ProjectionFailed { constraint: 0 },
+    ];
+
+    #[test]
+    fn every_end_before_the_end_has_a_remedy() {
+        for outcome in OUTCOMES {
+            assert!(remedy(&outcome).is_some(), "{}", outcome.kind());
+        }
+        assert_eq!(remedy(&Outcome::Done), None);
     }
 }

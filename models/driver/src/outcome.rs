@@ -1,10 +1,10 @@
 //! Outcomes of runs, in the names of the model.
 
-use dalembert::Outcome;
 use dalembert::describe::Description;
 use dalembert::integrate::Counters;
+use dalembert::{Fault, Outcome};
 
-use crate::names;
+use crate::{names, words};
 
 /// A fact about an outcome.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,7 +81,110 @@ pub fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static st
     }
 }
 
+/// The event that ended a run, as a sentence in the model's names; `None` for a run that reached its end.
+pub fn explanation(description: &Description, outcome: &Outcome) -> Option<String> {
+    let surface = |index: usize| declared(names::surfaces(description), index);
+    let coordinate = |index: usize| declared(names::coordinates(description), index);
+    Some(match *outcome {
+        Outcome::Done => return None,
+        Outcome::Zeno { t, surface: index } => {
+            format!("impacts on `{}` accumulate at t = {t}", surface(index))
+        }
+        Outcome::Spasmodic { t, surface: index } => format!(
+            "impacts on `{}` accumulate at t = {t} while the energy grows",
+            surface(index)
+        ),
+        Outcome::Ambiguous {
+            surfaces: [first, last],
+        } if first != last => format!(
+            "`{}` and `{}` are hit at one time, and the motion afterwards depends on the order of the impacts",
+            surface(first),
+            surface(last)
+        ),
+        Outcome::Ambiguous { .. } => "more than one motion is possible after the event".to_owned(),
+        Outcome::StillPenetrating { surface: index, .. } => format!(
+            "after the impact on `{}` the motion still leads into it",
+            surface(index)
+        ),
+        Outcome::NoReset { surface: index } => {
+            format!("`{}` declares no reset", surface(index))
+        }
+        Outcome::LeftMode { surface: index } => format!(
+            "the mode ends at `{}`, which leads to another mode",
+            surface(index)
+        ),
+        Outcome::Untaken { surface: index } => format!(
+            "the motion reached `{}`, where the conditions of no transition hold",
+            surface(index)
+        ),
+        Outcome::Trapped { surface: index } => format!(
+            "at `{}` the modes lead to each other at one time, and the motion continues in none of them",
+            surface(index)
+        ),
+        Outcome::Contact { surface: index } => format!(
+            "the state rests on `{}`, and the motion presses into it",
+            surface(index)
+        ),
+        Outcome::TangentialCrossing { surface: index } => {
+            format!("`{}` was crossed at gap rate 0", surface(index))
+        }
+        Outcome::StartsInside {
+            surface: index,
+            gap,
+        } => format!(
+            "the gap of `{}` is {gap:e} at the start or after a reset",
+            surface(index)
+        ),
+        Outcome::BeginsBehind {
+            surface: index,
+            gap,
+        } => format!(
+            "a condition of `{}` begins to hold where its gap is {gap:e}",
+            surface(index)
+        ),
+        Outcome::LeftChart { coordinate: index } => format!(
+            "coordinate `{}` reached the end of its interval",
+            coordinate(index)
+        ),
+        Outcome::ResetOffConstraint {
+            surface: index,
+            constraint,
+        } => format!(
+            "the reset at `{}` violates constraint `{}`",
+            surface(index),
+            words::of_constraint(description, constraint)
+        ),
+        Outcome::MetricNotPositive { pivot, value } => {
+            words::fault_text(description, &Fault::MetricNotPositive { pivot, value })
+        }
+        Outcome::SingularConstraint {
+            constraint,
+            condition,
+        } => words::fault_text(
+            description,
+            &Fault::SingularConstraint {
+                constraint,
+                condition,
+            },
+        ),
+        Outcome::SingularFrame { quasi } => {
+            words::fault_text(description, &Fault::SingularFrame { quasi })
+        }
+        Outcome::SingularSurface { surface } => {
+            words::fault_text(description, &Fault::SingularSurface { surface })
+        }
+        ref other => other.to_string(),
+    })
+}
+
 /// A declared name; the index itself past the last.
+fn declared(mut names: impl Iterator<Item = &'static str>, index: usize) -> String {
+    names
+        .nth(index)
+        .map_or_else(|| index.to_string(), str::to_owned)
+}
+
+/// A declared name as a fact; the index itself past the last.
 fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Fact {
     names.nth(index).map_or(Fact::Index(index), Fact::Name)
 }

@@ -10,18 +10,16 @@ use thiserror::Error;
 pub enum Uncertified {
     /// The model has no kernels over intervals.
     #[error(
-        "certified motion runs models that are loaded from a text, and this one is compiled into the program; give the file of its declaration"
+        "certified motion needs a model that is loaded from a text, and this one is compiled into the program; give the file of its declaration"
     )]
     Compiled,
     /// The form is the global one and the model has a reduced one.
     #[error(
-        "certified motion takes the reduced form of this model; leave out what asks for the global one: --form global, --off-constraint keep"
+        "certified motion of this model needs the reduced form; leave out --form global and --off-constraint keep"
     )]
     OnlyReduced,
     /// The scene was declared without `variations`, which the derivatives of a motion need.
-    #[error(
-        "the scene was declared without `variations`, which certified motion takes; add it to what the scene uses"
-    )]
+    #[error("certified motion needs `variations`; add it to the declaration of the scene")]
     WithoutVariations,
     /// The system refuses a thread with the stack that is needed.
     #[error("certified motion needs 16 MiB of stack, which the system does not give")]

@@ -114,7 +114,8 @@ pub const fn fault_kind(fault: &Fault) -> &'static str {
     }
 }
 
-fn of_constraint(description: &Description, index: usize) -> String {
+/// Name of a constraint.
+pub(crate) fn of_constraint(description: &Description, index: usize) -> String {
     let names = description.constraints.iter();
     name(names.map(|constraint| constraint.name), index)
 }

@@ -83,26 +83,29 @@ impl fmt::Display for Lost {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::NoTube => write!(f, "no box holds the motion for the shortest step"),
+            Self::NoTube => write!(f, "no box contains the motion over the shortest step"),
             Self::NotDerived => write!(f, "the system has no kernels over intervals"),
             Self::SeveralModes => write!(f, "the box has states of several modes"),
-            Self::NotFinite => write!(f, "the box is not finite"),
-            Self::MayGraze { surface } => write!(f, "surface {surface} may be grazed"),
+            Self::NotFinite => write!(f, "the box became infinite"),
+            Self::MayGraze { surface } => write!(f, "the motion may graze surface {surface}"),
             Self::MayMeetTogether { surface, other } => {
-                write!(f, "surfaces {surface} and {other} may be met together")
+                write!(
+                    f,
+                    "the motion may hit surfaces {surface} and {other} at one time"
+                )
             }
             Self::UnsureCondition { surface } => {
-                write!(f, "the conditions of surface {surface} may hold or not")
+                write!(f, "the conditions of surface {surface} are not decided")
             }
             Self::MayBeBehind { surface } => {
                 write!(f, "the motion may be behind surface {surface}")
             }
             Self::MayStay { surface } => {
-                write!(f, "the motion may stay at surface {surface}")
+                write!(f, "the motion may stay on surface {surface}")
             }
             Self::UnsureLaw { surface } => write!(
                 f,
-                "the law of surface {surface} does not certainly give one finite state"
+                "the law of surface {surface} may not give one finite state"
             ),
             Self::OffConstraint { surface } => {
                 write!(
@@ -112,7 +115,7 @@ impl fmt::Display for Reason {
             }
             Self::EndsAtImpact { surface } => write!(
                 f,
-                "the end of the time may lie before the impact on surface {surface} or after it"
+                "the end time may lie before or after the impact on surface {surface}"
             ),
         }
     }

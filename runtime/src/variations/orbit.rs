@@ -76,14 +76,14 @@ impl fmt::Display for OrbitError {
             Self::Section(error) => error.fmt(f),
             Self::DependsOnTime => write!(
                 f,
-                "the system depends on time: its section is not mapped to itself in the same way for ever"
+                "the system depends on time, so its return map is not the same at all times"
             ),
             Self::NotConverged {
                 residual,
                 iterations,
             } => write!(
                 f,
-                "no periodic orbit was found in {iterations} steps; the best point misses itself by {residual:e}"
+                "no periodic orbit was found in {iterations} steps; the best point differs from its image by {residual:e}"
             ),
             Self::NoMultipliers => write!(f, "the multipliers are not finite"),
         }

@@ -12,7 +12,7 @@ pub fn integrator() -> ValueParser {
             }
             Integrator::Dopri5 => "Dormand and Prince of order 5(4), dense output of order 4",
             Integrator::Taylor => {
-                "Taylor series, of the order that belongs to the tolerance (12 at 1e-9, 19 at 1e-15)"
+                "Taylor series of an order chosen for the tolerance (12 at 1e-9, 19 at 1e-15)"
             }
             Integrator::Rk4 => "Fixed step: the classical Runge-Kutta method of order 4",
             Integrator::Gauss4 => {
@@ -22,9 +22,9 @@ pub fn integrator() -> ValueParser {
                 "Fixed step: Gauss collocation of order 6, symplectic without constraints"
             }
             Integrator::Dla2 => {
-                "Fixed step: discrete Lagrange-d'Alembert principle of order 2, constraints hold to rounding"
+                "Fixed step: discrete Lagrange-d'Alembert principle of order 2; constraints hold to rounding"
             }
-            Integrator::Dla4 => "Fixed step: the same composed to order 4",
+            Integrator::Dla4 => "Fixed step: dla2 composed to order 4",
         };
         (integrator, integrator.name(), help)
     }))
@@ -34,10 +34,8 @@ pub fn integrator() -> ValueParser {
 pub fn form() -> ValueParser {
     one_of(Form::every().iter().map(|&form| {
         let help = match form {
-            Form::Reduced => {
-                "Positions and the quasi-velocities that the constraints leave: (q, u) on D"
-            }
-            Form::Global => "Positions and momenta, off the constraints too: (q, p) on T*Q",
+            Form::Reduced => "Positions and independent quasi-velocities: (q, u) on D",
+            Form::Global => "Positions and momenta, also off the constraints: (q, p) on T*Q",
         };
         (form, form.name(), help)
     }))
@@ -48,10 +46,10 @@ pub fn off_constraint() -> ValueParser {
     one_of(OffConstraint::every().iter().map(|&policy| {
         let help = match policy {
             OffConstraint::Error => {
-                "Refuse them, beyond 1e-9 of the sum of the absolute values of the constraint's terms"
+                "Refuse them if the residual exceeds 1e-9 of the sum of the absolute values of the terms"
             }
             OffConstraint::Project => {
-                "Replace them by allowed positions near by and the nearest allowed velocity in the metric"
+                "Replace them by allowed positions close by and the nearest allowed velocity in the metric"
             }
             OffConstraint::Keep => "Start there; the motion keeps the residual",
         };

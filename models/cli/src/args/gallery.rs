@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 /// The end of `gallery --help`.
-pub const EXAMPLES: &str = "Writes index.html, which needs no other file, each picture as NAME.svg, and manifest.json: what
-was drawn by which command, how the run ended, how long it took. But for manifest.json and
-diagrams of measured times two runs write the same bytes. Exit status: 0 every picture was made,
-1 some could not be.
+pub const EXAMPLES: &str = "Writes index.html, which needs no other file, each picture as NAME.svg, and manifest.json with the
+command, the outcome and the time of each picture. Two runs write the same bytes, except for
+manifest.json and diagrams of measured times. Exit status: 0 every picture was made, 1 some picture
+was not.
 
-Examples:
+More examples:
   dalembert gallery pictures
   dalembert gallery pictures rolling_disk chaplygin_sleigh --quick
   dalembert gallery --list
@@ -19,19 +19,19 @@ Examples:
 /// `gallery`
 #[derive(Debug, Args)]
 pub struct GalleryArgs {
-    /// The folder to write to; it is made if it does not exist.
+    /// Output folder. It is created if it does not exist.
     #[arg(value_name = "OUT", required_unless_present = "list")]
     pub out: Option<PathBuf>,
-    /// Only figures of these models, by their names as `list` prints them.
+    /// Draw only figures of these models.
     #[arg(value_name = "MODEL")]
     pub models: Vec<String>,
-    /// Only this picture, without a page; may be repeated.
+    /// Draw only this picture, without a page. May be repeated.
     #[arg(long, value_name = "NAME", conflicts_with = "models")]
     pub picture: Vec<String>,
-    /// Print the names of the pictures and what they show, and draw nothing.
+    /// Print the names and captions of the pictures without drawing them.
     #[arg(long)]
     pub list: bool,
-    /// Shorter runs for densities, and no diagrams of measured times.
+    /// Draw densities from shorter runs, and leave out diagrams of measured times.
     #[arg(long)]
     pub quick: bool,
 }

@@ -131,8 +131,8 @@ impl Finished<'_> {
     fn title(&self) -> String {
         let name = self.model.description().name;
         match self.scene {
-            "all" => format!("What accuracy costs: {name}"),
-            scene => format!("What accuracy costs: {name}, scene {scene}"),
+            "all" => format!("Cost of accuracy: {name}"),
+            scene => format!("Cost of accuracy: {name}, scene {scene}"),
         }
     }
 
@@ -140,7 +140,9 @@ impl Finished<'_> {
         let Study { until, floor, .. } = self.study;
         let form = self.settings.form.name();
         let reference = match self.study.doubt {
-            None => format!("reference known to {floor:.1e}; rings: the fastest of a decade"),
+            None => {
+                format!("accuracy of the reference: {floor:.1e}; rings: the fastest of a decade")
+            }
             Some(_) => "reference not confirmed".to_owned(),
         };
         format!("{form} form, until t = {until}; {reference}")
@@ -165,12 +167,12 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     if let Some(doubt) = &study.doubt {
         return writeln!(
             output,
-            "nothing is measured: the reference is not confirmed: {doubt}"
+            "nothing is measured, because the impacts of the reference are not confirmed: {doubt}\ntry --max-step H for shorter steps"
         );
     }
     writeln!(
         output,
-        "{} form, until t = {}; reference: {} after {} impacts, known to {:.1e}",
+        "{} form, until t = {}; reference: {} after {} impacts, accuracy {:.1e}",
         finished.settings.form.name(),
         study.until,
         study.outcome.kind(),
@@ -210,7 +212,7 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     }
     writeln!(
         output,
-        "\n*  the fastest of those with errors of a decade or less"
+        "\n*  the fastest case for an error below a power of ten"
     )?;
     for (integrator, reason) in &study.absent {
         writeln!(output, "{}: {reason}", integrator.name())?;
@@ -225,7 +227,7 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
 /// The recommendation: the fastest case.
 fn answer(finished: &Finished<'_>, best: &Sample) -> String {
     format!(
-        "for an error of {:e}: --integrator {} --tol {:e}; it erred by {:.1e} and took {:.3} us per unit of time here",
+        "for an error of {:e}: --integrator {} --tol {:e} (measured error {:.1e}, {:.3} us per unit of time on this machine)",
         finished.wanted.unwrap_or(f64::NAN),
         best.integrator.name(),
         best.tol,

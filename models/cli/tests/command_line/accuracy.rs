@@ -201,7 +201,7 @@ fn a_run_is_verified_against_the_reference() {
         .lines()
         .find(|line| line.contains("  error "))
         .unwrap();
-    assert!(line.contains("reference known to"), "{line}");
+    assert!(line.contains("accuracy of the reference: "), "{line}");
     let document =
         run("simulate bouncing_ball --until 3 --tol 1e-4 --verify --samples 2 --json -").json();
     let error = &document["error"];

@@ -234,8 +234,7 @@ fn motion_that_is_lost_says_where_and_why() {
         .find(|line| line.contains("lost"))
         .unwrap();
     assert!(line.contains("certified up to t = 0.99"), "{line}");
-    let reason =
-        "and no further: surfaces `right` and `upper` may be met together, or in either order";
+    let reason = "and no further: the motion may hit surfaces `right` and `upper` at one time, or in either order";
     assert!(line.ends_with(reason), "{line}");
     let (exit, document) = document(PLANE, "--certify-within x_dot=0.4..1");
     assert_eq!(exit, Exit::Other);
@@ -245,7 +244,7 @@ fn motion_that_is_lost_says_where_and_why() {
     assert_eq!(done.exit, Exit::Other);
     assert!(
         done.output
-            .contains("the motion may stay at surface `floor`"),
+            .contains("the motion may stay on surface `floor`"),
         "{}",
         done.output
     );
@@ -255,11 +254,11 @@ fn motion_that_is_lost_says_where_and_why() {
 fn models_that_no_motion_is_certified_of_say_so() {
     let done = certify(SLEIGH, "--form global");
     assert_eq!(done.exit, Exit::Refused);
-    let text = "--certify: certified motion takes the reduced form of this model";
+    let text = "--certify: certified motion of this model needs the reduced form";
     assert!(done.errors.contains(text), "{}", done.errors);
     let done = certify(SCENES, "--scene free");
     assert_eq!(done.exit, Exit::Refused);
-    let text = "--certify: the scene was declared without `variations`";
+    let text = "--certify: certified motion needs `variations`";
     assert!(done.errors.contains(text), "{}", done.errors);
     let done = certify(SCENES, "--scene lively --input push=-1");
     assert!(done.output.contains("impacts     1;"), "{}", done.output);

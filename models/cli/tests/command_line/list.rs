@@ -38,7 +38,9 @@ fn every_command_has_help_with_examples() {
     ] {
         let done = run(&format!("{command} --help"));
         assert_eq!(done.exit, Exit::Reached, "{command}");
-        assert!(done.output.contains("Examples:"), "{command}");
+        let (head, rest) = done.output.split_once("\nUsage:").expect("the usage");
+        assert!(head.contains("\nExample: "), "{command}");
+        assert!(rest.contains("More examples:"), "{command}");
         assert!(done.errors.is_empty());
     }
 }

@@ -431,6 +431,46 @@ fn without_a_document_on_it_the_standard_output_has_a_summary() {
 }
 
 #[test]
+fn the_summary_of_a_run_that_ends_early_has_a_reason_and_a_remedy() {
+    for (line, lines) in [
+        (
+            "simulate bead --until 20",
+            [
+                "  outcome     left_chart at t = ",
+                "  reason      coordinate `y` reached the end of its interval",
+                "  try         a larger interval, or other coordinates",
+            ],
+        ),
+        (
+            "simulate bouncing_ball --q -1 --qdot 0 --until 1",
+            [
+                "  outcome     starts_inside at t = 0",
+                "  reason      the gap of `floor` is -1e0 at the start or after a reset",
+                "  try         a start, or a reset, with positive gap",
+            ],
+        ),
+        (
+            "simulate bouncing_ball --until 50 --steps 3",
+            [
+                "  outcome     step_budget at t = ",
+                "  reason      the allowed number of steps was used up",
+                "  try         a larger --steps",
+            ],
+        ),
+    ] {
+        let done = run(line);
+        assert_eq!(done.exit, Exit::Other, "{line}");
+        let mut output = done.output.lines();
+        for expected in lines {
+            let found = output.any(|line| line.starts_with(expected));
+            assert!(found, "{expected}: {}", done.output);
+        }
+    }
+    let done = run("simulate bouncing_ball --until 5");
+    assert!(!done.output.contains("  reason "), "{}", done.output);
+}
+
+#[test]
 fn the_same_run_is_the_same_to_the_byte() {
     let line = "simulate bouncing_ball --until 20 --law newton:0.9 --json -";
     assert_eq!(run(line).output, run(line).output);

@@ -171,10 +171,10 @@ fn a_run_that_misses_an_impact_is_not_verified_by_others_that_miss_it() {
         assert_eq!(done.exit, Exit::Other, "{}", done.output);
         let (line, met) = (
             error_of(&done),
-            format!("`{}` may be met at t = ", case.surface),
+            format!("may miss an impact on `{}` at t = ", case.surface),
         );
         let (_, rest) = line.split_once(&met).unwrap_or_else(|| panic!("{line}"));
-        let t: f64 = rest.split(',').next().unwrap().parse().unwrap();
+        let t: f64 = rest.trim_end().parse().unwrap();
         assert!((t - case.t).abs() < 1e-3, "{}: {line}", case.line);
         assert!(line.contains("not verified"), "{line}");
     }
@@ -190,7 +190,8 @@ fn nothing_is_measured_by_a_reference_that_misses_an_impact() {
     let done = over(&unsure(), line);
     assert_eq!(done.exit, Exit::Other, "{}", done.output);
     assert!(!done.output.contains("dop853"), "{}", done.output);
-    let told = "the reference is not confirmed: the reference: `peg` may be met at t = 5.6";
+    let told =
+        "the reference are not confirmed: the reference may miss an impact on `peg` at t = 5.6";
     assert!(done.output.contains(told), "{}", done.output);
     let document = over(&unsure(), &format!("{line} --wanted 1e-6 --json -")).json();
     assert_eq!(document["reference"]["confirmed"], false);
@@ -205,7 +206,7 @@ fn runs_that_meet_other_surfaces_are_not_verified() {
     let line = "simulate spring --until 6 --integrator rk4 --step 0.5 --verify";
     let done = over(&sure(), line);
     assert_eq!(done.exit, Exit::Other, "{}", done.output);
-    let told = "not verified: the run meets nothing more, the reference meets `wall` at t = 1.55";
+    let told = "not verified: the runs differ at impact 1: the run has no further impact, the reference hits `wall` at t = 1.55";
     assert!(done.output.contains(told), "{}", done.output);
 }
 

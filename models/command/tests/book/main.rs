@@ -13,6 +13,7 @@
 //!
 //! `ACCEPT=1` stores pictures and the page of the command line anew.
 
+mod examples;
 mod fences;
 mod output;
 mod pages;

@@ -12,7 +12,8 @@ The texts below are printed by `dalembert --help` and `dalembert COMMAND --help`
 A test compares this page with them; `ACCEPT=1 cargo test -p dalembert-command --test book` writes it anew.
 ";
 
-fn help(command: Option<&str>) -> String {
+/// Help text of a command, or of the whole.
+pub fn help(command: Option<&str>) -> String {
     let mut program = Command::new(PROGRAM);
     let done = program.args(command).arg("--help").output();
     let printed = done.expect("the command runs").stdout;
@@ -20,7 +21,7 @@ fn help(command: Option<&str>) -> String {
 }
 
 /// Names of the commands, from the help of the whole.
-fn commands(overview: &str) -> Vec<&str> {
+pub fn commands(overview: &str) -> Vec<&str> {
     let (_, list) = overview.split_once("Commands:\n").expect("commands");
     let list = list.split("\n\n").next().unwrap_or_default();
     let names = list.lines().filter_map(|line| line.strip_prefix("  "));

@@ -143,11 +143,11 @@ pub enum NoChoice {
     #[error(transparent)]
     Start(#[from] Refusal),
     /// No reference is confirmed, so errors cannot be measured.
-    #[error("the reference is not confirmed: {0}")]
+    #[error("the impacts of the reference are not confirmed: {0}")]
     Unconfirmed(String),
     /// No measured case is accurate enough.
     #[error(
-        "no run has an error below {wanted:e}; the least is {least:e}, and the reference is known to {floor:e}"
+        "no run has an error below {wanted:e}: the least error is {least:e}, the accuracy of the reference {floor:e}"
     )]
     OutOfReach {
         /// The wanted error.
@@ -337,7 +337,7 @@ impl<'a> Ladder<'a> {
             }
             if once > self.plan.patience {
                 return Err(format!(
-                    "tolerances below {tol:e} take more than {once:.0?} a run"
+                    "tolerances below {tol:e} are left out, because a run takes more than {once:.0?}"
                 ));
             }
         }
@@ -419,10 +419,10 @@ fn reference<M: Model>(model: &M, state: &M::State, base: &Settings) -> Result<R
         audited(model, state, &settings, base.until)
     });
     let (track, second) = (first?, second?);
-    let names = ["the reference", "one with other steps"];
-    let of_track = |track: &Track, name: &str| Some(format!("{name}: {}", track.doubt()?));
-    let doubt = of_track(&track, names[0])
-        .or_else(|| of_track(&second, names[1]))
+    let names = ["the reference", "a second reference with other steps"];
+    let doubt = track
+        .doubt(names[0])
+        .or_else(|| second.doubt(names[1]))
         .or_else(|| track.difference_from(&second, names));
     let floor = match second.ends_as(&track) {
         true => second.distance(&track),

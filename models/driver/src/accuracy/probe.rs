@@ -108,35 +108,38 @@ pub enum Audited {
 }
 
 impl Audited {
-    /// The reason for which the events of a run are not confirmed.
-    fn doubt(self, description: &Description) -> Option<String> {
+    /// The reason for which the events of the run `name` are not confirmed.
+    fn doubt(self, description: &Description, name: &str) -> Option<String> {
         let surface = |index| surfaces(description).nth(index).unwrap_or_default();
         match self {
             Self::Confirmed => None,
-            Self::Not => Some("its impacts were not audited".to_owned()),
-            Self::Impossible => {
-                Some("the effects of this scene allow no independent search for impacts".to_owned())
-            }
+            Self::Not => Some(format!("the impacts of {name} were not checked")),
+            Self::Impossible => Some(format!(
+                "the impacts of {name} cannot be checked: the effects of this scene allow no independent search"
+            )),
             Self::Doubted(Finding::MayBeMet { surface: index, t }) => Some(format!(
-                "`{}` may be met at t = {t}, where the run has no impact",
+                "{name} may miss an impact on `{}` at t = {t}",
                 surface(index)
             )),
             Self::Doubted(Finding::Misplaced { surface: index, t }) => Some(format!(
-                "the impact at t = {t} is not on `{}`",
+                "{name} has an impact at t = {t} that does not lie on `{}`",
                 surface(index)
             )),
             Self::Doubted(Finding::NoDenseOutput { t }) => Some(format!(
-                "the step at t = {t} has no dense output to search for impacts"
+                "{name} has no dense output at t = {t}, so that impacts cannot be checked there"
             )),
-            Self::Doubted(_) => Some("its impacts are not confirmed".to_owned()),
+            Self::Doubted(_) => Some(format!("the impacts of {name} are not confirmed")),
         }
     }
 }
 
 /// The first difference between two runs.
 enum Difference {
-    /// An impact; `None` for the run without another impact.
-    Impact([Option<Met>; 2]),
+    /// An impact, counted from 1; `None` for the run without it.
+    Impact {
+        number: usize,
+        met: [Option<Met>; 2],
+    },
     /// The kinds of their ends.
     End,
 }
@@ -168,12 +171,14 @@ impl Track {
     pub fn difference_from(&self, other: &Self, names: [&str; 2]) -> Option<String> {
         let [this, others] = names;
         match self.difference(other)? {
-            Difference::Impact(met) => {
+            Difference::Impact { number, met } => {
                 let [met, other_met] = met.map(|met| self.told(met));
-                Some(format!("{this} {met}, {others} {other_met}"))
+                Some(format!(
+                    "the runs differ at impact {number}: {this} {met}, {others} {other_met}"
+                ))
             }
             Difference::End => Some(format!(
-                "{this} ends as {} after {} impacts, {others} as {} after {}",
+                "the runs end differently: {this} with {} after {} impacts, {others} with {} after {}",
                 self.outcome.kind(),
                 self.counters.impacts,
                 other.outcome.kind(),
@@ -186,13 +191,15 @@ impl Track {
         let at = |index: usize| [self, other].map(|track| track.impacts.get(index).copied());
         let longest = self.impacts.len().max(other.impacts.len());
         let surfaces = |[a, b]: [Option<Met>; 2]| [a, b].map(|met| met.map(|met| met.surface));
-        let mut pairs = (0..longest).map(at);
-        let differs = |pair: &[Option<Met>; 2]| {
-            let [this, others] = surfaces(*pair);
+        let differs = |index: &usize| {
+            let [this, others] = surfaces(at(*index));
             this != others
         };
-        if let Some(pair) = pairs.find(differs) {
-            return Some(Difference::Impact(pair));
+        if let Some(index) = (0..longest).find(differs) {
+            return Some(Difference::Impact {
+                number: index + 1,
+                met: at(index),
+            });
         }
         let ends = |track: &Self| (track.outcome.kind(), track.counters.impacts);
         (ends(self) != ends(other)).then_some(Difference::End)
@@ -201,18 +208,18 @@ impl Track {
     /// Describes an impact.
     fn told(&self, met: Option<Met>) -> String {
         match met {
-            None => "meets nothing more".to_owned(),
+            None => "has no further impact".to_owned(),
             Some(Met { t, surface }) => {
                 let name = surfaces(&self.description).nth(surface);
-                format!("meets `{}` at t = {t}", name.unwrap_or_default())
+                format!("hits `{}` at t = {t}", name.unwrap_or_default())
             }
         }
     }
 
-    /// The reason for which the events of the run are not confirmed independently of event location; `None` if they
-    /// are.
-    pub fn doubt(&self) -> Option<String> {
-        self.audit.doubt(&self.description)
+    /// The reason for which the events of the run, called `name`, are not confirmed independently of event location;
+    /// `None` if they are.
+    pub fn doubt(&self, name: &str) -> Option<String> {
+        self.audit.doubt(&self.description, name)
     }
 
     /// True if the run that ended with `ending` is the same to the last digit. Coordinates that the mode does not have

@@ -50,8 +50,8 @@ pub(crate) fn verify<M: Model>(
     let track = audited(model, state, settings, until)?;
     let is_same = track.is_run_of(ending);
     let reason = (!is_same)
-        .then(|| "the same run, made again, ends otherwise".to_owned())
-        .or_else(|| track.doubt())
+        .then(|| "the run is not reproducible: the same settings give another end".to_owned())
+        .or_else(|| track.doubt("the run"))
         .or_else(|| reference.doubt.clone())
         .or_else(|| track.difference_from(&reference.track, ["the run", "the reference"]));
     Ok(match reason {

@@ -28,7 +28,10 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
                 .iter()
                 .map(|(name, detail)| format!(", {name} {detail}"))
                 .collect();
-            return writeln!(output, "  outcome      {}{details}", kind);
+            writeln!(output, "  outcome      {kind}{details}")?;
+            return outcome::remarks_on_orbit(&description, missed)
+                .iter()
+                .try_for_each(|(title, text)| writeln!(output, "  {title:<11}  {text}"));
         }
         Ok(found) => found,
     };
@@ -38,7 +41,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     };
     writeln!(
         output,
-        "  outcome      found in {steps}, misses itself by {:.1e}",
+        "  outcome      found in {steps}, closes up to {:.1e}",
         found.residual
     )?;
     writeln!(output, "  period       {}", found.period)?;

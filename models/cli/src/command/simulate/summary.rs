@@ -11,6 +11,10 @@ use dalembert_driver::{Ending, Settings};
 use super::Finished;
 use crate::outcome;
 
+/// Remedy against a run whose impacts are not confirmed.
+const SHORTER_STEPS: &str =
+    "a smaller --tol, or --max-step H for shorter steps of the run and of its references";
+
 /// Writes the summary.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let Finished {
@@ -19,6 +23,11 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "{}", title(finished))?;
     let description = finished.model.description();
     writeln!(output, "  outcome     {}", ended(&description, ending))?;
+    if !ending.reached {
+        for (title, text) in outcome::remarks(&description, &ending.outcome) {
+            writeln!(output, "  {title:<10}  {text}")?;
+        }
+    }
     writeln!(output, "  impacts     {}", impacts(finished))?;
     if let (Some(first), Some(last)) = (ending.first.mode, ending.last.mode) {
         writeln!(
@@ -32,6 +41,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     writeln!(output, "  integrator  {}", integrator(ending, settings))?;
     if let Some(verified) = &finished.verified {
         writeln!(output, "  error       {}", error(verified))?;
+        if let Verified::Doubted { .. } = verified {
+            writeln!(output, "  try         {SHORTER_STEPS}")?;
+        }
     }
     let counters: Vec<String> = outcome::counters(&ending.counters)
         .iter()
@@ -54,10 +66,10 @@ pub fn ended(description: &Description, ending: &Ending) -> String {
 fn error(verified: &Verified) -> String {
     match verified {
         Verified::Measured { error, floor } if error <= floor => {
-            format!("at most {floor:.1e}, to which the reference is known")
+            format!("at most {floor:.1e}, the accuracy of the reference")
         }
         Verified::Measured { error, floor } => {
-            format!("{error:.1e} of the positions (reference known to {floor:.1e})")
+            format!("{error:.1e} of the positions (accuracy of the reference: {floor:.1e})")
         }
         Verified::Doubted { reason, .. } => format!("not verified: {reason}"),
     }

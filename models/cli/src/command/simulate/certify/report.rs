@@ -95,27 +95,27 @@ pub(super) fn reason(description: &Description, reason: Reason) -> String {
     let name = |index| surface(description, index);
     match reason {
         Reason::NoTube => {
-            "no box holds the motion for the shortest step; it may end there, or the box is too wide"
+            "no box contains the motion over the shortest step: the motion may end there, or the box is too wide"
                 .to_owned()
         }
-        Reason::NotFinite => "the box is not finite any more".to_owned(),
-        Reason::MayGraze { surface } => format!("surface `{}` may be grazed", name(surface)),
+        Reason::NotFinite => "the box became infinite".to_owned(),
+        Reason::MayGraze { surface } => format!("the motion may graze surface `{}`", name(surface)),
         Reason::MayMeetTogether { surface, other } => format!(
-            "surfaces `{}` and `{}` may be met together, or in either order",
+            "the motion may hit surfaces `{}` and `{}` at one time, or in either order",
             name(surface),
             name(other)
         ),
         Reason::UnsureCondition { surface } => {
-            format!("the conditions of surface `{}` may hold or not", name(surface))
+            format!("the conditions of surface `{}` are not decided", name(surface))
         }
         Reason::MayBeBehind { surface } => {
             format!("the motion may be behind surface `{}`", name(surface))
         }
         Reason::MayStay { surface } => {
-            format!("the motion may stay at surface `{}`", name(surface))
+            format!("the motion may stay on surface `{}`", name(surface))
         }
         Reason::UnsureLaw { surface } => format!(
-            "the law of surface `{}` does not certainly give one finite state",
+            "the law of surface `{}` may not give one finite state",
             name(surface)
         ),
         Reason::OffConstraint { surface } => format!(
@@ -123,7 +123,7 @@ pub(super) fn reason(description: &Description, reason: Reason) -> String {
             name(surface)
         ),
         Reason::EndsAtImpact { surface } => format!(
-            "the end of the time may lie before the impact on surface `{}` or after it; choose another --until",
+            "the end time may lie before or after the impact on surface `{}`: choose another --until",
             name(surface)
         ),
         other => other.to_string(),
