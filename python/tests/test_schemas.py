@@ -53,6 +53,7 @@ OUTPUTS = {
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--wanted", "1e-6"],
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--integrator", "dopri5", "--wanted", "1e-30"],
     ],
+    "errata": [["errata"]],
     "ensemble": [
         ["ensemble", "bouncing_ball", "--vary", "x=0.5..2:4", "--vary", "g=1,2", "--law", "floor=newton:0.5"],
         ["ensemble", "double_pendulum", "--random", "7", "--members", "5", "--vary", "theta1=1+-0.01", "--vary", "theta2=0..1", "--until", "2",

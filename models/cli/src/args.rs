@@ -4,8 +4,10 @@
 mod certify;
 mod choice;
 mod ensemble;
+mod errata;
 mod file;
 mod gallery;
+mod help;
 mod orbit;
 
 use std::path::PathBuf;
@@ -19,20 +21,17 @@ use dalembert_driver::{Form, Integrator, OffConstraint};
 use crate::scalar;
 pub use certify::CertifyArgs;
 pub use ensemble::EnsembleArgs;
+pub use errata::ErrataArgs;
 pub use file::{BuildArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
 pub use orbit::OrbitArgs;
-
-/// Order of a help text: purpose, first example, usage, flags, remarks and further examples.
-const HELP: &str =
-    "{about-with-newline}\n{before-help}{usage-heading} {usage}\n\n{all-args}{after-help}";
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]
 #[command(
     version,
     arg_required_else_help = true,
-    help_template = HELP,
+    help_template = help::TEMPLATE,
     before_help = "Example: dalembert simulate rolling_disk --until 40 --plot disk.svg",
     after_help = "Exit status: 0 the requested end was reached, 1 any other outcome, 2 bad flags or input."
 )]
@@ -46,24 +45,24 @@ pub struct CommandLine {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the models with their numbers of coordinates (N), constraints (M) and surfaces (S).
-    #[command(help_template = HELP, before_help = "Example: dalembert list", after_help = LIST_EXAMPLES)]
+    #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert list", after_help = help::LIST)]
     List(ListArgs),
     /// Print the derived equations of a model: metric, constraints, field, impact maps.
-    #[command(help_template = HELP, before_help = "Example: dalembert derive rolling_disk", after_help = DERIVE_EXAMPLES)]
+    #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert derive rolling_disk", after_help = help::DERIVE)]
     Derive(DeriveArgs),
     /// Check the declared values and the claims of a model.
-    #[command(help_template = HELP, before_help = "Example: dalembert check rolling_disk", after_help = CHECK_EXAMPLES)]
+    #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert check rolling_disk", after_help = help::CHECK)]
     Check(CheckArgs),
     /// Run a model from a state to an end time or a number of impacts.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert simulate rolling_disk --until 40 --plot disk.svg",
-        after_help = [SIMULATE_EXAMPLES, certify::EXAMPLES].concat()
+        after_help = [help::SIMULATE, certify::EXAMPLES].concat()
     )]
     Simulate(Box<SimulateArgs>),
     /// Run many members of one scene: initial states and parameters on a grid, at random or from a file.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert ensemble bouncing_ball --vary x=0.5..2:20 --until 10",
         after_help = ensemble::EXAMPLES
     )]
@@ -73,54 +72,57 @@ pub enum Command {
     /// An error is the difference from a reference run. The impacts of the reference are checked by interval enclosures,
     /// independently of event location. If the check fails, nothing is measured and the exit status is 1.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert accuracy double_pendulum --until 10",
-        after_help = ACCURACY_EXAMPLES
+        after_help = help::ACCURACY
     )]
     Accuracy(Box<AccuracyArgs>),
     /// Find a periodic orbit by its returns to a surface, and its Floquet multipliers.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert orbit dimensionless_walker --surface step",
         after_help = orbit::EXAMPLES
     )]
     Orbit(Box<OrbitArgs>),
     /// Evaluate all derived quantities at given states.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: echo '[{\"q\": [1], \"qdot\": [-2]}]' | dalembert eval bouncing_ball",
-        after_help = EVAL_EXAMPLES
+        after_help = help::EVAL
     )]
     Eval(EvalArgs),
     /// Write a file with a commented declaration to begin with.
-    #[command(help_template = HELP, before_help = "Example: dalembert new pendulum", after_help = file::NEW_EXAMPLES)]
+    #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert new pendulum", after_help = file::NEW_EXAMPLES)]
     New(NewArgs),
     /// Run a model of a file again whenever the file is saved.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert new pendulum && dalembert watch pendulum.dal",
         after_help = file::WATCH_EXAMPLES
     )]
     Watch(Box<WatchArgs>),
     /// Write a crate that compiles the models of a file.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert new pendulum && dalembert build pendulum.dal",
         after_help = file::BUILD_EXAMPLES
     )]
     Build(BuildArgs),
     /// Draw figures of the models on one page.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: dalembert gallery pictures bouncing_ball --quick",
         after_help = gallery::EXAMPLES
     )]
     Gallery(GalleryArgs),
+    /// List misprints of the sources of the models, with printed and right values computed again.
+    #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert errata", after_help = errata::EXAMPLES)]
+    Errata(ErrataArgs),
     /// Run the hard cases and report which of them keep their bounds.
     #[command(
-        help_template = HELP,
+        help_template = help::TEMPLATE,
         before_help = "Example: cargo run --release -p dalembert-stability -- stability --section A",
-        after_help = STABILITY_EXAMPLES
+        after_help = help::STABILITY
     )]
     Stability(StabilityArgs),
 }
@@ -152,55 +154,6 @@ impl Command {
         self.model_to_run().is_some_and(|args| args.no_claims)
     }
 }
-
-const LIST_EXAMPLES: &str = "More examples:
-  dalembert list --format json";
-
-const DERIVE_EXAMPLES: &str = "More examples:
-  dalembert derive rolling_disk --format latex > rolling_disk.tex
-  dalembert derive chaplygin_sleigh --format json";
-
-const CHECK_EXAMPLES: &str = "More examples:
-  dalembert check rolling_disk --format json
-  dalembert check rolling_disk --certificate proofs.json
-  python3 python/check_certificate.py proofs.json";
-
-const SIMULATE_EXAMPLES: &str =
-    "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
-
-More examples:
-  dalembert simulate rolling_disk
-  dalembert simulate rolling_disk --until 40 --plot momenta.svg --axes p_theta,p_phi
-  dalembert simulate rolling_disk --set ta=0.3 --initial phi=pi/3,theta_dot=12
-  dalembert simulate rolling_disk --impacts 50 --law leading_edge=newton:0.5 --json -
-  dalembert simulate rolling_disk --until 40 --max-step 0.05
-  dalembert simulate rolling_disk --verify
-  dalembert simulate double_pendulum --integrator gauss6 --step 0.01 --until 1000
-  dalembert simulate chaplygin_sleigh --integrator dla4 --step pi/200
-  dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv
-  dalembert simulate bouncing_ball --law newton:0.5 --rest contact --until 10";
-
-const ACCURACY_EXAMPLES: &str = "The error is the largest difference of a position from the reference run, at 64 equally spaced times and at the
-end, relative to the largest absolute value of that coordinate (of an angle, at least 1). Times are measured on this
-machine. Exit status: 0, or 1 if no integrator reaches the error of --wanted.
-
-More examples:
-  dalembert accuracy rolling_disk --until 2 --wanted 1e-9
-  dalembert accuracy chaplygin_sleigh --integrator dop853 --integrator taylor --plot sleigh.svg";
-
-const EVAL_EXAMPLES: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\" if the model
-depends on time. Numbers may be decimal strings. Output: an array of the same length. A state at which a quantity does
-not exist gives {\"error\": ..} and exit status 1.
-
-More examples:
-  dalembert eval rolling_disk --set m=2 --newton 0.5 --input states.json";
-
-const STABILITY_EXAMPLES: &str = "Each case has a right answer: a closed form, an exact count or a class of outcome. The cases of dalembert belong to
-the package `dalembert-stability`. Exit status: 0 every case passes or is pending, 1 some case fails.
-
-More examples:
-  cargo run --release -p dalembert-stability -- stability --section A --integrator dopri5
-  cargo run --release -p dalembert-stability -- stability --case C11 --case C13 --html report.html";
 
 /// Text for people or JSON for programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

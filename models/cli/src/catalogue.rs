@@ -1,15 +1,18 @@
-//! The models, cases and figures of a command line.
+//! The models, cases, figures and errata of a command line.
 
 use crate::entry::Entry;
+use crate::errata::Erratum;
 use crate::gallery::Figure;
 use crate::suite::Case;
 
-/// The models of a command line, the hard cases of its `stability` command, and the figures of its `gallery`.
+/// The models of a command line, the hard cases of its `stability` command, the figures of its `gallery`, and the errata
+/// of the sources of its models.
 #[derive(Clone)]
 pub struct Catalogue {
     models: Vec<Entry>,
     suite: Vec<Case>,
     figures: Vec<Figure>,
+    errata: &'static [Erratum],
 }
 
 impl Catalogue {
@@ -20,6 +23,7 @@ impl Catalogue {
             models,
             suite: Vec::new(),
             figures: Vec::new(),
+            errata: &[],
         }
     }
 
@@ -34,6 +38,13 @@ impl Catalogue {
     #[must_use]
     pub fn with_figures(mut self, figures: Vec<Figure>) -> Self {
         self.figures = figures;
+        self
+    }
+
+    /// Sets the errata of the sources.
+    #[must_use]
+    pub fn with_errata(mut self, errata: &'static [Erratum]) -> Self {
+        self.errata = errata;
         self
     }
 
@@ -54,6 +65,11 @@ impl Catalogue {
     /// The hard cases.
     pub fn suite(&self) -> &[Case] {
         &self.suite
+    }
+
+    /// The errata of the sources.
+    pub fn errata(&self) -> &'static [Erratum] {
+        self.errata
     }
 
     /// The added figures.

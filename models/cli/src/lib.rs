@@ -29,6 +29,7 @@ mod catalogue;
 mod command;
 mod ensemble;
 mod entry;
+pub mod errata;
 mod error;
 mod exit;
 pub mod gallery;
@@ -161,6 +162,7 @@ fn dispatch(
         Command::New(args) => command::new::run(args, streams),
         Command::Build(args) => command::build::run(args, streams),
         Command::Gallery(args) => command::gallery::run(catalogue, args, streams),
+        Command::Errata(args) => command::errata::run(catalogue, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),
     }
 }

@@ -1,8 +1,10 @@
-//! The shipped models as texts, for the `dalembert` command, and the [`figures`] of the papers that they come from.
+//! The shipped models as texts, for the `dalembert` command, with the [`figures`] and [`errata`] of the papers that they
+//! come from.
 //!
 //! No model is compiled: a command loads the text of its model. With the feature `inlined` the models are compiled, and
 //! their functions are inlined into the code that runs them.
 
+pub mod errata;
 pub mod figures;
 
 use std::sync::OnceLock;
@@ -37,7 +39,9 @@ pub fn all() -> Vec<Entry> {
     MODELS.get_or_init(entries).clone()
 }
 
-/// The catalogue of the `dalembert` command: every shipped model, and the figures of the papers.
+/// The catalogue of the `dalembert` command: every shipped model, and the figures and errata of the papers.
 pub fn catalogue() -> Catalogue {
-    Catalogue::of(all()).with_figures(figures::all())
+    Catalogue::of(all())
+        .with_figures(figures::all())
+        .with_errata(errata::ERRATA)
 }

@@ -5,6 +5,7 @@ pub mod build;
 pub mod check;
 pub mod derive;
 pub mod ensemble;
+pub mod errata;
 pub mod eval;
 pub mod gallery;
 pub mod list;
