@@ -311,7 +311,7 @@ fn the_command_line_holds_inputs() {
         1e-8,
     );
     for (input, expected) in [
-        ("u=sin(t)", "a number that is held, such as 0.5"),
+        ("u=sin(t)", "a constant number, such as 0.5"),
         ("v=1", "unknown input"),
         ("u", "--input"),
     ] {

@@ -68,7 +68,7 @@ impl Mismatches {
             .extend(compare(path, actual, expected, TOLERANCE).err());
     }
 
-    /// As [`Mismatches::check`], with an allowance for a component that almost vanishes by cancellation: the effect of
+    /// Same as [`Mismatches::check`], with an allowance for a component that almost vanishes by cancellation: the effect of
     /// rounding the given 30 digits to `f64`. No arithmetic on the rounded numbers does better there.
     fn check_conditioned(
         &mut self,

@@ -12,8 +12,7 @@
 //! | `series.rs` | power series over any kind of number |
 //! | `native/` | both over doubles, as machine code of x86-64 with AVX and of aarch64; elsewhere the two above do it, 2 to 10 times slower |
 //!
-//! What a declaration is refused for, and what is proved of its claims, is what `model!` says of it. The numbers that come out are those of
-//! the code that `model!` writes, to the bit.
+//! Refusals and proofs are those of `model!`. Results are those of the code that `model!` writes, to the bit.
 //!
 //! ```
 //! use dalembert::erased::Erased;

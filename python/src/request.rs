@@ -70,9 +70,7 @@ impl Request<'_> {
         let needs_global = policy == OffConstraint::Keep || self.projection.is_some();
         let form = Form::choose(&model.description(), wanted, needs_global);
         let until = course::horizon(model, self.until, self.impacts).ok_or_else(|| {
-            refused(
-                "the model declares no usable `until`; say when to stop with until= or impacts=",
-            )
+            refused("the model declares no usable `until`; give an end with until= or impacts=")
         })?;
         Ok(Settings {
             form: form.map_err(|reason| refused(format!("form: {reason}")))?,

@@ -53,7 +53,7 @@ def test_quasi_velocities_are_the_velocities_of_their_forms():
 
 @pytest.mark.parametrize(("name", "arguments", "wrt", "words"), [
     ("rolling_disk", {}, "x_dot", "`x_dot` follows from other velocities by the constraints; vary roll, turn"),
-    ("rolling_disk", {"form": "global"}, "x", "those of its reduced form"),
+    ("rolling_disk", {"form": "global"}, "x", "need its reduced form"),
     ("bouncing_ball", {"integrator": "rk4", "step": 0.01}, "x", "dop853, dopri5 or taylor"),
     ("bouncing_ball", {}, "y", "unknown coordinate, velocity or parameter `y`"),
     ("bouncing_ball", {"law": "newton:0.5", "until": 50}, "x", "the run ends before its time"),

@@ -3,7 +3,7 @@
 //! Rates are evaluated at a few places only, and a rank that drops at one instant is invisible from there: on either
 //! side the forms may be well independent. The test uses the plane that the forms span, with its orientation: the
 //! multivector `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent.
-//! Where it vanishes to odd order it reverses its orientation, whatever rotation it makes besides. Two places between
+//! If it vanishes to odd order it reverses its orientation, whatever rotation it makes besides. Two places between
 //! which it reverses are bracketed until the change proves to be a smooth rotation or the places are neighbouring
 //! numbers. Where it vanishes to even order it keeps its orientation, and a minimum of its size is searched for
 //! instead.

@@ -1,12 +1,12 @@
 //! Periods that are 0 by symmetry: exact where a converged sum would only be small.
 //!
-//! Let `beta` be the closed form with `beta(X_i) = c_i` and the circle of an angle a loop. The growth of `G` along it does not
-//! depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by a part of a circle, takes
-//! such a loop to another one, with the same growth but for the direction. If `beta` along the loop and its images under some maps add up
-//! to 0, so does the growth. Whether they do is an identity, tested modulo primes.
+//! Let `beta` be the closed form with `beta(X_i) = c_i`, and the circle of an angle a loop. The growth of `G` along it
+//! does not depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by a part
+//! of a circle, takes the loop to another one with the same growth up to sign. If `beta` along the loop and its images
+//! under some maps add up to 0, the growth is 0. The sum is tested modulo primes.
 //!
-//! Without roots the images are those of all turns by `pi/12` and their reflections: trigonometric polynomials of degree below 24
-//! are gone through whole. With roots, which have values at a few images only, one image is taken.
+//! Without roots the images are those of all turns by `pi/12` and their reflections: this covers all trigonometric
+//! polynomials of degree below 24. Roots have values at few images only, so one image is taken.
 
 use dalembert_expr::{ExprId, ModularPoint, Modulus, SamplePoints, SymbolId};
 
@@ -60,8 +60,8 @@ impl Move {
 /// Moves of coordinates, each by itself.
 type Map = Vec<(SymbolId, Move)>;
 
-/// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry that moves no coordinate at whose values Q may be cut: then an
-/// image lies in the same part of Q, in which D must connect all configurations.
+/// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry that fixes every coordinate at whose
+/// values Q may be cut. An image then lies in the same part of Q, in which D must connect all configurations.
 pub(super) fn has_no_period(
     model: &Model,
     problem: &Problem,
@@ -74,7 +74,7 @@ pub(super) fn has_no_period(
     let Ok(points) = sample_points(&model.pool, &roots, &profile, seed) else {
         return false;
     };
-    // An image may have another sign pattern of absolute values than its point; those of hidden squares are met at random.
+    // An image may have other signs in absolute values than its point. Those of hidden squares occur at random.
     let branches = branches_of(&model.pool, &roots, &profile, &points);
     if !branches.is_some_and(|branches| branches.is_single()) {
         return false;
@@ -107,8 +107,8 @@ struct Circle<'c> {
 }
 
 impl Circle<'_> {
-    /// True if `beta` along the circle, summed over its images under turns, changes its sign under a map: of the angle by one of some moves, and
-    /// of each of the other coordinates.
+    /// True if `beta` along the circle, summed over its images under turns, changes its sign under a map of the angle
+    /// by one of some moves and of each of the other coordinates.
     fn cancels(&self, turns: &[Move], moves: &[Move], count: usize) -> bool {
         let (model, problem) = (self.model, self.problem);
         let mut points = self.points.clone();
@@ -146,7 +146,7 @@ impl Circle<'_> {
     }
 }
 
-/// The turns of a circle by parts that residues know, and their reflections.
+/// Turns of a circle by parts that residues represent, and their reflections.
 fn turns(denominator: i64) -> Vec<Move> {
     let step = denominator.clamp(1, CIRCLE);
     let turns = (0..CIRCLE).step_by(step as usize);
@@ -170,7 +170,7 @@ fn maps(
             _ if cuts.contains(&i) => &[STAYS],
             Topology::Line => &[STAYS, REFLECTED],
             Topology::Angle => &[STAYS, REFLECTED, SUPPLEMENT, OPPOSITE],
-            // The charts of Euler angles are `(0, pi)` mostly; another one is not mapped to itself.
+            // The charts of Euler angles are mostly `(0, pi)`; another chart is not mapped to itself.
             Topology::Interval { low, high } => match is_half_circle(model, low, high) {
                 true => &[STAYS, SUPPLEMENT],
                 false => &[STAYS],

@@ -1,8 +1,8 @@
-//! Is a density regular on all of Q? What residues do not show is looked for at real points.
+//! Regularity of a density on all of Q, decided at real points where residues give no answer.
 //!
-//! The model may have no real values. A closed form may be 0 or infinite where metric and constraints are regular: with `dx = x dy` the density `1/|x|` is
-//! invariant on both sides of the leaf `x = 0` and no density on it. And a circle may leave the domain where the
-//! constraints are independent, so that the system itself ends there.
+//! The model may have no real values. A closed form may be 0 or infinite where metric and constraints are regular: with
+//! `dx = x dy` the density `1/|x|` is invariant on both sides of the leaf `x = 0`, but it is not a density on the leaf.
+//! A circle may also leave the domain in which the constraints are independent, and the system ends there.
 
 use std::f64::consts::TAU;
 
@@ -30,15 +30,16 @@ pub(super) const LEAVES: &str = "a circle leaves the domain where the constraint
 const POINTS: usize = 64;
 /// Bisections: to the last digit of a number of order 1.
 const BISECTIONS: usize = 60;
-/// A determinant counts as 0 below this part of its largest value, and may become 0 near a point where it is below the
-/// second one: squares of the sine are at a distance of half a step.
+/// Fraction of its largest value below which a determinant counts as 0, and fraction below which it may become 0 near a
+/// point: squares of the sine are at a distance of half a step.
 const SMALL: f64 = 1e-9;
 const LOW: f64 = 0.1;
 
 /// Values of coordinates, time and parameters.
 type Values = Vec<(SymbolId, f64)>;
 
-/// True if the model is regular at any real point; roots and logarithms have residues where they have no real values.
+/// True if the model is regular at any real point. Roots and logarithms have residues even where they have no real
+/// values.
 pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     let roots = problem.roots();
     (0..ATTEMPTS).any(|attempt| {
@@ -48,8 +49,8 @@ pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     })
 }
 
-/// True if a density has no zero and no pole where the model has values: every term of which it is a logarithm is certified never to be 0,
-/// for all values of coordinates and parameters.
+/// True if a density has no zero and no pole where the model has values. Every term whose logarithm it contains is then
+/// certified to be nonzero for all values of coordinates and parameters.
 pub(super) fn is_regular(
     model: &mut Model,
     problem: &Problem,
@@ -76,7 +77,7 @@ pub(super) fn factors_with_zeros(
     factors
 }
 
-/// The terms of which a density is a logarithm and that may be 0; `None` if one is too large to be written out.
+/// Terms whose logarithms a density contains and that may be 0; `None` if one is too large to be written out.
 fn logarithms(
     model: &mut Model,
     problem: &Problem,
@@ -241,7 +242,7 @@ fn is_positive_on_chart(model: &Model, id: ExprId) -> bool {
 /// The ranges of the symbols of an expression.
 pub(super) fn domain(model: &Model, id: ExprId) -> Domain {
     let pool = &model.pool;
-    // A part of a declaration may have a longer period than the whole: that of its fractions of angles.
+    // A part of a declaration may have a longer period than the whole, if it contains fractions of angles.
     let turns = pool.profile_of(&[id]).denominator.unwrap_or(1) as f64;
     let mut domain = Domain::new();
     let ends = |low: ExprId, high: ExprId| {
@@ -293,8 +294,8 @@ fn numbers(model: &Model, ids: &[ExprId], values: &Values) -> Vec<f64> {
     model.pool.eval(ids, &value)
 }
 
-/// True if the constraint mass matrix becomes singular on the way around a circle: its determinant is not negative, so
-/// its least value is looked for.
+/// True if the constraint mass matrix becomes singular along a circle. Its determinant is not negative, so its minimum
+/// is sought.
 fn leaves_domain(model: &Model, problem: &Problem, i: usize) -> bool {
     if problem.forms.is_empty() {
         return false;

@@ -31,7 +31,7 @@ impl Sample {
         self.symbols.iter().copied().zip(values).collect()
     }
 
-    /// Ranges of one unit in the last place around the values: what is printed is in them, and so is an exact default.
+    /// Ranges of one unit in the last place around the values. They contain the printed values and exact defaults.
     pub(super) fn ranges(&self) -> Domain {
         let near = |value: f64| Interval::new(value.next_down(), value.next_up());
         let values = self.point_values().into_iter();
@@ -53,7 +53,8 @@ impl Sample {
         }
     }
 
-    /// True if all coordinates are where they are declared to be. A surface may be at an end: rounding beyond it is allowed.
+    /// True if all coordinates lie in their declared sets. A surface may lie at an end, so rounding beyond it is
+    /// allowed.
     pub(super) fn is_allowed(&self, model: &Model) -> bool {
         let is_above = |value: f64, end: f64| value >= end - ROUNDING * (1.0 + end.abs());
         model.coordinates.iter().all(|coordinate| {
@@ -95,21 +96,21 @@ impl Sample {
     }
 }
 
-/// Hundredths in `(-1, 1)`, none of them near 0, in no pattern that a model could share.
+/// Hundredths in `(-1, 1)`, none of them near 0, in an irregular order.
 const HUNDREDTHS: [i32; 16] = [
     36, -53, 39, 81, -28, 67, -74, 45, 92, -17, 58, -86, 23, 71, -42, 64,
 ];
 
-/// A part of a number by which a root that was found in doubles may be off.
+/// Relative error that a root found in doubles may have.
 const ROUNDING: f64 = 1e-12;
 
 /// Attempts with the declared defaults of parameters.
 const DECLARED: usize = 8;
-/// Attempts with coordinates between -1 and 1; after these, those on lines are multiplied by one of the scales, as roots
-/// and logarithms may have values far out only.
+/// Number of attempts with coordinates between -1 and 1. Later attempts multiply coordinates on lines by one of the
+/// scales, because roots and logarithms may have values only far from 0.
 const NEAR: usize = 16;
 const SCALES: [f64; 4] = [1.0, 8.0, 64.0, 1.0 / 8.0];
-/// Samples in which a real state is looked for before none is believed to exist.
+/// Number of samples without a real state after which none is believed to exist.
 pub(super) const ATTEMPTS: usize = 64;
 
 /// The `attempt`-th sample for the symbols that `uses` accepts, time included: parameters at their defaults where
@@ -163,8 +164,8 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
     sample
 }
 
-/// Moves coordinates between the places where arguments of absolute values change their signs, another choice for each
-/// attempt; the first attempts are left as they are.
+/// Moves coordinates between the zeros of arguments of absolute values, with another choice in each attempt. The first
+/// attempts are left unchanged.
 pub(super) fn move_between_knots(
     model: &Model,
     roots: &[ExprId],
@@ -190,7 +191,7 @@ pub(super) fn move_between_knots(
         let middles = knots.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
         let mut places: Vec<f64> = middles.collect();
         places.extend([first - 0.5, last + 0.5]);
-        // Every combination of places comes sooner or later: a step that no small number divides.
+        // The step has no small divisors, so every combination of places occurs sooner or later.
         let place = places[(attempt * (2 * i + 1) + attempt / (7 + i)) % places.len()];
         sample.set(coordinate.q, place);
     }
@@ -221,7 +222,7 @@ fn knots(model: &Model, arguments: &[ExprId], symbol: SymbolId, sample: &Sample)
     knots
 }
 
-/// A number inside of an interval: to hundredths, where these are inside.
+/// A number inside of an interval, in hundredths if the interval contains them.
 fn between(low: f64, high: f64, unit: f64) -> f64 {
     let value = low + (high - low) * (0.5 + 0.4 * unit);
     let short = round(value);
@@ -231,7 +232,7 @@ fn between(low: f64, high: f64, unit: f64) -> f64 {
     }
 }
 
-/// To hundredths, where that leaves more than two digits.
+/// Rounds to hundredths, if that leaves more than two digits.
 fn round(value: f64) -> f64 {
     if value.abs() > 0.1 && value.abs() < 1e6 {
         (value * 100.0).round() / 100.0
@@ -248,7 +249,7 @@ pub(super) fn uses<'a>(pool: &'a Pool, roots: &'a [ExprId]) -> impl Fn(SymbolId)
 /// Independent velocities of real states.
 const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];
 
-/// A real state on D with short independent velocities; what is shown of it includes all velocities.
+/// A real state on D with short independent velocities. The values shown for it include all velocities.
 pub(super) fn state_on_d(
     model: &Model,
     dynamics: &Dynamics,

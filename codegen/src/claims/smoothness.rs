@@ -1,5 +1,6 @@
-//! Configurations that are left out of Q, because the metric, the constraints or an expression is singular there. Without any the loops of
-//! Q are those of the declared circles; the origin of a plane, left out by `1/(x^2 + y^2)`, has others around it, and `1/x` parts Q.
+//! Configurations left out of Q because the metric, the constraints or an expression is singular there. If none is left
+//! out, the loops of Q are those of the declared circles. The origin of a plane, left out by `1/(x^2 + y^2)`, has
+//! further loops around it, and `1/x` divides Q.
 
 use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational};
 
@@ -17,9 +18,9 @@ const SAMPLES: usize = 3;
 /// Minors of the constraint forms that are written out.
 const MOST_MINORS: usize = 64;
 
-/// The components of which certain values may be left out of Q; `None` if other configurations may be. What depends on several components
-/// is certified to be regular everywhere, and what is left of lines and circles without some of their points has no other loops than whole
-/// circles.
+/// Components of which certain values may be left out of Q; `None` if other configurations may be left out. Expressions
+/// of several components are certified to be regular everywhere. Lines and circles without some of their points have no
+/// loops other than whole circles.
 pub(super) fn cuts(model: &mut Model, problem: &Problem, seed: u64) -> Option<Vec<usize>> {
     let mut divisors = divisors(&mut model.pool, problem)?;
     let dependence = determinants_by_component(&model.pool, problem, seed)?;
@@ -75,7 +76,7 @@ fn determinants_by_component(pool: &Pool, problem: &Problem, seed: u64) -> Optio
     }))
 }
 
-/// Expressions that must not be 0 for all others to be smooth; `None` where one of them jumps.
+/// Expressions that must be nonzero so that all others are smooth; `None` if one of them jumps.
 fn divisors(pool: &mut Pool, problem: &Problem) -> Option<Vec<ExprId>> {
     let mut divisors = Vec::new();
     for id in pool.reachable(&problem.roots()) {
@@ -127,8 +128,8 @@ fn blocks(pool: &Pool, matrix: &[Vec<ExprId>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// The sum of the squares of all minors of the constraint forms, which is 0 where they are dependent; `None` where there are
-/// too many.
+/// Sum of the squares of all minors of the constraint forms. It is 0 where they are dependent; `None` if there are too
+/// many minors.
 fn gramian(model: &mut Model, problem: &Problem) -> Option<Vec<ExprId>> {
     let mut squares = Vec::new();
     for columns in choices(problem.coordinates, problem.forms.len())? {

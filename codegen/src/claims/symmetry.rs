@@ -1,4 +1,5 @@
-//! Symmetries: does the flow of a vector field keep the Lagrangian and the constraints, and what of its momentum?
+//! Symmetries: decides whether the flow of a vector field keeps the Lagrangian and the constraints, and derives the
+//! equation of its momentum.
 //!
 //! ```text
 //! lift      xi^i d_i L + (d_j xi^i qdot^j + d_t xi^i) dL/dqdot^i = df/dt
@@ -68,7 +69,7 @@ pub(super) fn check_symmetry(
     (Verdict::Proved(certificate), remarks)
 }
 
-/// One certificate for both.
+/// Joins two certificates.
 fn joined(first: Option<Certificate>, second: Certificate) -> Certificate {
     let Some(mut whole) = first else {
         return second;

@@ -1,9 +1,8 @@
-//! Arithmetic that is written down: the same computation that decides at a random point, as a list of steps that can be
-//! lowered to code.
+//! Recorded arithmetic: the computation that decides at a random point, as a list of steps that can be lowered to code.
 //!
-//! Every step carries its residue at the point. A residue of 0 means a value that vanishes identically (but for the
-//! chance of an accident, as everywhere in claims): it is dropped, and pivots are chosen among the others. So the list
-//! is valid at almost all points, and as sparse as the problem.
+//! Every step carries its residue at the point. A residue of 0 means that the value vanishes identically, up to the
+//! probability of error of all claims. Such a value is dropped, and pivots are chosen among the others. The list is
+//! therefore valid at almost all points, and as sparse as the problem.
 
 use std::cell::RefCell;
 use std::collections::HashMap;

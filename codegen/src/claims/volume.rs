@@ -27,13 +27,13 @@ pub struct Volume {
     /// The dependent velocities, one for each constraint, in increasing order. The other velocities are the
     /// coordinates of the volume besides the positions.
     pub dependent: Vec<usize>,
-    /// True if `G` is a function on Q; else it is one of the angles as they are stored, unwrapped.
+    /// True if `G` is a function on Q. Otherwise it is a function of the angles as stored, unwrapped.
     pub is_single_valued: bool,
 }
 
 impl Volume {
-    /// The volume that a decision about the model found, in closed form or as an integral; `None` if there is none, or
-    /// no gradient determines it.
+    /// Volume that a decision about the model found, in closed form or as an integral; `None` if none exists, or if no
+    /// gradient determines it.
     pub fn found(
         model: &Model,
         derivation: &Derivation,
@@ -94,8 +94,8 @@ impl Volume {
     }
 }
 
-/// Dependent velocities that follow from the others at every state, if the forms show some: elsewhere the
-/// coordinates of the volume fail at some states, for a wheel already where it points along an axis.
+/// Dependent velocities that follow from the others at every state, if the forms show some. Otherwise the coordinates
+/// of the volume fail at some states: for a wheel, where it points along an axis.
 fn nowhere_singular(model: &Model, derivation: &Derivation) -> Option<Vec<usize>> {
     let pairs = regular_minor(&model.pool, &derivation.constraints)?;
     let mut dependent: Vec<usize> = pairs.into_iter().map(|(_, column)| column).collect();
@@ -114,7 +114,7 @@ fn almost_nowhere_singular(pool: &Pool, problem: &Problem, seed: u64) -> Option<
     })
 }
 
-/// `ln |f|` as a sum over the factors of `f`: what would overflow as a product does not as a sum.
+/// `ln |f|` as a sum over the factors of `f`. A product might overflow where the sum does not.
 fn logarithm(pool: &mut Pool, f: ExprId) -> Vec<(ExprId, Term)> {
     let mut terms = Vec::new();
     let mut factors = vec![(Rational::ONE, f)];

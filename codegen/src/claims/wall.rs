@@ -52,7 +52,7 @@ pub(super) struct Wall {
     constraints: usize,
     /// Functions that are positive where the surface counts.
     margins: Vec<ExprId>,
-    /// The number of the wall's margins, and the numbers of those of each other surface that must not count.
+    /// Number of margins of the wall, and numbers of margins of each other surface that must not count.
     lists: (usize, Vec<usize>),
     polynomials: Vec<Polynomial>,
 }
@@ -117,7 +117,7 @@ pub(super) enum Place {
     Second,
 }
 
-/// The number of margins of the surface itself, and the numbers of those of each surface that must not count.
+/// Number of margins of the surface itself, and numbers of margins of each surface that must not count.
 fn lists(surface: &Surface) -> (usize, Vec<usize>) {
     let others = match &surface.beside {
         Beside::Otherwise(others) => others.iter().map(Vec::len).collect(),
@@ -292,8 +292,7 @@ impl Wall {
         Some(field.mul(determinant, field.neg(ratio)))
     }
 
-    /// A real state that approaches the surface where it counts, and its point. What is shown of it are the symbols of
-    /// `roots`.
+    /// A real state that approaches the surface where it counts, and its point. The symbols of `roots` are shown of it.
     pub(super) fn incoming(
         &self,
         model: &Model,
@@ -323,15 +322,15 @@ impl Wall {
             })
     }
 
-    /// A coordinate that follows from the others on the surface, and how.
+    /// A coordinate that follows from the others on the surface, and its solution.
     pub(super) fn solution(&self) -> Option<(SymbolId, ExprId)> {
         let solved = |polynomial: &Polynomial| Some((polynomial.symbol, polynomial.solution?));
         self.polynomials.iter().find_map(solved)
     }
 
-    /// True if a coordinate that is solved for stands in the argument of a function: residues of the function are drawn
-    /// for an argument that is not on the surface. What vanishes for any argument does so there too; of what does not,
-    /// they say nothing.
+    /// True if a coordinate for which the gap is solved occurs in the argument of a function. Residues of the function
+    /// are drawn for an argument that is not on the surface. An expression that vanishes for any argument vanishes on
+    /// the surface; the residues of other expressions prove nothing.
     pub(super) fn hides(&self, pool: &Pool, roots: &[ExprId]) -> bool {
         let solved: Vec<SymbolId> = self
             .polynomials
@@ -341,12 +340,12 @@ impl Wall {
         in_arguments(pool, roots, &solved)
     }
 
-    /// True if there is a coordinate in which every component of the surface is reached.
+    /// True if one coordinate reaches every component of the surface.
     pub(super) fn is_solved(&self) -> bool {
         !self.polynomials.is_empty()
     }
 
-    /// Moves a point onto the surface by solving for a coordinate; not at all if it may be anywhere.
+    /// Moves a point onto the surface by solving for a coordinate. Does nothing if the point may lie anywhere.
     pub(super) fn settle(
         &self,
         model: &Model,
@@ -386,8 +385,9 @@ impl Wall {
         })
     }
 
-    /// Replaces a coordinate of a point near the surface, that in which the gap is steepest, by a range in which the gap has a root: it has
-    /// values all over the range, and other signs at its ends. `None` if that is not certain.
+    /// Replaces a coordinate of a point near the surface, the one in which the gap is steepest, by a range that
+    /// contains a root of the gap: the gap has values on the whole range, and different signs at its ends. `None` if
+    /// that is not certain.
     pub(super) fn enclose<P: RangePoint>(&self, model: &Model, point: &mut P) -> Option<()> {
         let mut roots = vec![self.gap];
         roots.extend(&self.slope);
@@ -418,7 +418,7 @@ impl Wall {
         (signs[0] != signs[1]).then_some(())
     }
 
-    /// True if a state approaches the surface where it counts, all over its ranges.
+    /// True if a state approaches the surface where it counts, on all of its ranges.
     pub(super) fn is_met<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         let mut roots = vec![self.gap_rate];
         roots.extend(&self.margins);
@@ -456,7 +456,7 @@ impl Wall {
     }
 }
 
-/// A coordinate in which a gap is `c + b s + a s^2`: the expressions of which c, b, a are the values at s = 0.
+/// A coordinate in which a gap is `c + b s + a s^2`, with the expressions whose values at s = 0 are c, b, a.
 #[derive(Debug)]
 struct Polynomial {
     symbol: SymbolId,

@@ -1,8 +1,8 @@
 //! Rows of the factors `g = L D L^T` that are no larger than the rows of `g` they come from.
 //!
-//! Where the centre of mass of a body is not its origin, elimination takes away a term that the metric adds: `I + m a^2`
-//! becomes `I`. The expressions formed here cancel exactly, numbers only up to rounding. Rows that would grow are left to
-//! numbers.
+//! If the centre of mass of a body is not its origin, elimination removes a term that the metric adds: `I + m a^2`
+//! becomes `I`. The expressions formed here cancel exactly, numbers only up to rounding. Rows that would grow are
+//! computed in numbers.
 
 use dalembert_expr::{ExprId, Pool};
 

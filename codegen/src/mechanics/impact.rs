@@ -1,7 +1,7 @@
 //! Differentials of the impact surfaces: `dh`, `d_t h` and the gap rate `dh(qdot) + d_t h`.
 //!
-//! Every law but `reset` is an impulse along `pi_D^* dh`. Its effect on the state is the same for every multiple of `dh`.
-//! Of a wall that stands still, only the direction matters: its *ray*, without factors that are never zero.
+//! Every law but `reset` is an impulse along `pi_D^* dh`. Its effect on the state is the same for every multiple of
+//! `dh`. For a wall that stands still, only the direction matters: its *ray*, without factors that are never zero.
 
 use dalembert_expr::{ExprId, Pool};
 

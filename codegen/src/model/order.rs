@@ -1,4 +1,5 @@
-//! Definitions use only what stands above them: cycles, uses before the definition, and unknown names in functions.
+//! Order of definitions: a definition may use only earlier ones. Finds cycles, uses before the definition, and unknown
+//! names in functions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +14,7 @@ struct Use<'s> {
     is_call: bool,
 }
 
-/// Records every use of a definition that does not stand above; gives the positions of the definitions at fault.
+/// Records every use of a definition that does not stand above; returns the positions of the definitions at fault.
 pub(super) fn check<'s>(resolver: &mut Resolver<'s>, spec: &'s Spec) -> BTreeSet<usize> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     for (position, definition) in spec.definitions.iter().enumerate() {

@@ -1,8 +1,8 @@
-//! From what was written to expressions: names, indices, families, sums, definitions, `dot` and `d`.
+//! Resolution of syntax to expressions: names, indices, families, sums, definitions, `dot` and `d`.
 //!
-//! `dot(e) = d_i e qdot^i + d_t e` and `d(e) = d_i e dq^i + d_t e dt`, with the differentials `dq^i`, `dt` as symbols
-//! of their own until the equation they belong to is taken apart. Next to its expression a value carries its *level*:
-//! the function `f` of `(t, q)` whose `dot(f)` or `d(f)` it is, if that is known from how it was written.
+//! `dot(e) = d_i e qdot^i + d_t e` and `d(e) = d_i e dq^i + d_t e dt`. The differentials `dq^i`, `dt` are symbols until
+//! the equation that contains them is taken apart. A value carries its *level* next to its expression: the function `f`
+//! of `(t, q)` whose `dot(f)` or `d(f)` it is, if the way it is written shows that.
 
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
 //! Certificate of the claims for an independent checker: the declaration in coordinates, and each verdict with its
 //! grounds.
 //!
-//! Expressions are texts of the language: `+ - * / ^`, the functions of `docs/language.md`, names of coordinates and parameters,
-//! velocities `dot(x)`, `energy`, `momentum(x)` and `t`. Nothing here is derived but the density that was found: whoever checks a
-//! claim derives the motion anew.
+//! Expressions are texts of the language: `+ - * / ^`, the functions of `docs/language.md`, names of coordinates and
+//! parameters, velocities `dot(x)`, `energy`, `momentum(x)` and `t`. Only the density that was found is derived; a
+//! checker of a claim derives the motion anew.
 
 use dalembert_expr::ExprId;
 

@@ -1,8 +1,7 @@
-//! The derivation as a person reads it: the expressions that are emitted, as text and LaTeX.
+//! Derivation for a reader: the emitted expressions, as text and LaTeX.
 //!
-//! What is printed is what is emitted: every expression here is lowered as it stands (after collection of
-//! `cos^2 + sin^2` and common factors for the eye). The density form alone is written out for the reader; the emitted
-//! code solves for it.
+//! A report prints the emitted code: every expression here is lowered as it stands, after collection of `cos^2 + sin^2`
+//! and common factors. Only the density form is written out for the reader; the emitted code solves for it.
 //!
 //! | file | job |
 //! |---|---|

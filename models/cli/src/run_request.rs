@@ -107,7 +107,7 @@ fn form(description: &Description, args: &RunArgs) -> Result<Form, CliError> {
     Form::choose(description, args.form, needs_global).map_err(|error| match error {
         FormError::Unreduced { model } => CliError::Unreduced { model },
         FormError::OnConstraints => CliError::Usage(
-            "--form reduced holds no states off the constraints: leave out --off-constraint keep and --projection",
+            "--form reduced has no states off the constraints: leave out --off-constraint keep and --projection",
         ),
     })
 }
@@ -118,7 +118,7 @@ fn horizon(
     impacts: Option<u64>,
 ) -> Result<f64, CliError> {
     choice::horizon(model, until, impacts).ok_or(CliError::Usage(
-        "the model declares no usable `until`; say when to stop with --until T or --impacts N",
+        "the model declares no usable `until`; give an end with --until T or --impacts N",
     ))
 }
 

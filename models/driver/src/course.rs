@@ -21,7 +21,7 @@ pub enum FormError {
         model: &'static str,
     },
     /// The request has states off the constraints or a projection.
-    #[error("the reduced form holds no states off the constraints, and takes no projection")]
+    #[error("the reduced form has no states off the constraints and needs no projection")]
     OnConstraints,
 }
 

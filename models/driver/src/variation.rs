@@ -55,20 +55,20 @@ pub struct Derivatives {
 pub enum VariationError {
     /// The model has no form.
     #[error(
-        "derivatives are those of models that are loaded from a text, and this one is compiled into the program"
+        "derivatives need a model that is loaded from a text, and this one is compiled into the program"
     )]
     Compiled,
     /// The scene was declared without `variations`.
     #[error("the scene was declared without `variations`; add it to what the scene uses")]
     WithoutVariations,
     /// The integrator has a fixed step.
-    #[error("derivatives are those of runs by dop853, dopri5 or taylor")]
+    #[error("derivatives need the integrator dop853, dopri5 or taylor")]
     FixedStep,
     /// The model has modes.
-    #[error("derivatives of models with modes are not given by name")]
+    #[error("derivatives by name are not available for models with modes")]
     Modes,
     /// The form is the global one and the model has constraints.
-    #[error("derivatives of a model with constraints are those of its reduced form")]
+    #[error("derivatives of a model with constraints need its reduced form")]
     Constrained,
     /// The constraints determine this velocity from the others.
     #[error("the velocity of this coordinate follows from the others")]

@@ -7,9 +7,9 @@
 //! 2 c p^3 = l (a + c p^2)
 //! ```
 //!
-//! Where `a` is unknown or small, this is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` up to constants, with a
-//! step of `e^-2` of the radius. Work that every step takes, independent of the order, favours higher orders. Series
-//! that terminate are computed to their ends.
+//! If `a` is unknown or small, this is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` up to constants, with a step
+//! of `e^-2` of the radius. Work that every step takes, independent of the order, favours higher orders. Series that
+//! terminate are computed to their ends.
 //!
 //! Reference: A. Jorba and M. Zou, Experimental Mathematics 14 (2005), sections 3.1 and 3.2.
 

@@ -15,7 +15,7 @@
 //! [`Section`] is the map from one arrival at a surface to a later one (Poincare map), with its derivative.
 //! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers.
 //!
-//! Where the flow of a system with impacts has no derivative, the result is [`Undefined`].
+//! The result is [`Undefined`] if the flow of a system with impacts has no derivative.
 
 mod along;
 mod chart;

@@ -1,9 +1,9 @@
 //! A frame that is regular at every configuration, found from the constraint forms alone.
 //!
-//! A velocity can be made dependent where it occurs in one constraint only, of those still to be solved, with a
-//! coefficient that is never zero. Where no coefficient is, two velocities that occur in one constraint only serve
-//! if the squares of their coefficients have a sum that is never zero: a knife edge `-sin(theta) dx + cos(theta) dy`
-//! leaves the velocity along it, `cos(theta) dx + sin(theta) dy`.
+//! A velocity can be made dependent if it occurs in only one of the constraints still to be solved, with a coefficient
+//! that is never zero. Otherwise two velocities that occur in only one constraint serve, if the sum of the squares of
+//! their coefficients is never zero: a knife edge `-sin(theta) dx + cos(theta) dy` leaves the velocity along it,
+//! `cos(theta) dx + sin(theta) dy`.
 
 use dalembert_expr::{ExprId, Pool};
 

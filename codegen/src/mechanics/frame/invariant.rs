@@ -1,10 +1,10 @@
 //! Expressions of the frame that do not depend on the configuration.
 //!
-//! On groups and similar spaces, the velocities along some coordinates, the metric on D and the forces of inertia are
-//! functions of the quasi-velocities and parameters alone, as for balls and disks that roll on a plane; on a plane that
-//! turns, of the place on it too. Solved for in the frame they are sums that cancel only up to rounding, and lose digits
-//! near the poles of Euler angles. Where a zero test proves that an expression stays the same with some coordinates at a
-//! single value, the expression at that value is emitted.
+//! On groups and similar spaces, the velocities along some coordinates, the metric on D and the inertial forces depend
+//! on quasi-velocities and parameters alone. Balls and disks that roll on a plane are examples; on a rotating plane
+//! they also depend on the position. Their expressions in the frame are sums that cancel only up to rounding, and lose
+//! digits near the poles of Euler angles. If a zero test proves that an expression does not change when some
+//! coordinates are fixed at one value, the expression at that value is emitted.
 
 use dalembert_expr::{Assumption, ExprId, Pool, Rational, Sign, SymbolId, Verdict};
 

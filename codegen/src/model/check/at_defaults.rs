@@ -5,10 +5,10 @@ use dalembert_expr::{ExprId, Pool, SymbolId};
 use super::super::resolve::Resolver;
 use super::super::{Constraint, Lagrangian};
 
-/// A parameter by its position, and what replaces it.
+/// Position of a parameter, and its replacement.
 type Default = (usize, (SymbolId, ExprId));
 
-/// Refuses defaults with which the metric is singular or the constraints are dependent, where they are neither for
+/// Refuses defaults with which the metric is singular or the constraints are dependent, if they are neither for
 /// indeterminate parameters.
 pub(super) fn check(
     resolver: &mut Resolver<'_>,

@@ -1,4 +1,4 @@
-//! Several surfaces of one gap: `otherwise`, and transitions that leave a motion without one.
+//! Several surfaces with one gap: `otherwise`, and transitions that leave a motion without one.
 
 use dalembert_expr::Pool;
 
@@ -7,7 +7,7 @@ use super::super::{Beside, Condition, Surface};
 use super::surfaces::have_same_gap;
 use crate::spec::Spec;
 
-/// Finds for each surface those of the same gap, where it matters: for `otherwise`, and for the last of several transitions.
+/// Finds the surfaces with the same gap, for `otherwise` and for the last of several transitions.
 pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
     let spec = resolver.spec;
     let otherwise: Vec<bool> = surfaces
@@ -73,7 +73,7 @@ pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<String
     notes
 }
 
-/// The margin of which one surface counts on one side and the other on the other side.
+/// Margin whose sign decides which of two surfaces counts.
 fn left_out(pool: &mut Pool, first: &Surface, second: &Surface) -> Option<String> {
     let ([one], [other]) = (&*first.conditions, &*second.conditions) else {
         return None;
@@ -88,7 +88,7 @@ fn is_otherwise(spec: &Spec, surface: &Surface) -> bool {
     declared.any(|other| other.item == surface.item && other.is_otherwise)
 }
 
-/// Refuses `otherwise` where there is nothing else, nothing left, or two of them.
+/// Refuses `otherwise` without another surface, with no case left, or twice.
 fn check_otherwise(
     resolver: &mut Resolver<'_>,
     surfaces: &[Surface],

@@ -1,7 +1,7 @@
-//! Remarks on differences whose terms nearly agree somewhere, and that have another form in which they do not.
+//! Remarks on differences whose terms nearly agree somewhere, and that have a form without cancellation.
 //!
-//! Looked for are `p f(e) - p` with `f(0) = 1`, for the functions in [`safe`], and `sqrt(p^2 + e) - p`: near `e = 0` the
-//! terms agree in their first digits, and what is left of them is rounding.
+//! The check finds `p f(e) - p` with `f(0) = 1`, for the functions in [`safe`], and `sqrt(p^2 + e) - p`. Near `e = 0`
+//! the leading digits of the terms cancel, and the rest is rounding.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::super::resolve::Resolver;
 use super::super::{Constraint, Lagrangian};
 use super::Parts;
 
-/// A difference, what is 0 where it loses its digits, and the form that keeps them.
+/// A difference, the expression at whose zeros it loses digits, and the form that keeps them.
 struct Cancellation {
     difference: ExprId,
     argument: ExprId,
@@ -33,7 +33,7 @@ enum Candidate {
     },
 }
 
-/// Remarks on everything that is evaluated along a run; each difference once.
+/// Remarks on all expressions that are evaluated along a run; one for each difference.
 pub(super) fn notes(
     resolver: &Resolver<'_>,
     lagrangian: &Lagrangian,

@@ -143,7 +143,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Refuses a quantity that the mode behind a transition has no name for.
+    /// Refuses a quantity for which the mode behind a transition has no name.
     fn check_known_behind(
         &mut self,
         value: &spec::Scalar,
@@ -216,7 +216,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// True if a scene uses the surface that a claim about it names, and says so where it does not.
+    /// True if a scene uses the surface that a claim about it names; reports an error otherwise.
     fn check_surface_of(
         &mut self,
         claim: &spec::Claim,

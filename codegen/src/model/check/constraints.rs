@@ -61,7 +61,7 @@ impl Resolver<'_> {
         self.multipliers.insert(name.to_owned(), symbol);
     }
 
-    /// The coefficients of a constraint are periodic in angles and differentiable.
+    /// Checks that the coefficients of a constraint are periodic in angles and differentiable.
     pub(super) fn check_coefficients(
         &mut self,
         equation: &Equation,

@@ -99,8 +99,8 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// The number of members of a declared family: none if it is not a family, one if its size is at fault, so that
-    /// the names of its members are known nevertheless. `present` members of all kinds were declared before.
+    /// Number of members of a declared family: `None` if it is not a family, 1 if its size is wrong, so that the names
+    /// of its members are still known. `present` members of all kinds were declared before.
     pub(super) fn family_size(
         &mut self,
         declared: &Declared,
@@ -118,7 +118,7 @@ impl<'s> Resolver<'s> {
         }
         let text = format!("{total} {what}; the limit is {limit}");
         self.refuse::<()>(declared.name.at, text, "split the model");
-        // Some more members are known than allowed, so that their uses are no errors of their own.
+        // Some members beyond the limit are known, so that their uses are not reported as well.
         size.map(|size| size.min(4 * limit))
     }
 

@@ -51,8 +51,8 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Option<Vec<ExprId>> {
     rates.into_iter().collect()
 }
 
-/// A Lagrangian that stands for none: with the metric of the coordinates, so that what is lowered of any model finds one.
-/// Nothing that is emitted shows it.
+/// Placeholder Lagrangian with the metric of the coordinates, so that the lowering of any model finds one. It does not
+/// appear in the emitted code.
 pub(super) fn euclidean(pool: &mut Pool, size: usize, item: ItemId) -> Lagrangian {
     let (zero, one) = (pool.zero(), pool.one());
     let row = |i: usize| (0..size).map(|j| if i == j { one } else { zero }).collect();
@@ -74,7 +74,7 @@ fn refuse_second(resolver: &mut Resolver<'_>, index: usize, at: Location, first:
         .also(first, "first given here");
 }
 
-/// Refuses what a first-order system cannot have.
+/// Refuses declarations that a first-order system cannot have.
 pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
     let spec = resolver.spec;
     let Some(field) = &spec.field else {
@@ -179,7 +179,7 @@ impl Resolver<'_> {
         self.within_budget(rate.value.at).then_some(value)
     }
 
-    /// Refuses a name of mechanics where there is none.
+    /// Refuses a name of mechanics in a first-order system.
     pub(in crate::model) fn refuse_without_mechanics<T>(
         &mut self,
         at: Location,

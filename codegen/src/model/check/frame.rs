@@ -40,7 +40,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<QuasiForm> {
 }
 
 impl Resolver<'_> {
-    /// Refuses a quasi-velocity that is called like a coordinate.
+    /// Refuses a quasi-velocity with the name of a coordinate.
     fn check_not_a_velocity(&mut self, entry: &Quantity, name: &Name) {
         let coordinates = &self.symbols.coordinates;
         if coordinates

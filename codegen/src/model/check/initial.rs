@@ -34,7 +34,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
     initial
 }
 
-/// Remarks on coordinates that would start outside of their interval.
+/// Remarks on coordinates that start outside of their interval.
 pub(super) fn notes(resolver: &Resolver<'_>, initial: &Initial) -> Vec<String> {
     let coordinates = resolver.symbols.coordinates.iter().zip(&initial.q);
     let outside = coordinates.filter(|(coordinate, value)| {
@@ -61,7 +61,7 @@ fn target_text(entry: &InitialValue) -> String {
 }
 
 impl Resolver<'_> {
-    /// The coordinates that an entry is about, each with what its index stands for; one without meaning for `until`.
+    /// Coordinates of an entry, each with the value of its index; one without meaning for `until`.
     fn initial_targets(&mut self, entry: &InitialValue) -> Vec<(usize, Scope)> {
         match entry.target {
             InitialTarget::Until => vec![(0, Scope::default())],
@@ -128,7 +128,7 @@ impl Resolver<'_> {
         )
     }
 
-    /// True if a value may lie in the set that a coordinate runs through; one that depends on parameters may.
+    /// True if a value may lie in the set of a coordinate. A value that depends on parameters may.
     fn is_in_chart(&self, topology: Topology, value: ExprId) -> bool {
         let Topology::Interval { low, high } = topology else {
             return true;

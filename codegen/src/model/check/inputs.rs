@@ -1,4 +1,5 @@
-//! Inputs act in forces and rates only: what is differentiated, or decides where motion is allowed, has to be known.
+//! Inputs may act in forces and rates only. Expressions that are differentiated, or that decide where motion is
+//! allowed, must be known.
 
 use dalembert_expr::ExprId;
 
@@ -21,8 +22,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Refuses what holds for inputs that are held, and need not for those that depend on the state: in the model, and in scenes with
-/// a force that an input acts in.
+/// Refuses claims that hold for constant inputs but may fail for inputs that depend on the state: in the model, and in
+/// scenes with a force in which an input acts.
 pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes: &[Scene]) {
     let spec = resolver.spec;
     let Some(first) = spec.inputs.first() else {

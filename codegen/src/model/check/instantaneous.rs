@@ -1,5 +1,5 @@
-//! Constraints that hold in the moment of an impact only: one-forms like all constraints, independent of those that hold
-//! always and of the surface.
+//! Constraints that hold only at an impact: one-forms like all constraints, independent of the permanent ones and of
+//! the surface.
 
 use dalembert_expr::ExprId;
 
@@ -46,7 +46,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Refuses instantaneous constraints that follow from others, and those that leave nothing to the law of their surface.
+/// Refuses instantaneous constraints that follow from others, and those that determine the impact completely.
 pub(super) fn check_independent(
     resolver: &mut Resolver<'_>,
     surfaces: &[Surface],

@@ -1,4 +1,4 @@
-//! Remarks on constraints that are integrable without saying so.
+//! Remarks on constraints that are integrable but not declared as such.
 //!
 //! `omega = eta + eta_0 dt` on Q x R is closed if `d omega = 0` and integrable if `omega ^ d omega = 0` (a single
 //! form; Frobenius). Both are looked for, and neither is used: only a constraint written as `d(f)` or as an equation of
@@ -10,7 +10,7 @@ use super::super::Constraint;
 use super::super::degree::is_zero;
 use super::super::resolve::Resolver;
 
-/// A form with more entries than this is not looked at: the number of conditions grows with the cube.
+/// Number of entries beyond which a form is not examined: the number of conditions grows with the cube.
 const LARGEST_SUPPORT: usize = 12;
 
 /// Remarks on all constraints without a level.

@@ -79,7 +79,7 @@ impl Resolver<'_> {
         self.refuse(written.at, text, HELP)
     }
 
-    /// The value of an expression of the parameters at their defaults; NaN if one that it needs has none.
+    /// Value of an expression of the parameters at their defaults; NaN if a parameter that it needs has none.
     fn value_at_defaults(&self, expr: ExprId) -> f64 {
         let default = |symbol: SymbolId| {
             let parameter = self
@@ -154,7 +154,7 @@ fn affine_note(surface: &Surface) -> Option<String> {
     matches!(surface.law, Law::Elastic | Law::Restitution(_)).then_some(text)
 }
 
-/// Remarks on coefficients that the assumptions of the parameters do not keep in `[0, 1]`, one for each declaration.
+/// Remarks on coefficients that may leave `[0, 1]` under the assumptions of the parameters, one for each declaration.
 fn coefficient_notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<String> {
     let mut notes: Vec<String> = Vec::new();
     for members in surfaces.chunk_by(|a, b| a.item == b.item) {

@@ -1,4 +1,4 @@
-//! The rules a declaration must satisfy: one file per topic.
+//! Rules of the language, one file per topic.
 //!
 //! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
 //! constraints) follows for those without a fault. So independent mistakes are all reported.
@@ -146,7 +146,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
         at_defaults::check(resolver, lagrangian, &parts.constraints);
         resolver.within_budget(written.value.at);
     }
-    // Rules broken by some of the constraints are broken by all of them: those that were refused may be missing.
+    // A rule that some of the constraints violate is not reported for all of them: refused constraints may be missing.
     field::check_alone(resolver);
     field::check_surfaces(resolver);
     nonlinear::check_alone(resolver, &parts.constraints);
@@ -352,8 +352,8 @@ fn forces(resolver: &mut Resolver<'_>) -> Vec<Force> {
 }
 
 impl Resolver<'_> {
-    /// Makes the variables in the order in which a person writes a product: parameters, coordinates, velocities.
-    /// Symbols that are made first are printed first.
+    /// Creates the variables in the usual order of a product: parameters, coordinates, velocities. Symbols that are
+    /// created first are printed first.
     fn order_symbols(&mut self) {
         let (parameters, coordinates) = (&self.symbols.parameters, &self.symbols.coordinates);
         let parameters = parameters.iter().map(|parameter| parameter.symbol);

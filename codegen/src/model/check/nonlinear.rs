@@ -1,12 +1,13 @@
 //! Constraints that are not linear in the velocities, whose forces follow Chetaev's rule.
 //!
-//! What is known of linear constraints only is refused beside them: frames, impulses at surfaces, volumes.
+//! Declarations that are supported for linear constraints only are refused beside them: frames, impulses at surfaces,
+//! volumes.
 
 use super::super::Constraint;
 use super::super::resolve::Resolver;
 use crate::spec::{Declared, RESET, Statement};
 
-/// Refuses what such constraints leave undefined.
+/// Refuses declarations that such constraints leave undefined.
 pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
     let Some(first) = constraints
         .iter()

@@ -22,7 +22,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// Inputs are kept as parameters that are 0 until they are set.
+    /// Inputs are stored as parameters with the value 0 until they are set.
     fn input_family(&mut self, written: &'s Supplied) {
         let first = self.symbols.parameters.len();
         let size = self.family_size(

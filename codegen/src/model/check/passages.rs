@@ -5,9 +5,9 @@ use dalembert_expr::{ExprId, Pool};
 use super::super::Surface;
 use super::super::resolve::Resolver;
 
-/// Remarks on resets that set something and yet neither move the state off their surface nor change the rate of the gap. The
-/// motion goes on through the surface: such a reset happens once in every passage, and is no impact. One that sets nothing marks
-/// an event on purpose, and is not remarked on.
+/// Remarks on resets that set a value but neither move the state off their surface nor change the gap rate. The motion
+/// continues through the surface, so such a reset happens once in every passage and is not an impact. A reset that sets
+/// nothing marks an event on purpose; it gets no remark.
 pub(super) fn notes(
     resolver: &Resolver<'_>,
     surfaces: &[Surface],

@@ -21,7 +21,7 @@ const LARGEST_DEGREE: u32 = 8;
 const LINES: u64 = 6;
 
 impl Resolver<'_> {
-    /// Refuses a gap without a zero set, or with one where the gradient vanishes.
+    /// Refuses a gap without zeros, and a gap whose gradient vanishes at its zeros.
     pub(super) fn check_regular(&mut self, at: Location, gap: ExprId) -> Option<()> {
         let sign = self.pool.sign(gap);
         if sign.is_nonzero() {
@@ -114,7 +114,7 @@ fn polynomial_fault(resolver: &Resolver<'_>, gap: ExprId) -> Option<Fault> {
     is_reached.then_some(Fault::Repeated)
 }
 
-/// A straight line `point + s*direction` through the charts, and fixed values of everything else.
+/// A straight line `point + s*direction` through the charts, and fixed values of all other symbols.
 struct Line {
     /// Symbol, point, direction.
     coordinates: Vec<(SymbolId, Rational, Rational)>,

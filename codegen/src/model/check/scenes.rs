@@ -21,14 +21,14 @@ struct Material<'m> {
     scenes: Vec<Scene>,
 }
 
-/// All scenes. What they name was declared, each before the scene that uses it.
+/// All scenes. A scene may only name earlier declarations.
 pub(super) fn resolve(
     resolver: &mut Resolver<'_>,
     forces: &[Force],
     surfaces: &[Surface],
 ) -> Vec<Scene> {
     let spec = resolver.spec;
-    // A force or a surface that was refused is missing here; nothing is said of the scenes that name it.
+    // A refused force or surface is missing here. Scenes that name it are not reported as well.
     let is_complete = resolver.diagnostics.is_empty();
     let mut material = Material {
         forces,
@@ -61,7 +61,7 @@ pub(super) fn resolve(
     material.scenes
 }
 
-/// True if two scenes would name the same type, that of their global form among them.
+/// True if two scenes would have the same type name, that of their global forms included.
 fn share_a_type(a: &str, b: &str) -> bool {
     a == b || *a == format!("{b}Global") || *b == format!("{a}Global")
 }
@@ -107,7 +107,7 @@ impl Resolver<'_> {
         true
     }
 
-    /// Adds what a part of a scene names to what the scene uses.
+    /// Adds the declarations that a part of a scene names.
     fn scene_part(&mut self, part: &Declared, material: &Material<'_>, parts: &mut Parts) {
         let field = part.name.text.as_str();
         let members: Vec<String> = match part.index {
@@ -160,7 +160,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Says that a scene names something that it cannot use.
+    /// Reports a name that a scene cannot use.
     fn refuse_scene_part(&mut self, part: &Declared, material: &Material<'_>) {
         let field = part.name.text.as_str();
         let at: Location = part.name.at;
@@ -201,7 +201,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The places of what is true.
+/// Positions of true entries.
 fn places(marks: impl Iterator<Item = bool>) -> Vec<usize> {
     let marks = marks.enumerate().filter(|(_, mark)| *mark);
     marks.map(|(place, _)| place).collect()

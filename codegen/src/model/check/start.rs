@@ -7,11 +7,11 @@ use super::super::{Condition, Constraint, Initial, Law, Surface};
 use crate::diagnostics::Location;
 use crate::spec::InitialTarget;
 
-/// Numbers smaller than this part of their terms may be rounding.
+/// Relative size below which a sum may be rounding.
 const MARGIN: f64 = 1e-9;
 
-/// Refuses a start behind a wall or off the constraints, at the defaults of the parameters. What follows from no declared
-/// value is left to the caller, and so are parameters without defaults.
+/// Refuses a start behind a wall or off the constraints, at the defaults of the parameters. Values that do not follow
+/// from declared ones are left to the caller, as are parameters without defaults.
 pub(super) fn check(
     resolver: &mut Resolver<'_>,
     initial: &Initial,
@@ -39,10 +39,10 @@ struct Refused {
 /// The declared start, as far as it is known while building.
 struct Start<'a, 'b> {
     resolver: &'a Resolver<'b>,
-    /// Residuals of constraints are made in a copy: the check adds nothing to the model.
+    /// Residuals of constraints are computed in a copy of the pool: the check adds nothing to the model.
     pool: Pool,
     initial: &'a Initial,
-    /// Coordinates without a declared value that an equation of positions gives one, at run time.
+    /// Coordinates without a declared value that an equation of positions determines at run time.
     solved_for: Vec<SymbolId>,
 }
 

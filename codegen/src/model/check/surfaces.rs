@@ -163,7 +163,7 @@ pub(super) fn check_reachable(
     }
 }
 
-/// Refuses surfaces that are the same up to a constant factor: two reflections in one wall let everything through.
+/// Refuses surfaces that are equal up to a constant factor: two reflections in one wall would let every motion through.
 pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) {
     for (index, second) in surfaces.iter().enumerate() {
         for first in &surfaces[..index] {
@@ -190,7 +190,7 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
     }
 }
 
-/// True if a surface counts where others do not; those it goes with are checked elsewhere.
+/// True if a surface counts where others do not. Its relation to surfaces with the same gap is checked elsewhere.
 fn is_otherwise(surface: &Surface) -> bool {
     matches!(surface.beside, Beside::Otherwise(_))
 }
@@ -202,8 +202,8 @@ pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second:
         && count_both_ways(&resolver.pool, first, second)
 }
 
-/// True if two surfaces with resets or transitions, the same up to a constant factor, lie opposite: one counts what falls,
-/// the other what rises.
+/// True if two surfaces with resets or transitions, equal up to a constant factor, have opposite orientation: one acts
+/// on falling motions, the other on rising ones.
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
     let passes = |surface: &Surface| matches!(surface.law, Law::Reset | Law::Transition);
     let are_resets = passes(first) && passes(second);

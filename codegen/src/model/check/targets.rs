@@ -1,4 +1,4 @@
-//! The coordinates that an assignment is about: `theta = ..`, `dot(theta[2]) = ..`, `theta[i in 1..=N] = ..`.
+//! Targets of an assignment: `theta = ..`, `dot(theta[2]) = ..`, `theta[i in 1..=N] = ..`.
 
 use super::super::resolve::{Resolver, Scope};
 use super::super::symbols::Meaning;
@@ -17,7 +17,7 @@ pub(super) enum Section {
 }
 
 impl Resolver<'_> {
-    /// The coordinates that a name with an index stands for, each with what is known where its value is written.
+    /// Coordinates that a name with an index denotes, each with the scope of its value.
     pub(super) fn targets(
         &mut self,
         declared: &Declared,

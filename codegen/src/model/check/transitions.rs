@@ -10,7 +10,7 @@ use crate::diagnostics::{Location, listed, nearest};
 use crate::spec::{self, Assignment, AssignmentTarget, Declared, Index, RESET};
 
 impl Resolver<'_> {
-    /// The transition that a surface is, if it is one; the outer `None` if it was refused.
+    /// Transition of a surface, if it has one; the outer `None` if it was refused.
     pub(super) fn transition(
         &mut self,
         surface: &spec::Surface,
@@ -54,7 +54,7 @@ impl Resolver<'_> {
         }))
     }
 
-    /// Without a reset a mode is entered with the same positions: refuses other coordinates.
+    /// Refuses other coordinates in a mode that is entered without a reset: its positions stay the same.
     fn check_same_coordinates(&mut self, peer: &Peer, at: Location) -> Option<()> {
         let names = self
             .symbols

@@ -198,23 +198,23 @@ fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
     }
     if streamed && args.parquet.is_some() {
         return Err(CliError::Usage(
-            "--csv - and --parquet: Parquet is made of rows in a file; give --csv one",
+            "--csv - and --parquet: Parquet is made from the rows of a file; give a file to --csv",
         ));
     }
     if args.resume && row_file(args).is_none() {
         return Err(CliError::Usage(
-            "--resume goes on with the file of --csv or --parquet: give one",
+            "--resume continues the file of --csv or --parquet: give one of them",
         ));
     }
     if args.parquet.is_some() && !cfg!(feature = "parquet") {
         return Err(CliError::Usage(
-            "--parquet: this program was built without it; build with `--features parquet`",
+            "--parquet: this program was built without Parquet; build it with `--features parquet`",
         ));
     }
     let timed = args.course.impacts.is_none() || args.run.until.is_some();
     if args.density.is_some() && !timed {
         return Err(CliError::Usage(
-            "--density counts over a time that is known: give --until with --impacts",
+            "--density needs a known end time: give --until with --impacts",
         ));
     }
     Ok(())

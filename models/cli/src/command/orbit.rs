@@ -82,7 +82,7 @@ fn search(model: &dyn AnyModel, args: &OrbitArgs) -> Result<Search, CliError> {
     }
     if args.state.off_constraint == OffConstraint::Keep {
         return Err(CliError::Usage(
-            "--off-constraint keep: orbits are looked for on the constraints; use error or project",
+            "--off-constraint keep: orbits are sought on the constraints; use error or project",
         ));
     }
     let surfaces = names::surfaces(&description);

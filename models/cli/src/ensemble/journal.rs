@@ -244,7 +244,7 @@ fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
                 .map_or_else(|| "absent".to_owned(), Value::to_string);
             Err(invalid(format!(
                 "the file is of another ensemble: `{key}` was {was} and is {value}; give the same flags, or leave out --resume \
-                 to begin anew"
+                 to start again"
             )))
         }
     }
@@ -256,7 +256,7 @@ fn open_sums(path: &Path) -> Result<File, CliError> {
     opened.map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => CliError::Input {
             place: format!("--resume {}", path.display()),
-            reason: "there is no such file: rows without their checksums are not continued; leave out --resume to begin anew"
+            reason: "the file of checksums is missing, and rows without checksums are not continued; leave out --resume to start again"
                 .to_owned(),
         },
         _ => failed("--resume", path, error),
@@ -269,13 +269,13 @@ fn altered(path: &Path, line: u64) -> CliError {
         1 => ("header", ""),
         _ => (
             "row",
-            "cut the file before this line to go on from there, or ",
+            "cut the file before this line to continue from there, or ",
         ),
     };
     CliError::Input {
         place: format!("--resume {}, line {line}", path.display()),
         reason: format!(
-            "the {what} was altered since it was written, as its checksum tells; {help}leave out --resume to begin anew"
+            "the {what} was altered after it was written: its checksum differs; {help}leave out --resume to start again"
         ),
     }
 }
@@ -400,8 +400,8 @@ fn load(path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
     };
     members_of(&content, counts).ok_or_else(|| CliError::Input {
         place: format!("--resume {}", path.display()),
-        reason: "the counts were altered since they were written, as their checksum tells; remove the file to count from the \
-                 first member on, or leave out --resume to begin anew"
+        reason: "the counts were altered after they were written: their checksum differs; remove the file to count from the \
+                 first member on, or leave out --resume to start again"
             .to_owned(),
     })
 }

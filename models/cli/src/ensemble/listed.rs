@@ -90,7 +90,7 @@ fn parse(
     let columns = columns(place, header, description)?;
     if columns.is_empty() {
         return Err(invalid(
-            "no column is named like a coordinate, a velocity or a parameter".to_owned(),
+            "no column has the name of a coordinate, a velocity or a parameter".to_owned(),
         ));
     }
     let mut rows = Vec::new();
@@ -101,7 +101,7 @@ fn parse(
         members += 1;
         if members > limits.members {
             return Err(invalid(format!(
-                "more than {} rows, which is the most that --from takes; divide the file",
+                "the file exceeds the limit of {} rows; divide it",
                 limits.members
             )));
         }
@@ -130,10 +130,7 @@ struct Bounded<'a, R> {
 impl<R: Read> Read for Bounded<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.since_row.get() > self.most {
-            let text = format!(
-                "a row of more than {} bytes, which is the most that --from takes",
-                self.most
-            );
+            let text = format!("a row exceeds the limit of {} bytes", self.most);
             return Err(io::Error::new(io::ErrorKind::InvalidData, text));
         }
         let read = self.file.read(buffer)?;

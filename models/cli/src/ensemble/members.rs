@@ -149,15 +149,17 @@ impl Members {
 fn count(varied: &[Varied], asked: Asked) -> Result<u64, CliError> {
     let mut factors = varied.iter().map(|(.., values)| values.count());
     let product = factors.try_fold(1_u64, u64::checked_mul);
-    let product = product.ok_or(CliError::Usage("--vary: more members than can be counted"))?;
+    let product = product.ok_or(CliError::Usage(
+        "--vary: the number of members exceeds 2^64",
+    ))?;
     match (asked.random, asked.members) {
         (true, None) => Err(CliError::Usage("--random needs --members N")),
-        (true, Some(_)) if varied.is_empty() => {
-            Err(CliError::Usage("--random needs --vary: nothing is drawn"))
-        }
+        (true, Some(_)) if varied.is_empty() => Err(CliError::Usage(
+            "--random needs --vary, which names the quantities to draw",
+        )),
         (true, Some(count)) => Ok(count),
         (false, Some(count)) if varied.is_empty() && count > 1 => Err(CliError::Usage(
-            "--members: nothing differs between them; say what with --vary or --from",
+            "--members: all members are equal; vary a quantity with --vary, or give --from",
         )),
         (false, Some(count)) if count != product => Err(CliError::value(
             "--members",

@@ -30,7 +30,7 @@ pub fn density(
     let samples = count_samples(discard, every, until);
     if samples == 0 {
         return Err(CliError::Usage(
-            "--density: a run ends before there is anything to count; make --every or --discard smaller, or --until later",
+            "--density: a run ends before the first counted state; make --every or --discard smaller, or --until later",
         ));
     }
     let mut axes = wish.axes;

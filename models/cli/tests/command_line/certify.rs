@@ -209,7 +209,7 @@ fn motion_from_mode_to_mode_is_certified() {
     );
     let done = certify(WALKER, "--certify-within x=0..1");
     assert!(
-        done.errors.contains("from single starts alone"),
+        done.errors.contains("from a single start only"),
         "{}",
         done.errors
     );

@@ -377,7 +377,7 @@ fn a_row_that_was_altered_is_not_continued() {
             alter(&folder, "rows.csv", place, byte);
             let refused = resumed();
             assert_eq!(refused.exit, Exit::Refused, "{at}: {}", refused.output);
-            for part in ["--resume", "rows.csv", at, "altered", "begin anew"] {
+            for part in ["--resume", "rows.csv", at, "altered", "start again"] {
                 assert!(refused.errors.contains(part), "{}", refused.errors);
             }
             fs::write(folder.0.join("rows.csv"), &whole).unwrap();

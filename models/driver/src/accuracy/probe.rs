@@ -288,8 +288,9 @@ mod tests {
         };
         let finding = Finding::NoDenseOutput { t: 1.0 };
         for audit in [Audited::Not, Audited::Impossible, Audited::Doubted(finding)] {
-            assert!(audit.doubt(&description).is_some(), "{audit:?}");
+            let doubt = audit.doubt(&description, "the run").expect("a doubt");
+            assert!(doubt.contains("the run"), "{audit:?}: {doubt}");
         }
-        assert_eq!(Audited::Confirmed.doubt(&description), None);
+        assert_eq!(Audited::Confirmed.doubt(&description, "the run"), None);
     }
 }

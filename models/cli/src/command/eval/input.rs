@@ -55,8 +55,7 @@ pub fn read(
         None => ("standard input".to_owned(), read_bytes(stdin)?),
     };
     if bytes.len() as u64 > MOST {
-        let reason =
-            format!("more than {MOST} bytes, which is the most that is read; divide the states");
+        let reason = format!("the input exceeds the limit of {MOST} bytes; divide the states");
         return Err(invalid(&place, reason));
     }
     let value = json::parse(&bytes).map_err(|error| invalid(&place, error.to_string()))?;

@@ -41,7 +41,7 @@ pub(super) fn run(
     let is_projected = args.run.state.off_constraint == OffConstraint::Project;
     if is_projected && !args.certify.certify_within.is_empty() {
         return Err(CliError::Usage(
-            "--certify-within: a start that is projected is a single one; leave out --off-constraint project",
+            "--certify-within: ranges of starts are not projected; leave out --off-constraint project",
         ));
     }
     let within = Within::parse(model.as_mut(), settings.form, &args.certify)?;

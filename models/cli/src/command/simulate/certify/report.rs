@@ -42,6 +42,7 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
         Some(lost) => {
             let lost = text(&description, lost);
             writeln!(output, "  {:<width$}{lost}", "lost")?;
+            writeln!(output, "  {:<width$}{NARROWER}", "try")?;
         }
     }
     let others = match (description.surfaces, certified.impacts) {
@@ -83,6 +84,10 @@ fn range(range: Interval) -> String {
     let Interval { lo, hi } = range;
     format!("[{lo:?}, {hi:?}] (width {:.1e})", range.width())
 }
+
+/// Remedy against the early end of a certification.
+const NARROWER: &str =
+    "a smaller --until, narrower ranges of --certify-within, or a start away from the event";
 
 /// The time up to which motion is certified, and the reason for the end of certification.
 pub(super) fn text(description: &Description, lost: &Lost) -> String {

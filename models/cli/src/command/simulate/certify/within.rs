@@ -45,7 +45,7 @@ impl Within {
         let description = model.description();
         if !description.modes.is_empty() {
             return Err(CliError::Usage(
-                "--certify-within: the motion of a model with modes is certified from single starts alone",
+                "--certify-within: a model with modes is certified from a single start only; leave out the ranges",
             ));
         }
         let (name, value) = names::assignment(FLAG, text, "NAME=LO..HI")?;
@@ -57,7 +57,7 @@ impl Within {
         let is_bound = !description.constraints.is_empty() && !is_reduced;
         if is_start && is_bound {
             return Err(CliError::Usage(
-                "--certify-within: without a reduced form the constraints choose the start; only parameters may have ranges",
+                "--certify-within: the constraints determine the start of a model without reduced form; only parameters may have ranges",
             ));
         }
         let rates: Vec<&str> = match (is_reduced, description.is_first_order) {
@@ -111,7 +111,7 @@ impl Within {
         }
         if !self.rates.is_empty() && beginning.has_momenta() {
             return Err(CliError::Usage(
-                "--certify-within: velocities have no ranges beside --p; give --qdot",
+                "--certify-within: ranges of velocities need --qdot in place of --p",
             ));
         }
         for &(index, range) in &self.rates {
