@@ -26,7 +26,7 @@ static LEDGE: Text = Text::new(
     }",
 );
 
-/// As before, with a narrow peak as the condition, of no finite degree.
+/// The same with a narrow peak as the condition, of no finite degree.
 static PEAK: Text = Text::new(
     "Peak {
         coordinates { x; }
@@ -83,7 +83,7 @@ static OPEN_ATTIC: Text = Text::new(
 /// Long steps, of the integrators that keep theirs.
 const STEP: f64 = 0.73;
 
-/// Where runs by every integrator end, at several tolerances.
+/// Ends of runs by every integrator, at several tolerances.
 fn ends(
     system: &Model,
     (q, qdot): (&[f64], &[f64]),

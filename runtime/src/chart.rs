@@ -1,4 +1,5 @@
-//! Where a coordinate leaves the interval of its chart inside a step, as enclosures of the coordinate along the step tell.
+//! Times inside a step at which a coordinate leaves the interval of its chart, from enclosures of the coordinate along
+//! the step.
 
 use crate::contract::{Chart, System};
 use crate::effects::StepView;

@@ -1,5 +1,5 @@
-//! Where constraint forms become dependent inside a step: stretches on which they are enclosed as independent are passed, the others are
-//! halved and looked at closely.
+//! Times inside a step at which constraint forms become dependent. Stretches on which an enclosure proves independence
+//! are passed; the others are halved and examined.
 
 use crate::contract::{RankDrop, System};
 use crate::effects::StepView;

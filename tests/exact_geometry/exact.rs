@@ -24,7 +24,7 @@ impl Flight {
     }
 }
 
-/// What the exact flight does.
+/// Result of the exact flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Exact {
     Hits {
@@ -36,7 +36,7 @@ pub enum Exact {
     Grazes,
 }
 
-/// How shallow an impact must be to count as a graze, in parts of the speed.
+/// Largest gap rate, relative to the speed, of an impact that counts as a graze.
 pub const SHALLOW: f64 = 1e-3;
 
 /// The first impact, by conservative advancement.

@@ -324,7 +324,7 @@ fn leaving(random: &mut Random) -> Case {
     case.flight.v = [speed * turned.cos(), speed * turned.sin()];
     let table = [a, b, r]
         .into_iter()
-        .fold(1.0, |size: f64, own| size.max(own.abs()));
+        .fold(1.0, |size: f64, course| size.max(course.abs()));
     case.until = 4.0 * table / speed;
     case.fastest = speed;
     case.after = 1e-3 * r / speed;

@@ -38,7 +38,7 @@ struct Tally {
     grazes: u64,
 }
 
-/// What is wrong with the first impact of a run, if anything.
+/// Mistake in the first impact of a run, if there is one.
 fn mistake(
     case: &Case,
     course: Course<'_, Model>,

@@ -37,7 +37,7 @@ struct Tally {
     wrong: Vec<String>,
 }
 
-/// How the reference runs are made.
+/// Integrators of the reference runs.
 fn references() -> [Way; 2] {
     [Integrator::Taylor, Integrator::Dop853].map(|integrator| Way {
         integrator,
@@ -63,12 +63,13 @@ fn reference(case: &Case, tally: &mut Tally) -> Option<Reference> {
         sure += 1;
     }
     let is_decided = sure < course.impacts.len() && sure < other.impacts.len();
-    let next = [&course, &other].map(|own| {
-        own.impacts
+    let next = [&course, &other].map(|course| {
+        course
+            .impacts
             .get(sure)
             .map(|hit| (hit.t, hit.surface, hit.graze))
     });
-    let kinds = [&course, &other].map(|own| own.ending.outcome.kind());
+    let kinds = [&course, &other].map(|measured| measured.ending.outcome.kind());
     // What ends the agreement is an error that has grown, a graze, or a mistake.
     let before = sure.checked_sub(1).map_or(0.0, |k| {
         error(&course.impacts[k], &other.impacts[k], case.until)
@@ -98,7 +99,7 @@ fn told(case: &Case) -> String {
     format!("    {} {:?}", values.join(" "), case.origin)
 }
 
-/// What is wrong with a run, if anything.
+/// Mistake of a run, if there is one.
 fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     let Reference { course, sure } = reference;
     let last = course.ending.t;
@@ -106,10 +107,10 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
         Outcome::Done => last,
         _ => last + 1e-3 * case.until,
     };
-    let own = run(case, way, until)?;
-    let outcome = own.ending.outcome;
+    let measured = run(case, way, until)?;
+    let outcome = measured.ending.outcome;
     let told = |what: &str| {
-        let [ours, theirs] = [&own, course].map(|one| {
+        let [ours, theirs] = [&measured, course].map(|one| {
             let hits: Vec<_> = one.impacts.iter().map(|hit| (hit.surface, hit.t)).collect();
             format!(
                 "{:?} at {} after {hits:?}",
@@ -127,8 +128,8 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     }
     let mut worst: f64 = 0.0;
     for (k, there) in course.impacts[..*sure].iter().enumerate() {
-        let Some(here) = own.impacts.get(k) else {
-            let is_out_of_depth = !way.integrator.is_adaptive() && !own.ending.reached;
+        let Some(here) = measured.impacts.get(k) else {
+            let is_out_of_depth = !way.integrator.is_adaptive() && !measured.ending.reached;
             return match is_out_of_depth {
                 true => None,
                 false => told("an impact is missing"),
@@ -146,10 +147,10 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
             return None;
         }
     }
-    let [ours, theirs] = [&own, course].map(|one| &one.ending.last);
+    let [ours, theirs] = [&measured, course].map(|one| &one.ending.last);
     let is_lost = apart(&theirs.q, &ours.q).max(apart(&theirs.qdot, &ours.qdot)) > LOST;
-    let is_whole = *sure == course.impacts.len() && own.ending.t == last && !is_lost;
-    match is_whole && own.impacts.len() != *sure {
+    let is_whole = *sure == course.impacts.len() && measured.ending.t == last && !is_lost;
+    match is_whole && measured.impacts.len() != *sure {
         true => told("an impact too many"),
         false => None,
     }

@@ -11,7 +11,7 @@ use crate::starts::Case;
 /// Impacts that are followed.
 pub const IMPACTS: u64 = 16;
 
-/// What a run did.
+/// Impacts and end of a run.
 pub struct Course {
     pub impacts: Vec<Impact>,
     pub ending: Ending,
@@ -30,7 +30,7 @@ impl Watch for Log {
     fn contact(&mut self, _: Contact) {}
 }
 
-/// How a run is made.
+/// Settings of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Way {
     pub integrator: Integrator,
@@ -80,9 +80,9 @@ pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> 
 }
 
 /// The error of a run behind an impact, by that of a reference: of time in parts of the run, of the state in parts of its size.
-pub fn error(own: &Impact, reference: &Impact, until: f64) -> f64 {
-    let time = (own.t - reference.t).abs() / until;
-    let after = (&own.after, &reference.after);
+pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
+    let time = (impact.t - reference.t).abs() / until;
+    let after = (&impact.after, &reference.after);
     time.max(apart(&after.0.q, &after.1.q))
         .max(apart(&after.0.qdot, &after.1.qdot))
 }

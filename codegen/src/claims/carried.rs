@@ -58,7 +58,7 @@ impl<'c> Carried<'c> {
     /// A form at a wall; of a transition with the mode that is entered.
     ///
     /// # Errors
-    /// Why it is not known behind the wall.
+    /// The reason for which the form is not known behind the wall.
     pub(super) fn of(
         model: &mut Model,
         around: &Surroundings<'_>,
@@ -140,7 +140,7 @@ impl<'c> Carried<'c> {
             return Some([positions, Vec::new()]);
         }
         let velocity: Vec<_> = (model.coordinates.iter().enumerate())
-            .map(|(i, own)| jets.variable(n + i, point.symbol(&model.pool, own.qdot)))
+            .map(|(i, coordinate)| jets.variable(n + i, point.symbol(&model.pool, coordinate.qdot)))
             .collect();
         let velocities = match &self.wall.passage {
             Some(passage) => passage.velocities_along(jets, point, &series, &velocity)?,
@@ -167,7 +167,7 @@ impl<'c> Carried<'c> {
         Some(motion)
     }
 
-    /// What is evaluated behind the surface, with the velocities there where they are computed.
+    /// Values behind the surface, with the velocities there if they are computed.
     fn values_behind<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -178,7 +178,11 @@ impl<'c> Carried<'c> {
         if !self.computes_velocities() || self.rates.is_some() {
             return point.values(&model.pool, &order);
         }
-        let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.qdot).collect();
+        let symbols: Vec<SymbolId> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.qdot)
+            .collect();
         let before: Vec<_> = (symbols.iter())
             .map(|symbol| point.symbol(&model.pool, *symbol))
             .collect();
@@ -207,7 +211,7 @@ impl<'c> Carried<'c> {
         let jets = Jets::new(field, &space);
         let [positions, velocities] = self.map(model, point, &jets, &values)?;
         let numbers = |series: &[Series<P::Field>]| -> Vec<Number<P>> {
-            series.iter().map(|own| jets.value(own)).collect()
+            series.iter().map(|entry| jets.value(entry)).collect()
         };
         let behind = self.values_behind(model, point, &numbers(&velocities))?;
         let outgoing = self
@@ -224,8 +228,8 @@ impl<'c> Carried<'c> {
         let carried = vectors.iter().map(|vector| {
             let share = field.mul(gap(vector), share);
             let ends = push(vector).into_iter().zip(outgoing.iter().zip(&image));
-            let turned =
-                ends.map(|(own, (to, by))| field.add(own, field.mul(share, field.sub(*to, *by))));
+            let turned = ends
+                .map(|(pushed, (to, by))| field.add(pushed, field.mul(share, field.sub(*to, *by))));
             turned.collect()
         });
         let carried: Vec<Vec<Number<P>>> = carried.collect();
@@ -309,8 +313,12 @@ impl Behind {
         if let Some(rates) = there.field.clone() {
             form = with_rates(&mut there, form, &rates);
         }
-        let mut symbols: Vec<SymbolId> = there.coordinates.iter().map(|own| own.q).collect();
-        symbols.extend(there.coordinates.iter().map(|own| own.qdot));
+        let mut symbols: Vec<SymbolId> = there
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.q)
+            .collect();
+        symbols.extend(there.coordinates.iter().map(|coordinate| coordinate.qdot));
         let qdot = match wall.passage.as_ref().map(|passage| &passage.velocities) {
             Some(Velocities::Declared(values, _)) => values.clone(),
             _ => velocities_of(model),
@@ -323,10 +331,10 @@ impl Behind {
         for term in &form.terms {
             let mut slopes = Vec::new();
             for id in &term.differentials {
-                let own: Vec<ExprId> = (symbols.iter())
+                let row: Vec<ExprId> = (symbols.iter())
                     .map(|by| there.pool.diff(*id, *by))
                     .collect();
-                slopes.push(here(&own, &there)?);
+                slopes.push(here(&row, &there)?);
             }
             terms.push((here(&[term.coefficient], &there)?[0], slopes));
         }
@@ -375,7 +383,7 @@ impl Behind {
         let equations = [self.equations[0].as_slice(), self.equations[1].as_slice()];
         let found = accelerations(&jets, equations, &series)?;
         let mut motion = velocities.to_vec();
-        motion.extend(found.iter().map(|own| jets.value(own)));
+        motion.extend(found.iter().map(|entry| jets.value(entry)));
         Some(motion)
     }
 }
@@ -385,16 +393,23 @@ fn positions(model: &mut Model, wall: &Wall) -> Vec<ExprId> {
     match &wall.passage {
         Some(passage) => passage.positions.clone(),
         None => {
-            let symbols: Vec<SymbolId> = model.coordinates.iter().map(|own| own.q).collect();
+            let symbols: Vec<SymbolId> = model
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.q)
+                .collect();
             let pool = &mut model.pool;
-            symbols.into_iter().map(|own| pool.variable(own)).collect()
+            symbols
+                .into_iter()
+                .map(|symbol| pool.variable(symbol))
+                .collect()
         }
     }
 }
 
 /// A form of a first-order system with velocities replaced by rates.
 pub(super) fn with_rates(model: &mut Model, form: ExteriorForm, rates: &[ExprId]) -> ExteriorForm {
-    let velocities = model.coordinates.iter().map(|own| own.qdot);
+    let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
     let replacements: Vec<_> = velocities.zip(rates.iter().copied()).collect();
     let pool = &mut model.pool;
     let replaced = written_out(&form, |id| Some(pool.substitute(id, &replacements)));

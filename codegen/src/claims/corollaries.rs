@@ -90,21 +90,23 @@ fn keeps_energy(model: &mut Model, around: &Surroundings<'_>) -> bool {
         let changes = changes_at(model, around, surface, quantity, Wanted::Any);
         changes.is_ok_and(|changes| changes.together(true).shows_that_it_vanishes())
     };
-    matches!(along, Verdict::Proved(_)) && (0..model.surfaces.len()).all(|own| keeps(model, own))
+    matches!(along, Verdict::Proved(_))
+        && (0..model.surfaces.len()).all(|surface| keeps(model, surface))
 }
 
 /// The surfaces that bound the coordinates that are no angles; `None` if one of these is not known to be bounded.
 fn bounded(model: &mut Model) -> Option<Vec<String>> {
     let coordinates = model.coordinates.clone();
-    let is_open =
-        |own: &&crate::model::Coordinate| matches!(own.topology, Topology::Interval { .. });
-    if coordinates.iter().any(|own| is_open(&own)) {
+    let is_open = |coordinate: &&crate::model::Coordinate| {
+        matches!(coordinate.topology, Topology::Interval { .. })
+    };
+    if coordinates.iter().any(|coordinate| is_open(&coordinate)) {
         return None;
     }
     let lines = coordinates
         .iter()
-        .filter(|own| own.topology == Topology::Line);
-    let lines: Vec<SymbolId> = lines.map(|own| own.q).collect();
+        .filter(|coordinate| coordinate.topology == Topology::Line);
+    let lines: Vec<SymbolId> = lines.map(|coordinate| coordinate.q).collect();
     let mut ends = vec![[false; 2]; lines.len()];
     let mut names = Vec::new();
     for surface in model.surfaces.clone() {

@@ -301,7 +301,10 @@ impl<S: Copy> Products<S> {
 impl Products<f64> {
     /// A size beside which rounding is small.
     pub(super) fn size(&self) -> f64 {
-        let largest = |row: &Vec<f64>| row.iter().fold(1.0, |size: f64, own| size.max(own.abs()));
+        let largest = |row: &Vec<f64>| {
+            row.iter()
+                .fold(1.0, |size: f64, entry| size.max(entry.abs()))
+        };
         let each = self.products.iter().map(|(coefficient, rows)| {
             coefficient.abs() * rows.iter().map(largest).product::<f64>()
         });
@@ -354,8 +357,8 @@ pub(super) fn written_out(
     let mut form = form.clone();
     for term in &mut form.terms {
         term.coefficient = explicit(term.coefficient)?;
-        for own in &mut term.differentials {
-            *own = explicit(*own)?;
+        for differential in &mut term.differentials {
+            *differential = explicit(*differential)?;
         }
     }
     Some(form)

@@ -143,14 +143,18 @@ fn kept_by_motion(
     verdict
 }
 
-/// Where the form may jump along a motion, in words.
+/// Places where the form may jump along a motion, in words.
 fn discontinuities(
     model: &mut Model,
     around: &Surroundings<'_>,
     form: &ExteriorForm,
 ) -> Option<String> {
-    let mut symbols: Vec<_> = model.coordinates.iter().map(|own| own.q).collect();
-    symbols.extend(model.coordinates.iter().map(|own| own.qdot));
+    let mut symbols: Vec<_> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
+    symbols.extend(model.coordinates.iter().map(|coordinate| coordinate.qdot));
     let mut parts: Vec<ExprId> = form.terms.iter().map(|term| term.coefficient).collect();
     for id in form.terms.iter().flat_map(|term| &term.differentials) {
         parts.extend(symbols.iter().map(|by| model.pool.diff(*id, *by)));
@@ -173,7 +177,10 @@ pub(super) fn kept_at_surface(
         let text = "instantaneous constraints are not examined";
         return Verdict::Undecided(text.to_owned());
     }
-    let enters = declared.transition.as_ref().map(|own| own.enters);
+    let enters = declared
+        .transition
+        .as_ref()
+        .map(|transition| transition.enters);
     let entered = enters.and_then(|enters| around.others.get(enters)).copied();
     let wall = Wall::of(model, around.derivation, surface, around.others);
     match &wall.passage {

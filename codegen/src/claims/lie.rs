@@ -117,7 +117,7 @@ impl<'l> Lie<'l> {
             true => Vec::new(),
             false => self.motion(model, point, &jets, &values)?,
         };
-        let speeds: Vec<Number<P>> = motion.iter().map(|own| jets.value(own)).collect();
+        let speeds: Vec<Number<P>> = motion.iter().map(|entry| jets.value(entry)).collect();
         let row = |id: ExprId| -> Vec<Number<P>> {
             let along = |vector: &Vec<_>| expansions.along(field, &values, id, vector);
             vectors.iter().map(along).collect()

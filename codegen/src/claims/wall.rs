@@ -206,10 +206,10 @@ impl Wall {
         let velocity: Vec<_> = self
             .velocities
             .iter()
-            .map(|own| jets.constant(point.symbol(&model.pool, *own)))
+            .map(|velocity| jets.constant(point.symbol(&model.pool, *velocity)))
             .collect();
         let after = self.struck(&jets, &|id| jets.constant(values[id.index()]), &velocity)?;
-        Some(after.iter().map(|own| jets.value(own)).collect())
+        Some(after.iter().map(|entry| jets.value(entry)).collect())
     }
 
     /// The velocities after an impulse as series, given the series of expressions and of the velocities before it.
@@ -256,8 +256,9 @@ impl Wall {
             Law::Reset | Law::Transition => return None,
         };
         let impulse = jets.mul(&factor, &jets.inverse(&steep)?);
-        let after =
-            |(before, along): (&Series<A>, &Series<A>)| jets.sub(before, &jets.mul(&impulse, along));
+        let after = |(before, along): (&Series<A>, &Series<A>)| {
+            jets.sub(before, &jets.mul(&impulse, along))
+        };
         Some(velocity.iter().zip(&projected).map(after).collect())
     }
 

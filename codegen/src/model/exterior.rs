@@ -60,9 +60,9 @@ impl ExteriorForm {
             let known = self
                 .terms
                 .iter_mut()
-                .find(|own| own.differentials == term.differentials);
+                .find(|known| known.differentials == term.differentials);
             match known {
-                Some(own) => own.coefficient = pool.add(own.coefficient, term.coefficient),
+                Some(known) => known.coefficient = pool.add(known.coefficient, term.coefficient),
                 None => self.terms.push(term),
             }
         }

@@ -34,7 +34,7 @@ impl Resolver<'_> {
         });
     }
 
-    /// As [`Resolver::check_periodic`], of the derivatives of an expression by some symbols.
+    /// Same as [`Resolver::check_periodic`], for the derivatives of an expression by some symbols.
     pub(super) fn check_periodic_derivatives(
         &mut self,
         written: &[&Scalar],

@@ -10,10 +10,10 @@ const DEPTH: u32 = 44;
 /// Maximum number of pieces of a step.
 const PIECES: u32 = 1 << 14;
 
-/// How far rounding may move what conditions take, in parts of its size.
+/// Relative amount by which rounding may move the arguments of conditions.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// Where in a piece conditions are sampled that have no enclosure.
+/// Fractions of a piece at which conditions without enclosure are sampled.
 const SAMPLES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// One gap along a step.
@@ -126,8 +126,8 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         }
     }
 
-    /// Whether the surface counts on a piece, by more than rounding; `None` where that is not certain. Conditions that the system does not
-    /// enclose are sampled.
+    /// True if the surface counts on a piece by more than rounding; `None` if that is not certain. Conditions without
+    /// enclosure are sampled.
     fn counts_on(&self, piece: [f64; 2]) -> Option<bool> {
         if !self.system.has_conditions(self.surface) {
             return Some(self.counts_at_samples(piece));

@@ -91,7 +91,7 @@ impl<S: Emitted> Of<S> {
         ]
     }
 
-    /// What is enclosed along steps.
+    /// Kernels over enclosures along steps.
     const ENCLOSED: KernelSet = match S::TABLES.can_lose_rank {
         true => KernelSet::OF_SURFACES.forms(),
         false => KernelSet::OF_SURFACES,

@@ -34,7 +34,7 @@ pub(crate) fn onset(
     holds(reach).then(|| narrowed([from, reach], holds))
 }
 
-/// What a walk over stretches came to.
+/// Result of a walk over stretches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Walk<T> {
     Found(T),
@@ -106,8 +106,12 @@ mod tests {
 
     /// The first part at which `x` is in one of these windows.
     fn first_in(windows: &[[f64; 2]], reach: f64) -> Option<f64> {
-        let is_out = |[from, to]: [f64; 2]| windows.iter().all(|own| to < own[0] || own[1] < from);
-        let holds = |x: f64| windows.iter().any(|own| own[0] <= x && x <= own[1]);
+        let is_out = |[from, to]: [f64; 2]| {
+            windows
+                .iter()
+                .all(|window| to < window[0] || window[1] < from)
+        };
+        let holds = |x: f64| windows.iter().any(|entry| entry[0] <= x && x <= entry[1]);
         onset(reach, is_out, holds).map(|found| found.after)
     }
 

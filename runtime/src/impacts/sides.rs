@@ -17,7 +17,7 @@ use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// How far rounding may move a component or time, in parts of its size: conditions are granted as much as gaps are.
+/// Relative amount by which rounding may move a component or time. Conditions have the same allowance as gaps.
 const UNITS: f64 = 32.0 * f64::EPSILON;
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -100,7 +100,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(found.map(|found| begin(surface, found.after, step)))
     }
 
-    /// Whether on a part of the step the gap is nowhere below `-floor` where the surface counts.
+    /// True if on a part of the step the gap is nowhere below `-floor` where the surface counts.
     fn is_free<Step: Stepper<Sys>>(
         &self,
         part: [f64; 2],
@@ -171,7 +171,8 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 }
 
-/// Where a surface begins to count that counts beyond rounding at a part of the step: soon before, by as much as rounding was granted.
+/// Time at which a surface begins to count that counts beyond rounding at a part of the step: shortly before it, by the
+/// allowance for rounding.
 fn begin<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     after: f64,

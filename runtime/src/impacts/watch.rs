@@ -68,10 +68,10 @@ pub(super) struct Watch<Sys: Impacting> {
     held: Held<Sys::Gaps>,
     /// The surface that begins to count behind the motion where the last step is to be cut.
     pub(super) behind: Option<usize>,
-    /// Whether a surface is a wall with conditions, behind which the motion may be.
+    /// True if a surface is a wall with conditions, behind which the motion may be.
     guarded: PerSurface<bool, Sys::Gaps>,
     has_guarded: bool,
-    /// Whether the gap of a surface is known to have one sign on the last step.
+    /// True if the gap of a surface is known to have one sign on the last step.
     pub(super) is_told: PerSurface<bool, Sys::Gaps>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
@@ -531,7 +531,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Whether the step passes this surface.
+    /// True if the step passes this surface.
     #[inline]
     pub(super) fn told<Step: Stepper<Sys>>(
         &self,

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::numbers::Interval;
 
-    /// Whether a matrix of two rows, with a range in place of the entry off the diagonal, has positive pivots.
+    /// True if a matrix of two rows, with a range in place of the entry off the diagonal, has positive pivots.
     fn has_two(first: f64, second: f64, between: [f64; 2]) -> bool {
         let between = TaylorModel::steady(Interval::new(between[0], between[1]));
         let [first, second] = [first, second].map(TaylorModel::of);

@@ -17,10 +17,10 @@ impl KernelSet {
     /// Kernels needed for enclosures of gaps.
     pub const OF_GAPS: Self = Self::NONE.gap();
 
-    /// What enclosures of gaps and of the conditions of surfaces take.
+    /// Kernels for enclosures of gaps and of the conditions of surfaces.
     pub const OF_SURFACES: Self = Self::NONE.gap().conditions();
 
-    /// What enclosures of rates take.
+    /// Kernels for enclosures of rates.
     pub const OF_RATES: Self = Self::NONE.rate();
 
     /// Kernels needed for variations.

@@ -76,7 +76,9 @@ impl Resolver<'_> {
                     return self.refuse(name.at, text, "");
                 }
                 (function, _) => {
-                    let inner = arguments.iter().find(|own| has_differential(own))?;
+                    let inner = arguments
+                        .iter()
+                        .find(|argument| has_differential(argument))?;
                     let text = format!("`{inner}` is a form, and `{function}` takes functions");
                     return self.refuse(
                         inner.at,

@@ -282,7 +282,11 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
             .flatten(),
     );
     used.extend(outputs.iter().map(|output| output.value));
-    used.extend(claims.iter().flat_map(|claim| claim.statement.expressions()));
+    used.extend(
+        claims
+            .iter()
+            .flat_map(|claim| claim.statement.expressions()),
+    );
     used.extend(
         view.iter()
             .flat_map(|view| view.path.iter().copied().chain(view.region)),
