@@ -333,7 +333,7 @@ fn ranges_that_are_none_are_refused() {
         "{errors}"
     );
     let errors = refused(BALL, "--q 1 --p 0 --certify-within x_dot=0..1");
-    assert!(errors.contains("give --qdot"), "{errors}");
+    assert!(errors.contains("need --qdot in place of --p"), "{errors}");
     let errors = refused(SLEIGH, "--form global --certify-within x=0..1");
     assert!(
         errors.contains("only parameters may have ranges"),
