@@ -65,7 +65,7 @@ fn expansions(rounds: usize) -> Table {
     let mut table = Table::new(["model", "coordinates", "operations", "characters", "ms"]);
     for entry in dalembert_command::all() {
         let description = entry.description();
-        let expansion = expand(description.source, rounds);
+        let expansion = expand(&description.source, rounds);
         table.push([
             description.name.to_owned(),
             description.coordinates.len().to_string(),
@@ -94,7 +94,10 @@ const RODS: &str = "Rods16 {
 
 /// Both declarations of the chain of 16 links.
 fn chains() -> [(&'static str, &'static str); 2] {
-    [("angles", Chain16::DESCRIPTION.source), ("rods", RODS)]
+    [
+        ("angles", Chain16::DESCRIPTION.source.value()),
+        ("rods", RODS),
+    ]
 }
 
 /// The declaration of a chain with another number of links.
@@ -213,7 +216,7 @@ fn builds(rounds: usize) -> Table {
     let crate_ = UserCrate::create();
     let mut programs = vec![("no model".to_owned(), WITHOUT_MODEL.to_owned())];
     for description in [DoublePendulum::DESCRIPTION, RollingDisk::DESCRIPTION] {
-        let text = program(description.type_name, description.source);
+        let text = program(description.type_name, &description.source);
         programs.push((description.name.to_owned(), text));
     }
     for (name, source) in chains() {

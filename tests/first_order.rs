@@ -49,7 +49,7 @@ dalembert::model! {
     }
 }
 
-static SAWTOOTH: Text = Text::new(Sawtooth::DESCRIPTION.source);
+static SAWTOOTH: Text = Text::new(Sawtooth::DESCRIPTION.source.value());
 
 #[test]
 fn integrators_follow_the_field() {

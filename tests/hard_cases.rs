@@ -207,7 +207,8 @@ fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
 fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
     for case in cases(&read("hard_cases"), "long_horizon_disk") {
         let mut disk = shipped("rolling_disk").model();
-        for (index, parameter) in disk.description().parameters.iter().enumerate() {
+        let parameters = &shipped("rolling_disk").description().parameters;
+        for (index, parameter) in parameters.iter().enumerate() {
             disk.set_parameter(index, number(&case["parameters"][parameter.name]));
         }
         let start = numbers(&case["initial(x,y,theta,phi,thetadot,phidot)"]);

@@ -65,7 +65,7 @@ fn tolerance() -> Tolerance {
 }
 
 /// The cart, loaded.
-static CART: Text = Text::new(Cart::DESCRIPTION.source);
+static CART: Text = Text::new(Cart::DESCRIPTION.source.value());
 
 type State = <Cart as VectorField>::State;
 

@@ -24,7 +24,7 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
 fn loaded_code_is_what_the_interpreter_executes() {
     let mut states = 0;
     for system in every_system() {
-        let (_, _, programs) = derive(system.description().source);
+        let (_, _, programs) = derive(&system.description().source);
         states += compare_motion(system, &programs.main);
         states += compare_motion(&system.global(), programs.global());
         compare_report(&system.global(), programs.global());
@@ -47,7 +47,7 @@ dalembert::model! {
 
 #[test]
 fn every_function_is_emitted_as_it_is_interpreted() {
-    let source = EveryFunction::DESCRIPTION.source;
+    let source = EveryFunction::DESCRIPTION.source.value();
     for name in spec::FUNCTIONS {
         let entry = format!("of_{name}");
         assert!(
@@ -71,7 +71,7 @@ fn every_function_is_emitted_as_it_is_interpreted() {
 
 /// Asserts that the force `f = dL/dq + F` in the program equals central differences of L, evaluated as an expression.
 fn assert_force_is_differenced(system: &Large) {
-    let Description { name, source, .. } = *system.description();
+    let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);
     for state in states(system, 3, 2) {
         let t = 0.4;
@@ -145,7 +145,7 @@ fn programs_are_well_formed() {
 /// The field keeps the value of every constraint, on it and off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences of the
 /// residual expression along the rate. Returns the number of constraints.
 fn assert_constraints_are_kept(system: &Large) -> usize {
-    let Description { name, source, .. } = *system.description();
+    let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);
     let system = system.global();
     let mut random = Random::new(3);

@@ -267,7 +267,7 @@ fn refraction_has_its_derivative() {
     check_declared(&particle.with([("V2", 2.0)]), 4, 3.0, 1);
     check_declared(&shipped("sphere_in_plane").model(), 4, 2.0, 2);
     let medium = MEDIUM.model();
-    let thin = medium.tables().modes[0].tables;
+    let thin = &medium.tables().modes[0].tables;
     assert!(thin.form == Form::Global && thin.dimensions.constraints > 0);
     let start = state(&medium, &[-1.0, 0.5, 0.0], &[1.0, 0.25, 0.25]);
     check_differences(&medium, start, 6, 2.0, 1);

@@ -177,7 +177,7 @@ fn an_orbit_of_an_angle_closes_after_a_turn() {
 /// In the global form states can leave the constraint and the leaf of its level: neither is a direction of the section.
 #[test]
 fn directions_of_a_section_keep_constraints_and_levels() {
-    let bead = Text::new(IntegrableBead::DESCRIPTION.source).model();
+    let bead = Text::new(IntegrableBead::DESCRIPTION.source.value()).model();
     let (x, y) = (-1.2, 0.8);
     let start = state(&bead, &[x, y], &[0.0, 0.0]);
     let orbit = orbit(&bead, &start, 0, 1).expect("an orbit");

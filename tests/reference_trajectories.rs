@@ -496,9 +496,9 @@ fn free_motions_pass_their_checkpoints() {
     use dalembert_tests::systems::{
         AffineSleigh, DampedSleigh, IntegrableBead, MagneticDisk, Rheonomic,
     };
-    check_free_runs(AffineSleigh::DESCRIPTION.source, 1e-10);
-    check_free_runs(MagneticDisk::DESCRIPTION.source, 1e-10);
-    check_free_runs(DampedSleigh::DESCRIPTION.source, 1e-10);
-    check_free_runs(Rheonomic::DESCRIPTION.source, 1e-10);
-    check_free_runs(IntegrableBead::DESCRIPTION.source, 1e-8);
+    check_free_runs(AffineSleigh::DESCRIPTION.source.value(), 1e-10);
+    check_free_runs(MagneticDisk::DESCRIPTION.source.value(), 1e-10);
+    check_free_runs(DampedSleigh::DESCRIPTION.source.value(), 1e-10);
+    check_free_runs(Rheonomic::DESCRIPTION.source.value(), 1e-10);
+    check_free_runs(IntegrableBead::DESCRIPTION.source.value(), 1e-8);
 }

@@ -17,7 +17,7 @@ struct Compared {
 impl Compared {
     fn compare(&mut self, description: &Description) {
         let name = description.name;
-        let mut decided = Decided::of(description.source);
+        let mut decided = Decided::of(&description.source);
         if decided.derivation.constraints.is_empty() {
             return;
         }

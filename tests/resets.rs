@@ -69,11 +69,11 @@ dalembert::model! {
     }
 }
 
-static SWAP: Text = Text::new(Swap::DESCRIPTION.source);
+static SWAP: Text = Text::new(Swap::DESCRIPTION.source.value());
 
-static MIRROR_SLEIGH: Text = Text::new(MirrorSleigh::DESCRIPTION.source);
+static MIRROR_SLEIGH: Text = Text::new(MirrorSleigh::DESCRIPTION.source.value());
 
-static STRIP: Text = Text::new(Strip::DESCRIPTION.source);
+static STRIP: Text = Text::new(Strip::DESCRIPTION.source.value());
 
 /// Emitted resets equal the interpreter, to the bit.
 fn compare<S: Described + Impacting>(system: &S, program: &Program) -> usize {
@@ -106,7 +106,7 @@ fn emitted_resets_are_what_the_interpreter_executes() {
     where
         S::Global: Described + Impacting,
     {
-        let source = S::DESCRIPTION.source;
+        let source = S::DESCRIPTION.source.value();
         let programs = compile(source.parse().expect("tokens"))
             .expect("a model")
             .programs;
@@ -195,21 +195,21 @@ fn both_forms_go_the_same_way_through_resets_of_positions() {
 
 #[test]
 fn the_declared_law_is_told_with_its_map() {
-    let [left, .., counted] = Strip::DESCRIPTION.surfaces else {
+    let [left, .., counted] = Strip::DESCRIPTION.surfaces.value() else {
         panic!("surfaces")
     };
     assert_eq!(
-        left.law,
+        &*left.law,
         "reset { dot(x) = -al*dot(x); dot(y) = be*dot(y); }"
     );
-    assert_eq!(counted.law, "reset { }");
+    assert_eq!(&*counted.law, "reset { }");
     assert_eq!(Strip::default().law(0), Law::Reset);
     assert_eq!(MirrorSleigh::default().law(2), Law::Reset);
 }
 
 #[test]
 fn what_a_reset_does_to_the_volume_is_said() {
-    let found = Declaration::of(Strip::DESCRIPTION.source).verdict("density: exact");
+    let found = Declaration::of(Strip::DESCRIPTION.source.value()).verdict("density: exact");
     let said = |surface: &str| {
         let start = format!("an impact at {surface} (reset {{ ");
         let remark = found
@@ -262,7 +262,7 @@ fn the_jacobian_is_what_is_said_of_it() {
 
 #[test]
 fn false_claims_about_a_reset_are_refuted_with_a_state() {
-    let strip = Declaration::of(Strip::DESCRIPTION.source);
+    let strip = Declaration::of(Strip::DESCRIPTION.source.value());
     for claim in [
         "conserved under left: energy",
         "conserved under elsewhere: y",
@@ -281,7 +281,7 @@ fn a_reset_off_the_constraints_is_refused_with_a_state() {
     let source = MirrorSleigh::DESCRIPTION
         .source
         .replace("theta = pi - theta;", "");
-    assert_ne!(source, MirrorSleigh::DESCRIPTION.source);
+    assert_ne!(source, MirrorSleigh::DESCRIPTION.source.value());
     let refused = try_expand(source.parse().expect("tokens")).expect_err("off the constraint");
     let messages: Vec<&str> = refused.iter().map(|error| error.message()).collect();
     assert_eq!(messages.len(), 2, "{messages:?}");
@@ -399,7 +399,7 @@ fn what_a_surface_ties_is_not_taken_for_independent() {
     assert!(matches!(quadratic("x = 2*x"), Verdict::Refuted(_)));
     assert!(matches!(quadratic("x = -x"), Verdict::Proved(_)));
     // The velocity of the foot, at whose surface the angle of the leg is known.
-    let walker = Declaration::of(WalkerFootSlip::DESCRIPTION.source);
+    let walker = Declaration::of(WalkerFootSlip::DESCRIPTION.source.value());
     let foot = "conserved under step: dot(x_c) + lf*dot(theta)*cos(theta)";
     assert!(matches!(walker.verdict(foot).verdict, Verdict::Proved(_)));
 }

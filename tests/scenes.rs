@@ -236,7 +236,7 @@ fn a_surface_of_a_scene_has_its_own_functions_at_its_own_place() {
 
 /// A run of a scene of a loaded [`Thrown`] from its declared start: place along x, outcome and number of impacts.
 fn run(scene: &str, until: f64) -> (f64, Outcome, u64) {
-    static THROWN: Text = Text::new(Thrown::DESCRIPTION.source);
+    static THROWN: Text = Text::new(Thrown::DESCRIPTION.source.value());
     let mut thrown = THROWN.scene(scene);
     set(&mut thrown, "f", -1.0);
     let run = Course::declared(&thrown, until).observed(Integrator::Dop853, &mut ());
@@ -282,7 +282,7 @@ fn densities_are_there_where_they_are_asked_for() {
         .expect("a state");
     // -2 c/m
     assert!((scene.divergence(0.0, &state).expect("a divergence") + 0.5).abs() < 1e-15);
-    let source = Thrown::DESCRIPTION.source;
+    let source = Thrown::DESCRIPTION.source.value();
     let has = |scene: &str| {
         let all = implemented(source, scene);
         all.keys()
@@ -335,8 +335,8 @@ fn a_model_shows_its_scenes() {
         .collect();
     assert_eq!(shown, expected);
     let names = ["all", "free", "slowed", "walls", "slowed_right"];
-    assert_eq!(Thrown::DESCRIPTION.scenes, names);
-    assert_eq!(thrown::Free::DESCRIPTION.scenes, names);
+    assert_eq!(*Thrown::DESCRIPTION.scenes, names);
+    assert_eq!(*thrown::Free::DESCRIPTION.scenes, names);
     assert_eq!(thrown::slowed_right::surface::right, 0);
     assert_eq!(thrown::surface::right, 1);
 }

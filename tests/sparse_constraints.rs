@@ -151,7 +151,7 @@ fn rods_cannot_become_dependent() {
 
 #[test]
 fn operations_grow_with_the_number_of_rods() {
-    let source = Rods::DESCRIPTION.source;
+    let source = Rods::DESCRIPTION.source.value();
     let operations = |links: &str| {
         let source = source.replace("16", links);
         let compiled = compile(source.parse().expect("tokens")).expect("a model");

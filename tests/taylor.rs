@@ -109,7 +109,7 @@ fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state
 fn coefficients_are_what_the_interpreter_computes() {
     let mut compared = 0;
     for system in every_system() {
-        let program = program(system.description().source);
+        let program = program(&system.description().source);
         for state in states(system, 5, 1) {
             assert_is_interpreted(system, &program.jet, state);
             compared += 1;
@@ -135,7 +135,7 @@ dalembert::model! {
 #[test]
 fn every_function_is_expanded_as_it_is_interpreted() {
     let system = EveryForce::default();
-    let program = program(EveryForce::DESCRIPTION.source);
+    let program = program(EveryForce::DESCRIPTION.source.value());
     let state = system
         .state(0.25, &[0.4, -0.3].into(), &[0.5, 0.7].into())
         .expect("a state");

@@ -60,7 +60,7 @@ static SWAPPED: Text = Text::new(
 /// Reads the parameters of a reference file into a system.
 fn with_parameters(text: &Text, file: &Value) -> Large {
     let mut system: Large = text.sized();
-    for (k, info) in system.description().parameters.iter().enumerate() {
+    for (k, info) in text.description().parameters.iter().enumerate() {
         let name = info.name.trim_end_matches('_');
         if let Some(value) = file["system"]["parameters"].get(name) {
             system.set_parameter(k, number(value));
@@ -216,23 +216,29 @@ fn augmented_differentials_are_those_of_the_references() {
         check_reference(shipped("two_wheels_rod"), "cv64_two_wheels"),
         check_reference(shipped("moving_wall_disk"), "moving_wall_disk"),
         check_reference(
-            &Text::new(AffineSleigh::DESCRIPTION.source),
+            &Text::new(AffineSleigh::DESCRIPTION.source.value()),
             "affine_sleigh",
         ),
-        check_reference(&Text::new(TableWall::DESCRIPTION.source), "table_wall"),
         check_reference(
-            &Text::new(MagneticDisk::DESCRIPTION.source),
+            &Text::new(TableWall::DESCRIPTION.source.value()),
+            "table_wall",
+        ),
+        check_reference(
+            &Text::new(MagneticDisk::DESCRIPTION.source.value()),
             "magnetic_disk",
         ),
         check_reference(
-            &Text::new(DampedSleigh::DESCRIPTION.source),
+            &Text::new(DampedSleigh::DESCRIPTION.source.value()),
             "damped_sleigh",
         ),
         check_reference(
-            &Text::new(IntegrableBead::DESCRIPTION.source),
+            &Text::new(IntegrableBead::DESCRIPTION.source.value()),
             "integrable_bead",
         ),
-        check_reference(&Text::new(Rheonomic::DESCRIPTION.source), "rheonomic"),
+        check_reference(
+            &Text::new(Rheonomic::DESCRIPTION.source.value()),
+            "rheonomic",
+        ),
     ];
     assert_eq!(seen, [3, 3, 6, 6, 3, 6, 6, 8, 4, 6, 3, 4, 4]);
 }
@@ -276,7 +282,7 @@ fn derivatives_are_limits_of_differences() {
     let qdot = disk.complete_velocity(0.0, &q, &qdot, &named);
     let start = state_of(&disk, q.as_ref(), qdot.expect("velocities").as_ref());
     check_differences(&disk, start, &[], 1.2);
-    let everything = Text::new(Rheonomic::DESCRIPTION.source).model();
+    let everything = Text::new(Rheonomic::DESCRIPTION.source.value()).model();
     let (q, qdot) = (vector(&[1.0, 0.1, 0.3]), vector(&[1.2, 0.0, 0.4]));
     let start = everything.state_projected(0.0, &q, &qdot).expect("a state");
     check_differences(&everything, start, &[(0, Law::Newton(0.75))], 1.5);

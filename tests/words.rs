@@ -67,7 +67,7 @@ dalembert::model! {
 #[test]
 fn every_law_of_the_language_is_the_runtimes_law_of_that_name() {
     assert_eq!(LAWS.map(|(name, count)| (name, count == 1)), Law::NAMES);
-    let surfaces = EveryLaw::DESCRIPTION.surfaces;
+    let surfaces = &EveryLaw::DESCRIPTION.surfaces;
     assert_eq!(surfaces.len(), LAWS.len(), "a surface for each law");
     for (index, ((name, count), surface)) in LAWS.into_iter().zip(surfaces).enumerate() {
         let law = EveryLaw::default().law(index);
@@ -77,7 +77,7 @@ fn every_law_of_the_language_is_the_runtimes_law_of_that_name() {
             _ => name.to_owned(),
         };
         assert_eq!(
-            (surface.name, surface.law, law.name()),
+            (surface.name, &*surface.law, law.name()),
             (name, written.as_str(), name)
         );
         assert_eq!(law.coefficient(), (count == 1).then_some(0.5));

@@ -2,6 +2,7 @@
 //! and `series.rs` run everything.
 
 use core::convert::Infallible;
+use std::sync::Arc;
 
 use dalembert::Fault;
 use dalembert::erased::Expanded;
@@ -40,6 +41,6 @@ pub(crate) struct Compiled {
     pub series: NativeSeries,
 }
 
-pub(crate) fn compile(_: &[&'static Code], _: &'static Series) -> Option<Compiled> {
+pub(crate) fn compile(_: &[Arc<Code>], _: &Series) -> Option<Compiled> {
     None
 }

@@ -26,7 +26,7 @@
 //!         initial { theta = 1/2; }
 //!     }
 //! ")?;
-//! let pendulum = Erased::<4>::of(models[0].form).expect("room for two numbers");
+//! let pendulum = Erased::<4>::of(&models[0].form).expect("room for two numbers");
 //! let start = pendulum.initial();
 //! let state = pendulum.state(0.0, &start.q, &start.qdot).expect("a state");
 //! assert_eq!(pendulum.energy(0.0, &state), Ok(-9.81 * 0.5_f64.cos()));
@@ -43,6 +43,10 @@ mod native;
 mod series;
 mod source;
 
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::thread;
+
 use dalembert::erased::Form;
 use dalembert_codegen::spec::Declaration;
 use dalembert_codegen::{self as codegen, Compiled};
@@ -56,9 +60,9 @@ pub struct Loaded {
     /// The name as it is declared: `RollingDisk`.
     pub name: String,
     /// The model itself.
-    pub form: &'static Form,
+    pub form: Arc<Form>,
     /// Its scenes, without `all`, which is the model itself.
-    pub scenes: Vec<(&'static str, &'static Form)>,
+    pub scenes: Vec<(String, Arc<Form>)>,
 }
 
 /// The models of a text, in its order. `name` is that of the file, for messages.
@@ -78,7 +82,28 @@ pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refuse
     load_from(name, text, Declaration::without_claims)
 }
 
+/// Stack size of the thread that loads, in bytes.
+const STACK: usize = 64 << 20;
+
+/// Loads in a thread of its own: with it goes the copy of the text that `proc_macro2` keeps for places, and its stack has
+/// room for the deepest nesting that is accepted.
 fn load_from(
+    name: &str,
+    text: &str,
+    prepare: fn(Declaration) -> Declaration,
+) -> Result<Vec<Loaded>, Refused> {
+    thread::scope(|scope| {
+        let work = || load_here(name, text, prepare);
+        let thread = thread::Builder::new().stack_size(STACK);
+        match thread.spawn_scoped(scope, work) {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            // No other thread can be had.
+            Err(_) => load_here(name, text, prepare),
+        }
+    })
+}
+
+fn load_here(
     name: &str,
     text: &str,
     prepare: fn(Declaration) -> Declaration,
@@ -118,10 +143,7 @@ fn loaded(name: String, compiled: &Compiled) -> Loaded {
         name,
         form: form::of_model(compiled, scenes),
         scenes: of_scenes
-            .map(|(scene, compiled)| {
-                let name: &'static str = String::leak(scene.name.clone());
-                (name, form::of_model(compiled, scenes))
-            })
+            .map(|(scene, compiled)| (scene.name.clone(), form::of_model(compiled, scenes)))
             .collect(),
     }
 }

@@ -1,5 +1,7 @@
 //! Evaluation of a function over any kind of number, by a register machine.
 
+use std::sync::Arc;
+
 use dalembert::__private::lanes as guards;
 use dalembert::Fault;
 use dalembert::kernels::At;
@@ -18,7 +20,7 @@ pub(crate) struct Code {
     pub(crate) outputs: Vec<usize>,
     pub(crate) registers: usize,
     /// The code of the velocities and their number, where they follow from the state.
-    pub(crate) velocity: Option<(&'static Code, usize)>,
+    pub(crate) velocity: Option<(Arc<Code>, usize)>,
 }
 
 /// Place of an argument.
@@ -90,7 +92,7 @@ impl Code {
         function: &Function,
         kernel: Kernel,
         n: usize,
-        velocity: Option<&'static Self>,
+        velocity: Option<&Arc<Self>>,
     ) -> Self {
         let place = |input| match (input, kernel.second()) {
             (Input::Time, _) => Place::Time,
@@ -108,7 +110,7 @@ impl Code {
             .iter()
             .any(|(instruction, _)| matches!(instruction, Instruction::Input(Place::Velocity(_))));
         if takes_velocities {
-            code.velocity = velocity.map(|code| (code, n));
+            code.velocity = velocity.map(|code| (Arc::clone(code), n));
         }
         code
     }
@@ -167,9 +169,9 @@ impl Code {
     /// # Errors
     /// The guard that does not hold.
     pub(crate) fn run<L: Numbers>(&self, at: At<'_, L>, values: &mut [L]) -> Result<(), Fault> {
-        match self.velocity {
+        match &self.velocity {
             None => self.run_with(at, &[], values),
-            Some((velocity, n)) => with_room(n, |qdot| {
+            Some((velocity, n)) => with_room(*n, |qdot| {
                 velocity.run(at, qdot)?;
                 self.run_with(at, qdot, values)
             }),

@@ -1,6 +1,7 @@
 //! Power series over any kind of number, evaluated by the terms of their coefficients.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use dalembert::Fault;
 use dalembert::erased::Expanded;
@@ -18,7 +19,7 @@ use crate::machine::{Code, Constant};
 #[derive(Debug)]
 pub(crate) struct Series {
     /// Order 0.
-    pub(crate) begin: &'static Code,
+    pub(crate) begin: Arc<Code>,
     /// Sources of order 0, by value.
     pub(crate) firsts: Vec<First>,
     /// Values that vary, in an order in which they can be computed.
@@ -101,7 +102,7 @@ impl Series {
         histories.sort_unstable();
         histories.dedup();
         Self {
-            begin: Box::leak(Box::new(Code::of_state(&jet.function, &known, n))),
+            begin: Arc::new(Code::of_state(&jet.function, &known, n)),
             firsts,
             steps,
             outputs: jet.function.outputs.clone(),

@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use dalembert::certified::{CertifiedFlow, CertifiedRun, Reason};
 use dalembert::declaration::Described;
@@ -30,9 +31,10 @@ mod walker {
     dalembert::model_file!("../models/src/spring_mass_walker.dal");
 }
 
-fn loaded<M: Described>() -> &'static Form {
-    let models = dalembert_jit::load(M::DESCRIPTION.name, M::DESCRIPTION.source);
-    models.unwrap_or_else(|refused| panic!("{refused}"))[0].form
+fn loaded<M: Described>() -> Arc<Form> {
+    let models = dalembert_jit::load(M::DESCRIPTION.name, M::DESCRIPTION.source.value());
+    let models = models.unwrap_or_else(|refused| panic!("{refused}"));
+    Arc::clone(&models[0].form)
 }
 
 fn start<M: Instance>(model: &M) -> Vec<f64> {
@@ -91,21 +93,21 @@ where
     let start = start(model);
     let expected = bits(&enclosures(model, &start, radius, until));
     let form = loaded::<M>();
-    let parameters = form.documentation.description.parameters;
+    let parameters = &form.documentation.description.parameters;
     let place = |name: &str| {
         parameters
             .iter()
             .position(|parameter| parameter.name == name)
             .unwrap()
     };
-    let mut large = Erased::<32>::of(form).unwrap();
+    let mut large = Erased::<32>::of(&form).unwrap();
     for (name, value) in settings {
         large.set_parameter(place(name), *value);
     }
     let found = with_stack(|| enclosures(&large, &start, radius, until));
     assert_eq!(bits(&found), expected);
     // A model that needs less room.
-    if let Some(mut small) = Erased::<8>::of(form) {
+    if let Some(mut small) = Erased::<8>::of(&form) {
         for (name, value) in settings {
             small.set_parameter(place(name), *value);
         }
@@ -151,9 +153,9 @@ fn a_double_pendulum_has_the_same_enclosures() {
     let start = start(&model);
     let expected = bits(&end(&model, &start));
     let form = loaded::<pendulum::DoublePendulum>();
-    let small = Erased::<4>::of(form).unwrap();
+    let small = Erased::<4>::of(&form).unwrap();
     assert_eq!(bits(&end(&small, &start)), expected);
-    let large = Erased::<32>::of(form).unwrap();
+    let large = Erased::<32>::of(&form).unwrap();
     assert_eq!(bits(&with_stack(|| end(&large, &start))), expected);
 }
 

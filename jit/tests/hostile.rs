@@ -127,7 +127,7 @@ fn load_broken_texts(count: usize, seed: u64) {
         let text = broken(&texts[round % texts.len()], &mut draws);
         let begun = Instant::now();
         match dalembert_jit::load("broken.dal", &text) {
-            Ok(models) => models.iter().for_each(|model| begin(model.form)),
+            Ok(models) => models.iter().for_each(|model| begin(&model.form)),
             Err(mistakes) => {
                 refused += 1;
                 let shown = mistakes.to_string();
@@ -145,7 +145,7 @@ fn load_broken_texts(count: usize, seed: u64) {
 }
 
 /// A model that was loaded all the same has a start, or says why not.
-fn begin(form: &'static dalembert::erased::Form) {
+fn begin(form: &dalembert::erased::Form) {
     let Some(system) = Erased::<32>::of(form) else {
         return;
     };

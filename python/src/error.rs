@@ -119,7 +119,7 @@ pub(crate) fn variation(description: &Description, error: &VariationError) -> Py
 /// Reason for which a run does not begin.
 pub(crate) fn run(model: &dyn AnyModel, refusal: &Refusal) -> PyErr {
     match refusal {
-        Refusal::State(error) => state(&model.description(), error),
-        other => refused(words::refusal_text(&model.description(), other, &ADVICE)),
+        Refusal::State(error) => state(model.description(), error),
+        other => refused(words::refusal_text(model.description(), other, &ADVICE)),
     }
 }

@@ -1,7 +1,7 @@
 //! Models: texts to forms, values of parameters, descriptions.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use dalembert::describe::{Description, Topology};
 use dalembert::erased::Form;
@@ -20,17 +20,19 @@ use crate::{error, recorder};
 #[pyclass(frozen, module = "dalembert._native")]
 #[derive(Clone)]
 pub struct NativeModel {
-    loaded: &'static Loaded,
-    pub(crate) form: &'static Form,
-    values: Vec<f64>,
+    /// The models of the text, and the place of this one.
+    models: Arc<[Loaded]>,
+    place: usize,
+    pub(crate) form: Arc<Form>,
+    pub(crate) values: Vec<f64>,
     mode: usize,
 }
 
 /// Positions, velocities, which of them were declared, and the end.
 type Initial = (Vec<f64>, Vec<f64>, Vec<bool>, Vec<bool>, Option<f64>);
 
-/// Texts that were loaded, without and with claims. What is made of a text lives as long as the process.
-static LOADED: [Mutex<BTreeMap<String, &'static [Loaded]>>; 2] =
+/// Texts whose models are in use, without and with claims.
+static LOADED: [Mutex<BTreeMap<String, Weak<[Loaded]>>>; 2] =
     [const { Mutex::new(BTreeMap::new()) }; 2];
 
 /// The models of a text. `shown` is its name in messages.
@@ -39,7 +41,7 @@ pub fn load(py: Python<'_>, text: &str, shown: &str, claims: bool) -> PyResult<V
     let known = &LOADED[usize::from(claims)];
     let find = || {
         let known = known.lock().unwrap_or_else(PoisonError::into_inner);
-        known.get(text).copied()
+        known.get(text)?.upgrade()
     };
     let models = match find() {
         Some(models) => models,
@@ -50,13 +52,16 @@ pub fn load(py: Python<'_>, text: &str, shown: &str, claims: bool) -> PyResult<V
             };
             let models = py.detach(|| load(shown, text));
             let models = models.map_err(|refused| error::model_error(py, &refused))?;
-            let models: &'static [Loaded] = Vec::leak(models);
+            let models: Arc<[Loaded]> = models.into();
             let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-            known.insert(text.to_owned(), models);
+            known.retain(|_, models| models.strong_count() > 0);
+            known.insert(text.to_owned(), Arc::downgrade(&models));
             models
         }
     };
-    models.iter().map(NativeModel::of).collect()
+    (0..models.len())
+        .map(|place| NativeModel::of(&models, place))
+        .collect()
 }
 
 /// The shipped models: name and text.
@@ -66,13 +71,13 @@ pub fn shipped() -> Vec<(&'static str, &'static str)> {
 }
 
 impl NativeModel {
-    fn of(loaded: &'static Loaded) -> PyResult<Self> {
-        Self::of_form(loaded, loaded.form)
+    fn of(models: &Arc<[Loaded]>, place: usize) -> PyResult<Self> {
+        Self::of_form(models, place, &models[place].form)
     }
 
     /// The model of a form, with declared values.
-    fn of_form(loaded: &'static Loaded, form: &'static Form) -> PyResult<Self> {
-        let model = of_form(form, Code::Loaded).ok_or_else(|| {
+    fn of_form(models: &Arc<[Loaded]>, place: usize, form: &Arc<Form>) -> PyResult<Self> {
+        let model = of_form(Arc::clone(form).into(), Code::Loaded).ok_or_else(|| {
             error::refused(format!(
                 "`{}` has vectors of more than 32 components, or more than 64 parameters; compile it in a crate of Rust \
                  with `dalembert::model!`",
@@ -81,20 +86,22 @@ impl NativeModel {
         })?;
         let count = model.description().parameters.len() + model.inputs().len();
         Ok(Self {
-            loaded,
-            form,
+            models: Arc::clone(models),
+            place,
+            form: Arc::clone(form),
             values: (0..count).map(|index| model.parameter(index)).collect(),
             mode: 0,
         })
     }
 
-    pub(crate) fn describe(&self) -> &'static Description {
+    pub(crate) fn describe(&self) -> &Description {
         &self.form.documentation.description
     }
 
     /// The model for the driver.
     pub(crate) fn build(&self) -> Box<dyn AnyModel> {
-        let mut model = of_form(self.form, Code::Loaded).expect("room, as where it was loaded");
+        let mut model = of_form(Arc::clone(&self.form).into(), Code::Loaded)
+            .expect("room, as where it was loaded");
         for (index, value) in self.values.iter().enumerate() {
             model.set_parameter(index, *value);
         }
@@ -103,7 +110,7 @@ impl NativeModel {
     }
 
     fn set(&mut self, name: &str, value: f64) -> PyResult<()> {
-        let parameters = self.describe().parameters;
+        let parameters = &self.describe().parameters;
         let accepted = parameters.iter().map(|parameter| parameter.name);
         let index = names::find("parameter", name, accepted).map_err(error::refused)?;
         let assumption = parameters[index].assumption;
@@ -165,14 +172,15 @@ impl NativeModel {
 
     /// A scene of the model, with the values of this one.
     fn in_scene(&self, name: &str) -> PyResult<Self> {
-        let scenes = self.loaded.scenes.iter().map(|(name, _)| *name);
+        let loaded = &self.models[self.place];
+        let scenes = loaded.scenes.iter().map(|(name, _)| name.as_str());
         let accepted = core::iter::once("all").chain(scenes);
         let index = names::find("scene", name, accepted).map_err(error::refused)?;
         let form = match index.checked_sub(1) {
-            None => self.loaded.form,
-            Some(scene) => self.loaded.scenes[scene].1,
+            None => &loaded.form,
+            Some(scene) => &loaded.scenes[scene].1,
         };
-        let mut scene = Self::of_form(self.loaded, form)?;
+        let mut scene = Self::of_form(&self.models, self.place, form)?;
         scene.values.clone_from(&self.values);
         Ok(scene)
     }
@@ -188,8 +196,8 @@ impl NativeModel {
         let dict = PyDict::new(py);
         dict.set_item("name", description.name)?;
         dict.set_item("type_name", description.type_name)?;
-        dict.set_item("documentation", description.documentation)?;
-        dict.set_item("source", description.source)?;
+        dict.set_item("documentation", &*description.documentation)?;
+        dict.set_item("source", &*description.source)?;
         dict.set_item("is_first_order", description.is_first_order)?;
         let coordinates: Vec<&str> = names::coordinates(description).collect();
         let velocities: Vec<String> = coordinates
@@ -209,33 +217,34 @@ impl NativeModel {
             .map(|it| ends(it.topology))
             .collect();
         dict.set_item("topologies", topologies)?;
-        dict.set_item("quasi_velocities", description.quasi_velocities)?;
+        dict.set_item("quasi_velocities", &*description.quasi_velocities)?;
         let parameters = description.parameters.iter();
         let parameters = parameters.map(|it| (it.name, it.assumption.to_string(), it.default));
         dict.set_item(
             "parameters",
             PyList::new(py, parameters.collect::<Vec<_>>())?,
         )?;
-        dict.set_item("inputs", self.form.documentation.inputs)?;
+        dict.set_item("inputs", &*self.form.documentation.inputs)?;
         let constraints: Vec<&str> = description.constraints.iter().map(|it| it.name).collect();
         dict.set_item("constraints", constraints)?;
         let surfaces: Vec<_> = description
             .surfaces
             .iter()
-            .map(|it| (it.name, it.law))
+            .map(|it| (it.name, &*it.law))
             .collect();
         dict.set_item("surfaces", surfaces)?;
-        dict.set_item("outputs", description.outputs)?;
-        dict.set_item("scenes", description.scenes)?;
+        dict.set_item("outputs", &*description.outputs)?;
+        dict.set_item("scenes", &*description.scenes)?;
         let modes: Vec<_> = description
             .modes
             .iter()
-            .map(|it| (it.name, it.coordinates))
+            .map(|it| (it.name, &*it.coordinates))
             .collect();
         dict.set_item("modes", modes)?;
-        let view = description
-            .view
-            .map(|view| (view.labels, view.plane, view.region));
+        let view = description.view.as_ref().map(|view| {
+            let labels = view.labels.each_ref().map(|label| &**label);
+            (labels, view.plane, view.region)
+        });
         dict.set_item("view", view)?;
         Ok(dict)
     }

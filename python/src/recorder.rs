@@ -96,7 +96,7 @@ impl Times<'_> {
 
 /// Records a run.
 struct Recorder<'a> {
-    modes: &'static [ModeInfo],
+    modes: &'a [ModeInfo],
     times: Times<'a>,
     taken: usize,
     /// True if only samples are wanted: the run ends after the last.
@@ -263,7 +263,7 @@ fn record(
     py.detach(|| {
         let built = model.build();
         let mut recorder = Recorder {
-            modes: model.describe().modes,
+            modes: &model.describe().modes,
             times,
             taken: 0,
             only_samples,

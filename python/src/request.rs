@@ -52,7 +52,7 @@ impl Request<'_> {
     pub(crate) fn course(&self, model: &dyn AnyModel) -> PyResult<Course> {
         let policy = choice("off_constraint", &self.off_constraint, &policies())?;
         let origin = self.beginning(model)?.settle(model, policy);
-        let origin = origin.map_err(|reason| error::state(&model.description(), &reason))?;
+        let origin = origin.map_err(|reason| error::state(model.description(), &reason))?;
         Ok(Course {
             origin,
             settings: self.settings(model, policy)?,
@@ -68,7 +68,7 @@ impl Request<'_> {
             .map(|form| choice("form", form, &forms()))
             .transpose()?;
         let needs_global = policy == OffConstraint::Keep || self.projection.is_some();
-        let form = Form::choose(&model.description(), wanted, needs_global);
+        let form = Form::choose(model.description(), wanted, needs_global);
         let until = course::horizon(model, self.until, self.impacts).ok_or_else(|| {
             refused("the model declares no usable `until`; give an end with until= or impacts=")
         })?;
@@ -156,7 +156,7 @@ impl Request<'_> {
         let mut beginning = Beginning::Named(model.initial());
         let description = model.description();
         for (name, value) in &self.state {
-            let component = Component::find(&description, name);
+            let component = Component::find(description, name);
             let component = component.map_err(|unknown| refused(format!("state: {unknown}")))?;
             beginning.set(component, *value);
         }
@@ -170,7 +170,7 @@ impl Request<'_> {
             let law = law(name, *coefficient)?;
             let surface = surface.as_deref();
             let surface =
-                surface.map(|name| names::find("surface", name, names::surfaces(&description)));
+                surface.map(|name| names::find("surface", name, names::surfaces(description)));
             let surface = surface.transpose();
             let surface = surface.map_err(|unknown| refused(format!("law: {unknown}")))?;
             let added = course::add_law(&mut laws, model, surface, law);
@@ -212,7 +212,7 @@ impl Request<'_> {
 
 /// One number per coordinate.
 pub(crate) fn vector(model: &dyn AnyModel, place: &str, given: &[f64]) -> PyResult<Vec<f64>> {
-    let names: Vec<&str> = names::coordinates(&model.description()).collect();
+    let names: Vec<&str> = names::coordinates(model.description()).collect();
     match given.len() == names.len() {
         true => Ok(given.to_vec()),
         false => Err(refused(format!(

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use dalembert_driver::outcome::{self, Fact};
-use dalembert_driver::{Ending, Variable, names};
+use dalembert_driver::{Ending, Variable, differentiate, names};
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -256,7 +256,8 @@ impl NativeRun {
                 signals.interrupt.is_some()
             };
             let (origin, settings) = (&self.course.origin, &self.course.settings);
-            let varied = built.differentiate(origin, settings, &variables, &mut is_over);
+            let (form, values) = (&self.model.form, &self.model.values);
+            let varied = differentiate(form, values, origin, settings, &variables, &mut is_over);
             match signals.interrupt {
                 Some(interrupt) => Err(interrupt),
                 None => varied.map_err(|refusal| error::run(built.as_ref(), &refusal)),

@@ -17,10 +17,10 @@ use crate::error::Fault;
 )]
 pub trait Instance: System + Clone {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
-    fn description(&self) -> &'static Description;
+    fn description(&self) -> &Description;
 
     /// The inputs; their values are the parameters after those of the description.
-    fn inputs(&self) -> &'static [&'static str] {
+    fn inputs(&self) -> &[&'static str] {
         &[]
     }
 
@@ -35,7 +35,7 @@ pub trait Instance: System + Clone {
 
     /// The same system in its global form, with the state (q, p) on T*Q, defined off the constraints as well. `Self`
     /// for a model that has no form reduced to D.
-    type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
+    type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene;
 
     /// The system in its global form.
     fn global(&self) -> Self::Global;

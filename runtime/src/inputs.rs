@@ -225,7 +225,7 @@ where
         self.system.restore(t, state)
     }
 
-    fn declared_levels(&self) -> &'static [Level] {
+    fn declared_levels(&self) -> &[Level] {
         self.system.declared_levels()
     }
 

@@ -51,7 +51,7 @@ struct Contradicted {
 
 impl Contradicted {
     fn contradict(&mut self, system: &Large) {
-        let declaration = Declaration::of(Instance::description(system).source);
+        let declaration = Declaration::of(&Instance::description(system).source);
         for claim in &declaration.claims {
             let proved = declaration.verdict(claim).verdict;
             assert!(matches!(proved, Verdict::Proved(_)), "{claim}: {proved:?}");
@@ -129,7 +129,7 @@ fn what_contradicts_a_claim_of_a_shipped_model_is_refuted() {
 #[track_caller]
 fn all_refuted(model: &str, claims: &[&str]) {
     let mut system = shipped(model).sized::<32>();
-    let declaration = Declaration::of(Instance::description(&system).source);
+    let declaration = Declaration::of(&Instance::description(&system).source);
     for claim in claims {
         let message = refuted(&declaration, claim);
         witness::check(&mut system, claim, &message);

@@ -75,8 +75,11 @@ fn implementations(block: syn::Expr) -> Vec<syn::Item> {
 #[test]
 fn emitted_volumes_are_as_stored() {
     let compare = |name: &str, source: &str| golden::compare(name, &emitted(source));
-    compare("falling_disk_volume", FallingDisk::DESCRIPTION.source);
-    compare("mixed_disk_volume", MixedDisk::DESCRIPTION.source);
+    compare(
+        "falling_disk_volume",
+        FallingDisk::DESCRIPTION.source.value(),
+    );
+    compare("mixed_disk_volume", MixedDisk::DESCRIPTION.source.value());
 }
 
 /// Names of the reported quantities.
@@ -108,7 +111,7 @@ fn a_volume_is_emitted_and_reported_where_a_density_is_claimed_and_nowhere_else(
         let state = states(system, 1, 3)[0];
         system.inspect(0.0, &state, &mut names).expect("a state");
         let is_reported = names.0.iter().any(|name| name == "log_density");
-        let is_emitted = !emitted(description.source).is_empty();
+        let is_emitted = !emitted(&description.source).is_empty();
         assert_eq!(is_emitted, is_reported, "{}", description.name);
         if is_emitted {
             with_volume.push(description.name);
@@ -173,7 +176,7 @@ fn other_densities_are_not_kept() {
 }
 
 fn assert_interpreted<S: Described + InvariantVolume>() {
-    let interpreted = WithVolume::declared(S::DESCRIPTION.source).expect("a volume");
+    let interpreted = WithVolume::declared(S::DESCRIPTION.source.value()).expect("a volume");
     let system = S::with_defaults();
     let volume = interpreted.program.volume.as_ref().expect("functions");
     assert_eq!(S::INDEPENDENT, volume.independent);

@@ -76,7 +76,7 @@ type Five = <WalledTable as System>::Vector;
 
 /// Remarks on each surface of a model with `density: exact`, in order.
 fn remarks<S: Described>() -> Vec<String> {
-    let declaration = Declaration::of(S::DESCRIPTION.source);
+    let declaration = Declaration::of(S::DESCRIPTION.source.value());
     let found = declaration.verdict("density: exact");
     assert!(found.is_accepted(), "{}", found.note());
     let about = |remark: &String| remark.starts_with("an impact at ");
@@ -268,7 +268,7 @@ fn with_affine_constraints_elastic_impacts_keep_the_energy_but_not_the_volume() 
 
 #[test]
 fn the_density_of_the_sleigh_does_not_survive_an_elastic_impact() {
-    let declaration = Declaration::of(ChaplyginSleigh::DESCRIPTION.source);
+    let declaration = Declaration::of(ChaplyginSleigh::DESCRIPTION.source.value());
     let found = declaration.verdict("density = 1/abs(dot(theta))");
     assert!(found.is_accepted(), "{}", found.note());
     assert_eq!(found.remarks.len(), 2, "{:?}", found.remarks);

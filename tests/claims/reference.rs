@@ -34,7 +34,7 @@ fn decided(entry: &Value) -> Decided {
     let models = models();
     let mut descriptions = models.iter().map(dalembert_cli::Entry::description);
     let model = descriptions.find(|description| description.name == name(entry));
-    Decided::of(model.expect("a model").source)
+    Decided::of(&model.expect("a model").source)
 }
 
 /// Values of the parameters of the model.

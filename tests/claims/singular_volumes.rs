@@ -105,7 +105,7 @@ fn singular_volumes_are_kept() {
 
 #[test]
 fn the_shipped_sleigh_keeps_its_singular_volume() {
-    let singular = Singular::of(ChaplyginSleigh::DESCRIPTION.source);
+    let singular = Singular::of(ChaplyginSleigh::DESCRIPTION.source.value());
     let system = ChaplyginSleigh::with_defaults();
     let flow = Flow {
         system: &system,

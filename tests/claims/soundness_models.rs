@@ -216,7 +216,7 @@ dalembert::model! {
 
 #[test]
 fn what_is_assumed_is_said_to_be() {
-    let declaration = Declaration::of(Assumed::DESCRIPTION.source);
+    let declaration = Declaration::of(Assumed::DESCRIPTION.source.value());
     let open = declaration.verdict("assume density: exact");
     assert_eq!((open.word(), open.is_accepted()), ("assumed", true));
     let reason = "`density: exact` is assumed: a density exists locally; on all of Q, G was found in no closed form";

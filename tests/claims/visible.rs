@@ -140,7 +140,7 @@ fn densities_of_each_kind_are_claimed_where_the_file_has_them() {
             (Value::Bool(true), _) => "locally_exact",
             _ => "none",
         };
-        let declaration = Declaration::of(model.description().source);
+        let declaration = Declaration::of(&model.description().source);
         let has = |claim: &str| {
             declaration
                 .claims
@@ -159,7 +159,7 @@ fn densities_of_each_kind_are_claimed_where_the_file_has_them() {
 #[test]
 fn what_contradicts_the_file_is_refuted() {
     for (name, model) in &mut systems() {
-        let declaration = Declaration::of(model.description().source);
+        let declaration = Declaration::of(&model.description().source);
         let is_none = declaration
             .claims
             .iter()
@@ -186,7 +186,7 @@ fn what_contradicts_the_file_is_refuted() {
 #[test]
 fn energy_is_kept_by_the_emitted_motion_and_densities_balance_its_divergence() {
     for (name, model) in &systems() {
-        let declaration = Declaration::of(model.description().source);
+        let declaration = Declaration::of(&model.description().source);
         let file = read("verdicts_visible");
         let listed = file["systems"].as_array().expect("systems");
         let system = listed

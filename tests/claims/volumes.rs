@@ -163,7 +163,7 @@ fn volumes_of_models_are_kept() {
         if description.coordinates.len() > 6 {
             continue;
         }
-        if let Some(interpreted) = WithVolume::declared(description.source) {
+        if let Some(interpreted) = WithVolume::declared(&description.source) {
             let divergence = own_divergence(&interpreted, 4);
             assert!(divergence < KEPT, "{}: {divergence:e}", description.name);
             kept.push(description.name);
@@ -235,7 +235,7 @@ fn columns(forms: &[Vec<f64>], columns: &[usize]) -> Vec<Vec<f64>> {
 
 #[test]
 fn mixed_constraints_have_the_same_volume() {
-    let mixed = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
+    let mixed = WithVolume::declared(MixedDisk::DESCRIPTION.source.value()).expect("a volume");
     assert_eq!(mixed.volume.dependent, [1, 2]);
     assert!(own_divergence(&mixed, 6) < KEPT);
     let without_minor =
@@ -279,8 +279,8 @@ fn of_all_kinds(model: &mut Model, dependent: &[usize]) -> Volume {
 fn every_term_is_lowered() {
     for dependent in [[0, 1], [0, 2], [1, 2]] {
         let choose = |model: &mut Model, _: &_, _| Some(of_all_kinds(model, &dependent));
-        let mixed =
-            WithVolume::with(MixedDisk::DESCRIPTION.source, choose).expect("the volume given");
+        let mixed = WithVolume::with(MixedDisk::DESCRIPTION.source.value(), choose)
+            .expect("the volume given");
         let mut random = Random::new(9);
         let q = mixed.configuration(&mut random);
         let [metric, mass] = mixed.determinants(0.0, &q);
@@ -298,7 +298,7 @@ fn every_term_is_lowered() {
 
 #[test]
 fn a_singular_minor_is_a_fault() {
-    let disk = WithVolume::declared(MixedDisk::DESCRIPTION.source).expect("a volume");
+    let disk = WithVolume::declared(MixedDisk::DESCRIPTION.source.value()).expect("a volume");
     let functions = disk.program.volume.as_ref().expect("functions");
     // Where the disk points along y, its rolling does not follow from its velocity along x and its spin.
     let q = [0.3, 0.4, 0.2, std::f64::consts::FRAC_PI_2];

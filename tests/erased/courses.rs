@@ -1,6 +1,8 @@
 //! Whole runs of every model and scene by every integrator: behind pointers, loaded from the text, and some with
 //! everything inlined. The steps, impacts and states are the same to the bit.
 
+use std::sync::Arc;
+
 use dalembert::Policies;
 use dalembert::describe::Description;
 use dalembert_driver::{
@@ -105,8 +107,9 @@ fn compare(expected: &dyn AnyModel, found: &dyn AnyModel, form: Form, what: &str
 
 fn compare_loaded(compiled: &Compiled) {
     for (index, &(scene, emitted)) in compiled.emitted.iter().enumerate() {
-        let emitted = of_form(emitted, Code::Pointers).expect("room");
-        let loaded = of_form(compiled.loaded(index), Code::Loaded).expect("room");
+        let emitted = of_form(emitted.into(), Code::Pointers).expect("room");
+        let loaded =
+            of_form(Arc::clone(compiled.loaded(index)).into(), Code::Loaded).expect("room");
         let Description { name, modes, .. } = emitted.description();
         compare(
             &*emitted,
@@ -139,7 +142,7 @@ fn a_model_behind_pointers_runs_as_its_own_type() {
             let mut models = every_model().iter();
             let compiled = models.find(|compiled| compiled.description.name == name);
             let (_, form) = compiled.expect("a model").emitted[0];
-            let erased = of_form(form, Code::Pointers).expect("room");
+            let erased = of_form(form.into(), Code::Pointers).expect("room");
             compare(&*inlined, &*erased, Form::Reduced, name);
         })*};
     }

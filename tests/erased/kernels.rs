@@ -27,16 +27,19 @@ const ROOM: usize = 64;
 
 /// A form that was compiled, and the same one loaded from its text.
 #[derive(Clone, Copy)]
-struct Pair {
-    emitted: &'static Form,
-    loaded: &'static Form,
+struct Pair<'f> {
+    emitted: &'f Form,
+    loaded: &'f Form,
 }
 
-impl Pair {
+impl Pair<'_> {
     /// The global forms, of a form that is not global itself.
     fn global(self) -> Self {
-        let [emitted, loaded] =
-            [self.emitted, self.loaded].map(|form| (form.global)().expect("a global form"));
+        let [emitted, loaded] = [self.emitted, self.loaded].map(|form| {
+            let global = form.global();
+            assert!(!core::ptr::eq(global, form), "a form of its own");
+            global
+        });
         Self { emitted, loaded }
     }
 }
@@ -286,9 +289,10 @@ fn compare_model(compiled: &Compiled) {
                 .iter()
                 .flat_map(|mode| FormOf::all(mode, scenes))
                 .collect();
-            let forms = [pair(0).emitted.forms, pair(0).loaded.forms];
+            let whole = pair(0);
+            let forms: [&[_]; 2] = [&whole.emitted.forms, &whole.loaded.forms];
             assert_eq!(forms.map(<[_]>::len), [known.len(); 2]);
-            for ((&emitted, &loaded), known) in forms[0].iter().zip(forms[1]).zip(&known) {
+            for ((emitted, loaded), known) in forms[0].iter().zip(forms[1]).zip(&known) {
                 compare(Pair { emitted, loaded }, known);
             }
         }

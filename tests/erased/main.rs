@@ -20,7 +20,7 @@ fn assert_same_tables(emitted: &Form, loaded: &Form) {
         (form.capacity(), numbers, form.forms.len())
     };
     assert_eq!(lengths(emitted), lengths(loaded), "{name}");
-    for (emitted, loaded) in emitted.forms.iter().zip(loaded.forms) {
+    for (emitted, loaded) in emitted.forms.iter().zip(loaded.forms.iter()) {
         assert_same_tables(emitted, loaded);
     }
 }

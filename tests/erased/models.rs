@@ -1,6 +1,6 @@
 //! Every model that tests know, compiled and loaded from its text.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use dalembert::declaration::{Described, SceneVisitor};
 use dalembert::describe::Description;
@@ -22,7 +22,7 @@ dalembert::model! {
 /// A model that was compiled.
 pub struct Compiled {
     /// Its self-description.
-    pub description: Description,
+    pub description: &'static Description,
     /// Its form and those of its scenes, by name; that of the model itself first, as `all`.
     pub emitted: Vec<(&'static str, &'static Form)>,
     loaded: OnceLock<Loaded>,
@@ -49,16 +49,16 @@ impl Compiled {
     }
 
     /// The form of a scene, loaded from the text of the model.
-    pub fn loaded(&self, scene: usize) -> &'static Form {
+    pub fn loaded(&self, scene: usize) -> &Arc<Form> {
         let loaded = self.loaded.get_or_init(|| {
-            let models = dalembert_jit::load(self.description.name, self.description.source);
+            let models = dalembert_jit::load(self.description.name, &self.description.source);
             let models = models.unwrap_or_else(|refused| panic!("{refused}"));
             models.into_iter().next().expect("a model")
         });
         match scene.checked_sub(1) {
-            None => loaded.form,
+            None => &loaded.form,
             Some(scene) => {
-                let (name, form) = loaded.scenes[scene];
+                let (name, form) = &loaded.scenes[scene];
                 assert_eq!(name, self.emitted[scene + 1].0);
                 form
             }

@@ -22,7 +22,7 @@ fn end<M: Driven>(course: Course<'_, M>) -> Run<<M as VectorField>::State> {
 }
 
 /// The number of the mode of this name.
-fn mode_number<const C: usize>(model: &Erased<C>, name: &str) -> usize {
+fn mode_number<const C: usize>(model: &Erased<'_, C>, name: &str) -> usize {
     let mut modes = model.description().modes.iter();
     let place = modes.position(|mode| mode.name == name);
     place.unwrap_or_else(|| panic!("no mode `{name}`"))

@@ -80,7 +80,7 @@ dalembert::model! {
     }
 }
 
-static TIP: Text = Text::new(Tip::DESCRIPTION.source);
+static TIP: Text = Text::new(Tip::DESCRIPTION.source.value());
 
 /// Walls that a point sticks to, one for each coordinate, and a floor that it does not stick to.
 static CORNER: Text = Text::new(

@@ -26,7 +26,9 @@ impl fmt::Debug for Tokens {
 /// The declarations of every system that the tests know.
 fn sources() -> Vec<&'static str> {
     let systems = every_system().iter();
-    systems.map(|system| system.description().source).collect()
+    systems
+        .map(|system| system.description().source.value())
+        .collect()
 }
 
 /// The tokens, groups counted once for their brackets.

@@ -1,5 +1,7 @@
 //! Random starts of the shipped models.
 
+use std::sync::Arc;
+
 use dalembert::describe::{Description, Topology};
 use dalembert::erased::Form;
 use dalembert_driver::{AnyModel, Code, OffConstraint, Origin, Rates, of_form};
@@ -21,7 +23,7 @@ pub struct Case {
 pub struct Shipped {
     /// Its name.
     pub name: &'static str,
-    form: &'static Form,
+    form: Arc<Form>,
 }
 
 /// Runs go so many times as far as the model declares.
@@ -33,15 +35,17 @@ impl Shipped {
         let texts = dalembert_command::TEXTS.iter();
         texts.filter_map(|&(name, text)| {
             let models = dalembert_jit::load(name, text);
-            let form = models.unwrap_or_else(|refused| panic!("{refused}"))[0].form;
-            let surfaces = form.documentation.description.surfaces;
-            (!surfaces.is_empty()).then_some(Self { name, form })
+            let models = models.unwrap_or_else(|refused| panic!("{refused}"));
+            let form = Arc::clone(&models[0].form);
+            let has_surfaces = !form.documentation.description.surfaces.is_empty();
+            has_surfaces.then_some(Self { name, form })
         })
     }
 
     /// The declared start.
     pub fn declared(&self) -> Case {
-        let model = of_form(self.form, Code::Loaded).expect("room for its vectors");
+        let model =
+            of_form(Arc::clone(&self.form).into(), Code::Loaded).expect("room for its vectors");
         let start = model.initial();
         let q = model.complete_position(&start.q, &start.placed);
         let q = q.expect("positions");
@@ -62,9 +66,9 @@ impl Shipped {
     /// A start of this number: even ones near the declared one, odd ones anywhere in the chart, all with other parameters.
     pub fn drawn(&self, number: u64, random: &mut Random) -> Case {
         let mut case = self.declared();
-        let description = case.model.description();
+        let description = &self.form.documentation.description;
         case.name = format!("{} {number}", self.name);
-        vary_parameters(case.model.as_mut(), &description, random);
+        vary_parameters(case.model.as_mut(), description, random);
         let modes = description.modes.len() as f64;
         if modes > 0.0 {
             case.model.set_mode(random.within(0.0, modes) as usize);
@@ -82,7 +86,7 @@ impl Shipped {
                 }
             }
             false => {
-                draw_positions(&mut case.origin.q, &description, random);
+                draw_positions(&mut case.origin.q, description, random);
                 let speed = 10.0_f64.powf(random.within(-1.0, 1.0));
                 qdot.fill_with(|| speed * random.within(-1.0, 1.0));
             }
@@ -105,7 +109,7 @@ fn vary_parameters(model: &mut dyn AnyModel, description: &Description, random: 
 /// Draws positions in the chart, coordinates of lines about their declared values.
 fn draw_positions(q: &mut [f64], description: &Description, random: &mut Random) {
     let size = 10.0_f64.powf(random.within(-2.0, 0.5));
-    for (q, coordinate) in q.iter_mut().zip(description.coordinates) {
+    for (q, coordinate) in q.iter_mut().zip(&description.coordinates) {
         *q = match coordinate.topology {
             Topology::Circle => random.within(0.0, core::f64::consts::TAU),
             Topology::Interval { low, high } => {

@@ -55,7 +55,7 @@ impl Reported {
 /// All functions, where the model has no value.
 pub trait Numeric {
     /// The description.
-    fn description(&self) -> &'static Description;
+    fn description(&self) -> &Description;
 
     /// Sets a parameter by name. True if there is one.
     fn set(&mut self, name: &str, value: f64) -> bool;
@@ -83,7 +83,7 @@ pub trait Numeric {
 }
 
 impl<S: Instance> Numeric for S {
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         Instance::description(self)
     }
 

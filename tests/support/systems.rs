@@ -223,7 +223,7 @@ dalembert::model! {
 pub fn texts() -> impl Iterator<Item = &'static Text> {
     macro_rules! texts {
         ($($system:ident)*) => {
-            [$(Text::new($system::DESCRIPTION.source)),*]
+            [$(Text::new($system::DESCRIPTION.source.value())),*]
         };
     }
     static TEXTS: [Text; 14] = texts! {

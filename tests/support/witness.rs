@@ -32,7 +32,7 @@ pub fn at(system: &dyn Numeric, text: &str, state: &Snapshot, partial: Option<us
     let scope = Scope {
         coordinates: &coordinates,
         parameters: &parameters,
-        definitions: &definitions(system.description().source),
+        definitions: &definitions(&system.description().source),
         state,
         partial,
     };

@@ -1,5 +1,6 @@
 //! Tables as constant expressions. A table that differs little from another is written as its differences.
 
+use dalembert_numbers::Held;
 use dalembert_numbers::description::{
     Assumption, ConstraintInfo, CoordinateInfo, Description, Documentation, ModeInfo,
     ParameterInfo, Quantity, SurfaceInfo, Topology, ViewInfo,
@@ -18,6 +19,11 @@ use super::function::number;
 /// Values that can be written as constant expressions.
 pub(super) trait Constant {
     fn tokens(&self) -> TokenStream;
+
+    /// The value once more, where it stands at this place behind a reference to a constant.
+    fn repeated(&self, place: &TokenStream) -> TokenStream {
+        place.clone()
+    }
 }
 
 /// A struct of the runtime.
@@ -25,27 +31,28 @@ pub(super) trait Record: Constant {
     /// The path of the type.
     fn path() -> TokenStream;
 
-    /// The fields: name, tokens, and true if `other` has the same value.
-    fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)>;
+    /// The fields: name, tokens, and tokens of the same value at `base` if `other` has it there.
+    fn fields(&self, other: Option<(&Self, &TokenStream)>) -> Vec<(&'static str, TokenStream)>;
 
-    /// Fields that differ from those of another, which stands in the constant `base`.
-    fn tokens_beside(&self, other: &Self, base: &TokenStream) -> TokenStream {
-        let fields = self.fields(Some(other)).into_iter();
-        let differing = fields.filter(|(_, _, is_same)| !is_same);
-        let differing: Vec<TokenStream> = differing
-            .map(|(name, value, _)| field(name, &value))
-            .collect();
-        let path = Self::path();
-        match differing.is_empty() {
-            true => base.clone(),
-            false => quote!(#path { #(#differing,)* ..#base }),
+    /// A reference to all of it, with the fields that another has too taken from there: it stands in the constant `base`,
+    /// which is a reference.
+    fn tokens_beside(&self, other: &Self, base: &TokenStream) -> TokenStream
+    where
+        Self: PartialEq,
+    {
+        if self == other {
+            return base.clone();
         }
+        let fields = self.fields(Some((other, base))).into_iter();
+        let fields = fields.map(|(name, value)| field(name, &value));
+        let path = Self::path();
+        quote!(&#path { #(#fields),* })
     }
 
     /// All of it, some fields with other tokens.
     fn tokens_with(&self, others: &[(&str, TokenStream)]) -> TokenStream {
         let path = Self::path();
-        let fields = self.fields(None).into_iter().map(|(name, value, _)| {
+        let fields = self.fields(None).into_iter().map(|(name, value)| {
             let other = others.iter().find(|(other, _)| *other == name);
             field(name, other.map_or(&value, |(_, tokens)| tokens))
         });
@@ -85,12 +92,32 @@ impl<T: Constant> Constant for Option<T> {
             None => quote!(::core::option::Option::None),
         }
     }
+
+    // NOTE: a copy of what is inside need not exist.
+    fn repeated(&self, _: &TokenStream) -> TokenStream {
+        self.tokens()
+    }
 }
 
-impl<T: Constant> Constant for &'static [T] {
+impl<T: Constant> Constant for Held<[T]> {
     fn tokens(&self) -> TokenStream {
         let values = self.iter().map(Constant::tokens);
-        quote!(&[#(#values),*])
+        quote!(::dalembert::erased::Held::Static(&[#(#values),*]))
+    }
+
+    fn repeated(&self, place: &TokenStream) -> TokenStream {
+        quote!(#place.again())
+    }
+}
+
+impl Constant for Held<str> {
+    fn tokens(&self) -> TokenStream {
+        let text: &str = self;
+        quote!(::dalembert::erased::Held::Static(#text))
+    }
+
+    fn repeated(&self, place: &TokenStream) -> TokenStream {
+        quote!(#place.again())
     }
 }
 
@@ -101,10 +128,14 @@ impl<T: Constant, const N: usize> Constant for [T; N] {
     }
 }
 
-impl<T: Constant> Constant for &'static T {
+impl<T: Constant> Constant for Held<T> {
     fn tokens(&self) -> TokenStream {
-        let value = (*self).tokens();
-        quote!(&#value)
+        let value = (**self).tokens();
+        quote!(::dalembert::erased::Held::Static(&#value))
+    }
+
+    fn repeated(&self, place: &TokenStream) -> TokenStream {
+        quote!(#place.again())
     }
 }
 
@@ -115,13 +146,20 @@ macro_rules! records {
                 quote!(::dalembert::$module::$name)
             }
 
-            fn fields(&self, other: Option<&Self>) -> Vec<(&'static str, TokenStream, bool)> {
+            fn fields(
+                &self,
+                other: Option<(&Self, &TokenStream)>,
+            ) -> Vec<(&'static str, TokenStream)> {
                 // NOTE: a new field does not compile until it is added here.
                 let Self { $($field),* } = self;
                 vec![$((
                     stringify!($field),
-                    $field.tokens(),
-                    other.is_some_and(|other| other.$field == *$field),
+                    match other {
+                        Some((other, base)) if other.$field == *$field => {
+                            $field.repeated(&quote!(#base.$field))
+                        }
+                        _ => $field.tokens(),
+                    },
                 )),*]
             }
         }
@@ -129,6 +167,13 @@ macro_rules! records {
         impl Constant for $name {
             fn tokens(&self) -> TokenStream {
                 self.tokens_with(&[])
+            }
+
+            fn repeated(&self, place: &TokenStream) -> TokenStream {
+                let Self { $($field),* } = self;
+                let path = Self::path();
+                $(let $field = $field.repeated(&quote!(#place.$field));)*
+                quote!(#path { $($field: #$field),* })
             }
         }
     )*};

@@ -48,7 +48,7 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
 
             #[inline(always)]
             fn tables(&self) -> &'static ::dalembert::kernels::Tables {
-                &<Self as ::dalembert::declaration::Emitted>::TABLES
+                <Self as ::dalembert::declaration::Emitted>::TABLES
             }
 
             #[inline(always)]

@@ -40,7 +40,7 @@ pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>)
 
             #[inline]
             fn documentation(&self) -> &'static ::dalembert::kernels::Documentation {
-                &<Self as ::dalembert::declaration::Emitted>::DOCUMENTATION
+                <Self as ::dalembert::declaration::Emitted>::DOCUMENTATION
             }
 
             #[inline]
@@ -53,8 +53,8 @@ pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>)
 
         #attributes
         impl ::dalembert::declaration::Emitted for #type_name {
-            const TABLES: ::dalembert::kernels::Tables = #tables;
-            const DOCUMENTATION: ::dalembert::kernels::Documentation = #documentation;
+            const TABLES: &'static ::dalembert::kernels::Tables = #tables;
+            const DOCUMENTATION: &'static ::dalembert::kernels::Documentation = #documentation;
 
             fn declared() -> Self { #defaults }
 
@@ -71,7 +71,10 @@ fn emit_tables(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream
             let place = emitted(&base.names.type_name, "TABLES");
             tables.tokens_beside(&base.form.tables(), &place)
         }
-        None => tables.tokens(),
+        None => {
+            let tables = tables.tokens();
+            quote!(&#tables)
+        }
     }
 }
 
@@ -87,12 +90,14 @@ fn emit_documentation(context: &Context<'_>, base: Option<&Context<'_>>) -> Toke
     }
 }
 
-/// A self-description whose parameters are those of the tables.
+/// A reference to a self-description whose parameters are those of the tables.
 pub(super) fn with_shared_parameters(documentation: &Documentation) -> TokenStream {
     let tables = emitted(&quote!(Self), "TABLES");
     let description = &documentation.description;
-    let description = description.tokens_with(&[("parameters", quote!(#tables.parameters))]);
-    documentation.tokens_with(&[("description", description)])
+    let description =
+        description.tokens_with(&[("parameters", quote!(#tables.parameters.again()))]);
+    let documentation = documentation.tokens_with(&[("description", description)]);
+    quote!(&#documentation)
 }
 
 /// A constant of `Emitted` of a type.

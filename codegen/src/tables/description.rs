@@ -1,13 +1,14 @@
 //! Self-description of a model.
 
 use dalembert_expr::ExprId;
+use dalembert_numbers::Held;
 use dalembert_numbers::description::{
     self, ConstraintInfo, CoordinateInfo, Description, Documentation, ParameterInfo, Quantity,
     SurfaceInfo, ViewInfo,
 };
 use dalembert_numbers::kernel::Shape;
 
-use super::{FormOf, constant, default_value, names, table, text};
+use super::{FormOf, constant, default_value, name, names, table, text};
 use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
 use crate::program::recipes::geometry;
 use crate::spec::WHOLE;
@@ -24,7 +25,7 @@ impl FormOf<'_> {
             placed,
             named,
             geometry: table(quantities.map(|group| Quantity {
-                name: text(&group.name),
+                name: name(&group.name),
                 shape: match group.shape {
                     geometry::Shape::Scalar => Shape::Scalar,
                     geometry::Shape::Vector(count) => Shape::Vector(count),
@@ -65,20 +66,20 @@ impl FormOf<'_> {
 /// The description of a model that has nothing but its name, its text and its parameters.
 pub(super) fn of_model(model: &Model) -> Description {
     Description {
-        type_name: text(&model.name),
-        name: text(&model.snake_name),
+        type_name: name(&model.name),
+        name: name(&model.snake_name),
         documentation: text(text_of(&model.documentation)),
-        source: text(&model.source),
+        source: text(model.source.as_str()),
         is_first_order: model.is_first_order(),
-        coordinates: &[],
+        coordinates: Held::Static(&[]),
         parameters: parameters(model),
-        constraints: &[],
-        forces: &[],
-        quasi_velocities: &[],
-        surfaces: &[],
-        outputs: &[],
-        scenes: &[],
-        modes: &[],
+        constraints: Held::Static(&[]),
+        forces: Held::Static(&[]),
+        quasi_velocities: Held::Static(&[]),
+        surfaces: Held::Static(&[]),
+        outputs: Held::Static(&[]),
+        scenes: Held::Static(&[]),
+        modes: Held::Static(&[]),
         view: None,
     }
 }
@@ -90,17 +91,17 @@ pub fn text_of(documentation: &[String]) -> String {
 }
 
 /// True for the values that were declared.
-fn marks(values: &[Option<ExprId>]) -> &'static [bool] {
+fn marks(values: &[Option<ExprId>]) -> Held<[bool]> {
     table(values.iter().map(Option::is_some))
 }
 
-pub(super) fn parameters(model: &Model) -> &'static [ParameterInfo] {
+pub(super) fn parameters(model: &Model) -> Held<[ParameterInfo]> {
     let declared = model
         .parameters
         .iter()
         .filter(|parameter| !parameter.is_input);
     table(declared.map(|parameter| ParameterInfo {
-        name: text(&parameter.name.display),
+        name: name(&parameter.name.display),
         assumption: match &parameter.assumption {
             Assumption::Finite => description::Assumption::Finite,
             Assumption::Positive => description::Assumption::Positive,
@@ -117,7 +118,7 @@ pub(super) fn parameters(model: &Model) -> &'static [ParameterInfo] {
 
 pub(super) fn coordinate(model: &Model, declared: &Coordinate) -> CoordinateInfo {
     CoordinateInfo {
-        name: text(&declared.name.display),
+        name: name(&declared.name.display),
         topology: match declared.topology {
             Topology::Line => description::Topology::Line,
             Topology::Angle => description::Topology::Circle,
@@ -145,7 +146,7 @@ pub(super) fn constraint(
     level: Option<usize>,
 ) -> ConstraintInfo {
     ConstraintInfo {
-        name: text(&declared.name.display),
+        name: name(&declared.name.display),
         affine: !model.pool.is_syntactic_zero(declared.affine),
         level,
     }
@@ -153,7 +154,7 @@ pub(super) fn constraint(
 
 pub(super) fn surface(model: &Model, index: usize) -> SurfaceInfo {
     SurfaceInfo {
-        name: text(&model.surfaces[index].name.display),
+        name: name(&model.surfaces[index].name.display),
         law: text(model.law_text(index)),
     }
 }
@@ -162,7 +163,7 @@ pub(super) fn surface(model: &Model, index: usize) -> SurfaceInfo {
 pub(super) fn view(model: &Model, places: &[usize]) -> Option<ViewInfo> {
     let view = model.view.as_ref()?;
     Some(ViewInfo {
-        labels: view.labels.each_ref().map(text),
+        labels: view.labels.each_ref().map(|label| text(label.as_str())),
         plane: view
             .plane
             .map(|plane| plane.map(|coordinate| places[coordinate])),

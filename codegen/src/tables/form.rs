@@ -1,10 +1,10 @@
 //! Sizes, conditions and laws of a form.
 
-use dalembert_numbers::Kernel;
 use dalembert_numbers::law::Law;
 use dalembert_numbers::tables::{self, Chart, Condition, Dimensions, Level, Surface, Tables, Work};
+use dalembert_numbers::{Held, Kernel};
 
-use super::{FormOf, constant, description, table, text};
+use super::{FormOf, constant, description, name, table};
 use crate::model::{self, Topology};
 use crate::program::jet::degree::Degree;
 use crate::program::{Form, Function, Input, Op};
@@ -32,11 +32,11 @@ impl FormOf<'_> {
             levels: table(self.declared_levels()),
             surfaces: table((0..model.surfaces.len()).map(|index| self.surface(index))),
             density_reference: self.density_reference(),
-            modes: &[],
+            modes: Held::Static(&[]),
         }
     }
 
-    fn density_reference(&self) -> Option<&'static [f64]> {
+    fn density_reference(&self) -> Option<Held<[f64]>> {
         let (reference, _) = self.program.volume.as_ref()?.gradient.as_ref()?;
         Some(table(reference.iter().copied()))
     }
@@ -155,15 +155,15 @@ impl FormOf<'_> {
         })
     }
 
-    fn surface(&self, index: usize) -> Surface {
+    pub(super) fn surface(&self, index: usize) -> Surface {
         let surface = &self.model.surfaces[index];
         let law = law(surface.law);
-        let name = || text(format!("restitution at {}", surface.name.display));
+        let coefficient = || name(format!("restitution at {}", surface.name.display));
         let others = surface.beside.others();
         let impacting = self.program.impacting.as_ref();
         Surface {
             law,
-            coefficient: law.coefficient().map(|_| name()),
+            coefficient: law.coefficient().map(|_| coefficient()),
             conditions: conditions(&surface.conditions),
             others: table(others.iter().map(|list| conditions(list))),
             beside: match &surface.beside {
@@ -198,7 +198,7 @@ fn law(declared: model::Law) -> Law {
     }
 }
 
-fn conditions(declared: &[model::Condition]) -> &'static [Condition] {
+fn conditions(declared: &[model::Condition]) -> Held<[Condition]> {
     table(declared.iter().map(|condition| Condition {
         is_closed: condition.is_closed,
     }))

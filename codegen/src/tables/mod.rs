@@ -4,16 +4,19 @@
 //! |---|---|
 //! | `form.rs` | sizes, conditions and laws of a form |
 //! | `description.rs` | self-description of a model |
+//! | `names.rs` | names, of which the program keeps one copy each |
 //! | `modes.rs` | both for a model with modes, and the place of each mode's quantities among those of the model |
 //!
 //! `emit` writes the data down as constants; an interpreter of declarations uses them directly.
-// NOTE: the runtime's tables hold `'static` borrows, as constants do. Tables made here live as long as the program that made them.
+// NOTE: tables own what they hold, but for names: those are interned (`names.rs`), as errors carry them.
 
 mod description;
 mod form;
 mod modes;
+mod names;
 
 use dalembert_expr::ExprId;
+use dalembert_numbers::Held;
 
 use crate::Compiled;
 use crate::mechanics::Frame;
@@ -21,6 +24,7 @@ use crate::model::{Model, Parameter, Scene};
 use crate::program::{Form, Program};
 pub use description::text_of;
 pub use modes::Whole;
+use names::name;
 
 /// One form of a model, of a scene or of a mode.
 #[derive(Debug, Clone, Copy)]
@@ -103,16 +107,16 @@ fn constant(model: &Model, expression: ExprId) -> f64 {
 }
 
 /// Values as a table has them.
-fn table<T>(values: impl IntoIterator<Item = T>) -> &'static [T] {
-    Vec::leak(values.into_iter().collect())
+fn table<T>(values: impl IntoIterator<Item = T>) -> Held<[T]> {
+    Held::Owned(values.into_iter().collect())
 }
 
 /// A text as a table has it.
-fn text(text: impl Into<String>) -> &'static str {
-    String::leak(text.into())
+fn text(text: impl Into<Box<str>>) -> Held<str> {
+    Held::Owned(text.into())
 }
 
 /// Names as a table has them.
-fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> &'static [&'static str] {
-    table(names.into_iter().map(text))
+fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> Held<[&'static str]> {
+    table(names.into_iter().map(name))
 }

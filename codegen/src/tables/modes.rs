@@ -1,9 +1,10 @@
 //! Data of a model with modes: lengths of vectors, and the place of each mode's quantities among those of the model.
 
+use dalembert_numbers::Held;
 use dalembert_numbers::description::{Description, Documentation, ModeInfo};
 use dalembert_numbers::tables::{Dimensions, Form, Mode, Passage, Tables, Transition, Work};
 
-use super::{FormOf, description, names, table, text};
+use super::{FormOf, description, name, names, table};
 use crate::model::{self, ModeGraph, Model};
 use crate::spec::WHOLE;
 
@@ -78,15 +79,15 @@ impl<'a> Whole<'a> {
             },
             dimensions: self.dimensions(),
             parameters: description::parameters(self.model()),
-            charts: &[],
+            charts: Held::Static(&[]),
             conserves_energy: false,
             can_be_narrow: of_modes.iter().any(|mode| mode.can_be_narrow),
             can_lose_rank: of_modes.iter().any(|mode| mode.can_lose_rank),
             drifts: of_modes.iter().any(|mode| mode.drifts),
             is_linear: of_modes.iter().all(|mode| mode.is_linear),
             varies: true,
-            levels: &[],
-            surfaces: table(surfaces.map(|entry| of_modes[entry.mode].surfaces[entry.place])),
+            levels: Held::Static(&[]),
+            surfaces: table(surfaces.map(|entry| self.forms[entry.mode][0].surface(entry.place))),
             density_reference: None,
             modes: table(self.tables_of_modes(of_modes)),
         }
@@ -101,8 +102,8 @@ impl<'a> Whole<'a> {
             let places = &mode.places;
             let list = |places: &[usize]| table(places.iter().copied());
             Mode {
-                tables: Box::leak(Box::new(tables)),
-                documentation: Box::leak(Box::new(forms[0].documentation())),
+                tables: Held::Owned(Box::new(tables)),
+                documentation: Held::Owned(Box::new(forms[0].documentation())),
                 kernels: first,
                 global: kernels - 1,
                 coordinates: list(&places.coordinates),
@@ -118,10 +119,10 @@ impl<'a> Whole<'a> {
     pub fn documentation(&self) -> Documentation {
         Documentation {
             description: self.description(),
-            inputs: &[],
-            placed: &[],
-            named: &[],
-            geometry: &[],
+            inputs: Held::Static(&[]),
+            placed: Held::Static(&[]),
+            named: Held::Static(&[]),
+            geometry: Held::Static(&[]),
         }
     }
 
@@ -140,7 +141,7 @@ impl<'a> Whole<'a> {
         let surfaces = surfaces.map(|entry| description::surface(model_of(entry), entry.place));
         let scenes = graph.modes.iter().map(|mode| mode.scene.name.as_str());
         let modes = graph.modes.iter().map(|mode| ModeInfo {
-            name: text(&mode.scene.name),
+            name: name(&mode.scene.name),
             coordinates: table(mode.places.coordinates.iter().copied()),
         });
         Description {

@@ -116,9 +116,9 @@ impl Point {
 
 fn compare(known: &FormOf<'_>) {
     let dimensions = (known.dimension(), known.state_dimension());
-    let series: &'static Series = Box::leak(Box::new(Series::of(&known.program.jet, dimensions)));
+    let series = Series::of(&known.program.jet, dimensions);
     let functions = Functions::of(known);
-    let compiled = functions.compiled(series);
+    let compiled = functions.compiled(&series);
     let compiled = compiled.expect("a processor that there is code for");
     let mut random = Random(3);
     let points: [Point; ROUNDS] = core::array::from_fn(|_| Point::draw(&mut random, known));
@@ -127,7 +127,7 @@ fn compare(known: &FormOf<'_>) {
         assert!(held.count() > 0, "{kernel:?}");
     }
     for point in &points {
-        compare_series(series, &compiled.series, point);
+        compare_series(&series, &compiled.series, point);
     }
 }
 

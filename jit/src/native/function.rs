@@ -19,7 +19,7 @@ const VALUES: Base = Base::Argument(3);
 pub(super) fn straight(code: &Code) -> Straight {
     let mut straight = Straight::default();
     let t = straight.push(Operation::Argument);
-    let velocities = match code.velocity {
+    let velocities = match &code.velocity {
         Some((velocity, _)) => Body::of(velocity, &mut straight, (t, &[])).values(),
         None => Vec::new(),
     };

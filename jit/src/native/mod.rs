@@ -59,7 +59,7 @@ type Entry = convention!(unsafe fn(*const f64, f64, *const f64, *const f64, *mut
 #[derive(Debug)]
 pub(crate) struct Native {
     entry: Entry,
-    code: &'static Code,
+    code: Arc<Code>,
     extent: Extent,
     /// The memory of the code.
     _memory: Arc<ExecutableBuffer>,
@@ -124,7 +124,7 @@ impl Extent {
                 *most = (*most).max(index + 1);
             }
         }
-        match code.velocity {
+        match &code.velocity {
             Some((velocity, _)) => extent.most(Self::of(velocity)),
             None => extent,
         }
@@ -241,13 +241,12 @@ pub(crate) struct Compiled {
 }
 
 /// Machine code of functions and of a series; `None` on a processor without machine code.
-pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Option<Compiled> {
+pub(crate) fn compile(codes: &[Arc<Code>], series: &Series) -> Option<Compiled> {
     let mut assembly = Assembly::new()?;
-    let begin: &'static Code = series.begin;
     let mut functions = Vec::new();
-    for code in codes.iter().copied().chain([begin]) {
+    for code in codes.iter().chain([&series.begin]) {
         let allocated = registers::allocate(&function::straight(code));
-        functions.push((code, assembly.function(&allocated)));
+        functions.push((Arc::clone(code), assembly.function(&allocated)));
     }
     let layout = Layout::of(series);
     let advance = assembly.series(&Expansion::of(series, &layout));
@@ -255,8 +254,8 @@ pub(crate) fn compile(codes: &[&'static Code], series: &'static Series) -> Optio
     let functions = functions.into_iter().map(|(code, entry)| Native {
         // SAFETY: a function with this signature was written there.
         entry: unsafe { core::mem::transmute::<*const u8, Entry>(memory.ptr(entry)) },
+        extent: Extent::of(&code),
         code,
-        extent: Extent::of(code),
         _memory: Arc::clone(&memory),
     });
     let mut functions: Vec<Native> = functions.collect();

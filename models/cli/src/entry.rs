@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use dalembert::declaration::{Described, SceneVisitor};
 use dalembert::describe::Description;
-use dalembert::erased::Form;
+use dalembert::erased::{Form, Shared};
 use dalembert::{Lagrangian, Scene, TaylorField};
 use dalembert_driver::{AnyModel, Code, Model, of_form, of_type};
 use dalembert_jit::Loaded;
@@ -32,53 +32,62 @@ enum Source {
     },
 }
 
+/// The name of the scene that is the model itself.
+const WHOLE: &str = "all";
+
 /// A model with its scenes, `all` first.
 #[derive(Clone)]
 struct Known {
-    description: Description,
-    scenes: Vec<(&'static str, Build)>,
+    scenes: Vec<(String, Build)>,
 }
 
 /// A maker of a model with declared defaults.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Build {
     /// A compiled form, run by the systems of all forms.
     Erased(&'static Form),
     /// A form loaded from a text.
-    Loaded(&'static Form),
-    /// A type for which all code that runs it is compiled.
-    Typed(fn() -> Box<dyn AnyModel>),
+    Loaded(Arc<Form>),
+    /// A type for which all code that runs it is compiled, and its description.
+    Typed(fn() -> Box<dyn AnyModel>, &'static Description),
 }
 
 impl Build {
     // NOTE: evaluated at compile time, so that only kernels are compiled for a type that has a form.
-    const fn of<M: Model + Described>() -> Self {
+    const fn of<M: Model + Described + 'static>() -> Self {
         match M::FORM {
             Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),
-            _ => Self::Typed(of_type::<M>),
+            _ => Self::Typed(of_type::<M>, M::DESCRIPTION),
         }
     }
 
-    fn build(self) -> Box<dyn AnyModel> {
+    fn build(&self) -> Box<dyn AnyModel> {
         match self {
-            Self::Erased(form) => erased(form, Code::Pointers),
-            Self::Loaded(form) => erased(form, Code::Loaded),
-            Self::Typed(build) => build(),
+            Self::Erased(form) => erased(Shared::Static(form), Code::Pointers),
+            Self::Loaded(form) => erased(Arc::clone(form).into(), Code::Loaded),
+            Self::Typed(build, _) => build(),
+        }
+    }
+
+    fn description(&self) -> &Description {
+        match self {
+            Self::Erased(form) => &form.documentation.description,
+            Self::Loaded(form) => &form.documentation.description,
+            Self::Typed(_, description) => description,
         }
     }
 }
 
 /// The model of a form, which must fit the largest capacity.
-fn erased(form: &'static Form, code: Code) -> Box<dyn AnyModel> {
+fn erased(form: Shared<Form>, code: Code) -> Box<dyn AnyModel> {
     of_form(form, code).expect("a form that there is a capacity for")
 }
 
 impl Entry {
     /// The entry of a model type with its scenes; the scene `all` is the model itself.
-    pub fn of<M: Model + Described>() -> Self {
+    pub fn of<M: Model + Described + 'static>() -> Self {
         let mut known = Known {
-            description: M::DESCRIPTION,
-            scenes: vec![("all", const { Build::of::<M>() })],
+            scenes: vec![(WHOLE.to_owned(), const { Build::of::<M>() })],
         };
         M::visit_scenes(&mut known);
         Self::known_by(known)
@@ -105,7 +114,7 @@ impl Entry {
 
     fn known_by(known: Known) -> Self {
         Self {
-            name: known.description.name,
+            name: known.description().name,
             source: Source::Known(Box::new(known)),
         }
     }
@@ -132,12 +141,12 @@ impl Entry {
 
     /// The description of the model.
     pub fn description(&self) -> &Description {
-        &self.known().description
+        self.known().description()
     }
 
     /// The names of the scenes, `all` first.
-    pub fn scenes(&self) -> impl Iterator<Item = &'static str> + Clone {
-        self.known().scenes.iter().map(|(name, _)| *name)
+    pub fn scenes(&self) -> impl Iterator<Item = &str> + Clone {
+        self.known().scenes.iter().map(|(name, _)| name.as_str())
     }
 
     /// The model in the scene of this index, with declared defaults.
@@ -154,7 +163,7 @@ fn load(name: &str, text: &str) -> Known {
         panic!("the text of `{name}` declares {} models", models.len());
     };
     let known = Known::of(model);
-    assert_eq!(known.description.name, name, "the name of a text");
+    assert_eq!(known.description().name, name, "the name of a text");
     if let Err(error) = known.check_size() {
         panic!("{error}");
     }
@@ -164,23 +173,28 @@ fn load(name: &str, text: &str) -> Known {
 impl Known {
     fn of(model: &Loaded) -> Self {
         let scenes = model.scenes.iter();
-        let scenes = scenes.map(|(name, form)| (*name, Build::Loaded(form)));
-        let whole = ("all", Build::Loaded(model.form));
+        let scenes = scenes.map(|(name, form)| (name.clone(), Build::Loaded(Arc::clone(form))));
+        let whole = (WHOLE.to_owned(), Build::Loaded(Arc::clone(&model.form)));
         Self {
-            description: model.form.documentation.description,
             scenes: [whole].into_iter().chain(scenes).collect(),
         }
     }
 
+    /// The description of the model itself.
+    fn description(&self) -> &Description {
+        self.scenes[0].1.description()
+    }
+
     fn check_size(&self) -> Result<(), CliError> {
         let has_room = |(_, build): &(_, Build)| match build {
-            Build::Erased(form) | Build::Loaded(form) => form.capacity().is_some(),
-            Build::Typed(_) => true,
+            Build::Erased(form) => form.capacity().is_some(),
+            Build::Loaded(form) => form.capacity().is_some(),
+            Build::Typed(..) => true,
         };
         match self.scenes.iter().all(has_room) {
             true => Ok(()),
             false => Err(CliError::Large {
-                model: self.description.name,
+                model: self.description().name,
             }),
         }
     }
@@ -191,7 +205,8 @@ impl SceneVisitor for Known {
     where
         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
     {
-        self.scenes.push((name, const { Build::of::<S>() }));
+        self.scenes
+            .push((name.to_owned(), const { Build::of::<S>() }));
     }
 }
 

@@ -198,7 +198,7 @@ impl CliError {
 
     /// The error for a run that does not start.
     pub fn refused(model: &dyn AnyModel, refusal: &Refusal) -> Self {
-        Self::Start(refusal_text(&model.description(), refusal))
+        Self::Start(refusal_text(model.description(), refusal))
     }
 }
 

@@ -38,7 +38,7 @@ pub fn assignment<'a>(
 }
 
 /// The first line of the model's documentation.
-pub fn summary(description: &Description) -> &'static str {
+pub fn summary(description: &Description) -> &str {
     description
         .documentation
         .lines()

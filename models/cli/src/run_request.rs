@@ -86,7 +86,7 @@ pub fn settings(
         ));
     }
     Ok(Settings {
-        form: form(&model.description(), args)?,
+        form: form(model.description(), args)?,
         integrator,
         tol,
         step: None,
@@ -124,7 +124,7 @@ fn horizon(
 
 /// The laws of `--law`, in order; of two for one surface the later counts.
 pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
-    let description = &model.description();
+    let description = model.description();
     let mut laws = Vec::new();
     for flag in flags {
         let (surface, law) = match flag.split_once('=') {

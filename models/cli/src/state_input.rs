@@ -29,7 +29,7 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
         set_parameter(model.as_mut(), text)?;
     }
     if let Some(name) = &args.mode {
-        let modes = model.description().modes;
+        let modes = &model.description().modes;
         if modes.is_empty() {
             return Err(CliError::Usage("--mode: the model has no modes"));
         }
@@ -37,7 +37,7 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
         model.set_mode(names::find("--mode", "mode", name, names)?);
     }
     let checked = model.check_parameters();
-    checked.map_err(|error| CliError::state("--set", &model.description(), error.into()))?;
+    checked.map_err(|error| CliError::state("--set", model.description(), error.into()))?;
     Ok(model)
 }
 
@@ -55,7 +55,7 @@ pub fn build_run(models: &[Entry], args: &RunArgs) -> Result<Box<dyn AnyModel>, 
 
 fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--set", text, "NAME=VALUE")?;
-    let parameters = model.description().parameters;
+    let parameters = &model.description().parameters;
     let index = names::find(
         "--set",
         "parameter",
@@ -115,7 +115,7 @@ pub fn initial_state_with(
 ) -> Result<Origin, CliError> {
     let mut beginning = beginning(model, args)?;
     change(&mut beginning)?;
-    let refuse = |error| CliError::state(place(&beginning, args), &model.description(), error);
+    let refuse = |error| CliError::state(place(&beginning, args), model.description(), error);
     beginning.settle(model, args.off_constraint).map_err(refuse)
 }
 
@@ -126,7 +126,7 @@ pub fn initial_state_with(
 pub fn declared_state(model: &dyn AnyModel) -> Result<Origin, CliError> {
     Beginning::Named(model.initial())
         .settle(model, OffConstraint::Error)
-        .map_err(|error| CliError::state(DECLARED, &model.description(), error))
+        .map_err(|error| CliError::state(DECLARED, model.description(), error))
 }
 
 /// Origin of a state without flags, for messages.
@@ -203,7 +203,7 @@ fn apply_change(
     change: &str,
 ) -> Result<(), CliError> {
     let (name, value) = names::assignment("--initial", change, "NAME=VALUE,..")?;
-    let found = Component::find(&model.description(), name);
+    let found = Component::find(model.description(), name);
     let component = found.map_err(|unknown| CliError::Unknown {
         place: "--initial".to_owned(),
         unknown,
@@ -216,7 +216,7 @@ fn apply_change(
 
 /// Parses a comma-separated list of one number per coordinate.
 fn numbers(model: &dyn AnyModel, flag: &str, text: &str) -> Result<Vec<f64>, CliError> {
-    let names: Vec<_> = names::coordinates(&model.description()).collect();
+    let names: Vec<_> = names::coordinates(model.description()).collect();
     let given: Vec<_> = match text.trim() {
         "" => Vec::new(),
         list => list.split(',').collect(),

@@ -14,14 +14,14 @@ use crate::sink::Stream;
 /// The table of a run, written during the run. The row of an impact shows the state after it and names the surface in
 /// the column `event`; a sample at the same instant follows it.
 pub struct RunTable<'a> {
-    description: Description,
+    description: &'a Description,
     writer: csv::Writer<Stream<'a>>,
     has_header: bool,
 }
 
 impl<'a> RunTable<'a> {
     /// A table without any rows or header yet.
-    pub fn new(description: Description, stream: Stream<'a>) -> Self {
+    pub fn new(description: &'a Description, stream: Stream<'a>) -> Self {
         Self {
             description,
             writer: csv::Writer::from_writer(stream),
@@ -44,13 +44,13 @@ impl<'a> RunTable<'a> {
             return Ok(());
         }
         self.has_header = true;
-        let header = header(&self.description);
+        let header = header(self.description);
         self.writer.write_record(header).map_err(io_error)
     }
 
     fn row(&mut self, t: f64, point: &Point, event: &str) -> io::Result<()> {
         self.head()?;
-        let row = row(&self.description, t, point, event);
+        let row = row(self.description, t, point, event);
         self.writer.write_record(row).map_err(io_error)
     }
 }
@@ -61,7 +61,7 @@ impl Keep for RunTable<'_> {
     }
 
     fn impact(&mut self, impact: &Impact) -> io::Result<()> {
-        let surface = surface(&self.description, impact);
+        let surface = surface(self.description, impact);
         self.row(impact.t, &impact.after, surface)
     }
 

@@ -21,7 +21,7 @@ use crate::refusal::{Refusal, Uncertified};
 const STACK: usize = 16 << 20;
 
 /// The system for which certified motion is compiled: the one with room for every form.
-type System = Erased<32>;
+type System<'f> = Erased<'f, 32>;
 
 /// Request for certified motion from `t = 0` on.
 #[derive(Debug, Clone)]
@@ -87,7 +87,7 @@ pub struct Certified {
 /// A form with values for its parameters.
 pub(crate) struct Subject<'a> {
     /// The form, of a model that has one.
-    pub form: Option<&'static erased::Form>,
+    pub form: Option<&'a erased::Form>,
     /// The values of all parameters, inputs included.
     pub values: &'a [f64],
     /// The origin, and its state in the requested form.
@@ -129,7 +129,7 @@ impl Subject<'_> {
         }
         let form = system.form();
         // For a model with modes, the form of its first mode.
-        let known = form.forms.first().copied().unwrap_or(form);
+        let known = form.forms.first().map_or(form, |first| first);
         if known.kernels::<Interval>().is_none() {
             let why = match (form.tables.varies, declared.tables.varies) {
                 (true, _) => Uncertified::Compiled,
@@ -140,7 +140,7 @@ impl Subject<'_> {
         }
         let values = TaylorField::parameters(&system);
         let mut parameters =
-            <System as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
+            <System<'_> as TaylorField>::Parameters::<Interval>::zeros(values.as_slice().len());
         let entries = parameters.as_mut_slice().iter_mut();
         for (entry, value) in entries.zip(values.as_slice()) {
             *entry = Interval::of(*value);
@@ -184,11 +184,11 @@ impl Subject<'_> {
     /// All initial states.
     fn start(
         &self,
-        system: &System,
-        parameters: &<System as TaylorField>::Parameters<Interval>,
+        system: &System<'_>,
+        parameters: &<System<'_> as TaylorField>::Parameters<Interval>,
         request: &Certification,
     ) -> Result<Vec<Interval>, Refusal> {
-        type Positions = <System as Variational>::Configuration<Interval>;
+        type Positions = <System<'static> as Variational>::Configuration<Interval>;
         let n = self.origin.q.len();
         let tables = &system.form().tables;
         if !tables.modes.is_empty() {
@@ -240,12 +240,12 @@ fn replace(entries: &mut [Interval], ranges: &[(usize, Interval)]) {
 
 /// A system with ranges for its parameters.
 struct Shown<'a> {
-    system: &'a System,
-    parameters: <System as TaylorField>::Parameters<Interval>,
+    system: &'a System<'a>,
+    parameters: <System<'a> as TaylorField>::Parameters<Interval>,
 }
 
 impl Shown<'_> {
-    fn strike(&self, impact: &CertifiedImpact<System>) -> Strike {
+    fn strike(&self, impact: &CertifiedImpact<System<'_>>) -> Strike {
         Strike {
             surface: impact.surface,
             time: impact.time,
@@ -256,7 +256,8 @@ impl Shown<'_> {
 
     /// Positions and velocities of all states of a box.
     fn ranges(&self, times: Interval, component: impl Fn(usize) -> Interval) -> Ranges {
-        let mut state = <System as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
+        let mut state =
+            <System<'_> as TaylorField>::Row::<Interval>::zeros(self.system.state_len());
         for (i, entry) in state.as_mut_slice().iter_mut().enumerate() {
             *entry = component(i);
         }
@@ -266,7 +267,7 @@ impl Shown<'_> {
             Ok(velocities) => velocities.as_slice().to_vec(),
             Err(_) => vec![Interval::WHOLE; n],
         };
-        let modes = self.system.description().modes;
+        let modes = &self.system.description().modes;
         let number = state.as_slice().last().map_or(0.0, |last| last.middle());
         let Some(mode) = modes.get((number + 0.5) as usize) else {
             let q = state.as_slice()[..n].to_vec();
@@ -279,7 +280,7 @@ impl Shown<'_> {
             q: vec![absent; n],
             qdot: vec![absent; n],
         };
-        for (range, &place) in state.as_slice().iter().zip(mode.coordinates) {
+        for (range, &place) in state.as_slice().iter().zip(&mode.coordinates) {
             ranges.q[place] = *range;
             ranges.qdot[place] = qdot[place];
         }

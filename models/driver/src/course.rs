@@ -87,7 +87,7 @@ pub fn add_law(
     surface: Option<usize>,
     law: Law,
 ) -> Result<(), LawError> {
-    let surfaces = model.description().surfaces;
+    let surfaces = &model.description().surfaces;
     let is_wall = |surface: &usize| model.law(*surface) != Some(Law::Transition);
     let chosen = match surface {
         Some(surface) if is_wall(&surface) => surface..surface + 1,

@@ -47,4 +47,4 @@ pub use orbit::{Found, Search};
 pub use refusal::{Refusal, Uncertified};
 pub use run::{Contact, Ending, Impact, Piece, Settings, Watch};
 pub use typed::{Model, of_form, of_type};
-pub use variation::{Derivatives, Variable, VariationError};
+pub use variation::{Derivatives, Variable, VariationError, differentiate};

@@ -9,7 +9,6 @@ use crate::certify::{Certification, Certified, Strike};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{Ending, Settings, Watch};
-use crate::variation::{Derivatives, Variable, VariationError};
 
 /// Velocities or momenta, one per coordinate.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,9 +112,9 @@ pub trait AnyModel: Runs {
     /// The way in which the model's functions are called.
     fn code(&self) -> Code;
     /// Names, shapes and documentation of the declared quantities.
-    fn description(&self) -> Description;
+    fn description(&self) -> &Description;
     /// The names of the inputs, whose values are the parameters after those of the description.
-    fn inputs(&self) -> &'static [&'static str];
+    fn inputs(&self) -> &[&'static str];
     /// The value of a parameter; inputs come after those of the description.
     fn parameter(&self, index: usize) -> f64;
     /// Sets a parameter. Its value is checked when a state is made.
@@ -199,18 +198,6 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
-    /// Derivatives of the last state of a run with respect to these variables. The run is given up once `is_over`
-    /// returns true.
-    ///
-    /// # Errors
-    /// [`Refusal`] if the run does not start. The inner error explains why it has no derivatives.
-    fn differentiate(
-        &self,
-        origin: &Origin,
-        settings: &Settings,
-        variables: &[Variable],
-        is_over: &mut dyn FnMut() -> bool,
-    ) -> Result<Result<Derivatives, VariationError>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

@@ -59,9 +59,7 @@ pub fn momentum(coordinate: &str) -> String {
 }
 
 /// The coordinates' names in order.
-pub fn coordinates(
-    description: &Description,
-) -> impl Iterator<Item = &'static str> + Clone + use<> {
+pub fn coordinates(description: &Description) -> impl Iterator<Item = &'static str> + Clone {
     description
         .coordinates
         .iter()
@@ -69,7 +67,7 @@ pub fn coordinates(
 }
 
 /// The surfaces' names in order.
-pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + Clone + use<> {
+pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + Clone {
     description.surfaces.iter().map(|surface| surface.name)
 }
 

@@ -2,7 +2,8 @@
 
 use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};
-use dalembert::erased::{self, Erased};
+use dalembert::erased::{self, Erased, Shared};
+use dalembert::kernels::Declared;
 use dalembert::law::{Contact, Law};
 use dalembert::numbers::Row;
 use dalembert::state::StateVector;
@@ -20,108 +21,209 @@ use crate::model::{
 use crate::orbit::{Finder, Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{self, Abreast, Ending, Settings, Watch};
-use crate::variation::{Begun, Differentiator, Variable, VariationError, Varied};
 
 /// A system that can be run behind [`AnyModel`]: the traits that `model!` implements for a model with values for its
 /// parameters.
 pub trait Model:
-    Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
+    Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian
 {
 }
 
 impl<M> Model for M where
-    M: Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static
+    M: Instance<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian
 {
 }
 
-/// A typed model behind [`AnyModel`].
-struct Typed<M> {
-    model: M,
+/// Owner of a model with values for its parameters.
+trait Owner {
+    /// The model as a system, which may borrow from its owner.
+    type System<'a>: Model
+    where
+        Self: 'a;
+
+    fn system(&self) -> Self::System<'_>;
+
+    /// The form, of a model that has one.
+    fn form(&self) -> Option<&erased::Form>;
+
+    fn description(&self) -> &Description;
+
+    fn inputs(&self) -> &[&'static str];
+
+    fn set_parameter(&mut self, index: usize, value: f64);
+
+    fn set_mode(&mut self, mode: usize);
+}
+
+/// The model of a type.
+struct OfType<M>(M);
+
+impl<M: Model + 'static> Owner for OfType<M> {
+    type System<'a> = M;
+
+    fn system(&self) -> M {
+        self.0.clone()
+    }
+
+    fn form(&self) -> Option<&erased::Form> {
+        None
+    }
+
+    fn description(&self) -> &Description {
+        self.0.description()
+    }
+
+    fn inputs(&self) -> &[&'static str] {
+        self.0.inputs()
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        self.0.set_parameter(index, value);
+    }
+
+    fn set_mode(&mut self, mode: usize) {
+        self.0.set_mode(mode);
+    }
+}
+
+/// The model of a form, whose vectors have at most `C` components.
+struct OfForm<const C: usize> {
+    form: Shared<erased::Form>,
+    /// The values of all parameters, inputs included.
+    values: Vec<f64>,
+    /// The number of the mode in which states are made.
+    mode: usize,
+}
+
+impl<const C: usize> OfForm<C> {
+    /// The model with its declared values; `None` if the form has longer vectors.
+    fn of(form: &Shared<erased::Form>) -> Option<Self> {
+        let values = TaylorField::parameters(&Erased::<C>::of(form)?);
+        Some(Self {
+            form: form.clone(),
+            values: Row::as_slice(&values).to_vec(),
+            mode: 0,
+        })
+    }
+}
+
+impl<const C: usize> Owner for OfForm<C> {
+    type System<'a> = Erased<'a, C>;
+
+    fn system(&self) -> Erased<'_, C> {
+        let mut system = Erased::of(&self.form).expect("vectors of at most `C` components");
+        for (index, value) in self.values.iter().enumerate() {
+            system.set_parameter(index, *value);
+        }
+        system.set_mode(self.mode);
+        system
+    }
+
+    fn form(&self) -> Option<&erased::Form> {
+        Some(&self.form)
+    }
+
+    fn description(&self) -> &Description {
+        &self.form.documentation.description
+    }
+
+    fn inputs(&self) -> &[&'static str] {
+        &self.form.documentation.inputs
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        if let Some(entry) = self.values.get_mut(index) {
+            *entry = value;
+        }
+    }
+
+    fn set_mode(&mut self, mode: usize) {
+        let mut system = self.system();
+        system.set_mode(mode);
+        self.mode = Declared::start(&system);
+    }
+}
+
+/// A model behind [`AnyModel`].
+struct Typed<O> {
+    owner: O,
     code: Code,
-    /// The form, for the system of a form.
-    form: Option<&'static erased::Form>,
 }
 
 /// The model of a type, with its declared values.
-pub fn of_type<M: Model + Described>() -> Box<dyn AnyModel> {
+pub fn of_type<M: Model + Described + 'static>() -> Box<dyn AnyModel> {
     Box::new(Typed {
-        model: M::with_defaults(),
+        owner: OfType(M::with_defaults()),
         code: Code::Inlined,
-        form: None,
     })
 }
 
 /// The model of a form, with its declared values, run by the system of the least sufficient capacity
-/// ([`erased::Form::capacity`]); `None` if the form exceeds every capacity.
-pub fn of_form(form: &'static erased::Form, code: Code) -> Option<Box<dyn AnyModel>> {
+/// ([`erased::Form::capacity`]); `None` if the form exceeds every capacity. A form with owners is freed with the last of them.
+// NOTE: not generic, so that all that runs forms is compiled in this crate, once.
+pub fn of_form(form: Shared<erased::Form>, code: Code) -> Option<Box<dyn AnyModel>> {
     fn with_room<const C: usize>(
-        form: &'static erased::Form,
+        form: &Shared<erased::Form>,
         code: Code,
     ) -> Option<Box<dyn AnyModel>> {
-        let model = Erased::<C>::of(form)?;
-        Some(Box::new(Typed {
-            model,
-            code,
-            form: Some(form),
-        }))
+        let owner = OfForm::<C>::of(form)?;
+        Some(Box::new(Typed { owner, code }))
     }
-    with_room::<4>(form, code)
-        .or_else(|| with_room::<8>(form, code))
-        .or_else(|| with_room::<32>(form, code))
+    with_room::<4>(&form, code)
+        .or_else(|| with_room::<8>(&form, code))
+        .or_else(|| with_room::<32>(&form, code))
 }
 
-impl<M: Model> Typed<M> {
-    /// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and may
-    /// lie off the constraints.
-    fn checked_velocity(
-        &self,
-        t: f64,
-        q: &M::Vector,
-        rates: &Rates,
-    ) -> Result<M::Vector, StateError> {
-        let global = self.model.global();
-        let p = match rates {
-            Rates::Velocities(qdot) => {
-                let qdot = vector(q, qdot);
-                global.checked(t, q, &qdot)?;
-                return Ok(qdot);
-            }
-            Rates::Momenta(p) => vector(q, p),
-        };
-        global.check_parameters()?;
-        let mut components = q.as_slice().iter().chain(p.as_slice());
-        if let Some(component) = components.position(|value| !value.is_finite()) {
-            return Err(StateError::NotFinite { component });
+/// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and may
+/// lie off the constraints.
+fn checked_velocity<M: Model>(
+    model: &M,
+    t: f64,
+    q: &M::Vector,
+    rates: &Rates,
+) -> Result<M::Vector, StateError> {
+    let global = model.global();
+    let p = match rates {
+        Rates::Velocities(qdot) => {
+            let qdot = vector(q, qdot);
+            global.checked(t, q, &qdot)?;
+            return Ok(qdot);
         }
-        let state = global.state_from_momenta(t, q, &p)?;
-        match global.outside_chart(&state) {
-            Some(coordinate) => Err(StateError::OutsideChart { coordinate }),
-            None => Ok(global.velocity(t, &state)?),
-        }
+        Rates::Momenta(p) => vector(q, p),
+    };
+    global.check_parameters()?;
+    let mut components = q.as_slice().iter().chain(p.as_slice());
+    if let Some(component) = components.position(|value| !value.is_finite()) {
+        return Err(StateError::NotFinite { component });
     }
+    let state = global.state_from_momenta(t, q, &p)?;
+    match global.outside_chart(&state) {
+        Some(coordinate) => Err(StateError::OutsideChart { coordinate }),
+        None => Ok(global.velocity(t, &state)?),
+    }
+}
 
-    /// The state of a system in either form.
-    fn prepare<S: System<Vector = M::Vector>>(
-        &self,
-        system: &S,
-        t: f64,
-        origin: &Origin,
-    ) -> Result<S::State, StateError> {
-        let mut q = vector(&system.zero_vector(), &origin.q);
-        if origin.policy == OffConstraint::Project {
-            q = system.complete_position(t, &q, &system.zero_vector())?;
-        }
-        let qdot = self.checked_velocity(t, &q, &origin.rates)?;
-        if origin.policy == OffConstraint::Error {
-            system.admit(t, &q, &qdot)?;
-        }
-        Ok(match (origin.policy, &origin.rates) {
-            (OffConstraint::Project, _) => system.state_nearest(t, &q, &qdot)?,
-            // Given momenta are kept to the last digit unless the policy projects them.
-            (_, Rates::Momenta(p)) => system.state_from_momenta(t, &q, &vector(&q, p))?,
-            _ => system.state_unchecked(t, &q, &qdot)?,
-        })
+/// The state of a system in either form of a model.
+pub(crate) fn prepare<M: Model, S: System<Vector = M::Vector>>(
+    model: &M,
+    system: &S,
+    t: f64,
+    origin: &Origin,
+) -> Result<S::State, StateError> {
+    let mut q = vector(&system.zero_vector(), &origin.q);
+    if origin.policy == OffConstraint::Project {
+        q = system.complete_position(t, &q, &system.zero_vector())?;
     }
+    let qdot = checked_velocity(model, t, &q, &origin.rates)?;
+    if origin.policy == OffConstraint::Error {
+        system.admit(t, &q, &qdot)?;
+    }
+    Ok(match (origin.policy, &origin.rates) {
+        (OffConstraint::Project, _) => system.state_nearest(t, &q, &qdot)?,
+        // Given momenta are kept to the last digit unless the policy projects them.
+        (_, Rates::Momenta(p)) => system.state_from_momenta(t, &q, &vector(&q, p))?,
+        _ => system.state_unchecked(t, &q, &qdot)?,
+    })
 }
 
 /// True if a mark of [`Initial`](dalembert::describe::Initial) is set.
@@ -139,50 +241,51 @@ macro_rules! in_form {
     ($typed:ident, $origin:ident, $settings:ident, |$model:ident, $state:ident| $work:expr) => {{
         match $settings.form {
             Form::Reduced => {
-                let $model = &$typed.model;
-                let $state = $typed.prepare($model, 0.0, $origin)?;
+                let $model = &$typed.owner.system();
+                let $state = prepare($model, $model, 0.0, $origin)?;
                 $work
             }
             Form::Global => {
-                let $model = &$typed.model.global();
-                let $state = $typed.prepare($model, 0.0, $origin)?;
+                let declared = &$typed.owner.system();
+                let $model = &declared.global();
+                let $state = prepare(declared, $model, 0.0, $origin)?;
                 $work
             }
         }
     }};
 }
 
-impl<M: Model> AnyModel for Typed<M> {
+impl<O: Owner> AnyModel for Typed<O> {
     fn code(&self) -> Code {
         self.code
     }
 
-    fn description(&self) -> Description {
-        *self.model.description()
+    fn description(&self) -> &Description {
+        self.owner.description()
     }
 
-    fn inputs(&self) -> &'static [&'static str] {
-        self.model.inputs()
+    fn inputs(&self) -> &[&'static str] {
+        self.owner.inputs()
     }
 
     fn parameter(&self, index: usize) -> f64 {
-        self.model.parameter(index)
+        self.owner.system().parameter(index)
     }
 
     fn set_parameter(&mut self, index: usize, value: f64) {
-        self.model.set_parameter(index, value);
+        self.owner.set_parameter(index, value);
     }
 
     fn set_mode(&mut self, mode: usize) {
-        self.model.set_mode(mode);
+        self.owner.set_mode(mode);
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {
-        self.model.check_parameters()
+        self.owner.system().check_parameters()
     }
 
     fn initial(&self) -> Start {
-        let initial = self.model.initial();
+        let initial = self.owner.system().initial();
         Start {
             q: initial.q.as_slice().to_vec(),
             qdot: initial.qdot.as_slice().to_vec(),
@@ -193,9 +296,10 @@ impl<M: Model> AnyModel for Typed<M> {
     }
 
     fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError> {
-        let zero = self.model.zero_vector();
+        let model = self.owner.system();
+        let zero = model.zero_vector();
         let (q, placed) = (vector(&zero, q), vector(&zero, &marks(placed)));
-        let completed = self.model.complete_position(0.0, &q, &placed)?;
+        let completed = model.complete_position(0.0, &q, &placed)?;
         Ok(completed.as_slice().to_vec())
     }
 
@@ -205,41 +309,46 @@ impl<M: Model> AnyModel for Typed<M> {
         qdot: &[f64],
         named: &[bool],
     ) -> Result<Vec<f64>, StateError> {
-        let zero = self.model.zero_vector();
+        let model = self.owner.system();
+        let zero = model.zero_vector();
         let [q, qdot, named] = [q, qdot, &marks(named)].map(|values| vector(&zero, values));
-        let completed = self.model.complete_velocity(0.0, &q, &qdot, &named)?;
+        let completed = model.complete_velocity(0.0, &q, &qdot, &named)?;
         Ok(completed.as_slice().to_vec())
     }
 
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError> {
-        let state = self.prepare(&self.model.global(), t, origin)?;
+        let model = self.owner.system();
+        let state = prepare(&model, &model.global(), t, origin)?;
         Ok(state.as_slice().to_vec())
     }
 
     fn region(&self, t: f64, q: &[f64]) -> Option<f64> {
-        self.model
-            .view_region(t, &vector(&self.model.zero_vector(), q))
+        let model = self.owner.system();
+        model.view_region(t, &vector(&model.zero_vector(), q))
     }
 
     fn inspect(&self, t: f64, state: &[f64], report: &mut dyn Report) -> Result<(), Fault> {
-        let global = self.model.global();
+        let model = self.owner.system();
+        let global = model.global();
         let state = vector(&global.zero_state(), state);
         global.inspect(t, &state, report)?;
-        if self.model.description().quasi_velocities.is_empty() {
+        if model.description().quasi_velocities.is_empty() {
             return Ok(());
         }
         let (q, qdot) = (global.position(&state), global.velocity(t, &state)?);
-        let state = self.model.state_unchecked(t, &q, &qdot)?;
-        self.model.inspect_frame(t, &state, report)
+        let state = model.state_unchecked(t, &q, &qdot)?;
+        model.inspect_frame(t, &state, report)
     }
 
     fn law(&self, surface: usize) -> Option<Law> {
-        self.model.effects().law(&self.model, surface)
+        let model = self.owner.system();
+        model.effects().law(&model, surface)
     }
 
     fn impact(&self, state: &[f64], contact: &Contacted, law: Law) -> Vec<f64> {
-        let global = self.model.global();
-        let contact = Contact::<<M::Global as System>::Impulse> {
+        let model = self.owner.system();
+        let global = model.global();
+        let contact = Contact::<<<O::System<'_> as Instance>::Global as System>::Impulse> {
             gap_rate: contact.gap_rate,
             constrained_rate: contact.constrained_rate,
             surface_rate: contact.surface_rate,
@@ -253,14 +362,15 @@ impl<M: Model> AnyModel for Typed<M> {
     }
 
     fn kick(&self, state: &[f64], impulse: &[f64]) -> Vec<f64> {
-        let global = self.model.global();
+        let model = self.owner.system();
+        let global = model.global();
         let mut state = vector(&global.zero_state(), state);
         global.kick(&mut state, 1.0, &vector(&global.zero_impulse(), impulse));
         StateVector::as_slice(&state).to_vec()
     }
 }
 
-impl<M: Model> Runs for Typed<M> {
+impl<O: Owner> Runs for Typed<O> {
     fn simulate(
         &self,
         origin: &Origin,
@@ -278,9 +388,10 @@ impl<M: Model> Runs for Typed<M> {
         settings: &Settings,
         looks_inside: bool,
     ) -> Vec<Result<Ending, Refusal>> {
+        let model = self.owner.system();
         match settings.form {
-            Form::Reduced => abreast(self, runs, settings, looks_inside, M::clone),
-            Form::Global => abreast(self, runs, settings, looks_inside, M::global),
+            Form::Reduced => abreast(&model, runs, settings, looks_inside, Clone::clone),
+            Form::Global => abreast(&model, runs, settings, looks_inside, Instance::global),
         }
     }
 
@@ -312,42 +423,16 @@ impl<M: Model> Runs for Typed<M> {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal> {
-        let state = self.prepare(&self.model, 0.0, origin)?;
-        let qdot = self.model.velocity(0.0, &state).map_err(StateError::from)?;
-        let q = self.model.position(&state);
+        let model = self.owner.system();
+        let state = prepare(&model, &model, 0.0, origin)?;
+        let qdot = model.velocity(0.0, &state).map_err(StateError::from)?;
+        let q = model.position(&state);
         let finder = Finder {
             search,
             q: q.as_slice(),
             qdot: qdot.as_slice(),
         };
-        self.model.visit_variational(finder).transpose()
-    }
-
-    fn differentiate(
-        &self,
-        origin: &Origin,
-        settings: &Settings,
-        variables: &[Variable],
-        is_over: &mut dyn FnMut() -> bool,
-    ) -> Varied {
-        if let Some(error) = VariationError::beforehand(self.model.description(), settings) {
-            return Ok(Err(error));
-        }
-        in_form!(self, origin, settings, |model, state| {
-            let begun = Begun::of(model, &state)?;
-            let values = TaylorField::parameters(model);
-            let differentiator = Differentiator {
-                form: self.form,
-                values: values.as_slice(),
-                variables,
-                settings,
-                state: &begun.state,
-                q: &begun.q,
-                qdot: &begun.qdot,
-                is_over,
-            };
-            differentiator.run()
-        })
+        model.visit_variational(finder).transpose()
     }
 
     fn certify(
@@ -359,7 +444,7 @@ impl<M: Model> Runs for Typed<M> {
         in_form!(self, origin, request, |model, state| {
             let values = TaylorField::parameters(model);
             let subject = Subject {
-                form: self.form,
+                form: self.owner.form(),
                 values: values.as_slice(),
                 origin,
                 state: StateVector::as_slice(&state),
@@ -371,7 +456,7 @@ impl<M: Model> Runs for Typed<M> {
 
 /// Makes several runs at once, in one form of the model. A run without a valid initial state yields its [`Refusal`].
 fn abreast<M: Model, S: Model<Vector = M::Vector>>(
-    typed: &Typed<M>,
+    model: &M,
     runs: Vec<Together<'_>>,
     settings: &Settings,
     looks_inside: bool,
@@ -380,16 +465,12 @@ fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     let mut refused = Vec::new();
     let mut begun = Vec::new();
     for (index, run) in runs.into_iter().enumerate() {
-        let mut member = Typed {
-            model: typed.model.clone(),
-            code: typed.code,
-            form: typed.form,
-        };
+        let mut member = model.clone();
         for (index, value) in run.parameters.iter().enumerate() {
-            member.model.set_parameter(index, *value);
+            member.set_parameter(index, *value);
         }
-        let model = form(&member.model);
-        match member.prepare(&model, 0.0, &run.origin) {
+        let model = form(&member);
+        match prepare(&member, &model, 0.0, &run.origin) {
             Ok(state) => begun.push(Abreast {
                 model,
                 state,

@@ -13,17 +13,19 @@ use dalembert::simulation::STEP_BUDGET;
 use dalembert::variations::{Dual, Tangent};
 use dalembert::{
     Event, Fault, Hold, Instance, Observer, Outcome, Scene, Segment, Simulation, StateError,
-    StateVector, Undefined, Variations,
+    StateVector, System as _, Undefined, Variations,
 };
 use thiserror::Error;
 
 use crate::integrator::{Form, Integrator};
+use crate::model::Origin;
 use crate::names::{self, Unknown};
 use crate::refusal::Refusal;
 use crate::run::{Settings, effects};
+use crate::typed::prepare;
 
 /// The system whose runs are differentiated.
-type System = Erased<32>;
+type System<'f> = Erased<'f, 32>;
 
 /// A variable of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,11 +55,11 @@ pub struct Derivatives {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VariationError {
-    /// The model has no form.
+    /// The form exceeds the largest system.
     #[error(
-        "derivatives need a model that is loaded from a text, and this one is compiled into the program"
+        "derivatives need a model with vectors of at most 32 components and at most 64 parameters"
     )]
-    Compiled,
+    TooLarge,
     /// The scene was declared without `variations`.
     #[error("the scene was declared without `variations`; add it to what the scene uses")]
     WithoutVariations,
@@ -86,7 +88,7 @@ pub enum VariationError {
 
 impl VariationError {
     /// The reason for which no run with these settings has derivatives, if there is one.
-    pub(crate) fn beforehand(description: &Description, settings: &Settings) -> Option<Self> {
+    fn beforehand(description: &Description, settings: &Settings) -> Option<Self> {
         let is_free = description.constraints.is_empty();
         match settings.form {
             _ if !description.modes.is_empty() => Some(Self::Modes),
@@ -129,25 +131,64 @@ impl Variable {
     }
 }
 
+/// Derivatives of the last state of a run with respect to these variables. `values` are those of all parameters, inputs
+/// included. The run is given up once `is_over` returns true.
+///
+/// # Errors
+/// [`Refusal`] if the run does not start. The inner error explains why it has no derivatives.
+// NOTE: a function and not a method of `Runs`, so that a program that does not call it is linked without it.
+pub fn differentiate(
+    form: &erased::Form,
+    values: &[f64],
+    origin: &Origin,
+    settings: &Settings,
+    variables: &[Variable],
+    is_over: &mut dyn FnMut() -> bool,
+) -> Varied {
+    let description = &form.documentation.description;
+    if let Some(error) = VariationError::beforehand(description, settings) {
+        return Ok(Err(error));
+    }
+    let Some(mut model) = System::of(form) else {
+        return Ok(Err(VariationError::TooLarge));
+    };
+    for (index, value) in values.iter().enumerate() {
+        model.set_parameter(index, *value);
+    }
+    let system = match settings.form {
+        Form::Reduced => model,
+        Form::Global => model.global(),
+    };
+    let state = prepare(&model, &system, 0.0, origin)?;
+    let q = system.position(&state);
+    let qdot = system.velocity(0.0, &state).map_err(StateError::from)?;
+    let differentiator = Differentiator {
+        variables,
+        settings,
+        state: StateVector::as_slice(&state),
+        q: StateVector::as_slice(&q),
+        qdot: StateVector::as_slice(&qdot),
+        is_over,
+    };
+    let varied = system.visit_variational(differentiator);
+    varied.unwrap_or(Ok(Err(VariationError::WithoutVariations)))
+}
+
 /// Differentiates a run.
-pub(crate) struct Differentiator<'a> {
-    /// The form, for a model that has one.
-    pub form: Option<&'static erased::Form>,
-    /// The values of all parameters, inputs included.
-    pub values: &'a [f64],
-    pub variables: &'a [Variable],
-    pub settings: &'a Settings,
+struct Differentiator<'a> {
+    variables: &'a [Variable],
+    settings: &'a Settings,
     /// The state in the form of the settings.
-    pub state: &'a [f64],
+    state: &'a [f64],
     /// Positions and velocities of that state.
-    pub q: &'a [f64],
-    pub qdot: &'a [f64],
+    q: &'a [f64],
+    qdot: &'a [f64],
     /// Returns true once the caller gives up the run.
-    pub is_over: &'a mut dyn FnMut() -> bool,
+    is_over: &'a mut dyn FnMut() -> bool,
 }
 
 /// Result of a differentiator: the inner error if there are no derivatives, the outer one if no run starts.
-pub(crate) type Varied = Result<Result<Derivatives, VariationError>, Refusal>;
+type Varied = Result<Result<Derivatives, VariationError>, Refusal>;
 
 impl VariationalVisitor for Differentiator<'_> {
     type Output = Varied;
@@ -174,21 +215,6 @@ impl VariationalVisitor for Differentiator<'_> {
 }
 
 impl Differentiator<'_> {
-    /// Computes the derivatives of the last state.
-    pub(crate) fn run(self) -> Varied {
-        let Some(mut system) = self.form.and_then(System::of) else {
-            return Ok(Err(VariationError::Compiled));
-        };
-        for (index, value) in self.values.iter().enumerate() {
-            system.set_parameter(index, *value);
-        }
-        if self.settings.form == Form::Global {
-            system = system.global();
-        }
-        let varied = system.visit_variational(self);
-        varied.unwrap_or(Ok(Err(VariationError::WithoutVariations)))
-    }
-
     fn differentiate<S: Instance + Scene + Variational>(
         self,
         system: &S,
@@ -365,24 +391,5 @@ impl<S: Variational> Observer<S> for Interruptible<'_, '_, S> {
 
     fn hold(&mut self, hold: &Hold<S::State>) -> ControlFlow<()> {
         self.variations.hold(hold)
-    }
-}
-
-/// The state of a form, with its positions and velocities.
-pub(crate) struct Begun {
-    pub state: Vec<f64>,
-    pub q: Vec<f64>,
-    pub qdot: Vec<f64>,
-}
-
-impl Begun {
-    /// The state of a system, with its positions and velocities.
-    pub(crate) fn of<S: Instance>(system: &S, state: &S::State) -> Result<Self, StateError> {
-        let qdot = system.velocity(0.0, state).map_err(StateError::from)?;
-        Ok(Self {
-            state: StateVector::as_slice(state).to_vec(),
-            q: system.position(state).as_slice().to_vec(),
-            qdot: qdot.as_slice().to_vec(),
-        })
     }
 }

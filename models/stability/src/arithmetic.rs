@@ -144,7 +144,7 @@ fn constants(report: &mut Report) {
 
 fn cancellation(report: &mut Report) {
     let x = 1e-8_f64;
-    let notes = notes(ROTOR.model().description().source);
+    let notes = notes(&ROTOR.model().description().source);
     let marked = [
         (
             "`1 - cos(theta)`",

@@ -30,7 +30,7 @@ dalembert::model! {
 }
 
 /// The same model, loaded from its text.
-pub static SINAI: Text = Text::new(Sinai::DESCRIPTION.source);
+pub static SINAI: Text = Text::new(Sinai::DESCRIPTION.source.value());
 
 /// A free point in a stadium: a square of side 2 between two half disks of radius 1.
 pub static STADIUM: Text = Text::new(

@@ -9,10 +9,10 @@ use dalembert_cli::Entry;
 use dalembert_jit::Loaded;
 
 /// A loaded model with values for its parameters, whose vectors have at most 8 components.
-pub type Model = Erased<8>;
+pub type Model = Erased<'static, 8>;
 
 /// A loaded model whose vectors have at most 32 components.
-pub type Large = Erased<32>;
+pub type Large = Erased<'static, 32>;
 
 /// The text of one model, loaded on first use:
 ///
@@ -30,7 +30,8 @@ pub type Large = Erased<32>;
 /// ```
 pub struct Text {
     text: &'static str,
-    loaded: OnceLock<Loaded>,
+    // NOTE: the model of a case lives as long as the program, so that cases need not carry its lifetime.
+    loaded: OnceLock<&'static Loaded>,
 }
 
 impl Text {
@@ -66,7 +67,10 @@ impl Text {
         self.sized_with(values)
     }
 
-    fn sized_with<const C: usize, const K: usize>(&self, values: [(&str, f64); K]) -> Erased<C> {
+    fn sized_with<const C: usize, const K: usize>(
+        &self,
+        values: [(&str, f64); K],
+    ) -> Erased<'static, C> {
         let mut model = self.sized();
         for (name, value) in values {
             set(&mut model, name, value);
@@ -78,8 +82,8 @@ impl Text {
     ///
     /// # Panics
     /// The panics of [`Text::model`], and if a vector has more than `C` components.
-    pub fn sized<const C: usize>(&self) -> Erased<C> {
-        Erased::of(self.loaded().form).expect("vectors of no more components")
+    pub fn sized<const C: usize>(&self) -> Erased<'static, C> {
+        Erased::of(&self.loaded().form).expect("vectors of no more components")
     }
 
     /// The scene of this name with its declared values.
@@ -109,12 +113,12 @@ impl Text {
         &self.loaded().form.documentation.description
     }
 
-    fn loaded(&self) -> &Loaded {
+    fn loaded(&self) -> &'static Loaded {
         self.loaded.get_or_init(|| {
             let models = dalembert_jit::load("case", self.text);
             let mut models = models.unwrap_or_else(|refused| panic!("{refused}"));
             assert_eq!(models.len(), 1, "a text declares one model");
-            models.remove(0)
+            Box::leak(Box::new(models.remove(0)))
         })
     }
 }
@@ -136,10 +140,10 @@ pub fn shipped(name: &str) -> &'static Text {
 ///
 /// # Panics
 /// If there is no such mode.
-pub fn mode<const C: usize>(model: &Erased<C>, number: usize) -> Erased<C> {
+pub fn mode<'f, const C: usize>(model: &Erased<'f, C>, number: usize) -> Erased<'f, C> {
     let form = model.form();
     let place = form.tables.modes[number].kernels;
-    let mut mode = Erased::of(form.forms[place]).expect("vectors of no more components");
+    let mut mode = Erased::of(&form.forms[place]).expect("vectors of no more components");
     for index in 0..model.description().parameters.len() {
         mode.set_parameter(index, model.parameter(index));
     }
@@ -150,7 +154,7 @@ pub fn mode<const C: usize>(model: &Erased<C>, number: usize) -> Erased<C> {
 ///
 /// # Panics
 /// If there is no such parameter.
-pub fn set<const C: usize>(model: &mut Erased<C>, name: &str, value: f64) {
+pub fn set<const C: usize>(model: &mut Erased<'_, C>, name: &str, value: f64) {
     model.set_parameter(place(model, name), value);
 }
 
@@ -158,11 +162,11 @@ pub fn set<const C: usize>(model: &mut Erased<C>, name: &str, value: f64) {
 ///
 /// # Panics
 /// If there is no such parameter.
-pub fn value<const C: usize>(model: &Erased<C>, name: &str) -> f64 {
+pub fn value<const C: usize>(model: &Erased<'_, C>, name: &str) -> f64 {
     model.parameter(place(model, name))
 }
 
-fn place<const C: usize>(model: &Erased<C>, name: &str) -> usize {
+fn place<const C: usize>(model: &Erased<'_, C>, name: &str) -> usize {
     let mut parameters = model.description().parameters.iter();
     let place = parameters.position(|parameter| parameter.name == name);
     place.unwrap_or_else(|| panic!("no parameter `{name}`"))

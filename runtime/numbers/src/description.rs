@@ -1,6 +1,7 @@
 //! Self-description of a model: names, documentation, parameters, and the view.
 
 pub use crate::assumption::Assumption;
+use crate::held::Held;
 use crate::kernel::Shape;
 
 /// The set a coordinate runs through.
@@ -51,28 +52,28 @@ pub struct ConstraintInfo {
 }
 
 /// One mode of a model with modes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub struct ModeInfo {
     /// Declared name.
     pub name: &'static str,
     /// Indices of its coordinates among those of the model, in its own order.
-    pub coordinates: &'static [usize],
+    pub coordinates: Held<[usize]>,
 }
 
 /// One impact surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct SurfaceInfo {
     /// Declared name.
     pub name: &'static str,
     /// The declared law as written, `elastic` when none was.
-    pub law: &'static str,
+    pub law: Held<str>,
 }
 
 /// The declared `view`: the content of a picture of the model.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct ViewInfo {
     /// The two expressions of `path`, as written.
-    pub labels: [&'static str; 2],
+    pub labels: [Held<str>; 2],
     /// Indices of the coordinates that span the plane, when `path` is a pair of coordinates.
     pub plane: Option<[usize; 2]>,
     /// True if a `region` was declared.
@@ -80,38 +81,38 @@ pub struct ViewInfo {
 }
 
 /// Static description of a model. All lists are in the order of declaration.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Description {
     /// The type's name, `RollingDisk`.
     pub type_name: &'static str,
     /// Snake case, as the command line writes it: `rolling_disk`.
     pub name: &'static str,
     /// The model's doc comment.
-    pub documentation: &'static str,
+    pub documentation: Held<str>,
     /// The declaration, as given to the macro.
-    pub source: &'static str,
+    pub source: Held<str>,
     /// True if a `field` was declared in place of a Lagrangian: the state is the position, and there are no momenta and no energy.
     pub is_first_order: bool,
     /// The coordinates.
-    pub coordinates: &'static [CoordinateInfo],
+    pub coordinates: Held<[CoordinateInfo]>,
     /// The parameters; a family has one entry per member.
-    pub parameters: &'static [ParameterInfo],
+    pub parameters: Held<[ParameterInfo]>,
     /// The constraints.
-    pub constraints: &'static [ConstraintInfo],
+    pub constraints: Held<[ConstraintInfo]>,
     /// The named forces.
-    pub forces: &'static [&'static str],
+    pub forces: Held<[&'static str]>,
     /// The quasi-velocities of the form reduced to D. The velocity of a coordinate has the coordinate's name with `_dot`.
     /// Empty where the equations are solved in the global form.
-    pub quasi_velocities: &'static [&'static str],
+    pub quasi_velocities: Held<[&'static str]>,
     /// The impact surfaces.
-    pub surfaces: &'static [SurfaceInfo],
+    pub surfaces: Held<[SurfaceInfo]>,
     /// The declared outputs.
-    pub outputs: &'static [&'static str],
+    pub outputs: Held<[&'static str]>,
     /// The scenes; `all`, the model itself, comes first. For a model with modes, each mode by itself is a scene of
     /// `derive` and `check`; a visitor of scenes does not see it.
-    pub scenes: &'static [&'static str],
+    pub scenes: Held<[&'static str]>,
     /// The modes; empty for a model without modes.
-    pub modes: &'static [ModeInfo],
+    pub modes: Held<[ModeInfo]>,
     /// The view, if declared.
     pub view: Option<ViewInfo>,
 }
@@ -126,16 +127,16 @@ pub struct Quantity {
 }
 
 /// The self-description of a form.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Documentation {
     /// Names, docs, topology and the like.
     pub description: Description,
     /// The inputs; their values are the parameters after those of the description.
-    pub inputs: &'static [&'static str],
+    pub inputs: Held<[&'static str]>,
     /// True for coordinates whose position was declared, in order.
-    pub placed: &'static [bool],
+    pub placed: Held<[bool]>,
     /// True for coordinates whose velocity was declared, in order.
-    pub named: &'static [bool],
+    pub named: Held<[bool]>,
     /// The quantities of [`Kernel::Geometry`](crate::Kernel::Geometry), in order.
-    pub geometry: &'static [Quantity],
+    pub geometry: Held<[Quantity]>,
 }

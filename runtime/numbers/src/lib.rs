@@ -14,6 +14,7 @@
 //! | `tables.rs` | data of a form of a model besides its functions |
 //! | `description.rs` | self-description of a model |
 //! | `law.rs`, `assumption.rs` | laws of impacts, conditions on parameters |
+//! | `held.rs` | values that are constants, or owned |
 //! | `kernel.rs` | the functions of a model by name, on which generator and runtime agree |
 //! | `extended/` | sums of a few doubles: arithmetic, elementary functions, decimal text |
 
@@ -24,6 +25,7 @@ mod assumption;
 pub mod bent;
 pub mod description;
 pub mod extended;
+pub mod held;
 pub mod interval;
 pub mod kernel;
 #[cfg(feature = "lanes")]
@@ -38,6 +40,7 @@ pub mod taylor_model;
 
 pub use bent::Bent;
 pub use extended::{Extended, MOST_PARTS, NotDecimal};
+pub use held::{Held, Shared};
 pub use interval::Interval;
 pub use kernel::Kernel;
 pub use numbers::Numbers;

@@ -1,6 +1,7 @@
 //! Data of a form of a model besides its kernels.
 
 use crate::description::{Documentation, ParameterInfo};
+use crate::held::Held;
 use crate::law::Law;
 
 /// Components of a state.
@@ -61,16 +62,16 @@ pub enum Beside {
 }
 
 /// A surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Surface {
     /// The law, with a coefficient of 0 where it has one.
     pub law: Law,
     /// The name of the coefficient, for errors.
     pub coefficient: Option<&'static str>,
     /// Its conditions.
-    pub conditions: &'static [Condition],
+    pub conditions: Held<[Condition]>,
     /// Conditions of the other surfaces of the same gap, list after list.
-    pub others: &'static [&'static [Condition]],
+    pub others: Held<[Held<[Condition]>]>,
     /// Rule by which both decide if the surface counts.
     pub beside: Beside,
     /// The coordinates that the gap depends on, by bits; all from the last bit on share it.
@@ -113,39 +114,39 @@ pub struct Transition {
 }
 
 /// A mode of a model: its own tables, and the places of its quantities among those of the model.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Mode {
     /// Tables of the mode by itself.
-    pub tables: &'static Tables,
+    pub tables: Held<Tables>,
     /// Its self-description.
-    pub documentation: &'static Documentation,
+    pub documentation: Held<Documentation>,
     /// The place of its kernels among those of the model.
     pub kernels: usize,
     /// The place of the kernels of its global form, which may be the same.
     pub global: usize,
     /// Coordinates.
-    pub coordinates: &'static [usize],
+    pub coordinates: Held<[usize]>,
     /// Constraints.
-    pub constraints: &'static [usize],
+    pub constraints: Held<[usize]>,
     /// Surfaces.
-    pub surfaces: &'static [usize],
+    pub surfaces: Held<[usize]>,
     /// Outputs.
-    pub outputs: &'static [usize],
+    pub outputs: Held<[usize]>,
     /// The transition of each of its surfaces, where it leads to another mode.
-    pub transitions: &'static [Option<Transition>],
+    pub transitions: Held<[Option<Transition>]>,
 }
 
 /// Data of a form.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Tables {
     /// Components of a state.
     pub form: Form,
     /// Counts.
     pub dimensions: Dimensions,
     /// The parameters, without inputs.
-    pub parameters: &'static [ParameterInfo],
+    pub parameters: Held<[ParameterInfo]>,
     /// Coordinates that must stay in an interval.
-    pub charts: &'static [Chart],
+    pub charts: Held<[Chart]>,
     /// True if smooth motion is known to keep the energy.
     pub conserves_energy: bool,
     /// True if rates may have narrow features.
@@ -159,13 +160,13 @@ pub struct Tables {
     /// True if its runs can be varied.
     pub varies: bool,
     /// The levels, where some are declared.
-    pub levels: &'static [Level],
+    pub levels: Held<[Level]>,
     /// The surfaces.
-    pub surfaces: &'static [Surface],
+    pub surfaces: Held<[Surface]>,
     /// The configuration from which the density of the invariant volume is integrated, if it has no closed form.
-    pub density_reference: Option<&'static [f64]>,
+    pub density_reference: Option<Held<[f64]>>,
     /// The modes, of a model that has some.
-    pub modes: &'static [Mode],
+    pub modes: Held<[Mode]>,
 }
 
 /// Work of the expansions of a system, in multiplications.

@@ -101,7 +101,7 @@ pub trait Constrained: System {
     /// The constraint of each level, with a flag for levels declared to be 0. Empty if none is declared: then every
     /// motion keeps the levels that it starts with.
     #[inline(always)]
-    fn declared_levels(&self) -> &'static [Level] {
+    fn declared_levels(&self) -> &[Level] {
         &[]
     }
 

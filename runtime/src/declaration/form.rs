@@ -4,17 +4,17 @@ use core::marker::PhantomData;
 
 use super::{Described, Emitted};
 use crate::contract::TaylorField;
-use crate::erased::{Expanded, Form, Kinds, MOST_FIRSTS, SeriesTable};
+use crate::erased::{Expanded, Form, Global, Held, Kinds, MOST_FIRSTS, SeriesTable};
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH};
-use crate::kernels::{KernelSet, KernelTable};
+use crate::kernels::{ConstantTable, KernelSet, KernelTable};
 use crate::numbers::{Bent, Numbers, Rated, Row, TaylorModel};
 use crate::variations::Dual;
 
 /// The form of a type, if its sizes fit into an erased system.
 pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     match Of::<S>::FORM.capacity() {
-        Some(_) => Some(&Of::<S>::FORM),
+        Some(_) => Some(Of::<S>::FORM),
         None => None,
     }
 }
@@ -22,68 +22,74 @@ pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
 /// The form of the type of a mode, with the kernels of transitions. With `NARROW`, rates of some mode may be narrow,
 /// and the form includes rates over intervals.
 pub const fn of_mode<S: Emitted, const NARROW: bool>() -> &'static Form {
-    &OfMode::<S, NARROW>::FORM
+    OfMode::<S, NARROW>::FORM
 }
 
 /// The form of the type of a mode.
 struct OfMode<S, const NARROW: bool>(PhantomData<S>);
 
 impl<S: Emitted, const NARROW: bool> OfMode<S, NARROW> {
-    const FORM: Form = Form {
-        kernels_over: Of::<S>::kernels_over(
-            NARROW,
-            &Of::<S>::kernels::<Dual>(KernelSet::OF_TRANSITIONS),
-        ),
-        ..Of::<S>::FORM
-    };
+    const FORM: &'static Form = &Of::<S>::form(Of::<S>::kernels_over(NARROW, Self::DUAL));
+
+    const DUAL: &'static KernelTable<Dual> = &Of::<S>::kernels(KernelSet::OF_TRANSITIONS);
 }
 
 /// Functions of the form of a type, over slices.
 struct Of<S>(PhantomData<S>);
 
 impl<S: Emitted> Of<S> {
-    const FORM: Form = Form {
-        tables: S::TABLES,
-        documentation: S::DOCUMENTATION,
-        kernels: Self::kernels(KernelSet::ALL),
-        kernels_over: Self::kernels_over(
-            S::TABLES.can_be_narrow,
-            &Self::kernels::<Dual>(KernelSet::OF_VARIATIONS),
-        ),
-        series: match S::HAS_MODES {
-            true => SeriesTable::NONE,
-            false => Self::series(),
-        },
-        series_over: Self::SERIES_OVER,
-        work: &|| S::declared().work(),
-        series_gaps: <<S as TaylorField>::Gaps<f64> as Row<f64>>::CAPACITY,
-        firsts: match Self::BEGINS_AGAIN {
-            true => Self::results() + 1,
-            false => <S::Firsts<f64> as Row<f64>>::CAPACITY,
-        },
-        defaults: &Self::write_defaults,
-        global: &|| <S::Global as Described>::FORM,
-        forms: S::FORMS,
-        room: <S::Room<f64> as Row<f64>>::CAPACITY,
-    };
+    const FORM: &'static Form =
+        &Self::form(Self::kernels_over(S::TABLES.can_be_narrow, Self::DUAL));
+
+    const DUAL: &'static KernelTable<Dual> = &Self::kernels(KernelSet::OF_VARIATIONS);
+
+    const fn form(kernels_over: Kinds) -> Form {
+        Form {
+            tables: Held::Static(S::TABLES),
+            documentation: Held::Static(S::DOCUMENTATION),
+            kernels: Self::kernels(KernelSet::ALL),
+            kernels_over,
+            series: match S::HAS_MODES {
+                true => SeriesTable::NONE,
+                false => Self::series(),
+            },
+            series_over: Self::SERIES_OVER,
+            work: Held::Static(&|| S::declared().work()),
+            series_gaps: <<S as TaylorField>::Gaps<f64> as Row<f64>>::CAPACITY,
+            firsts: match Self::BEGINS_AGAIN {
+                true => Self::results() + 1,
+                false => <S::Firsts<f64> as Row<f64>>::CAPACITY,
+            },
+            defaults: Held::Static(&Self::write_defaults),
+            global: Global::OfType(|| <S::Global as Described>::FORM),
+            forms: Held::Static(S::FORMS),
+            room: <S::Room<f64> as Row<f64>>::CAPACITY,
+        }
+    }
 
     const fn kernels_over(is_narrow: bool, of_variations: &'static KernelTable<Dual>) -> Kinds {
         [
-            match (S::TABLES.surfaces, S::TABLES.can_lose_rank) {
+            match (S::TABLES.surfaces.value(), S::TABLES.can_lose_rank) {
                 ([], false) => None,
-                _ => Some(const { &Self::kernels::<TaylorModel>(Self::ENCLOSED) }),
+                _ => Some(Held::Static(
+                    const { &Self::kernels::<TaylorModel>(Self::ENCLOSED) },
+                )),
             },
-            match S::TABLES.surfaces {
+            match S::TABLES.surfaces.value() {
                 [] => None,
-                _ => Some(const { &Self::kernels::<Bent>(KernelSet::OF_GAPS) }),
+                _ => Some(Held::Static(
+                    const { &Self::kernels::<Bent>(KernelSet::OF_GAPS) },
+                )),
             },
             match is_narrow {
                 false => None,
-                true => Some(const { &Self::kernels::<Rated>(KernelSet::OF_RATES) }),
+                true => Some(Held::Static(
+                    const { &Self::kernels::<Rated>(KernelSet::OF_RATES) },
+                )),
             },
             match S::TABLES.varies {
                 false => None,
-                true => Some(of_variations),
+                true => Some(Held::Static(of_variations)),
             },
             // NOTE: certified motion needs kernels over intervals, which take more compile time than all others;
             // forms that are loaded at run time have them.
@@ -109,12 +115,12 @@ impl<S: Emitted> Of<S> {
     const SERIES_OVER: Kinds = [
         match S::TABLES.varies && !S::HAS_MODES {
             false => None,
-            true => Some(&Self::series::<Dual>()),
+            true => Some(Held::Static(const { &Self::series::<Dual>() })),
         },
         #[cfg(feature = "lanes")]
         match S::HAS_MODES {
             true => None,
-            false => Some(&Self::series::<wide::f64x8>()),
+            false => Some(Held::Static(const { &Self::series::<wide::f64x8>() })),
         },
         #[cfg(not(feature = "lanes"))]
         None,
@@ -124,13 +130,13 @@ impl<S: Emitted> Of<S> {
     ];
 
     const fn kernels<L: Numbers>(which: KernelSet) -> KernelTable<L> {
-        KernelTable::of::<S::Kernels>(which)
+        ConstantTable::of::<S::Kernels>(which).held()
     }
 
     const fn series<L: Numbers>() -> SeriesTable<L> {
         SeriesTable {
-            begin: &Self::begin,
-            advance: &Self::advance,
+            begin: Held::Static(&Self::begin),
+            advance: Held::Static(&Self::advance),
         }
     }
 

@@ -7,7 +7,7 @@ pub use form::of_mode;
 use crate::contract::{Lagrangian, TaylorField};
 use crate::describe::{Description, Instance};
 use crate::effects::Scene;
-use crate::erased::Form;
+use crate::erased::{Form, Shared};
 use crate::kernels::{Documentation, Documented, Given, Tables};
 
 /// A declared model. Implemented by `model!` for every model.
@@ -16,7 +16,7 @@ use crate::kernels::{Documentation, Documented, Given, Tables};
 )]
 pub trait Described: Instance {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
-    const DESCRIPTION: Description;
+    const DESCRIPTION: &'static Description;
 
     /// The inputs; their values are the parameters after those of the description.
     const INPUTS: &'static [&'static str] = &[];
@@ -42,15 +42,15 @@ pub trait SceneVisitor {
 }
 
 /// A form of a declared model or of a scene, as `model!` writes it: everything but the parameter values is constant.
-pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField {
+pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField + 'static {
     /// Facts about the form besides its kernels.
-    const TABLES: Tables;
+    const TABLES: &'static Tables;
 
     /// Documentation of the form.
-    const DOCUMENTATION: Documentation;
+    const DOCUMENTATION: &'static Documentation;
 
     /// For a model with modes, the forms of the modes and their global forms ([`Form::forms`]).
-    const FORMS: &'static [&'static Form] = &[];
+    const FORMS: &'static [Shared<Form>] = &[];
 
     /// Implementation of [`Described::with_defaults`].
     fn declared() -> Self;
@@ -62,9 +62,9 @@ pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField {
 }
 
 impl<S: Emitted> Described for S {
-    const DESCRIPTION: Description = S::DOCUMENTATION.description;
+    const DESCRIPTION: &'static Description = &S::DOCUMENTATION.description;
 
-    const INPUTS: &'static [&'static str] = S::DOCUMENTATION.inputs;
+    const INPUTS: &'static [&'static str] = S::DOCUMENTATION.inputs.value();
 
     const FORM: Option<&'static Form> = form::of::<S>();
 

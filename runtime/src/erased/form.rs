@@ -3,6 +3,8 @@
 use core::any::Any;
 use core::fmt;
 
+use dalembert_numbers::{Held, Shared};
+
 use super::series::SeriesTable;
 use crate::jet::Work;
 use crate::kernels::{Documentation, KernelTable, Tables};
@@ -30,14 +32,25 @@ pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 pub(super) const GEOMETRY: usize = 64;
 
 /// Tables over other numbers than `f64`, each with its own type.
-pub type Kinds = [Option<&'static (dyn Any + Send + Sync)>; 5];
+pub type Kinds = [Option<Held<dyn Any + Send + Sync>>; 5];
+
+/// The global form of a form.
+pub enum Global {
+    /// The form is the global one.
+    Itself,
+    /// That of a type.
+    // NOTE: a function, as the constant of a type cannot refer to itself.
+    OfType(fn() -> Option<&'static Form>),
+    /// A form of its own.
+    Another(Shared<Form>),
+}
 
 /// A form of a model, or of a scene: tables, and pointers to its functions.
 pub struct Form {
     /// Facts about the form besides its kernels.
-    pub tables: Tables,
+    pub tables: Held<Tables>,
     /// Documentation of the form.
-    pub documentation: Documentation,
+    pub documentation: Held<Documentation>,
     /// The kernels.
     pub kernels: KernelTable<f64>,
     /// Tables of kernels over other numbers ([`KernelTable`]).
@@ -47,18 +60,18 @@ pub struct Form {
     /// The power series over other numbers ([`SeriesTable`]).
     pub series_over: Kinds,
     /// Work per order of the series, if known.
-    pub work: &'static (dyn Fn() -> Option<Work> + Send + Sync),
+    pub work: Held<dyn Fn() -> Option<Work> + Send + Sync>,
     /// Number of gaps that have a series: all of them, or none.
     pub series_gaps: usize,
     /// Number of initial values of a series.
     pub firsts: usize,
     /// Writes the declared values of the parameters; NaN for one without.
-    pub defaults: &'static (dyn Fn(&mut [f64]) + Send + Sync),
+    pub defaults: Held<dyn Fn(&mut [f64]) + Send + Sync>,
     /// The global form.
-    pub global: &'static (dyn Fn() -> Option<&'static Form> + Send + Sync),
+    pub global: Global,
     /// For a model with modes, the forms of the modes and their global forms, in the order of the kernels
     /// ([`Mode::kernels`](crate::kernels::Mode::kernels)).
-    pub forms: &'static [&'static Form],
+    pub forms: Held<[Shared<Form>]>,
     /// Number of values of the largest kernel that gives several quantities at once.
     pub room: usize,
 }
@@ -75,7 +88,7 @@ impl fmt::Debug for Form {
 impl Form {
     /// The least of [`CAPACITIES`] that holds the vectors of this form and of the global one; `None` if none does.
     pub const fn capacity(&self) -> Option<usize> {
-        let dimensions = &self.tables.dimensions;
+        let dimensions = &self.tables.value().dimensions;
         let n = dimensions.coordinates;
         let lengths = [dimensions.state, 2 * n, dimensions.surfaces];
         let (mut longest, mut k) = (0, 0);
@@ -102,22 +115,31 @@ impl Form {
         None
     }
 
+    /// The global form; the form itself if it is global.
+    pub fn global(&self) -> &Self {
+        match &self.global {
+            Global::Itself => self,
+            Global::OfType(form) => form().unwrap_or(self),
+            Global::Another(form) => form,
+        }
+    }
+
     /// The kernels over these numbers, if the form has any.
     #[inline(always)]
-    pub fn kernels<L: Numbers>(&'static self) -> Option<&'static KernelTable<L>> {
+    pub fn kernels<L: Numbers>(&self) -> Option<&KernelTable<L>> {
         found(&self.kernels, &self.kernels_over)
     }
 
     /// The series over these numbers, if the form has any.
     #[inline(always)]
-    pub fn series<L: Numbers>(&'static self) -> Option<&'static SeriesTable<L>> {
+    pub fn series<L: Numbers>(&self) -> Option<&SeriesTable<L>> {
         found(&self.series, &self.series_over)
     }
 }
 
 /// The value of type `T`: the first one, or one of the others.
 #[inline(always)]
-fn found<T: Any>(first: &'static dyn Any, others: &Kinds) -> Option<&'static T> {
+fn found<'f, T: Any>(first: &'f dyn Any, others: &'f Kinds) -> Option<&'f T> {
     match first.downcast_ref() {
         Some(first) => Some(first),
         None => others

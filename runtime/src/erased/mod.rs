@@ -22,6 +22,7 @@ mod series;
 mod system;
 
 pub use bounded::{Bounded, Wide};
-pub use form::{CAPACITIES, Form, Kinds, MOST_FIRSTS, PARAMETERS};
+pub use dalembert_numbers::{Held, Shared};
+pub use form::{CAPACITIES, Form, Global, Kinds, MOST_FIRSTS, PARAMETERS};
 pub use series::{Advance, Begin, Expanded, SeriesTable};
 pub use system::Erased;

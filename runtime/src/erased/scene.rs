@@ -6,7 +6,7 @@ use crate::impacts::Impacts;
 use crate::modes::InMode;
 use crate::projection::Projection;
 
-impl<const C: usize> Scene for Erased<C> {
+impl<const C: usize> Scene for Erased<'_, C> {
     type Effects = (
         Option<Projection<Self>>,
         Option<Impacts<Self>>,

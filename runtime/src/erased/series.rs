@@ -1,5 +1,7 @@
 //! Power series behind pointers.
 
+use dalembert_numbers::Held;
+
 use super::bounded::{Bounded, Wide};
 use super::form::{FIRSTS, Form, PARAMETERS};
 use super::system::Erased;
@@ -22,23 +24,22 @@ pub type Expanded<'a, L> = &'a mut dyn FnMut(usize, &[L], &[L]);
 pub type Advance<L> = dyn Fn([&[L]; 3], (L, usize), Expanded<'_, L>) + Send + Sync;
 
 /// Power series over one kind of number.
-#[derive(Clone, Copy)]
 pub struct SeriesTable<L: Numbers> {
     /// See [`TaylorField::begin`].
-    pub begin: &'static Begin<L>,
+    pub begin: Held<Begin<L>>,
     /// See [`TaylorField::advance`].
-    pub advance: &'static Advance<L>,
+    pub advance: Held<Advance<L>>,
 }
 
 impl<L: Numbers> SeriesTable<L> {
     /// Table without series.
     pub const NONE: Self = Self {
-        begin: &|_, _, _, _| Err(Fault::NotDerived),
-        advance: &|_, _, _| {},
+        begin: Held::Static(&|_, _, _, _| Err(Fault::NotDerived)),
+        advance: Held::Static(&|_, _, _| {}),
     };
 }
 
-impl<const C: usize> Erased<C> {
+impl<'f, const C: usize> Erased<'f, C> {
     /// Lengths of the rows of a model with modes.
     fn lengths(&self) -> Lengths {
         Lengths {
@@ -48,16 +49,16 @@ impl<const C: usize> Erased<C> {
     }
 
     /// The modes by number, and the form of each.
-    fn forms(&self) -> impl Iterator<Item = ((usize, &'static Mode), &'static Form)> {
+    fn forms(&self) -> impl Iterator<Item = ((usize, &'f Mode), &'f Form)> + use<'f, C> {
         let form = self.form();
         let modes = form.tables.modes.iter().enumerate();
-        modes.filter_map(|(number, mode)| Some(((number, mode), *form.forms.get(mode.kernels)?)))
+        modes.filter_map(|(number, mode)| Some(((number, mode), &**form.forms.get(mode.kernels)?)))
     }
 }
 
 /// Begins the series of a form.
 fn begin<L: Numbers>(
-    form: &'static Form,
+    form: &Form,
     parameters: &[L],
     t: L,
     state: &[L],
@@ -69,7 +70,7 @@ fn begin<L: Numbers>(
 
 /// Writes the series of a form.
 fn advance<L: Numbers, const C: usize>(
-    form: &'static Form,
+    form: &Form,
     parameters: &[L],
     to: (L, usize),
     firsts: &[L],
@@ -88,7 +89,7 @@ fn advance<L: Numbers, const C: usize>(
     (series.advance)([parameters, state.as_slice(), firsts], to, &mut take);
 }
 
-impl<const C: usize> TaylorField for Erased<C> {
+impl<const C: usize> TaylorField for Erased<'_, C> {
     type Parameters<L: Numbers> = Bounded<L, PARAMETERS>;
     type Row<L: Numbers> = Bounded<L, C>;
     type Gaps<L: Numbers> = Bounded<L, C>;

@@ -19,17 +19,17 @@ use crate::state::StateVector;
 
 /// A model known only at run time, with values for its parameters; its vectors have at most `C` components.
 #[derive(Clone, Copy)]
-pub struct Erased<const C: usize> {
-    form: &'static Form,
+pub struct Erased<'f, const C: usize> {
+    form: &'f Form,
     values: Bounded<f64, PARAMETERS>,
     /// The mode in which states are made.
     mode: usize,
 }
 
-impl<const C: usize> Erased<C> {
+impl<'f, const C: usize> Erased<'f, C> {
     /// The model with its declared defaults; a parameter without default is NaN until it is set. `None` if the
     /// vectors of the form are longer than `C` ([`Form::capacity`]).
-    pub fn of(form: &'static Form) -> Option<Self> {
+    pub fn of(form: &'f Form) -> Option<Self> {
         if form.capacity()? > C {
             return None;
         }
@@ -44,7 +44,7 @@ impl<const C: usize> Erased<C> {
 
     /// The form.
     #[inline(always)]
-    pub fn form(&self) -> &'static Form {
+    pub fn form(&self) -> &'f Form {
         self.form
     }
 
@@ -70,7 +70,7 @@ impl<const C: usize> Erased<C> {
     }
 }
 
-impl<const C: usize> PartialEq for Erased<C> {
+impl<const C: usize> PartialEq for Erased<'_, C> {
     fn eq(&self, other: &Self) -> bool {
         core::ptr::eq(self.form, other.form)
             && self.values == other.values
@@ -78,7 +78,7 @@ impl<const C: usize> PartialEq for Erased<C> {
     }
 }
 
-impl<const C: usize> fmt::Debug for Erased<C> {
+impl<const C: usize> fmt::Debug for Erased<'_, C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Erased")
             .field("form", self.form)
@@ -88,14 +88,14 @@ impl<const C: usize> fmt::Debug for Erased<C> {
     }
 }
 
-impl Tabled for &'static Form {
+impl Tabled for &Form {
     #[inline(always)]
-    fn table<L: Numbers>(&self) -> Option<&'static KernelTable<L>> {
+    fn table<L: Numbers>(&self) -> Option<&KernelTable<L>> {
         Form::kernels(self)
     }
 }
 
-impl<const C: usize> Declared for Erased<C> {
+impl<'f, const C: usize> Declared for Erased<'f, C> {
     type State = Bounded<f64, C>;
     type Vector = Bounded<f64, C>;
     type Impulse = Bounded<f64, C>;
@@ -106,8 +106,11 @@ impl<const C: usize> Declared for Erased<C> {
     type Components<L: Numbers> = Bounded<L, C>;
     type Arguments<L: Numbers> = Wide<L, C, ARGUMENTS>;
     type Room<L: Numbers> = Wide<L, C, ROWS>;
-    type Values<'a> = &'a [f64];
-    type Kernels = Pointers<&'static Form>;
+    type Values<'a>
+        = &'a [f64]
+    where
+        Self: 'a;
+    type Kernels = Pointers<&'f Form>;
 
     const MAY_BE_NARROW: bool = true;
     const MAY_LOSE_RANK: bool = true;
@@ -115,13 +118,13 @@ impl<const C: usize> Declared for Erased<C> {
     const HAS_MODES: bool = true;
 
     #[inline(always)]
-    fn kernels(&self) -> Pointers<&'static Form> {
+    fn kernels(&self) -> Pointers<&'f Form> {
         Pointers(self.form)
     }
 
     #[inline(always)]
-    fn kernels_at(&self, place: usize) -> Pointers<&'static Form> {
-        Pointers(self.form.forms.get(place).copied().unwrap_or(self.form))
+    fn kernels_at(&self, place: usize) -> Pointers<&'f Form> {
+        Pointers(self.form.forms.get(place).map_or(self.form, |form| form))
     }
 
     #[inline(always)]
@@ -134,7 +137,7 @@ impl<const C: usize> Declared for Erased<C> {
     }
 
     #[inline(always)]
-    fn tables(&self) -> &'static Tables {
+    fn tables(&self) -> &Tables {
         &self.form.tables
     }
 
@@ -184,7 +187,7 @@ impl<const C: usize> Declared for Erased<C> {
         q: &Bounded<f64, C>,
         placed: &Bounded<f64, C>,
     ) -> Result<Bounded<f64, C>, StateError> {
-        match Part::start(self).tables.levels {
+        match &*Part::start(self).tables.levels {
             [] => Ok(*q),
             _ => complete_positions(self, t, q, placed),
         }
@@ -216,13 +219,13 @@ impl<const C: usize> Declared for Erased<C> {
     }
 }
 
-impl<const C: usize> HasConstraints for Erased<C> {}
+impl<const C: usize> HasConstraints for Erased<'_, C> {}
 
-impl<const C: usize> HasSurfaces for Erased<C> {}
+impl<const C: usize> HasSurfaces for Erased<'_, C> {}
 
-impl<const C: usize> HasDivergence for Erased<C> {}
+impl<const C: usize> HasDivergence for Erased<'_, C> {}
 
-impl<const C: usize> HasVariations for Erased<C> {
+impl<const C: usize> HasVariations for Erased<'_, C> {
     type Clearances<L: Numbers> = Bounded<L, C>;
     type Collision<L: Numbers> = Wide<L, C, 3>;
     type Deviations<L: Numbers> = Wide<L, C, 2>;
@@ -238,17 +241,17 @@ impl<const C: usize> HasVariations for Erased<C> {
     }
 }
 
-impl<const C: usize> Documented for Erased<C> {
+impl<const C: usize> Documented for Erased<'_, C> {
     type Geometry = Wide<f64, GEOMETRY, GEOMETRY>;
     type Global = Self;
 
-    fn documentation(&self) -> &'static Documentation {
+    fn documentation(&self) -> &Documentation {
         &self.form.documentation
     }
 
     fn globally(&self) -> Self {
         Self {
-            form: (self.form.global)().unwrap_or(self.form),
+            form: self.form.global(),
             ..*self
         }
     }

@@ -128,8 +128,8 @@ impl<S: Declared + HasConstraints> Constrained for S {
     }
 
     #[inline(always)]
-    fn declared_levels(&self) -> &'static [Level] {
-        Part::start(self).tables.levels
+    fn declared_levels(&self) -> &[Level] {
+        &Part::start(self).tables.levels
     }
 
     fn level_scales(&self, t: f64, q: &S::Vector) -> S::Levels {

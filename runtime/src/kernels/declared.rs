@@ -10,7 +10,7 @@ use crate::state::StateVector;
 
 /// A form of a declared model or of a scene, as `model!` writes it. The traits of [`contract`](crate::contract) are
 /// implemented for it.
-pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
+pub trait Declared: Copy + Debug + PartialEq + Send + Sync {
     /// A state.
     type State: StateVector;
     /// One number per coordinate.
@@ -30,7 +30,9 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// One number per parameter.
     type Arguments<L: Numbers>: Row<L>;
     /// The values of the parameters, or a reference to them.
-    type Values<'a>: AsRef<[f64]>;
+    type Values<'a>: AsRef<[f64]>
+    where
+        Self: 'a;
     /// Storage for the values of every kernel that gives several quantities at once.
     type Room<L: Numbers>: Row<L>;
     /// The kernels.
@@ -70,7 +72,7 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync + 'static {
     }
 
     /// Facts about the form besides its kernels: sizes, laws, conditions.
-    fn tables(&self) -> &'static Tables;
+    fn tables(&self) -> &Tables;
 
     /// The values of the parameters.
     fn arguments(&self) -> Self::Values<'_>;

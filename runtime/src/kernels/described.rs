@@ -17,10 +17,10 @@ pub trait Documented: Declared {
     type Geometry: Row<f64>;
 
     /// See [`Instance::Global`].
-    type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene + 'static;
+    type Global: Instance<Vector = Self::Vector, Global = Self::Global> + Scene;
 
     /// The documentation of the form.
-    fn documentation(&self) -> &'static Documentation;
+    fn documentation(&self) -> &Documentation;
 
     /// Implementation of [`Instance::global`].
     fn globally(&self) -> Self::Global;
@@ -58,12 +58,12 @@ pub trait Documented: Declared {
 impl<S: Documented> Instance for S {
     type Global = S::Global;
 
-    fn description(&self) -> &'static Description {
+    fn description(&self) -> &Description {
         &self.documentation().description
     }
 
-    fn inputs(&self) -> &'static [&'static str] {
-        self.documentation().inputs
+    fn inputs(&self) -> &[&'static str] {
+        &self.documentation().inputs
     }
 
     fn visit_variational<Visitor: VariationalVisitor>(
@@ -97,8 +97,8 @@ impl<S: Documented> Instance for S {
         let [q, qdot] = declared.unwrap_or([self.zero_vector(); 2]);
         let documentation = part
             .mode()
-            .map_or(self.documentation(), |mode| mode.documentation);
-        let [placed, named] = [documentation.placed, documentation.named].map(|declared| {
+            .map_or(self.documentation(), |mode| &mode.documentation);
+        let [placed, named] = [&documentation.placed, &documentation.named].map(|declared| {
             let mut marks = self.zero_vector();
             for (mark, &is_declared) in marks.as_mut_slice().iter_mut().zip(declared) {
                 *mark = f64::from(u8::from(is_declared));
@@ -194,7 +194,7 @@ fn report_geometry<S: Documented>(
     state: &S::State,
     report: &mut dyn Report,
 ) -> Result<(), Fault> {
-    let geometry = system.documentation().geometry;
+    let geometry = &system.documentation().geometry;
     let mut values =
         S::Geometry::zeros(geometry.iter().map(|quantity| quantity.shape.count()).sum());
     let places = [state.as_slice(), &[]];

@@ -96,9 +96,9 @@ fn conditions<S: Declared>(
     let Ok(margins) = part.several(kernel, t, [state.as_slice(), &[]]) else {
         return [false; 2];
     };
-    let (holds, mut rest) = hold(surface.conditions, &margins.as_slice()[..count]);
+    let (holds, mut rest) = hold(&surface.conditions, &margins.as_slice()[..count]);
     let mut other = false;
-    for list in surface.others {
+    for list in &surface.others {
         let (found, behind) = hold(list, rest);
         other |= found;
         rest = behind;
@@ -162,8 +162,9 @@ fn counts_along<S: Declared>(
 }
 
 /// The lists of conditions that decide whether a surface counts, its own first.
-fn lists(surface: &Surface) -> impl Iterator<Item = &'static [Condition]> {
-    core::iter::once(surface.conditions).chain(surface.others.iter().copied())
+fn lists(surface: &Surface) -> impl Iterator<Item = &[Condition]> {
+    let others = surface.others.iter().map(|list| &**list);
+    core::iter::once(&*surface.conditions).chain(others)
 }
 
 /// True if each of the lists holds; `holds` tells of the condition at a place among all of them.

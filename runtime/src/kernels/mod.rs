@@ -27,6 +27,7 @@ use crate::contract::{Tangent, TaylorField};
 use crate::error::Fault;
 use crate::numbers::{Numbers, Row};
 pub use choice::{Choice, Chosen};
+use dalembert_numbers::Held;
 pub use dalembert_numbers::description::{Documentation, Quantity};
 pub use dalembert_numbers::kernel::{First, Kernel, Second, Shape};
 pub use dalembert_numbers::tables::{
@@ -207,23 +208,43 @@ macro_rules! kernels {
         }
 
         /// Kernels over one kind of number behind pointers; `None` for a kernel that the form does not have.
+        pub type KernelTable<L> = Table<Held<Plain<L>>, Held<OfSurface<L>>>;
+
+        /// The same of a constant.
+        pub type ConstantTable<L> = Table<&'static Plain<L>, &'static OfSurface<L>>;
+
+        /// Pointers to kernels, by kernel; `None` for a kernel that the form does not have.
         #[derive(Clone, Copy)]
-        pub struct KernelTable<L: Numbers> {
+        pub struct Table<P, S> {
             $(
                 #[doc = concat!("[`Kernel::", stringify!($name), "`].")]
-                pub $plain: Option<&'static Plain<L>>,
+                pub $plain: Option<P>,
             )*
             $(
                 #[doc = concat!("[`Kernel::", stringify!($surface_name), "`] of a surface.")]
-                pub $of_surface: Option<&'static OfSurface<L>>,
+                pub $of_surface: Option<S>,
             )*
         }
 
-        impl<L: Numbers> KernelTable<L> {
+        impl<L: Numbers> ConstantTable<L> {
             const NONE: Self = Self {
                 $($plain: None,)*
                 $($of_surface: None,)*
             };
+
+            /// The table as forms hold it.
+            pub const fn held(self) -> KernelTable<L> {
+                Table {
+                    $($plain: match self.$plain {
+                        Some(kernel) => Some(Held::Static(kernel)),
+                        None => None,
+                    },)*
+                    $($of_surface: match self.$of_surface {
+                        Some(kernel) => Some(Held::Static(kernel)),
+                        None => None,
+                    },)*
+                }
+            }
 
             /// The selected kernels of a form; shared kernels are pointers to the same functions.
             pub const fn of<K: Given>(which: KernelSet) -> Self {
@@ -252,17 +273,20 @@ macro_rules! kernels {
                 }
             }
 
+        }
+
+        impl<L: Numbers> KernelTable<L> {
             /// Evaluates the kernel of this name.
             ///
             /// # Errors
             /// The [`Fault`] of the kernel; [`Fault::NotDerived`] for one that the table does not have.
             pub fn run(&self, kernel: Kernel, at: At<'_, L>, values: &mut [L]) -> Result<(), Fault> {
                 match kernel {
-                    $(Kernel::$name => match self.$plain {
+                    $(Kernel::$name => match &self.$plain {
                         Some(kernel) => kernel(at, values),
                         None => Err(Fault::NotDerived),
                     },)*
-                    $(Kernel::$surface_name(surface) => match self.$of_surface {
+                    $(Kernel::$surface_name(surface) => match &self.$of_surface {
                         Some(kernel) => kernel(surface, at, values),
                         None => Err(Fault::NotDerived),
                     },)*
@@ -271,8 +295,8 @@ macro_rules! kernels {
 
             /// Builds a table by looking up every kernel by name; a kernel of surfaces by the name of its kind.
             pub fn found(
-                plain: impl Fn(Kernel) -> Option<&'static Plain<L>>,
-                of_surface: impl Fn(fn(usize) -> Kernel) -> Option<&'static OfSurface<L>>,
+                plain: impl Fn(Kernel) -> Option<Held<Plain<L>>>,
+                of_surface: impl Fn(fn(usize) -> Kernel) -> Option<Held<OfSurface<L>>>,
             ) -> Self {
                 Self {
                     $($plain: plain(Kernel::$name),)*
@@ -332,7 +356,7 @@ macro_rules! kernels {
                     values: &mut [L],
                 ) -> Result<(), Fault> {
                     match self.0.table() {
-                        Some(KernelTable { $plain: Some(kernel), .. }) => kernel(at, values),
+                        Some(Table { $plain: Some(kernel), .. }) => kernel(at, values),
                         _ => Err(Fault::NotDerived),
                     }
                 }
@@ -346,7 +370,7 @@ macro_rules! kernels {
                     values: &mut [L],
                 ) -> Result<(), Fault> {
                     match self.0.table() {
-                        Some(KernelTable { $of_surface: Some(kernel), .. }) => {
+                        Some(Table { $of_surface: Some(kernel), .. }) => {
                             kernel(surface, at, values)
                         }
                         _ => Err(Fault::NotDerived),

@@ -18,8 +18,8 @@ pub struct Part<'s, S: Declared> {
     /// The kernels.
     pub(crate) kernels: S::Kernels,
     /// Facts about the part besides its kernels.
-    pub(crate) tables: &'static Tables,
-    mode: Option<(usize, &'static Mode)>,
+    pub(crate) tables: &'s Tables,
+    mode: Option<(usize, &'s Mode)>,
 }
 
 /// Number of the mode of a state, stored in its last component.
@@ -40,13 +40,13 @@ impl<'s, S: Declared> Part<'s, S> {
     #[inline(always)]
     pub(crate) fn numbered(system: &'s S, number: usize) -> Self {
         if const { S::HAS_MODES } {
-            let modes = system.tables().modes;
+            let modes = &system.tables().modes;
             let number = number.min(modes.len().saturating_sub(1));
             if let Some(mode) = modes.get(number) {
                 return Self {
                     system,
                     kernels: system.kernels_at(mode.kernels),
-                    tables: mode.tables,
+                    tables: &mode.tables,
                     mode: Some((number, mode)),
                 };
             }
@@ -92,7 +92,7 @@ impl<'s, S: Declared> Part<'s, S> {
 
     /// The mode; `None` if the part is the model itself.
     #[inline(always)]
-    pub(crate) fn mode(&self) -> Option<&'static Mode> {
+    pub(crate) fn mode(&self) -> Option<&'s Mode> {
         self.mode.map(|(_, mode)| mode)
     }
 
@@ -128,7 +128,7 @@ impl<'s, S: Declared> Part<'s, S> {
 
     /// Dimensions of the model.
     #[inline(always)]
-    pub(super) fn system_dimensions(&self) -> &'static Dimensions {
+    pub(super) fn system_dimensions(&self) -> &'s Dimensions {
         &self.system.tables().dimensions
     }
 
@@ -174,7 +174,7 @@ impl<'s, S: Declared> Part<'s, S> {
     pub(crate) fn spread<V: StateVector>(&self, values: V) -> V {
         match self.mode() {
             None => values,
-            Some(mode) => placed(&values, mode.coordinates, 0.0),
+            Some(mode) => placed(&values, &mode.coordinates, 0.0),
         }
     }
 
@@ -186,7 +186,7 @@ impl<'s, S: Declared> Part<'s, S> {
             Some(mode) => {
                 let mut gathered = values.zeroed();
                 let entries = gathered.as_mut_slice().iter_mut();
-                for (entry, &place) in entries.zip(mode.coordinates) {
+                for (entry, &place) in entries.zip(&mode.coordinates) {
                     *entry = values.as_slice()[place];
                 }
                 gathered
@@ -198,7 +198,7 @@ impl<'s, S: Declared> Part<'s, S> {
     pub(crate) fn alone<V: StateVector>(&self, values: &V, elsewhere: f64) -> V {
         match self.mode() {
             None => *values,
-            Some(mode) => placed(&self.gathered(values), mode.coordinates, elsewhere),
+            Some(mode) => placed(&self.gathered(values), &mode.coordinates, elsewhere),
         }
     }
 
@@ -208,7 +208,7 @@ impl<'s, S: Declared> Part<'s, S> {
     pub(crate) fn of_surfaces<V: StateVector>(&self, values: V, elsewhere: f64) -> V {
         match self.mode() {
             None => values,
-            Some(mode) => placed(&values, mode.surfaces, elsewhere),
+            Some(mode) => placed(&values, &mode.surfaces, elsewhere),
         }
     }
 
@@ -216,7 +216,7 @@ impl<'s, S: Declared> Part<'s, S> {
     pub(crate) fn spread_row<L: Numbers, R: Row<L>>(&self, row: R) -> R {
         match self.mode() {
             None => row,
-            Some(mode) => placed_row(&row, mode.coordinates, L::ZERO),
+            Some(mode) => placed_row(&row, &mode.coordinates, L::ZERO),
         }
     }
 
@@ -224,7 +224,7 @@ impl<'s, S: Declared> Part<'s, S> {
     pub(crate) fn row_of_surfaces<L: Numbers, R: Row<L>>(&self, row: R, elsewhere: L) -> R {
         match self.mode() {
             None => row,
-            Some(mode) => placed_row(&row, mode.surfaces, elsewhere),
+            Some(mode) => placed_row(&row, &mode.surfaces, elsewhere),
         }
     }
 
@@ -270,7 +270,7 @@ impl<'s, S: Declared> Part<'s, S> {
 
     /// Index in the model of a constraint of the part.
     fn constraint(&self, local: usize) -> usize {
-        let places = self.mode().map_or(&[][..], |mode| mode.constraints);
+        let places = self.mode().map_or(&[][..], |mode| &mode.constraints);
         places.get(local).copied().unwrap_or(local)
     }
 

@@ -6,7 +6,7 @@ use crate::numbers::Numbers;
 /// A source of tables of pointers to kernels, one table per kind of number.
 pub trait Tabled: Copy {
     /// The table over these numbers, if there is one.
-    fn table<L: Numbers>(&self) -> Option<&'static KernelTable<L>>;
+    fn table<L: Numbers>(&self) -> Option<&KernelTable<L>>;
 }
 
 /// The kernels of these tables.

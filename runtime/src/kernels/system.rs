@@ -413,7 +413,7 @@ impl<S: Declared + HasDivergence> Divergence for S {
 /// The [`Fault`] of a kernel; [`Fault::SingularConstraint`] where an integral does not converge.
 pub fn log_density<S: Declared>(system: &S, t: f64, q: &S::Vector) -> Result<f64, Fault> {
     let density = number(system, S::Kernels::log_density, t, [q.as_slice(), &[]])?;
-    let Some(reference) = system.tables().density_reference else {
+    let Some(reference) = &system.tables().density_reference else {
         return Ok(density);
     };
     let gradient = |q: &S::Vector| {

@@ -124,7 +124,7 @@ pub(crate) fn begin<L: Numbers, P: Row<L>, R: Row<L>, F: Row<L>>(
     for gap in 0..lengths.gaps {
         put(lengths.state + gap, L::of(1.0));
     }
-    for (gap, &place) in gaps.iter().zip(mode.surfaces) {
+    for (gap, &place) in gaps.iter().zip(&mode.surfaces) {
         put(lengths.state + place, *gap);
     }
     for (place, value) in rest.iter().enumerate() {
@@ -200,7 +200,7 @@ pub(crate) fn advance<
             let constant = if k == 0 { L::of(1.0) } else { L::ZERO };
             *value = lanes.merged(*value, constant, &modes);
         }
-        for (new, &place) in gap.as_slice()[..g].iter().zip(mode.surfaces) {
+        for (new, &place) in gap.as_slice()[..g].iter().zip(&mode.surfaces) {
             let value = &mut all.as_mut_slice()[place];
             *value = lanes.merged(*value, *new, &modes);
         }

@@ -26,7 +26,7 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
 
             #[inline]
             fn documentation(&self) -> &'static ::dalembert::kernels::Documentation {
-                &<Self as ::dalembert::declaration::Emitted>::DOCUMENTATION
+                <Self as ::dalembert::declaration::Emitted>::DOCUMENTATION
             }
 
             #[inline]
@@ -48,9 +48,9 @@ pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
 
         #attributes
         impl ::dalembert::declaration::Emitted for #type_name {
-            const TABLES: ::dalembert::kernels::Tables = #tables;
-            const DOCUMENTATION: ::dalembert::kernels::Documentation = #documentation;
-            const FORMS: &'static [&'static ::dalembert::erased::Form] = #forms;
+            const TABLES: &'static ::dalembert::kernels::Tables = #tables;
+            const DOCUMENTATION: &'static ::dalembert::kernels::Documentation = #documentation;
+            const FORMS: &'static [::dalembert::erased::Shared<::dalembert::erased::Form>] = #forms;
 
             fn declared() -> Self { Self { #defaults mode: #first } }
         }

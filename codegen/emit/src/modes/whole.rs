@@ -68,7 +68,7 @@ pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
 
             #[inline(always)]
             fn tables(&self) -> &'static ::dalembert::kernels::Tables {
-                &<Self as ::dalembert::declaration::Emitted>::TABLES
+                <Self as ::dalembert::declaration::Emitted>::TABLES
             }
 
             #[inline(always)]
@@ -132,24 +132,22 @@ fn emit_list(whole: &Whole<'_>) -> TokenStream {
 pub(super) fn emit_tables(whole: &Whole<'_>) -> TokenStream {
     let tables = whole.known.tables();
     let types = whole.types();
-    let surfaces = whole.graph.surfaces.iter().map(|entry| {
-        let (mode, place) = (emitted(types[entry.mode], "TABLES"), entry.place);
-        quote!(#mode.surfaces[#place])
-    });
     let modes = tables.modes.iter().zip(&types).map(|(mode, type_name)| {
         let (tables, documentation) = (
             emitted(type_name, "TABLES"),
             emitted(type_name, "DOCUMENTATION"),
         );
         mode.tokens_with(&[
-            ("tables", quote!(&#tables)),
-            ("documentation", quote!(&#documentation)),
+            ("tables", quote!(::dalembert::erased::Held::Static(#tables))),
+            (
+                "documentation",
+                quote!(::dalembert::erased::Held::Static(#documentation)),
+            ),
         ])
     });
-    tables.tokens_with(&[
-        ("surfaces", quote!(&[#(#surfaces),*])),
-        ("modes", quote!(&[#(#modes),*])),
-    ])
+    let modes = quote!(::dalembert::erased::Held::Static(&[#(#modes),*]));
+    let tables = tables.tokens_with(&[("modes", modes)]);
+    quote!(&#tables)
 }
 
 /// The forms of the modes and their global forms, in the order of their kernels.
@@ -157,7 +155,9 @@ pub(super) fn emit_forms(whole: &Whole<'_>) -> TokenStream {
     let types = whole.contexts.iter().flatten();
     let types = types.map(|context| &context.names.type_name);
     let is_narrow = whole.known.tables().can_be_narrow;
-    quote!(&[#(::dalembert::declaration::of_mode::<#types, #is_narrow>()),*])
+    quote!(&[#(::dalembert::erased::Shared::Static(
+        ::dalembert::declaration::of_mode::<#types, #is_narrow>()
+    )),*])
 }
 
 /// `From` the whole for each mode.
@@ -188,7 +188,12 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
     let gaps = whole.known.series_gaps();
     let work = whole.known.work().tokens();
     let lengths = quote!(::dalembert::__private::modes::Lengths { state: #state, gaps: #gaps });
-    let modes = quote!((0, <Self as ::dalembert::declaration::Emitted>::TABLES.modes));
+    let modes = quote!((
+        0,
+        <Self as ::dalembert::declaration::Emitted>::TABLES
+            .modes
+            .value()
+    ));
     let numbers = quote!(L: ::dalembert::numbers::Numbers);
     quote! {
         /// Number of initial terms: rates, gaps, and the other initial terms of the mode with the most of them.

@@ -51,7 +51,7 @@ pub fn run(
     let model = model.as_ref();
     let mut checks = checks(model);
     // A system written by hand has no declaration and no claims.
-    let source = Some(model.description().source).filter(|source| !source.is_empty());
+    let source = Some(&*model.description().source).filter(|source| !source.is_empty());
     let derived = source.map(report::report).transpose();
     if source.is_some() {
         checks.push(Check {
@@ -114,12 +114,12 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     });
     if let Ok(state) = initial.and_then(|origin| {
         let state = model.state(0.0, &origin);
-        state.map_err(|error| CliError::state("the model's `initial`", &description, error))
+        state.map_err(|error| CliError::state("the model's `initial`", description, error))
     }) {
         let inspected = model.inspect(0.0, &state, &mut Silent);
         let failure = inspected
             .err()
-            .map(|fault| words::fault_text(&description, &fault));
+            .map(|fault| words::fault_text(description, &fault));
         checks.push(Check {
             subject: "the equations of motion exist at the initial state",
             failure,
@@ -147,7 +147,7 @@ fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
     let Outcome::StartsInside { surface, gap } = ending.outcome else {
         return None;
     };
-    let name = names::surfaces(&model.description()).nth(surface);
+    let name = names::surfaces(model.description()).nth(surface);
     let name = name.unwrap_or_default();
     Some(format!(
         "it lies behind the surface `{name}`: its gap is {gap}"
@@ -184,7 +184,7 @@ fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
             parameter.name
         ));
     }
-    for constraint in description.constraints {
+    for constraint in &description.constraints {
         if constraint.affine {
             notes.push(format!(
                 "constraint `{}` is affine in the velocities",
@@ -228,13 +228,13 @@ fn write_text(
         output,
         "{}: {}",
         description.name,
-        or_none(names::summary(&description))
+        or_none(names::summary(description))
     )?;
-    for (title, entries) in declarations(&description) {
+    for (title, entries) in declarations(description) {
         writeln!(output, "  {title:12} {}", or_none(&entries.join(", ")))?;
     }
     writeln!(output, "parameters")?;
-    for parameter in description.parameters {
+    for parameter in &description.parameters {
         let default = parameter
             .default
             .map_or("no default".to_owned(), |value| format!("= {value}"));
@@ -305,15 +305,15 @@ fn declarations(description: &Description) -> [(&'static str, Vec<String>); 6] {
                 .map(|it| it.name.to_owned())
                 .collect(),
         ),
-        ("forces", owned(description.forces)),
+        ("forces", owned(&description.forces)),
         (
             "surfaces",
             surfaces
                 .map(|it| format!("{} ({})", it.name, it.law))
                 .collect(),
         ),
-        ("outputs", owned(description.outputs)),
-        ("scenes", owned(description.scenes)),
+        ("outputs", owned(&description.outputs)),
+        ("scenes", owned(&description.scenes)),
     ]
 }
 
@@ -337,7 +337,7 @@ fn write_json(
     let description = model.description();
     let mut document = Document::begin(output)?;
     document.field("model", description.name)?;
-    document.field("documentation", description.documentation)?;
+    document.field("documentation", &*description.documentation)?;
     document.rows(
         "coordinates",
         description
@@ -361,7 +361,7 @@ fn write_json(
         description
             .surfaces
             .iter()
-            .map(|it| json!({ "name": it.name, "law": it.law })),
+            .map(|it| json!({ "name": it.name, "law": *it.law })),
     )?;
     document.field("outputs", description.outputs.to_vec())?;
     document.field("scenes", description.scenes.to_vec())?;

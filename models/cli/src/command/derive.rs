@@ -21,7 +21,7 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
     let scenes = entry.description().scenes.iter().copied();
     let scene = names::find("--scene", "scene", &args.scene, scenes)?;
     let mut report =
-        report(entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
+        report(&entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
     // The model itself is the first of its scenes.
     if let Some(scene) = scene.checked_sub(1) {
         report = report.scenes.swap_remove(scene);

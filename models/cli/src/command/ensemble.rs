@@ -71,7 +71,7 @@ pub fn run(
     let density = density(model, args, shared)?;
     shared.density = density.as_ref();
     let metadata = metadata(model, &shared, shard)?;
-    let columns = Columns::of(&model.description(), &members);
+    let columns = Columns::of(model.description(), &members);
     let plan = Plan {
         shared,
         range: shard.range(members.count()),
@@ -240,8 +240,8 @@ fn members(
 ) -> Result<Members, CliError> {
     let description = model.description();
     let members = match &args.from {
-        Some(path) => listed::read(path, streams.input, &description)?,
-        None => Members::varied(&args.vary, args.members, args.random, &description)?,
+        Some(path) => listed::read(path, streams.input, description)?,
+        None => Members::varied(&args.vary, args.members, args.random, description)?,
     };
     let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
     let given = state_input::beginning(model, &args.run.state)?;
@@ -264,7 +264,7 @@ fn density(
     let Some(text) = &args.density else {
         return Ok(None);
     };
-    let wish = Wish::parse(text, &model.description())?;
+    let wish = Wish::parse(text, model.description())?;
     pilot::density(wish, shared, [args.every, args.discard]).map(Some)
 }
 

@@ -53,13 +53,14 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
     let mut model = build_model(models, &args.model)?;
     let description = model.description();
     let path = args.input.as_deref();
-    let states = input::read(&description, model.inputs(), path, streams.input)?;
+    let states = input::read(description, model.inputs(), path, streams.input)?;
     let laws = laws(args);
+    let after = description.parameters.len();
     let results: Vec<_> = states
         .iter()
         .map(|state| {
             for (index, value) in state.inputs.iter().enumerate() {
-                model.set_parameter(description.parameters.len() + index, *value);
+                model.set_parameter(after + index, *value);
             }
             evaluate(model.as_ref(), state, &laws)
         })
@@ -70,9 +71,10 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
         Exit::Other
     };
 
+    let description = model.description();
     let rows = results
         .into_iter()
-        .map(|result| result.unwrap_or_else(|error| refusal(&description, &error)));
+        .map(|result| result.unwrap_or_else(|error| refusal(description, &error)));
     let mut output = BufWriter::new(&mut *streams.output);
     json::write_array(&mut output, rows)?;
     output.flush()?;
@@ -107,7 +109,7 @@ fn evaluate(model: &dyn AnyModel, given: &Given, laws: &[Law]) -> Result<Value, 
         .collect();
     row.extend(collected.take_others());
     let mut impacts = Map::new();
-    for (index, surface) in names::surfaces(&model.description()).enumerate() {
+    for (index, surface) in names::surfaces(model.description()).enumerate() {
         let moment = Moment {
             t: given.t,
             state: &state,

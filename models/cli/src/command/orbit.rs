@@ -85,7 +85,7 @@ fn search(model: &dyn AnyModel, args: &OrbitArgs) -> Result<Search, CliError> {
             "--off-constraint keep: orbits are sought on the constraints; use error or project",
         ));
     }
-    let surfaces = names::surfaces(&description);
+    let surfaces = names::surfaces(description);
     let surface = names::find("--surface", "surface", &args.surface, surfaces)?;
     let until = model.initial().until.unwrap_or(0.0);
     let horizon = args.until.unwrap_or(until.max(HORIZON));

@@ -91,7 +91,7 @@ fn write_as_it_goes<'a>(
     csv: Option<Sink>,
     json: Option<&Sink>,
     streams: &mut Streams<'_>,
-) -> Result<(Finished<'a>, Option<document::Rows>), CliError> {
+) -> Result<(Finished<'a>, Option<document::Rows<'a>>), CliError> {
     let description = model.description();
     let output = &mut *streams.output;
     let mut table = csv.map(|sink| RunTable::new(description, sink.stream(output)));
@@ -116,7 +116,7 @@ pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
     let finished = finish(model.as_ref(), prepared, args, Vec::new(), false)?;
     Ok(Drawn {
         svg: picture(&finished, args)?,
-        outcome: summary::ended(&model.description(), &finished.ending),
+        outcome: summary::ended(model.description(), &finished.ending),
     })
 }
 
@@ -131,7 +131,7 @@ pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, Cl
         (Some(_), Some(axes)) => Some(Source::Quantities(quantity::parse(
             "--axes",
             axes,
-            &description,
+            description,
         )?)),
         (Some(_), None) if description.view.is_some() => Some(Source::View),
         (Some(_), None) => Some(Source::Coordinates),

@@ -171,27 +171,28 @@ fn columns(
 #[cfg(test)]
 mod tests {
     use dalembert::describe::{CoordinateInfo, Topology};
+    use dalembert::erased::Held;
 
     use super::*;
 
     const POINT: Description = Description {
         type_name: "Point",
         name: "point",
-        documentation: "",
-        source: "",
+        documentation: Held::Static(""),
+        source: Held::Static(""),
         is_first_order: false,
-        coordinates: &[CoordinateInfo {
+        coordinates: Held::Static(&[CoordinateInfo {
             name: "x",
             topology: Topology::Line,
-        }],
-        parameters: &[],
-        constraints: &[],
-        quasi_velocities: &[],
-        forces: &[],
-        surfaces: &[],
-        outputs: &[],
-        scenes: &["all"],
-        modes: &[],
+        }]),
+        parameters: Held::Static(&[]),
+        constraints: Held::Static(&[]),
+        quasi_velocities: Held::Static(&[]),
+        forces: Held::Static(&[]),
+        surfaces: Held::Static(&[]),
+        outputs: Held::Static(&[]),
+        scenes: Held::Static(&["all"]),
+        modes: Held::Static(&[]),
         view: None,
     };
 

@@ -38,7 +38,7 @@ pub fn metadata(
     let laws = settings.laws.iter();
     let laws: Vec<Value> = laws
         .map(|(surface, law)| {
-            let surface = names::surfaces(&description).nth(*surface);
+            let surface = names::surfaces(description).nth(*surface);
             json!({ "surface": surface, "law": law.to_string() })
         })
         .collect();
@@ -48,9 +48,9 @@ pub fn metadata(
         "model": description.name,
         "scene": run.model.scene,
         "model_hash": fingerprint(description.source.as_bytes()),
-        "model_source": description.source,
+        "model_source": *description.source,
         "parameters": named(names, &values),
-        "start": start(model, &description, &run.state)?,
+        "start": start(model, description, &run.state)?,
         "members": members.metadata(),
         "shard": {
             "index": shard.index,

@@ -133,7 +133,7 @@ impl<'a> Runner<'a> {
             Ok(ending) => sampler.finish(ending.t, &ending.last),
             Err(_) => sampler.finish(
                 f64::NEG_INFINITY,
-                &Point::undefined(&self.model.description()),
+                &Point::undefined(self.model.description()),
             ),
         });
         Done {
@@ -183,7 +183,7 @@ impl<'a> Runner<'a> {
 
     /// Explains, in the model's names, why a member does not start.
     fn told(&self, refusal: &Refusal) -> String {
-        refusal_text(&self.model.description(), refusal)
+        refusal_text(self.model.description(), refusal)
     }
 
     /// Sets the model's parameters to those of a member, and returns its initial state; the error explains why there is
@@ -208,7 +208,7 @@ impl<'a> Runner<'a> {
             }
         }
         let settled = beginning.settle(model, run.state.off_constraint);
-        settled.map_err(|error| state_text(&model.description(), &error))
+        settled.map_err(|error| state_text(model.description(), &error))
     }
 
     fn row(
@@ -222,14 +222,11 @@ impl<'a> Runner<'a> {
         let mut row = vec![Field::Integer(member)];
         row.extend(self.shared.members.values(member).into_iter().map(number));
         let (kind, reason) = match ended {
-            Ok(ending) => (
-                ending.outcome.kind(),
-                details(&description, &ending.outcome),
-            ),
+            Ok(ending) => (ending.outcome.kind(), details(description, &ending.outcome)),
             Err((kind, reason)) => (*kind, reason.replace(['\n', '\r'], " ")),
         };
         row.push(Field::Text(Cow::Borrowed(kind)));
-        let nothing = Point::undefined(&description);
+        let nothing = Point::undefined(description);
         let (t, last, change) = match ended {
             Ok(ending) => {
                 let change = ending.last.energy - ending.first.energy;

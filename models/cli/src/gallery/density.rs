@@ -50,7 +50,7 @@ pub fn draw(
     });
     Ok(Drawn {
         svg: svg.map_err(refuse)?,
-        outcome: summary::ended(&model.description(), &ending),
+        outcome: summary::ended(model.description(), &ending),
     })
 }
 

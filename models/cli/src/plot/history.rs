@@ -86,13 +86,11 @@ fn panels(picture: &Picture<'_>) -> Vec<Panel> {
     let description = picture.model.description();
     let impacts = impact_items(picture);
     if let Source::Quantities(quantities) = picture.trace.source() {
-        let name = |quantity: &Quantity| quantity.name(&description);
+        let name = |quantity: &Quantity| quantity.name(description);
         let names = quantities.iter().skip(1).map(name).collect();
         return vec![Panel::new(names, 1, &impacts)];
     }
-    let coordinates: Vec<String> = names::coordinates(&description)
-        .map(str::to_owned)
-        .collect();
+    let coordinates: Vec<String> = names::coordinates(description).map(str::to_owned).collect();
     let outputs: Vec<String> = description
         .outputs
         .iter()

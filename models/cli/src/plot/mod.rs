@@ -107,8 +107,8 @@ pub fn draw(picture: &Picture<'_>) -> Result<String, String> {
             "the run has values beyond {LARGEST:e}, which cannot be drawn"
         ));
     }
-    match (picture.trace.source(), picture.model.description().view) {
-        (Source::View, Some(view)) => portrait::draw(picture, &view),
+    match (picture.trace.source(), &picture.model.description().view) {
+        (Source::View, Some(view)) => portrait::draw(picture, view),
         (Source::Quantities(quantities), _) if quantities[0] != Quantity::Time => {
             phase::draw(picture, quantities)
         }

@@ -15,7 +15,7 @@ pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, St
     let description = picture.model.description();
     let names: Vec<String> = quantities
         .iter()
-        .map(|quantity| quantity.name(&description))
+        .map(|quantity| quantity.name(description))
         .collect();
     let marks = picture.trace.points();
     let values = |index: usize| marks.iter().map(move |mark| mark.values[index]);

@@ -33,7 +33,7 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
     let words = Words {
         title: &picture.title,
         subtitle: &picture.subtitle,
-        axes: view.labels,
+        axes: view.labels.each_ref().map(|label| &**label),
         head: &picture.legend("path", style::PATH),
     };
     plane.sheet(

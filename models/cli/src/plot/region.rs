@@ -27,7 +27,7 @@ pub struct Region<'a> {
 impl<'a> Region<'a> {
     /// The region through a position, if one is declared in a plane of two coordinates.
     pub fn about(model: &'a dyn AnyModel, q: &'a [f64]) -> Option<Self> {
-        let view = model.description().view?;
+        let view = model.description().view.as_ref()?;
         let plane = view.plane.filter(|_| view.region)?;
         Some(Self { model, q, plane })
     }

@@ -23,9 +23,10 @@ pub struct Table<'a> {
 
 impl Table<'_> {
     /// The names of its axes.
-    pub fn labels(&self) -> [&'static str; 2] {
-        let view = self.model.description().view;
-        view.map_or([""; 2], |view| view.labels)
+    pub fn labels(&self) -> [&str; 2] {
+        let view = &self.model.description().view;
+        view.as_ref()
+            .map_or([""; 2], |view| view.labels.each_ref().map(|label| &**label))
     }
 
     /// The bounding rectangle of the region.

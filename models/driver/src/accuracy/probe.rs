@@ -3,19 +3,15 @@
 use std::ops::ControlFlow;
 
 use dalembert::audit::Finding;
-use dalembert::describe::{Description, Topology};
+use dalembert::describe::Topology;
 use dalembert::integrate::Counters;
 use dalembert::{Event, Observer, Outcome, Segment, StateVector};
 
 use super::TIMES;
 use crate::grid::Grid;
+use crate::names;
 use crate::run::{Ending, Solved};
 use crate::typed::Model;
-
-/// The surfaces' names in order.
-fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + use<> {
-    description.surfaces.iter().map(|surface| surface.name)
-}
 
 /// Largest number of impacts that are kept for comparison; later impacts are only counted.
 const KEPT: usize = 1 << 20;
@@ -56,8 +52,14 @@ impl<'a, M: Model> Probe<'a, M> {
     /// The track of the run that this probe has watched, with the result of its audit.
     pub fn track(self, solved: &Solved<M::State>, audit: Audited) -> Track {
         let last = self.model.position(&solved.run.state);
+        let description = self.model.description();
         Track {
-            description: *self.model.description(),
+            surfaces: names::surfaces(description).collect(),
+            topologies: description
+                .coordinates
+                .iter()
+                .map(|coordinate| coordinate.topology)
+                .collect(),
             positions: self.positions,
             impacts: self.impacts,
             audit,
@@ -109,8 +111,8 @@ pub enum Audited {
 
 impl Audited {
     /// The reason for which the events of the run `name` are not confirmed.
-    fn doubt(self, description: &Description, name: &str) -> Option<String> {
-        let surface = |index| surfaces(description).nth(index).unwrap_or_default();
+    fn doubt(self, surfaces: &[&str], name: &str) -> Option<String> {
+        let surface = |index: usize| surfaces.get(index).copied().unwrap_or_default();
         match self {
             Self::Confirmed => None,
             Self::Not => Some(format!("the impacts of {name} were not checked")),
@@ -147,7 +149,10 @@ enum Difference {
 /// Samples of a run.
 #[derive(Debug, Clone)]
 pub struct Track {
-    description: Description,
+    /// The names of the surfaces.
+    surfaces: Vec<&'static str>,
+    /// The sets that the coordinates run through.
+    topologies: Vec<Topology>,
     /// Positions at each time that the run reached.
     positions: Vec<Vec<f64>>,
     /// The first impacts, in order of time.
@@ -210,7 +215,7 @@ impl Track {
         match met {
             None => "has no further impact".to_owned(),
             Some(Met { t, surface }) => {
-                let name = surfaces(&self.description).nth(surface);
+                let name = self.surfaces.get(surface).copied();
                 format!("hits `{}` at t = {t}", name.unwrap_or_default())
             }
         }
@@ -219,7 +224,7 @@ impl Track {
     /// The reason for which the events of the run, called `name`, are not confirmed independently of event location;
     /// `None` if they are.
     pub fn doubt(&self, name: &str) -> Option<String> {
-        self.audit.doubt(&self.description, name)
+        self.audit.doubt(&self.surfaces, name)
     }
 
     /// True if the run that ended with `ending` is the same to the last digit. Coordinates that the mode does not have
@@ -234,7 +239,7 @@ impl Track {
     /// The largest relative difference of a position or of the time at the end, with respect to `reference`. Infinite
     /// if a position is not a number.
     pub fn distance(&self, reference: &Self) -> f64 {
-        let scales: Vec<f64> = (0..self.description.coordinates.len())
+        let scales: Vec<f64> = (0..self.topologies.len())
             .map(|i| reference.scale(i))
             .collect();
         let pairs = self.positions.iter().zip(&reference.positions);
@@ -255,7 +260,7 @@ impl Track {
         let positions = self.positions.iter().chain([&self.last]);
         let values = positions.map(|position| position[coordinate].abs());
         let largest = values.fold(0.0, f64::max);
-        match self.description.coordinates[coordinate].topology {
+        match self.topologies[coordinate] {
             Topology::Circle => largest.max(1.0),
             _ if largest > 0.0 => largest,
             _ => 1.0,
@@ -269,28 +274,11 @@ mod tests {
 
     #[test]
     fn a_run_without_an_audit_is_not_confirmed() {
-        let description = Description {
-            type_name: "",
-            name: "",
-            documentation: "",
-            source: "",
-            is_first_order: false,
-            coordinates: &[],
-            parameters: &[],
-            constraints: &[],
-            quasi_velocities: &[],
-            forces: &[],
-            surfaces: &[],
-            outputs: &[],
-            scenes: &[],
-            modes: &[],
-            view: None,
-        };
         let finding = Finding::NoDenseOutput { t: 1.0 };
         for audit in [Audited::Not, Audited::Impossible, Audited::Doubted(finding)] {
-            let doubt = audit.doubt(&description, "the run").expect("a doubt");
+            let doubt = audit.doubt(&[], "the run").expect("a doubt");
             assert!(doubt.contains("the run"), "{audit:?}: {doubt}");
         }
-        assert_eq!(Audited::Confirmed.doubt(&description, "the run"), None);
+        assert_eq!(Audited::Confirmed.doubt(&[], "the run"), None);
     }
 }

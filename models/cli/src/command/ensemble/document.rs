@@ -27,7 +27,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     let outcomes = outcomes.map(|(kind, &count)| (kind.clone(), Value::from(count)));
     document.field("outcomes", outcomes.collect::<Map<_, _>>())?;
     let description = finished.model.description();
-    let impacts = names::surfaces(&description).zip(&tally.impacts);
+    let impacts = names::surfaces(description).zip(&tally.impacts);
     let impacts = impacts.map(|(surface, &count)| (surface.to_owned(), Value::from(count)));
     document.field("impacts_on", impacts.collect::<Map<_, _>>())?;
     document.field("energy_change", number(tally.energy_change))?;

@@ -98,7 +98,7 @@ fn impacts(finished: &Finished<'_>) -> String {
     if impacts.is_empty() {
         return "none: the model has no surfaces".to_owned();
     }
-    let each = names::surfaces(&description).zip(impacts);
+    let each = names::surfaces(description).zip(impacts);
     let each: Vec<String> = each
         .map(|(name, count)| format!("{name} {count}"))
         .collect();

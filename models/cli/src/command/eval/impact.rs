@@ -36,7 +36,7 @@ pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &
                 false => Err(singular),
             };
             match found {
-                Err(fault) => refusal(&description, &StateError::Fault(fault)),
+                Err(fault) => refusal(description, &StateError::Fault(fault)),
                 Ok(collected) => {
                     let focused = Moment {
                         t: moment.t,
@@ -59,7 +59,7 @@ pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &
 fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws: &[Law]) -> Value {
     let (t, state, collected) = (moment.t, moment.state, moment.collected);
     let description = model.description();
-    let fault = |fault: &Fault| refusal(&description, &StateError::Fault(*fault));
+    let fault = |fault: &Fault| refusal(description, &StateError::Fault(*fault));
     let name = description.surfaces[surface].name;
     let is_rough = collected.focus(name).is_some();
     let mut results = Map::new();
@@ -94,7 +94,7 @@ fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws
                 fields.insert("q_plus".to_owned(), json::vector(&reset.q));
                 fields.into()
             }
-            Err(error) => refusal(&description, &error),
+            Err(error) => refusal(description, &error),
         };
         results.insert(Law::Reset.name().to_owned(), result);
     }

@@ -31,7 +31,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     let found = match &finished.result {
         Err(missed) => {
             let mut outcome = Map::new();
-            let (kind, details) = outcome::missed(&description, missed);
+            let (kind, details) = outcome::missed(description, missed);
             outcome.insert("kind".to_owned(), kind.into());
             outcome.extend(
                 details
@@ -49,7 +49,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     document.field("after", state(&found.after))?;
     document.field("residual", number(found.residual))?;
     document.field("iterations", found.iterations)?;
-    document.field("components", components(&description))?;
+    document.field("components", components(description))?;
     document.rows(
         "directions",
         found.directions.iter().map(|direction| vector(direction)),

@@ -23,13 +23,13 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     writeln!(output, "  section      {surface}, {returns}")?;
     let found = match &finished.result {
         Err(missed) => {
-            let (kind, details) = outcome::missed(&description, missed);
+            let (kind, details) = outcome::missed(description, missed);
             let details: String = details
                 .iter()
                 .map(|(name, detail)| format!(", {name} {detail}"))
                 .collect();
             writeln!(output, "  outcome      {kind}{details}")?;
-            return outcome::remarks_on_orbit(&description, missed)
+            return outcome::remarks_on_orbit(description, missed)
                 .iter()
                 .try_for_each(|(title, text)| writeln!(output, "  {title:<11}  {text}"));
         }
@@ -48,12 +48,12 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     writeln!(
         output,
         "  before       {}",
-        state(&description, &found.before)
+        state(description, &found.before)
     )?;
     writeln!(
         output,
         "  after        {}",
-        state(&description, &found.after)
+        state(description, &found.after)
     )?;
     let multipliers: Vec<String> = found
         .multipliers

@@ -16,8 +16,8 @@ use crate::record::Keep;
 use crate::spool::Spool;
 
 /// Samples, impacts and contacts for a document, kept until the run has ended.
-pub struct Rows {
-    description: Description,
+pub struct Rows<'a> {
+    description: &'a Description,
     /// The file of the document, for error messages.
     path: PathBuf,
     events: Spool,
@@ -25,9 +25,9 @@ pub struct Rows {
     samples: Spool,
 }
 
-impl Rows {
+impl<'a> Rows<'a> {
     /// No rows, for the document in this file.
-    pub fn new(description: Description, path: PathBuf) -> Self {
+    pub fn new(description: &'a Description, path: PathBuf) -> Self {
         Self {
             description,
             path,
@@ -38,17 +38,17 @@ impl Rows {
     }
 }
 
-impl Keep for Rows {
+impl Keep for Rows<'_> {
     fn sample(&mut self, t: f64, point: &Point) -> io::Result<()> {
-        self.samples.push(&sample(&self.description, t, point))
+        self.samples.push(&sample(self.description, t, point))
     }
 
     fn impact(&mut self, impact: &Impact) -> io::Result<()> {
-        self.events.push(&event(&self.description, impact))
+        self.events.push(&event(self.description, impact))
     }
 
     fn contact(&mut self, contact: &Contact) -> io::Result<()> {
-        self.contacts.push(&hold(&self.description, contact))
+        self.contacts.push(&hold(self.description, contact))
     }
 
     fn failed(&self, source: io::Error) -> CliError {
@@ -137,7 +137,7 @@ fn ended(finished: &Finished<'_>) -> Value {
     let mut ended = Map::new();
     ended.insert("kind".to_owned(), ending.outcome.kind().into());
     ended.insert("t".to_owned(), number(ending.t));
-    let details = outcome::details(&finished.model.description(), &ending.outcome);
+    let details = outcome::details(finished.model.description(), &ending.outcome);
     ended.extend(
         details
             .into_iter()

@@ -22,9 +22,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     } = finished;
     writeln!(output, "{}", title(finished))?;
     let description = finished.model.description();
-    writeln!(output, "  outcome     {}", ended(&description, ending))?;
+    writeln!(output, "  outcome     {}", ended(description, ending))?;
     if !ending.reached {
-        for (title, text) in outcome::remarks(&description, &ending.outcome) {
+        for (title, text) in outcome::remarks(description, &ending.outcome) {
             writeln!(output, "  {title:<10}  {text}")?;
         }
     }
@@ -87,7 +87,7 @@ pub fn title(finished: &Finished<'_>) -> String {
 /// The laws that act and the parameters that differ from their defaults, for a picture.
 pub fn subtitle(finished: &Finished<'_>) -> String {
     let mut parts = laws(finished);
-    let parameters = finished.model.description().parameters;
+    let parameters = &finished.model.description().parameters;
     for (index, parameter) in parameters.iter().enumerate() {
         let value = finished.model.parameter(index);
         if parameter.default != Some(value) {
@@ -106,7 +106,7 @@ pub fn subtitle(finished: &Finished<'_>) -> String {
 
 /// One text per law: `elastic` if all surfaces share it, else `floor: elastic`.
 fn laws(finished: &Finished<'_>) -> Vec<String> {
-    let surfaces = finished.model.description().surfaces;
+    let surfaces = &finished.model.description().surfaces;
     let text =
         |law: &Option<Law>| law.map_or_else(|| "no impacts".to_owned(), |law| law.to_string());
     let laws: Vec<String> = finished.ending.laws.iter().map(text).collect();
@@ -122,7 +122,7 @@ fn laws(finished: &Finished<'_>) -> Vec<String> {
 
 fn impacts(finished: &Finished<'_>) -> String {
     let tally = &finished.record.tally;
-    let surfaces = finished.model.description().surfaces;
+    let surfaces = &finished.model.description().surfaces;
     if surfaces.is_empty() {
         return "none: the model has no surfaces".to_owned();
     }

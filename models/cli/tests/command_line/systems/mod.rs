@@ -12,6 +12,7 @@ use dalembert::describe::{
     Assumption, ConstraintInfo, CoordinateInfo, Description, Initial, Instance, ParameterInfo,
     Report, SurfaceInfo, Topology, ViewInfo,
 };
+use dalembert::erased::Held;
 use dalembert::error::ParameterError;
 use dalembert::jet::LENGTH;
 use dalembert::law::{Contact, Law};
@@ -42,23 +43,63 @@ where
     Ok(())
 }
 
-const NOTHING: Description = Description {
+/// What a description is made of.
+#[derive(Clone, Copy)]
+struct Facts {
+    type_name: &'static str,
+    name: &'static str,
+    documentation: &'static str,
+    source: &'static str,
+    coordinates: &'static [CoordinateInfo],
+    parameters: &'static [ParameterInfo],
+    constraints: &'static [ConstraintInfo],
+    surfaces: &'static [SurfaceInfo],
+    outputs: &'static [&'static str],
+    /// The labels of a region in the plane of the first two coordinates.
+    region: Option<[&'static str; 2]>,
+}
+
+const NOTHING: Facts = Facts {
     type_name: "",
     name: "",
     documentation: "",
     source: "",
-    is_first_order: false,
     coordinates: &[],
     parameters: &[],
     constraints: &[],
-    quasi_velocities: &[],
-    forces: &[],
     surfaces: &[],
     outputs: &[],
-    scenes: &["all"],
-    modes: &[],
-    view: None,
+    region: None,
 };
+
+impl Facts {
+    const fn described(self) -> Description {
+        Description {
+            type_name: self.type_name,
+            name: self.name,
+            documentation: Held::Static(self.documentation),
+            source: Held::Static(self.source),
+            is_first_order: false,
+            coordinates: Held::Static(self.coordinates),
+            parameters: Held::Static(self.parameters),
+            constraints: Held::Static(self.constraints),
+            quasi_velocities: Held::Static(&[]),
+            forces: Held::Static(&[]),
+            surfaces: Held::Static(self.surfaces),
+            outputs: Held::Static(self.outputs),
+            scenes: Held::Static(&["all"]),
+            modes: Held::Static(&[]),
+            view: match self.region {
+                Some([x, y]) => Some(ViewInfo {
+                    labels: [Held::Static(x), Held::Static(y)],
+                    plane: Some([0, 1]),
+                    region: true,
+                }),
+                None => None,
+            },
+        }
+    }
+}
 
 const fn line(name: &'static str) -> CoordinateInfo {
     CoordinateInfo {
@@ -155,7 +196,7 @@ impl Scene for BouncingBall {
 }
 
 impl Described for BouncingBall {
-    const DESCRIPTION: Description = Description {
+    const DESCRIPTION: &'static Description = &Facts {
         type_name: "BouncingBall",
         name: "bouncing_ball",
         documentation: " A ball above a floor.\n It bounces.",
@@ -170,10 +211,11 @@ impl Described for BouncingBall {
         parameters: &[positive("m", Some(1.0)), positive("g", Some(1.0))],
         surfaces: &[SurfaceInfo {
             name: "floor",
-            law: "elastic",
+            law: Held::Static("elastic"),
         }],
         ..NOTHING
-    };
+    }
+    .described();
 
     fn with_defaults() -> Self {
         Self { m: 1.0, g: 1.0 }
@@ -245,7 +287,7 @@ impl Instance for BouncingBall {
     }
 
     fn description(&self) -> &'static Description {
-        &<Self as Described>::DESCRIPTION
+        <Self as Described>::DESCRIPTION
     }
 }
 
@@ -280,20 +322,17 @@ impl Scene for Oscillator {
 }
 
 impl Described for Oscillator {
-    const DESCRIPTION: Description = Description {
+    const DESCRIPTION: &'static Description = &Facts {
         type_name: "Oscillator",
         name: "oscillator",
         documentation: " Two springs of different strength.",
         coordinates: &[line("x.1"), line("x.2")],
         parameters: &[positive("k", None)],
         outputs: &["radius"],
-        view: Some(ViewInfo {
-            labels: ["x[1]", "x[2]"],
-            plane: Some([0, 1]),
-            region: true,
-        }),
+        region: Some(["x[1]", "x[2]"]),
         ..NOTHING
-    };
+    }
+    .described();
 
     fn with_defaults() -> Self {
         Self { k: f64::NAN }
@@ -355,7 +394,7 @@ impl Instance for Oscillator {
     }
 
     fn description(&self) -> &'static Description {
-        &<Self as Described>::DESCRIPTION
+        <Self as Described>::DESCRIPTION
     }
 }
 
@@ -459,7 +498,7 @@ impl Scene for Bead {
 }
 
 impl Described for Bead {
-    const DESCRIPTION: Description = Description {
+    const DESCRIPTION: &'static Description = &Facts {
         type_name: "Bead",
         name: "bead",
         coordinates: &[
@@ -478,7 +517,8 @@ impl Described for Bead {
             level: Some(0),
         }],
         ..NOTHING
-    };
+    }
+    .described();
 
     fn with_defaults() -> Self {
         Self
@@ -526,6 +566,6 @@ impl Instance for Bead {
     }
 
     fn description(&self) -> &'static Description {
-        &<Self as Described>::DESCRIPTION
+        <Self as Described>::DESCRIPTION
     }
 }

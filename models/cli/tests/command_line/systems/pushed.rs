@@ -123,12 +123,13 @@ impl Scene for Pushed {
 }
 
 impl Described for Pushed {
-    const DESCRIPTION: Description = Description {
+    const DESCRIPTION: &'static Description = &Facts {
         type_name: "Pushed",
         name: "pushed",
         coordinates: &[line("x")],
         ..NOTHING
-    };
+    }
+    .described();
 
     fn with_defaults() -> Self {
         Self
@@ -176,6 +177,6 @@ impl Instance for Pushed {
     }
 
     fn description(&self) -> &'static Description {
-        &<Self as Described>::DESCRIPTION
+        <Self as Described>::DESCRIPTION
     }
 }

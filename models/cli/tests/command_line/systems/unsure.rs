@@ -4,6 +4,7 @@ use dalembert::audit::{Audit, Auditor};
 use dalembert::declaration::Described;
 use dalembert::describe::{Description, Initial, Instance, Report};
 use dalembert::effects::{Moment, StepView};
+use dalembert::erased::Held;
 use dalembert::error::ParameterError;
 use dalembert::integrate::Stepper;
 use dalembert::jet::{LENGTH, Work};
@@ -198,9 +199,22 @@ where
     M: Model + Described + Impacting,
     M::Global: Model + Described + Impacting,
 {
-    const DESCRIPTION: Description = Description {
-        scenes: &["all"],
-        ..M::DESCRIPTION
+    const DESCRIPTION: &'static Description = &Description {
+        type_name: M::DESCRIPTION.type_name,
+        name: M::DESCRIPTION.name,
+        documentation: M::DESCRIPTION.documentation.again(),
+        source: M::DESCRIPTION.source.again(),
+        is_first_order: M::DESCRIPTION.is_first_order,
+        coordinates: M::DESCRIPTION.coordinates.again(),
+        parameters: M::DESCRIPTION.parameters.again(),
+        constraints: M::DESCRIPTION.constraints.again(),
+        forces: M::DESCRIPTION.forces.again(),
+        quasi_velocities: M::DESCRIPTION.quasi_velocities.again(),
+        surfaces: M::DESCRIPTION.surfaces.again(),
+        outputs: M::DESCRIPTION.outputs.again(),
+        scenes: Held::Static(&["all"]),
+        modes: M::DESCRIPTION.modes.again(),
+        view: None,
     };
 
     fn with_defaults() -> Self {
@@ -252,7 +266,7 @@ where
     }
 
     fn description(&self) -> &'static Description {
-        &<Self as Described>::DESCRIPTION
+        <Self as Described>::DESCRIPTION
     }
 }
 

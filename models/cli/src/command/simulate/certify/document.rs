@@ -33,7 +33,7 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
     let event = |strike: &Strike| {
         let mut event = json!({
             "t": range(strike.time),
-            "surface": report::surface(&description, strike.surface),
+            "surface": report::surface(description, strike.surface),
             "q_minus": ranges(&strike.before.q),
             "qdot_minus": ranges(&strike.before.qdot),
             "q_plus": ranges(&strike.after.q),
@@ -56,10 +56,10 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
         let (kind, surface) = report::kind(lost.reason);
         outcome.insert("reason".to_owned(), kind.into());
         if let Some(index) = surface {
-            let name = report::surface(&description, index);
+            let name = report::surface(description, index);
             outcome.insert("surface".to_owned(), name.into());
         }
-        let text = report::reason(&description, lost.reason);
+        let text = report::reason(description, lost.reason);
         outcome.insert("text".to_owned(), text.into());
     }
     if let Some(mode) = certified.last.mode {

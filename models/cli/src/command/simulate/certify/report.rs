@@ -29,7 +29,7 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
     let names = rows.iter().map(|(name, _)| name.chars().count());
     let width = names.max().unwrap_or_default().max(10) + 2;
     for (number, strike) in strikes.iter().enumerate() {
-        let mut surface = surface(&description, strike.surface).to_owned();
+        let mut surface = surface(description, strike.surface).to_owned();
         if let (Some(before), Some(after)) = (strike.before.mode, strike.after.mode) {
             surface += &format!(", {before} to {after}");
         }
@@ -40,12 +40,12 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
     match &certified.lost {
         None => writeln!(output, "  {:<width$}up to t = {t}", "certified")?,
         Some(lost) => {
-            let lost = text(&description, lost);
+            let lost = text(description, lost);
             writeln!(output, "  {:<width$}{lost}", "lost")?;
             writeln!(output, "  {:<width$}{NARROWER}", "try")?;
         }
     }
-    let others = match (description.surfaces, certified.impacts) {
+    let others = match (&*description.surfaces, certified.impacts) {
         ([], _) => "the model has no surfaces".to_owned(),
         (_, 0) => format!("there are none until t = {t}"),
         (_, count) => format!("{count}; there are no others until t = {t}"),
@@ -69,7 +69,7 @@ fn counted_steps(steps: u64) -> String {
 fn rows(enclosed: &Enclosed<'_>) -> Vec<(String, Interval)> {
     let description = enclosed.model.description();
     let last = &enclosed.certified.last;
-    let coordinates = names::coordinates(&description);
+    let coordinates = names::coordinates(description);
     let velocities = coordinates.clone().map(names::velocity);
     let positions = coordinates.map(str::to_owned).zip(last.q.iter().copied());
     // A mode may lack some coordinates.

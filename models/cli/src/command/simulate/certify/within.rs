@@ -49,7 +49,7 @@ impl Within {
             ));
         }
         let (name, value) = names::assignment(FLAG, text, "NAME=LO..HI")?;
-        let coordinates: Vec<&str> = names::coordinates(&description).collect();
+        let coordinates: Vec<&str> = names::coordinates(description).collect();
         let velocities: Vec<String> = coordinates.iter().map(|one| names::velocity(one)).collect();
         let is_reduced = form == Form::Reduced;
         let is_start =

@@ -1,0 +1,135 @@
+//! A loaded model is freed with its last owner, and may be used from several threads.
+#![cfg(target_os = "linux")]
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::thread;
+
+use dalembert::erased::{Erased, Form, Global, Shared};
+use dalembert::state::StateVector;
+use dalembert::{Dop853, Tolerance};
+use dalembert::{Instance, Scene, Simulation, System, VectorField};
+
+/// Models that are loaded and dropped before memory is measured.
+const FIRST: usize = 50;
+
+/// The least memory that a leaked model takes: that of the smallest form, in bytes.
+const LEAST: usize = 20 << 10;
+
+/// Tests that run alone, as memory is that of the process.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// A small model. Its parameter and a number in it have no other model's name and value.
+fn text(number: usize) -> String {
+    format!(
+        "Ball {{
+            coordinates {{ x; y; }}
+            parameters {{ g_{number} > 0 = 9.{number}; }}
+            lagrangian = (dot(x)^2 + dot(y)^2)/2 - g_{number}*y - {number}.5*x^2;
+            impacts {{ floor: y >= 0 => restitution(1/2); }}
+            outputs {{ height: {number}.5*y; }}
+            initial {{ y = 1; }}
+        }}"
+    )
+}
+
+/// A model that is evaluated and dropped.
+fn load(number: usize) {
+    let models = dalembert_jit::load("ball.dal", &text(number)).unwrap();
+    let ball = Erased::<4>::of(&models[0].form).unwrap();
+    let start = ball.initial();
+    let state = ball.state(0.0, &start.q, &start.qdot).unwrap();
+    let mut rate = ball.zero_state();
+    ball.rate(0.0, &state, &mut rate).unwrap();
+    ball.energy(0.0, &state).unwrap();
+}
+
+/// Resident memory of the process, in bytes.
+fn resident() -> usize {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kilobytes = line.unwrap().trim().trim_end_matches(" kB");
+    kilobytes.parse::<usize>().unwrap() << 10
+}
+
+/// Growth of memory while models are loaded and dropped, after the first ones.
+fn growth(count: usize) -> usize {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    (0..FIRST).for_each(load);
+    let before = resident();
+    (FIRST..FIRST + count).for_each(load);
+    resident().saturating_sub(before)
+}
+
+#[test]
+fn models_are_freed() {
+    let count = 300;
+    let growth = growth(count);
+    println!("{growth} bytes for {count} models");
+    assert!(growth < count * LEAST / 4, "{growth} bytes");
+}
+
+#[test]
+#[ignore = "nightly: ten thousand models"]
+fn memory_stays_while_ten_thousand_models_are_loaded_and_dropped() {
+    let growth = growth(10_000);
+    assert!(growth < 4 << 20, "{growth} bytes");
+}
+
+/// The height of the ball after some impacts.
+fn height(form: &Form) -> f64 {
+    let ball = Erased::<4>::of(form).unwrap();
+    let start = ball.initial();
+    let state = ball.state(0.0, &start.q, &start.qdot).unwrap();
+    let stepper = Dop853::new(Tolerance::new(1e-9).unwrap());
+    let mut simulation = Simulation::new(&ball, stepper, ball.effects());
+    let run = simulation.run(0.0, state, 1.0, &mut ()).unwrap();
+    ball.position(&run.state).as_slice()[1]
+}
+
+#[test]
+fn threads_share_a_model_whose_loading_handle_is_dropped() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let models = dalembert_jit::load("ball.dal", &text(0)).unwrap();
+    let expected = height(&models[0].form);
+    let forms: [Arc<Form>; 4] = core::array::from_fn(|_| Arc::clone(&models[0].form));
+    let left = Arc::downgrade(&models[0].form);
+    drop(models);
+    let heights = forms.map(|form| thread::spawn(move || height(&form)));
+    for found in heights.map(|thread| thread.join().unwrap()) {
+        assert_eq!(found.to_bits(), expected.to_bits());
+    }
+    assert!(left.upgrade().is_none(), "the form has an owner");
+}
+
+#[test]
+fn forms_of_scenes_modes_and_reduced_systems_are_freed() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    for text in [
+        include_str!("../../models/src/rolling_disk.dal"),
+        include_str!("../../models/src/spring_mass_walker.dal"),
+        include_str!("../../models/src/rolling_ball_wall.dal"),
+    ] {
+        let models = dalembert_jit::load("shipped", text).unwrap();
+        let mut forms: Vec<Weak<Form>> = Vec::new();
+        for model in &models {
+            forms.push(Arc::downgrade(&model.form));
+            forms.extend(model.scenes.iter().map(|(_, form)| Arc::downgrade(form)));
+        }
+        let others = models.iter().flat_map(|model| {
+            let global = match &model.form.global {
+                Global::Another(Shared::Counted(form)) => Some(form),
+                _ => None,
+            };
+            let modes = model.form.forms.iter().filter_map(|form| match form {
+                Shared::Counted(form) => Some(form),
+                Shared::Static(_) => None,
+            });
+            modes.chain(global)
+        });
+        forms.extend(others.map(Arc::downgrade));
+        assert!(forms.len() > 1, "a form with others");
+        drop(models);
+        assert!(forms.iter().all(|form| form.strong_count() == 0));
+    }
+}
