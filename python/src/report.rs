@@ -74,8 +74,8 @@ fn finding<'py>(py: Python<'py>, finding: &Finding) -> PyResult<Bound<'py, PyDic
     Ok(dict)
 }
 
-fn tree<'py>(py: Python<'py>, tree: &Tree) -> PyResult<Bound<'py, PyAny>> {
-    match tree {
+fn tree<'py>(py: Python<'py>, node: &Tree) -> PyResult<Bound<'py, PyAny>> {
+    match node {
         Tree::Absent => Ok(py.None().into_bound(py)),
         Tree::Flag(flag) => flag.into_bound_py_any(py),
         Tree::Number(number) => number.into_bound_py_any(py),
