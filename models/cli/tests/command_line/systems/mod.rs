@@ -43,7 +43,7 @@ where
     Ok(())
 }
 
-/// What a description is made of.
+/// Facts of a description, as constants.
 #[derive(Clone, Copy)]
 struct Facts {
     type_name: &'static str,
