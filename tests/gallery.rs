@@ -42,13 +42,15 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
         let outcome = outcome.as_str().unwrap();
         let expected = match name {
             _ if name.starts_with("bouncing_ball-zeno") => "zeno at t = 9.8994949366",
+            _ if name.starts_with("dimensionless_walker-basin") => "orbit 1 (period 1): ",
+            _ if name.starts_with("dimensionless_walker-gaits") => "period 1: ",
             _ if name.contains("-starts-") => "100 of 100 runs at",
             _ if row["command"].as_str().unwrap().contains("--impacts") => "impact_budget at",
             _ => "done at",
         };
         assert!(outcome.starts_with(expected), "{name}: {outcome}");
     }
-    for source in ["6.2", "6.3", "6.4"] {
+    for source in ["4.4", "4.5", "6.2", "6.3", "6.4"] {
         assert!(page.contains(&format!("W. Clark, thesis, Fig. {source}")));
     }
 }

@@ -54,6 +54,11 @@ OUTPUTS = {
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--integrator", "dopri5", "--wanted", "1e-30"],
     ],
     "errata": [["errata"]],
+    "map": [
+        ["map", "dimensionless_walker", "--vary", "eta=-2..2:4", "--vary", "xi=-3..1:4", "--returns", "5", "--fail", "theta > pi/2",
+         "--contour", "xi = eta"],
+        ["map", "double_pendulum", "--vary", "theta1=0..1:3", "--until", "1", "--class", "theta2"],
+    ],
     "ensemble": [
         ["ensemble", "bouncing_ball", "--vary", "x=0.5..2:4", "--vary", "g=1,2", "--law", "floor=newton:0.5"],
         ["ensemble", "double_pendulum", "--random", "7", "--members", "5", "--vary", "theta1=1+-0.01", "--vary", "theta2=0..1", "--until", "2",

@@ -1,9 +1,9 @@
 //! Walkers: a foot that slips, in two systems of units, and legs that are springs.
 
-use dalembert::{EventLog, Fault, Outcome, System};
+use dalembert::{EventLog, Fault, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, declared, vector};
-use dalembert_stability::text::{shipped, value};
+use dalembert_stability::text::{Model, shipped, value};
 
 use super::{course, end};
 
@@ -18,6 +18,53 @@ fn a_step_repeats_itself() {
     let side = if run.counters.impacts == 0 { 1.0 } else { -1.0 };
     let angle = run.state.as_ref()[0] + delta * side;
     assert!(angle.abs() < 1e-12);
+}
+
+/// The derivative of the field at a state by central differences, row after row.
+fn slopes(walker: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
+    const STEP: f64 = 1e-5;
+    let rate = |at: [f64; 3]| {
+        let mut rate = vector(&[0.0; 3]);
+        walker.rate(0.0, &vector(&at), &mut rate).expect("a rate");
+        [0, 1, 2].map(|i| rate.as_ref()[i])
+    };
+    let columns = [0, 1, 2].map(|j| {
+        let moved = |step: f64| {
+            let mut moved = at;
+            moved[j] += step;
+            rate(moved)
+        };
+        let (up, down) = (moved(STEP), moved(-STEP));
+        [0, 1, 2].map(|i| (up[i] - down[i]) / (2.0 * STEP))
+    });
+    [0, 1, 2].map(|i| columns.map(|column| column[i]))
+}
+
+/// The thesis takes the stable plane of the upright walker for the boundary between starts that walk and starts that fall.
+#[test]
+fn the_upright_walker_is_a_saddle_whose_plane_is_the_line_of_the_figure() {
+    let walker = shipped("dimensionless_walker").model();
+    let alpha = value(&walker, "alpha");
+    let slopes = slopes(&walker, [alpha, 0.0, alpha.sin()]);
+    let determinant = |l: f64| {
+        let m = |i: usize, j: usize| slopes[i][j] - if i == j { l } else { 0.0 };
+        let minor = |a: usize, b: usize| m(1, a) * m(2, b) - m(1, b) * m(2, a);
+        m(0, 0) * minor(1, 2) - m(0, 1) * minor(0, 2) + m(0, 2) * minor(0, 1)
+    };
+    for eigenvalue in [0.688_755, -2.747_673, -0.478_938] {
+        let (below, above) = (
+            determinant(eigenvalue - 1e-6),
+            determinant(eigenvalue + 1e-6),
+        );
+        assert!(below * above < 0.0, "{eigenvalue}: {below:e}, {above:e}");
+    }
+    // The normal of the plane is the left eigenvector of the first of them, here with 1 for the rate of the leg.
+    let normal = [slopes[1][0] / 0.688_755, 1.0, -0.988_692];
+    for j in 0..3 {
+        let image: f64 = (0..3).map(|i| normal[i] * slopes[i][j]).sum();
+        let missed = image - 0.688_755 * normal[j];
+        assert!(missed.abs() < 1e-5, "component {j}: {missed:e}");
+    }
 }
 
 #[test]

@@ -8,7 +8,9 @@ mod errata;
 mod file;
 mod gallery;
 mod help;
+mod map;
 mod orbit;
+mod rows;
 
 use std::path::PathBuf;
 
@@ -24,7 +26,9 @@ pub use ensemble::EnsembleArgs;
 pub use errata::ErrataArgs;
 pub use file::{BuildArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
+pub use map::MapArgs;
 pub use orbit::OrbitArgs;
+pub use rows::RowsArgs;
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]
@@ -67,6 +71,13 @@ pub enum Command {
         after_help = ensemble::EXAMPLES
     )]
     Ensemble(Box<EnsembleArgs>),
+    /// Run every cell of a grid of starts or parameters, and draw the end of each run.
+    #[command(
+        help_template = help::TEMPLATE,
+        before_help = "Example: dalembert map dimensionless_walker --vary eta=-2..2:20 --vary xi=-3..1:20 --returns 20 --fail 'theta > pi/2' --plot map.svg",
+        after_help = map::EXAMPLES
+    )]
+    Map(Box<MapArgs>),
     /// Measure the cost of accuracy: error, work and time of every integrator at a series of tolerances.
     ///
     /// An error is the difference from a reference run. The impacts of the reference are checked by interval enclosures,
@@ -142,6 +153,7 @@ impl Command {
         match self {
             Self::Simulate(args) => Some(&mut args.run.model),
             Self::Ensemble(args) => Some(&mut args.run.model),
+            Self::Map(args) => Some(&mut args.run.model),
             Self::Accuracy(args) => Some(&mut args.run.model),
             Self::Orbit(args) => Some(&mut args.model),
             Self::Eval(args) => Some(&mut args.model),

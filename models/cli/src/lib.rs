@@ -32,8 +32,10 @@ mod entry;
 pub mod errata;
 mod error;
 mod exit;
+mod expression;
 pub mod gallery;
 mod json;
+mod map;
 mod model_file;
 mod names;
 mod outcome;
@@ -155,6 +157,7 @@ fn dispatch(
         Command::Check(args) => command::check::run(models, args, streams),
         Command::Simulate(args) => command::simulate::run(models, args, streams),
         Command::Ensemble(args) => command::ensemble::run(models, args, streams),
+        Command::Map(args) => command::map::run(models, args, streams),
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),
         Command::Orbit(args) => command::orbit::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),

@@ -1,4 +1,4 @@
-//! Converts the common flags of `simulate`, `ensemble` and `accuracy` to the settings of a run.
+//! Converts the common flags of `simulate`, `ensemble`, `map` and `accuracy` to the settings of a run.
 
 use dalembert::describe::Description;
 use dalembert::law::Law;
@@ -52,6 +52,16 @@ pub fn course(
     run: &RunArgs,
     course: &CourseArgs,
 ) -> Result<Settings, CliError> {
+    course_to(model, run, course, course.impacts)
+}
+
+/// The same for a run that a number of impacts, or of returns among them, ends in place of a time.
+pub fn course_to(
+    model: &dyn AnyModel,
+    run: &RunArgs,
+    course: &CourseArgs,
+    counted: Option<u64>,
+) -> Result<Settings, CliError> {
     if course.step.is_some() && course.integrator.is_adaptive() {
         return Err(CliError::Usage(
             "--step: dop853, dopri5 and taylor choose their steps by --tol; a step needs --integrator rk4, gauss4, gauss6, dla2 \
@@ -69,7 +79,8 @@ pub fn course(
         step: course.step,
         max_step: course.max_step,
         steps: course.steps,
-        ..settings(model, run, course.impacts, integrator)?
+        impacts: course.impacts,
+        ..settings(model, run, counted, integrator)?
     })
 }
 

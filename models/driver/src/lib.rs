@@ -6,7 +6,7 @@
 //! | `typed.rs` | the implementation of this trait for the type of a system |
 //! | `run/` | one run: its settings, its observer, its end |
 //! | `accuracy/` | measured errors of integrators, with work and time |
-//! | `orbit.rs` | periodic orbits |
+//! | `orbit.rs` | periodic orbits, Lyapunov exponents |
 //! | `variation.rs` | derivatives of runs |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |

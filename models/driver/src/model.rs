@@ -142,6 +142,11 @@ pub trait AnyModel: Runs {
     /// # Errors
     /// [`StateError`] under the same conditions as for the start of a run.
     fn state(&self, t: f64, origin: &Origin) -> Result<Vec<f64>, StateError>;
+    /// The values of a given state at `t = 0`, declared outputs included.
+    ///
+    /// # Errors
+    /// [`StateError`] under the same conditions as for the start of a run.
+    fn point(&self, origin: &Origin) -> Result<Point, StateError>;
     /// The declared region's function, positive where motion is allowed; `None` without a region.
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
     /// Reports every derived quantity at a state of the global form.
@@ -198,6 +203,13 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
+    /// The largest Lyapunov exponent per return, over the returns of the search from the first arrival after this state;
+    /// `None` for a scene without variations.
+    fn exponent(
+        &self,
+        origin: &Origin,
+        search: &Search,
+    ) -> Result<Option<Result<f64, OrbitError>>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

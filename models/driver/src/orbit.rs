@@ -1,4 +1,4 @@
-//! Periodic orbits of a model whose type is erased.
+//! Periodic orbits and Lyapunov exponents of a model whose type is erased.
 
 use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
@@ -14,12 +14,12 @@ use crate::model::Point;
 use crate::refusal::Refusal;
 use crate::typed::point;
 
-/// Request for a periodic orbit.
+/// Request for a periodic orbit, or for an exponent.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// The index of the surface that is the section.
     pub surface: usize,
-    /// Number of returns in a period.
+    /// Number of returns in a period, or over which deviations grow.
     pub returns: u32,
     /// Longest time of one return.
     pub horizon: f64,
@@ -64,36 +64,78 @@ impl VariationalVisitor for Finder<'_> {
     type Output = Result<Result<Found, OrbitError>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
-        let search = self.search;
-        let mut effects = system.effects();
-        for &(surface, law) in &search.laws {
-            effects.set_law(surface, law);
-        }
-        effects.set_policies(search.policies);
-        let [mut q, mut qdot] = [system.zero_vector(); 2];
-        q.as_mut_slice().copy_from_slice(self.q);
-        qdot.as_mut_slice().copy_from_slice(self.qdot);
-        let start = system.state_unchecked(0.0, &q, &qdot);
-        let start = start.map_err(StateError::from)?;
-        let mut stepper = Taylor::new(search.tolerance);
-        let mut section = Section::new(
-            system,
-            Chosen::new(&mut stepper),
-            effects,
-            search.surface,
-            search.horizon,
-        )
-        .with_returns(search.returns);
+        let start = started(system, self.q, self.qdot)?;
+        let mut stepper = Taylor::new(self.search.tolerance);
+        let mut section =
+            section(system, self.search, &mut stepper).with_returns(self.search.returns);
         let orbit = section
             .arrive(&start, &mut [])
             .map_err(OrbitError::from)
             .and_then(|first| section.periodic(&first.before, ITERATIONS));
         match orbit {
             Ok(orbit) => Ok(Ok(found(system, &orbit))),
-            Err(OrbitError::Section(SectionError::Start(error))) => Err(error.into()),
-            Err(error) => Ok(Err(error)),
+            Err(error) => begun(error).map(Err),
         }
     }
+}
+
+/// Computes the exponent of a model of any type, from the first arrival from this state on.
+pub(crate) struct Measurer<'a> {
+    pub search: &'a Search,
+    pub q: &'a [f64],
+    pub qdot: &'a [f64],
+}
+
+impl VariationalVisitor for Measurer<'_> {
+    /// The inner error explains why there is no exponent, the outer one why no run starts.
+    type Output = Result<Result<f64, OrbitError>, Refusal>;
+
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
+        let start = started(system, self.q, self.qdot)?;
+        let mut stepper = Taylor::new(self.search.tolerance);
+        let mut section = section(system, self.search, &mut stepper);
+        match section.exponent(&start, self.search.returns) {
+            Ok(exponent) => Ok(Ok(exponent)),
+            Err(error) => begun(error).map(Err),
+        }
+    }
+}
+
+/// The error, unless it is that no run starts.
+fn begun(error: OrbitError) -> Result<OrbitError, Refusal> {
+    match error {
+        OrbitError::Section(SectionError::Start(error)) => Err(error.into()),
+        error => Ok(error),
+    }
+}
+
+/// The state at these positions and velocities.
+fn started<S: Instance>(system: &S, q: &[f64], qdot: &[f64]) -> Result<S::State, Refusal> {
+    let [mut position, mut velocity] = [system.zero_vector(); 2];
+    position.as_mut_slice().copy_from_slice(q);
+    velocity.as_mut_slice().copy_from_slice(qdot);
+    let start = system.state_unchecked(0.0, &position, &velocity);
+    Ok(start.map_err(StateError::from)?)
+}
+
+/// The section of a search, with one return.
+fn section<'a, S: Instance + Scene + Variational>(
+    system: &'a S,
+    search: &Search,
+    stepper: &'a mut Taylor<S>,
+) -> Section<'a, S, Chosen<'a, S>, S::Effects> {
+    let mut effects = system.effects();
+    for &(surface, law) in &search.laws {
+        effects.set_law(surface, law);
+    }
+    effects.set_policies(search.policies);
+    Section::new(
+        system,
+        Chosen::new(stepper),
+        effects,
+        search.surface,
+        search.horizon,
+    )
 }
 
 fn found<S: Instance + Variational>(system: &S, orbit: &Orbit<S>) -> Found {

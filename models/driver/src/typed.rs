@@ -18,7 +18,7 @@ use crate::integrator::Form;
 use crate::model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
-use crate::orbit::{Finder, Found, Search};
+use crate::orbit::{Finder, Found, Measurer, Search};
 use crate::refusal::Refusal;
 use crate::run::{self, Abreast, Ending, Settings, Watch};
 
@@ -203,6 +203,13 @@ fn checked_velocity<M: Model>(
     }
 }
 
+/// The position and the velocity of a given state, after all checks.
+fn located<M: Model>(model: &M, origin: &Origin) -> Result<(M::Vector, M::Vector), StateError> {
+    let state = prepare(model, model, 0.0, origin)?;
+    let qdot = model.velocity(0.0, &state)?;
+    Ok((model.position(&state), qdot))
+}
+
 /// The state of a system in either form of a model.
 pub(crate) fn prepare<M: Model, S: System<Vector = M::Vector>>(
     model: &M,
@@ -322,6 +329,13 @@ impl<O: Owner> AnyModel for Typed<O> {
         Ok(state.as_slice().to_vec())
     }
 
+    fn point(&self, origin: &Origin) -> Result<Point, StateError> {
+        let model = self.owner.system();
+        let global = model.global();
+        let state = prepare(&model, &global, 0.0, origin)?;
+        Ok(point(&global, 0.0, &state))
+    }
+
     fn region(&self, t: f64, q: &[f64]) -> Option<f64> {
         let model = self.owner.system();
         model.view_region(t, &vector(&model.zero_vector(), q))
@@ -424,15 +438,28 @@ impl<O: Owner> Runs for Typed<O> {
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal> {
         let model = self.owner.system();
-        let state = prepare(&model, &model, 0.0, origin)?;
-        let qdot = model.velocity(0.0, &state).map_err(StateError::from)?;
-        let q = model.position(&state);
+        let (q, qdot) = located(&model, origin)?;
         let finder = Finder {
             search,
             q: q.as_slice(),
             qdot: qdot.as_slice(),
         };
         model.visit_variational(finder).transpose()
+    }
+
+    fn exponent(
+        &self,
+        origin: &Origin,
+        search: &Search,
+    ) -> Result<Option<Result<f64, OrbitError>>, Refusal> {
+        let model = self.owner.system();
+        let (q, qdot) = located(&model, origin)?;
+        let measurer = Measurer {
+            search,
+            q: q.as_slice(),
+            qdot: qdot.as_slice(),
+        };
+        model.visit_variational(measurer).transpose()
     }
 
     fn certify(

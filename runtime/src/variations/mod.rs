@@ -13,7 +13,8 @@
 //! along a run.
 //!
 //! [`Section`] is the map from one arrival at a surface to a later one (Poincare map), with its derivative.
-//! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers.
+//! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers; [`Section::exponent`] is
+//! its largest Lyapunov exponent.
 //!
 //! The result is [`Undefined`] if the flow of a system with impacts has no derivative.
 
@@ -24,6 +25,7 @@ mod eigenvalues;
 mod extrapolation;
 mod flow;
 pub(crate) mod graze;
+mod growth;
 mod held;
 mod observer;
 pub mod orbit;

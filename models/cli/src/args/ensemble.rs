@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::ValueParser;
 
-use super::{CourseArgs, RunArgs};
+use super::{CourseArgs, RowsArgs, RunArgs};
 use crate::scalar;
 
 /// The end of `ensemble --help`.
@@ -55,18 +55,9 @@ pub struct EnsembleArgs {
     /// ensemble.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
-    /// Number of threads. Default: the number that the machine runs in parallel.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Write a row for every member as soon as it is done. `-` is the standard output.
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
-    /// Write the same rows as Parquet after the last member (needs a build with the feature `parquet`).
-    #[arg(long, value_name = "FILE")]
-    pub parquet: Option<PathBuf>,
-    /// Continue interrupted files of --csv or --parquet.
-    #[arg(long)]
-    pub resume: bool,
+    /// Threads and rows.
+    #[command(flatten)]
+    pub rows: RowsArgs,
     /// Write the request, the outcomes and the density of the ensemble as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,

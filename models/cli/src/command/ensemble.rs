@@ -4,24 +4,23 @@ mod cells;
 mod document;
 mod summary;
 
-use std::path::{Path, PathBuf};
-use std::thread::available_parallelism;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use dalembert_driver::{AnyModel, Beginning, Rates, Settings};
+use dalembert_driver::{AnyModel, Settings};
 use serde_json::{Map, Value};
 
 use crate::args::EnsembleArgs;
-use crate::ensemble::Quantity;
 use crate::ensemble::density::{Checkpoint, Counts, Density, Wish, convergence};
 use crate::ensemble::members::{Members, Shard};
 use crate::ensemble::metadata::metadata;
-use crate::ensemble::{self, Columns, Plan, Rows, Shared, Summary, Tally, journal, listed, pilot};
+use crate::ensemble::output::Table;
+use crate::ensemble::{self, Columns, Plan, Shared, Summary, Tally, listed, pilot};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::sink::{Sink, is_stdout};
-use crate::state_input::{self, build_model};
+use crate::state_input::build_model;
 use crate::{Streams, plot, run_request};
 
 /// A finished ensemble, with the data that its files name.
@@ -67,17 +66,22 @@ pub fn run(
         settings: &settings,
         members: &members,
         density: None,
+        starts: &[],
     };
     let density = density(model, args, shared)?;
     shared.density = density.as_ref();
     let metadata = metadata(model, &shared, shard)?;
     let columns = Columns::of(model.description(), &members);
+    let range = shard.range(members.count());
     let plan = Plan {
         shared,
-        range: shard.range(members.count()),
-        threads: threads(args),
-        metadata: &metadata,
-        columns: &columns,
+        range: range.clone(),
+        threads: args.rows.thread_count(),
+        table: Table {
+            columns: &columns,
+            metadata: &metadata,
+            first: range.start,
+        },
     };
     // Opened before the runs, so that a path that cannot be written is reported at once.
     let cells = Sink::open_given("--cells", args.cells.as_deref())?;
@@ -89,7 +93,9 @@ pub fn run(
         tally,
         counts,
         kept,
-    } = execute(args, &plan, streams)?;
+    } = args.rows.write(&plan.table, streams.output, |rows| {
+        ensemble::execute(&plan, rows, streams.terminal)
+    })?;
     let finished = Finished {
         model,
         settings: &settings,
@@ -108,36 +114,6 @@ pub fn run(
         0 => Exit::Reached,
         _ => Exit::Other,
     })
-}
-
-/// Runs the members and writes their rows.
-fn execute(
-    args: &EnsembleArgs,
-    plan: &Plan<'_>,
-    streams: &mut Streams<'_>,
-) -> Result<Summary, CliError> {
-    let file = row_file(args);
-    let rows = match (&args.csv, &file) {
-        (Some(path), _) if is_stdout(path) => Rows::Stream(&mut *streams.output),
-        (_, Some((flag, path))) => Rows::File {
-            flag,
-            path,
-            resume: args.resume,
-        },
-        _ => Rows::Nowhere,
-    };
-    let summary = ensemble::execute(plan, rows, streams.terminal)?;
-    if let (Some(parquet), Some((flag, path))) = (&args.parquet, &file) {
-        write_parquet(parquet, path, plan)?;
-        if args.csv.is_none() {
-            journal::discard(path).map_err(|source| CliError::File {
-                flag,
-                path: path.clone(),
-                source,
-            })?;
-        }
-    }
-    Ok(summary)
 }
 
 /// Writes the files about the whole ensemble.
@@ -168,7 +144,7 @@ fn write_files(
             sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
         }
     }
-    let outputs = [&args.csv, &args.json, &args.cells];
+    let outputs = [&args.rows.csv, &args.json, &args.cells];
     if outputs.into_iter().flatten().any(|path| is_stdout(path)) {
         return Ok(());
     }
@@ -179,8 +155,8 @@ fn write_files(
 fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
     run_request::check_plot(args.plot.as_deref())?;
     let outputs = [
-        &args.csv,
-        &args.parquet,
+        &args.rows.csv,
+        &args.rows.parquet,
         &args.json,
         &args.cells,
         &args.plot,
@@ -192,25 +168,7 @@ fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
             "--csv, --parquet, --json, --cells and --plot need different files (`-` can be used once)",
         ));
     }
-    let streamed = args.csv.as_deref().is_some_and(is_stdout);
-    if args.parquet.as_deref().is_some_and(is_stdout) {
-        return Err(CliError::Usage("--parquet needs a file"));
-    }
-    if streamed && args.parquet.is_some() {
-        return Err(CliError::Usage(
-            "--csv - and --parquet: Parquet is made from the rows of a file; give a file to --csv",
-        ));
-    }
-    if args.resume && row_file(args).is_none() {
-        return Err(CliError::Usage(
-            "--resume continues the file of --csv or --parquet: give one of them",
-        ));
-    }
-    if args.parquet.is_some() && !cfg!(feature = "parquet") {
-        return Err(CliError::Usage(
-            "--parquet: this program was built without Parquet; build it with `--features parquet`",
-        ));
-    }
+    args.rows.check()?;
     let timed = args.course.impacts.is_none() || args.run.until.is_some();
     if args.density.is_some() && !timed {
         return Err(CliError::Usage(
@@ -218,19 +176,6 @@ fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
         ));
     }
     Ok(())
-}
-
-/// The file to which rows are appended: that of `--csv`, or a file next to that of `--parquet` during the run.
-fn row_file(args: &EnsembleArgs) -> Option<(&'static str, PathBuf)> {
-    match (&args.csv, &args.parquet) {
-        (Some(csv), _) => (!is_stdout(csv)).then(|| ("--csv", csv.clone())),
-        (None, Some(parquet)) => {
-            let mut name = parquet.clone().into_os_string();
-            name.push(".rows.csv");
-            Some(("--parquet", PathBuf::from(name)))
-        }
-        (None, None) => None,
-    }
 }
 
 fn members(
@@ -243,17 +188,8 @@ fn members(
         Some(path) => listed::read(path, streams.input, description)?,
         None => Members::varied(&args.vary, args.members, args.random, description)?,
     };
-    let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
-    let given = state_input::beginning(model, &args.run.state)?;
-    match given {
-        Beginning::Given {
-            rates: Rates::Momenta(_),
-            ..
-        } if members.quantities().iter().any(moved) => Err(CliError::Usage(
-            "--p gives momenta, and velocities are varied: give --qdot",
-        )),
-        _ => Ok(members),
-    }
+    members.check_start(model, &args.run.state)?;
+    Ok(members)
 }
 
 fn density(
@@ -266,29 +202,4 @@ fn density(
     };
     let wish = Wish::parse(text, model.description())?;
     pilot::density(wish, shared, [args.every, args.discard]).map(Some)
-}
-
-fn threads(args: &EnsembleArgs) -> u64 {
-    match args.threads {
-        Some(threads) => u64::from(threads),
-        None => available_parallelism().map_or(1, |threads| threads.get() as u64),
-    }
-}
-
-#[cfg(feature = "parquet")]
-fn write_parquet(path: &Path, rows: &Path, plan: &Plan<'_>) -> Result<(), CliError> {
-    let first = plan.range.start;
-    ensemble::parquet::write(path, rows, plan.columns, plan.metadata, first).map_err(|error| {
-        CliError::File {
-            flag: "--parquet",
-            path: path.to_owned(),
-            source: std::io::Error::other(error),
-        }
-    })
-}
-
-/// NOTE: [`check_flags`] has refused the flag.
-#[cfg(not(feature = "parquet"))]
-fn write_parquet(_path: &Path, _rows: &Path, _plan: &Plan<'_>) -> Result<(), CliError> {
-    Ok(())
 }

@@ -9,6 +9,7 @@ pub mod errata;
 pub mod eval;
 pub mod gallery;
 pub mod list;
+pub mod map;
 pub mod new;
 pub mod orbit;
 pub mod simulate;

@@ -3,11 +3,14 @@
 use std::ops::Range;
 
 use dalembert::describe::Description;
+use dalembert_driver::AnyModel;
 use serde_json::{Value, json};
 
 use super::fingerprint::fingerprint;
 use super::vary::{self, Asked, Draw, Quantity, Values, Varied};
+use crate::args::StateArgs;
 use crate::error::CliError;
+use crate::state_input;
 
 /// All members of the ensemble, over every shard.
 #[derive(Debug, Clone)]
@@ -81,6 +84,29 @@ impl Members {
             quantities,
             source: Source::Listed(rows),
             count,
+        }
+    }
+
+    /// Refuses velocities that are varied where momenta are given.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`], or an error of the flags of the state.
+    pub fn check_start(&self, model: &dyn AnyModel, args: &StateArgs) -> Result<(), CliError> {
+        let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
+        let has_momenta = state_input::beginning(model, args)?.has_momenta();
+        match has_momenta && self.quantities.iter().any(moved) {
+            true => Err(CliError::Usage(
+                "--p gives momenta, and velocities are varied: give --qdot",
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// The equally spaced values of each quantity, as both ends and their number; `None` for other values.
+    pub fn spaced(&self) -> Vec<Option<([f64; 2], u64)>> {
+        match &self.source {
+            Source::Product { values, .. } => values.iter().map(Values::spaced).collect(),
+            Source::Listed(_) => vec![None; self.quantities.len()],
         }
     }
 

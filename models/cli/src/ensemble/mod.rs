@@ -5,7 +5,7 @@
 //! | `vary`, `random`, `members`, `listed` | the start of each member, as a function of its index |
 //! | `runner` | runs one member and makes its row, also after a refusal or a panic |
 //! | `pool` | runs members on threads and returns the rows in order |
-//! | `row`, `journal`, `parquet` | the rows, the file they are appended to and continued from, the same as Parquet |
+//! | `row`, `output`, `journal`, `parquet` | the rows, where they go, the file they are appended to and continued from, the same as Parquet |
 //! | `tally`, `density` | sums over all members |
 //! | `metadata` | data that identify an ensemble |
 //!
@@ -18,22 +18,20 @@ pub mod journal;
 pub mod listed;
 pub mod members;
 pub mod metadata;
+pub mod output;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod pilot;
-mod pool;
+pub mod pool;
 mod random;
-mod row;
-mod runner;
+pub mod row;
+pub mod runner;
 mod tally;
-mod vary;
+pub mod vary;
 
-use std::io::Write;
 use std::ops::Range;
-use std::path::Path;
 
 use dalembert_driver::Settings;
-use serde_json::{Map, Value};
 
 pub use row::Columns;
 pub use runner::Shared;
@@ -43,7 +41,7 @@ pub use vary::Quantity;
 use crate::error::CliError;
 use crate::progress::Count;
 use density::{Counts, Density};
-use journal::Journal;
+use output::{Output, Rows, Table};
 use pool::Division;
 use row::csv_line;
 use runner::{Done, Runner};
@@ -62,27 +60,8 @@ pub struct Plan<'a> {
     pub range: Range<u64>,
     /// Number of threads.
     pub threads: u64,
-    /// Data that identify the ensemble.
-    pub metadata: &'a Map<String, Value>,
-    /// The columns of the rows.
-    pub columns: &'a Columns,
-}
-
-/// Destination of the rows.
-pub enum Rows<'a> {
-    /// Nowhere.
-    Nowhere,
-    /// To a stream.
-    Stream(&'a mut dyn Write),
-    /// To a file, named by a flag.
-    File {
-        /// The flag.
-        flag: &'static str,
-        /// The file.
-        path: &'a Path,
-        /// True to continue an existing file.
-        resume: bool,
-    },
+    /// The table of the rows.
+    pub table: Table<'a>,
 }
 
 /// Results over all members.
@@ -135,19 +114,11 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
                 members += 1;
                 progress.done(summary.tally.strayed);
             }
-            match &mut output {
-                Output::Nowhere => Ok(()),
-                Output::Stream(stream) => Ok(stream.write_all(&lines)?),
-                Output::Journal(journal) => {
-                    journal.append(&lines, members, summary.counts.as_ref())
-                }
-            }
+            output.append(&lines, members, summary.counts.as_ref())
         },
     )?;
     progress.finish();
-    if let Output::Journal(journal) = output {
-        journal.finish(range.end - range.start, summary.counts.as_ref())?;
-    }
+    output.finish(range.end - range.start, summary.counts.as_ref())?;
     Ok(summary)
 }
 
@@ -158,50 +129,20 @@ fn block(density: Option<&Density>) -> u64 {
     })
 }
 
-/// Open destination of the rows.
-enum Output<'a> {
-    Nowhere,
-    Stream(&'a mut dyn Write),
-    Journal(Journal),
-}
-
 /// Opens the destination of the rows, and takes over the rows of an earlier run.
 fn begin<'a>(plan: &Plan<'_>, rows: Rows<'a>) -> Result<(Summary, Output<'a>), CliError> {
-    let Plan {
-        shared,
-        range,
-        metadata,
-        columns,
-        ..
-    } = plan;
+    let shared = &plan.shared;
     let nothing = || Summary {
-        tally: Tally::new(columns),
+        tally: Tally::new(plan.table.columns),
         counts: shared.density.map(Counts::new),
         kept: 0,
     };
     let mut summary = nothing();
-    let output = match rows {
-        Rows::Nowhere => Output::Nowhere,
-        Rows::Stream(stream) => {
-            stream.write_all(&columns.header())?;
-            Output::Stream(stream)
-        }
-        Rows::File { flag, path, resume } => {
-            let mut journal = Journal::open(flag, path)?;
-            if resume {
-                let Summary { tally, counts, .. } = &mut summary;
-                let mut see =
-                    |row: &_| tally.add(row, |outcome| is_reached(outcome, shared.settings));
-                let begun = (range.start, counts.as_mut());
-                if let Some(kept) = journal.resume(columns, metadata, begun, &mut see)? {
-                    summary.kept = kept;
-                    return Ok((summary, Output::Journal(journal)));
-                }
-                summary = nothing();
-            }
-            journal.begin(columns, metadata)?;
-            Output::Journal(journal)
-        }
-    };
-    Ok((summary, output))
+    let Summary { tally, counts, .. } = &mut summary;
+    let mut see = |row: &_| tally.add(row, |outcome| is_reached(outcome, shared.settings));
+    let (output, kept) = Output::begin(rows, &plan.table, counts.as_mut(), &mut see)?;
+    match kept {
+        0 => Ok((nothing(), output)),
+        kept => Ok((Summary { kept, ..summary }, output)),
+    }
 }

@@ -80,6 +80,11 @@ impl Columns {
         Self { columns }
     }
 
+    /// Columns of these names and types.
+    pub fn new(columns: Vec<(String, Kind)>) -> Self {
+        Self { columns }
+    }
+
     /// Unnamed columns of these types, for tests.
     #[cfg(test)]
     pub fn unnamed(kinds: &[Kind]) -> Self {

@@ -8,8 +8,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use dalembert::Outcome;
 use dalembert::describe::Description;
 use dalembert_driver::{
-    AnyModel, Contact, Ending, Impact, Integrator, Origin, Piece, Point, Refusal, Settings,
-    Together, Watch,
+    AnyModel, Component, Contact, Ending, Impact, Integrator, Origin, Piece, Point, Refusal,
+    Settings, Together, Watch,
 };
 
 use super::density::{Density, Sampler, Visits};
@@ -24,10 +24,10 @@ use crate::record::Tally;
 use crate::state_input::{self, build_model};
 
 /// The outcome of a member whose start the system refuses.
-const REFUSED: &str = "refused";
+pub const REFUSED: &str = "refused";
 
 /// The outcome of a member whose run panicked.
-const PANICKED: &str = "panicked";
+pub const PANICKED: &str = "panicked";
 
 /// Data common to the runs of all members.
 #[derive(Clone, Copy)]
@@ -37,6 +37,9 @@ pub struct Shared<'a> {
     pub settings: &'a Settings,
     pub members: &'a Members,
     pub density: Option<&'a Density>,
+    /// Components of the start that are outputs of the model, by their index, where the other components are as they
+    /// were given.
+    pub starts: &'a [(Component, usize)],
 }
 
 /// A finished member.
@@ -60,6 +63,11 @@ impl<'a> Runner<'a> {
     pub fn new(shared: Shared<'a>) -> Result<Self, CliError> {
         let model = build_model(shared.models, &shared.run.model)?;
         Ok(Self { shared, model })
+    }
+
+    /// The model, with the parameters of the member run last.
+    pub fn model(&self) -> &dyn AnyModel {
+        self.model.as_ref()
     }
 
     /// Runs members, in SIMD lanes if the integrator supports it; every row is the same as from a run alone. If a run
@@ -207,8 +215,20 @@ impl<'a> Runner<'a> {
                 Quantity::Parameter(_) => {}
             }
         }
+        let told = |error| state_text(model.description(), &error);
         let settled = beginning.settle(model, run.state.off_constraint);
-        settled.map_err(|error| state_text(model.description(), &error))
+        if self.shared.starts.is_empty() {
+            return settled.map_err(told);
+        }
+        let point = settled
+            .and_then(|origin| model.point(&origin))
+            .map_err(told)?;
+        for &(component, output) in self.shared.starts {
+            beginning.set(component, point.outputs[output]);
+        }
+        beginning
+            .settle(model, run.state.off_constraint)
+            .map_err(told)
     }
 
     fn row(
@@ -249,7 +269,7 @@ impl<'a> Runner<'a> {
 }
 
 /// The details of an outcome, as text.
-fn details(description: &Description, outcome: &Outcome) -> String {
+pub fn details(description: &Description, outcome: &Outcome) -> String {
     let details = outcome::details(description, outcome);
     let details: Vec<String> = details
         .iter()

@@ -76,6 +76,14 @@ impl Values {
         }
     }
 
+    /// Both ends and the number of equally spaced values.
+    pub fn spaced(&self) -> Option<([f64; 2], u64)> {
+        match *self {
+            Self::Spaced { ends, count } => Some((ends, count)),
+            _ => None,
+        }
+    }
+
     /// The value of this index, below [`count`](Self::count); for drawn values, the value of the member.
     pub fn value(&self, index: u64, draw: Draw) -> f64 {
         let Draw {

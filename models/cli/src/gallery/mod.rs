@@ -2,7 +2,7 @@
 //!
 //! Every model has figures of its motion. A [`Catalogue`](crate::Catalogue) may add others, such as those of the papers
 //! its models come from: [`Catalogue::with_figures`](crate::Catalogue::with_figures). A picture is specified by flags
-//! of `simulate` or `accuracy`, so that its caption can give the command that draws it.
+//! of `simulate`, `map` or `accuracy`, so that its caption can give the command that draws it.
 
 mod density;
 mod manifest;
@@ -44,11 +44,13 @@ pub struct Panel {
     pub picture: Picture,
 }
 
-/// Content of a picture. Flags follow the model's name, without `--plot`.
+/// Content of a picture. Flags follow the model's name, without `--plot`; single quotes hold a flag with spaces together.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Picture {
     /// The picture that `simulate` draws with these flags.
     Simulate(String),
+    /// The picture that `map` draws with these flags; a quick gallery takes an eighth of the values along each axis.
+    Map(String),
     /// The picture that `accuracy` draws with these flags; it contains measured times.
     Accuracy(String),
     /// Positions of many runs at one time.

@@ -6,7 +6,7 @@ use clap::Parser;
 
 use super::{Figure, Panel, Picture, density, starts};
 use crate::args::{Command, CommandLine, SimulateArgs};
-use crate::command::{accuracy, simulate};
+use crate::command::{accuracy, map, simulate};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::Drawn;
@@ -16,7 +16,7 @@ use crate::plot::Drawn;
 pub enum Effort {
     /// The effort that the captions state.
     Full,
-    /// A fiftieth of the positions of densities, and no timed pictures.
+    /// A fiftieth of the positions of densities, an eighth of the values along each axis of maps, and no timed pictures.
     Quick,
 }
 
@@ -80,7 +80,8 @@ impl<'a> Plate<'a> {
         match &self.panel.picture {
             Picture::Simulate(flags) => self.drawing("simulate", flags),
             Picture::Accuracy(flags) => self.drawing("accuracy", flags),
-            Picture::Starts(_) | Picture::Density(_) => {
+            Picture::Map(flags) if self.effort == Effort::Full => self.drawing("map", flags),
+            Picture::Starts(_) | Picture::Density(_) | Picture::Map(_) => {
                 let quick = match self.effort {
                     Effort::Quick => " --quick",
                     Effort::Full => "",
@@ -120,6 +121,15 @@ impl<'a> Plate<'a> {
                 Command::Accuracy(args) => accuracy::draw(models, &args),
                 _ => Err(self.refusal("no `accuracy`")),
             },
+            Picture::Map(flags) => match self.parse(&self.drawing("map", flags))? {
+                Command::Map(mut args) => {
+                    if self.effort == Effort::Quick {
+                        args.vary.iter_mut().for_each(|axis| *axis = coarser(axis));
+                    }
+                    map::draw(models, &args)
+                }
+                _ => Err(self.refusal("no `map`")),
+            },
             Picture::Starts(it) => {
                 let args = self.simulate(&self.drawing("simulate", &it.flags))?;
                 starts::draw(models, &args, it, &self.panel.title)
@@ -144,7 +154,7 @@ impl<'a> Plate<'a> {
     }
 
     fn parse(&self, line: &str) -> Result<Command, CliError> {
-        let parsed = CommandLine::try_parse_from(line.split_whitespace());
+        let parsed = CommandLine::try_parse_from(words(line));
         match parsed {
             Ok(line) => Ok(line.command),
             Err(error) => Err(self.refusal(&error.to_string())),
@@ -156,5 +166,48 @@ impl<'a> Plate<'a> {
             place: format!("picture `{}`", self.name()),
             reason: reason.to_owned(),
         }
+    }
+}
+
+/// An axis `NAME=A..B:COUNT` with an eighth of its values.
+fn coarser(axis: &str) -> String {
+    let parts = axis.rsplit_once(':');
+    let counted = parts.and_then(|(range, count)| Some((range, count.parse::<u64>().ok()?)));
+    match counted {
+        Some((range, count)) => format!("{range}:{}", (count / 8).max(2)),
+        None => axis.to_owned(),
+    }
+}
+
+/// The words of a command line; quotes hold a word with spaces together.
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    for (index, part) in line.split('\'').enumerate() {
+        match index % 2 {
+            0 => words.extend(part.split_whitespace().map(str::to_owned)),
+            _ => words.push(part.to_owned()),
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quoted_words_stay_together() {
+        assert_eq!(
+            words("map a --fail 'x > 1' --plot b"),
+            ["map", "a", "--fail", "x > 1", "--plot", "b"]
+        );
+        assert_eq!(words("  simulate  a "), ["simulate", "a"]);
+    }
+
+    #[test]
+    fn quick_axes_have_an_eighth_of_the_values() {
+        assert_eq!(coarser("xi=-3..1:400"), "xi=-3..1:50");
+        assert_eq!(coarser("xi=-3..1:4"), "xi=-3..1:2");
+        assert_eq!(coarser("xi=1,2"), "xi=1,2");
     }
 }

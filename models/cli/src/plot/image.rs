@@ -1,9 +1,49 @@
-//! Small images with indexed colours, as data addresses.
+//! Small images with indexed colours, in the place of a rectangle of a picture.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use plotters::style::RGBColor;
+use plotters::element::Rectangle;
+use plotters::style::{Color, RGBColor};
 use png::{BitDepth, ColorType, Encoder};
+
+use super::canvas::message;
+use super::contour::Window;
+use super::plane::Chart;
+use super::style;
+
+/// Colour of the placeholder of an image; no picture has this colour.
+const PLACE: RGBColor = RGBColor(1, 2, 3);
+
+/// Draws the placeholder of an image over a rectangle.
+///
+/// # Errors
+/// An error of the drawing library.
+pub fn draw_place(chart: &mut Chart<'_, '_>, window: Window) -> Result<(), String> {
+    let Window { x, y } = window;
+    let place = Rectangle::new([(x[0], y[0]), (x[1], y[1])], PLACE.filled());
+    chart.draw_series([place]).map_err(message).map(drop)
+}
+
+/// Replaces the placeholder rectangle by the image, since the drawing library can only draw boxes one by one.
+///
+/// # Errors
+/// A picture without the placeholder.
+pub fn put(svg: &str, address: &str) -> Result<String, String> {
+    let placed = put_image(svg, address);
+    placed.ok_or_else(|| "the image found no place".to_owned())
+}
+
+fn put_image(svg: &str, address: &str) -> Option<String> {
+    let mark = format!("fill=\"{}\"", style::hex(PLACE));
+    let middle = svg.find(&mark)?;
+    let start = svg[..middle].rfind('<')?;
+    let end = middle + svg[middle..].find("/>")? + 2;
+    let attributes = svg[start..middle].strip_prefix("<rect")?;
+    let image = format!(
+        "<image{attributes}preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{address}\"/>"
+    );
+    Some([&svg[..start], &image, &svg[end..]].concat())
+}
 
 /// The image as `data:image/png;base64,..`, from a palette index for each pixel, row by row from the top. The first
 /// colour of the palette is transparent.
@@ -51,5 +91,14 @@ mod tests {
     #[test]
     fn a_picture_without_pixels_is_refused() {
         assert!(data_address(0, &[], &[]).is_err());
+    }
+
+    #[test]
+    fn an_image_takes_the_place_of_its_rectangle() {
+        let svg = "<svg><rect x=\"1\" width=\"2\" opacity=\"1\" fill=\"#010203\" stroke=\"none\"/><g/></svg>";
+        let image = put_image(svg, "data:").unwrap();
+        assert!(image.starts_with("<svg><image x=\"1\" width=\"2\" opacity=\"1\" preserve"));
+        assert!(image.ends_with("href=\"data:\"/><g/></svg>"));
+        assert_eq!(put_image("<svg/>", "data:"), None);
     }
 }

@@ -1,6 +1,7 @@
 //! Pictures of runs as SVG: the declared view as a path in its plane, all coordinates against time, or chosen quantities
 //! against time or each other.
 
+mod bar;
 mod canvas;
 pub mod cloud;
 mod colours;
@@ -11,6 +12,7 @@ mod history;
 mod image;
 mod legend;
 pub mod logarithmic;
+pub mod map;
 mod phase;
 mod plane;
 mod portrait;

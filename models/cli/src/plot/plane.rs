@@ -16,6 +16,9 @@ const HEIGHT: [f64; 2] = [0.29, 0.87];
 /// Height of a plot whose axes have different units, as a fraction of the picture's width.
 const FREE_HEIGHT: f64 = 0.6;
 
+/// Height of a strip, in pixels.
+const STRIP_HEIGHT: f64 = 60.0;
+
 /// Room for axis labels, left and below, and the margins around, in pixels.
 const LEFT: f64 = 62.0;
 const BELOW: f64 = 40.0;
@@ -105,6 +108,15 @@ impl Plane {
         }
     }
 
+    /// The window as a strip, whose ordinate means nothing.
+    pub fn strip(window: Window, width: f64) -> Self {
+        Self {
+            window,
+            width,
+            plot: (width - EDGE - LEFT - RIGHT, STRIP_HEIGHT),
+        }
+    }
+
     /// Draws a sheet: title, element above the plot, objects behind the grid, grid and axes, objects in front.
     ///
     /// # Errors
@@ -168,14 +180,16 @@ impl Plane {
     }
 }
 
-/// Draws grid, axes and labels.
+/// Draws grid, axes and labels; no ordinate if it has no name.
 ///
 /// # Errors
 /// An error of the drawing library.
 pub fn draw_axes(chart: &mut Chart<'_, '_>, names: [&str; 2]) -> Result<(), String> {
-    chart
-        .configure_mesh()
-        .x_desc(names[0])
+    let mut mesh = chart.configure_mesh();
+    if names[1].is_empty() {
+        mesh.disable_y_mesh().disable_y_axis();
+    }
+    mesh.x_desc(names[0])
         .y_desc(names[1])
         .max_light_lines(0)
         .bold_line_style(style::GRID.stroke_width(stroke(0.8)))

@@ -3,7 +3,7 @@
 use dalembert::describe::ViewInfo;
 use plotters::element::{PathElement, Polygon};
 use plotters::prelude::WHITE;
-use plotters::style::Color;
+use plotters::style::{Color, RGBColor};
 
 use super::Picture;
 use super::canvas::{message, stroke};
@@ -102,7 +102,19 @@ pub fn fill_region(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<()
 /// # Errors
 /// An error of the drawing library.
 pub fn draw_boundary(chart: &mut Chart<'_, '_>, boundary: &[Contour]) -> Result<(), String> {
-    let style = style::BOUNDARY.stroke_width(stroke(1.6));
+    draw_contours(chart, boundary, style::BOUNDARY)
+}
+
+/// Strokes the parts of contours inside the window in a colour.
+///
+/// # Errors
+/// An error of the drawing library.
+pub fn draw_contours(
+    chart: &mut Chart<'_, '_>,
+    boundary: &[Contour],
+    colour: RGBColor,
+) -> Result<(), String> {
+    let style = colour.stroke_width(stroke(1.6));
     let elements = boundary
         .iter()
         .flat_map(strokes)

@@ -13,6 +13,7 @@ mod files;
 mod gallery;
 mod hostile;
 mod list;
+mod map;
 mod pictures;
 mod simulate;
 mod stability;

@@ -5,6 +5,7 @@
 
 mod density;
 mod rolling_disk;
+mod walker;
 mod work;
 mod zeno;
 
@@ -16,7 +17,8 @@ const QUARTER: &str = "--plot-width 400";
 
 /// All figures, in the order of the models.
 pub fn all() -> Vec<Figure> {
-    let mut figures = rolling_disk::figures();
+    let mut figures = walker::figures();
+    figures.extend(rolling_disk::figures());
     figures.extend([
         density::of_the_sleigh(),
         density::of_the_disk(),

@@ -1,0 +1,33 @@
+//! The flags of commands that write a row for each of many runs.
+
+use std::path::PathBuf;
+use std::thread::available_parallelism;
+
+use clap::Args;
+
+/// Threads, and the files of the rows.
+#[derive(Debug, Args)]
+pub struct RowsArgs {
+    /// Number of threads. Default: the number that the machine runs in parallel.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Write a row for every run as soon as it is done. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write the same rows as Parquet after the last run (needs a build with the feature `parquet`).
+    #[arg(long, value_name = "FILE")]
+    pub parquet: Option<PathBuf>,
+    /// Continue interrupted files of --csv or --parquet.
+    #[arg(long)]
+    pub resume: bool,
+}
+
+impl RowsArgs {
+    /// Number of threads.
+    pub fn thread_count(&self) -> u64 {
+        match self.threads {
+            Some(threads) => u64::from(threads),
+            None => available_parallelism().map_or(1, |threads| threads.get() as u64),
+        }
+    }
+}

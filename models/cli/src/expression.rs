@@ -1,0 +1,296 @@
+//! Expressions of flags in the language of models. They become outputs of the model, so that its own parser and its own
+//! compiler read them.
+
+use std::fmt::Write as _;
+
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::names;
+
+/// Signs between the sides of an expression; longer ones first.
+const SIGNS: [(&str, Sign); 5] = [
+    (">=", Sign::AtLeast),
+    ("<=", Sign::AtMost),
+    (">", Sign::Above),
+    ("<", Sign::Below),
+    ("=", Sign::Equal),
+];
+
+/// Relation between the sides of an expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    /// `=`
+    Equal,
+    /// `>`
+    Above,
+    /// `>=`
+    AtLeast,
+    /// `<`
+    Below,
+    /// `<=`
+    AtMost,
+}
+
+/// An expression of a flag: a number, or a comparison of two.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    flag: &'static str,
+    text: String,
+    /// The first column of each side, from 0 on, and the side.
+    sides: Vec<(usize, String)>,
+    sign: Option<Sign>,
+}
+
+impl Expression {
+    /// The sides of an expression.
+    ///
+    /// # Errors
+    /// An empty side, several comparisons, brackets that do not match, a character that cannot be in an expression.
+    pub fn parse(flag: &'static str, text: &str) -> Result<Self, CliError> {
+        let text = text.replace(['\n', '\r', '\t'], " ");
+        let mut found = Self {
+            flag,
+            sides: Vec::new(),
+            sign: None,
+            text,
+        };
+        found.check_brackets()?;
+        let Some((sign, at, length)) = found.find_sign(0) else {
+            found.sides = vec![found.side(0, found.text.len())?];
+            return Ok(found);
+        };
+        if let Some((_, second, _)) = found.find_sign(at + length) {
+            return Err(found.refuse(second, 1, "one comparison at most is expected"));
+        }
+        found.sides = vec![
+            found.side(0, at)?,
+            found.side(at + length, found.text.len())?,
+        ];
+        found.sign = Some(sign);
+        Ok(found)
+    }
+
+    /// The right side of an equation whose left side is one name, with this name.
+    ///
+    /// # Errors
+    /// Another text.
+    pub fn assigned(mut self) -> Result<(String, Self), CliError> {
+        let is_name = |side: &str| !side.contains(['(', '+', '-', '*', '/', '^', ' ']);
+        match self.sides.first() {
+            Some((_, name)) if self.is_equation() && is_name(name) => {
+                let name = name.clone();
+                self.sides.remove(0);
+                Ok((name, self))
+            }
+            _ => Err(CliError::value(
+                self.flag,
+                self.text(),
+                "NAME = EXPR, such as y = 2*x",
+            )),
+        }
+    }
+
+    /// The text of the flag.
+    pub fn text(&self) -> &str {
+        self.text.trim()
+    }
+
+    /// True for two sides with a sign of order between them.
+    pub fn is_inequality(&self) -> bool {
+        self.sign.is_some_and(|sign| sign != Sign::Equal)
+    }
+
+    /// True for two sides with an equals sign between them.
+    pub fn is_equation(&self) -> bool {
+        self.sign == Some(Sign::Equal)
+    }
+
+    /// True if an inequality holds where its left side exceeds its right side by `difference`.
+    pub fn holds(&self, difference: f64) -> bool {
+        match self.sign {
+            Some(Sign::Above) => difference > 0.0,
+            Some(Sign::AtLeast) => difference >= 0.0,
+            Some(Sign::Below) => difference < 0.0,
+            Some(Sign::AtMost) => difference <= 0.0,
+            Some(Sign::Equal) | None => difference == 0.0,
+        }
+    }
+
+    /// The first sign from this byte on: its position and its length.
+    fn find_sign(&self, from: usize) -> Option<(Sign, usize, usize)> {
+        let places = SIGNS.iter().filter_map(|(text, sign)| {
+            let at = from + self.text[from..].find(text)?;
+            Some((*sign, at, text.len()))
+        });
+        places.min_by_key(|&(_, at, length)| (at, usize::MAX - length))
+    }
+
+    fn side(&self, from: usize, to: usize) -> Result<(usize, String), CliError> {
+        let side = &self.text[from..to];
+        let trimmed = side.trim_start();
+        let start = from + side.len() - trimmed.len();
+        match trimmed.trim_end() {
+            "" => Err(self.refuse(from, 1, "an expression is missing here")),
+            trimmed => Ok((self.column(start), trimmed.to_owned())),
+        }
+    }
+
+    /// The column of a byte, from 0 on.
+    fn column(&self, byte: usize) -> usize {
+        self.text[..byte].chars().count()
+    }
+
+    /// Refuses what would end the expression, or go on behind it.
+    fn check_brackets(&self) -> Result<(), CliError> {
+        let mut open = Vec::new();
+        for (at, letter) in self.text.char_indices() {
+            match letter {
+                '(' | '[' => open.push((at, letter)),
+                ')' | ']' => {
+                    let first = if letter == ')' { '(' } else { '[' };
+                    match open.pop() {
+                        Some((_, opened)) if opened == first => {}
+                        _ => return Err(self.refuse(at, 1, "this bracket closes none")),
+                    }
+                }
+                ';' | '{' | '}' | '"' | '\'' | '/' if self.is_wrong(at) => {
+                    let reason = format!("`{letter}` cannot be in an expression here");
+                    return Err(self.refuse(at, 1, &reason));
+                }
+                _ => {}
+            }
+        }
+        match open.first() {
+            Some(&(at, _)) => Err(self.refuse(at, 1, "this bracket is not closed")),
+            None => Ok(()),
+        }
+    }
+
+    /// True unless the character is a lone slash, the sign of division: two begin a comment.
+    fn is_wrong(&self, at: usize) -> bool {
+        let rest = &self.text[at..];
+        !rest.starts_with('/') || rest.starts_with("//") || rest.starts_with("/*")
+    }
+
+    /// Refuses a part of the expression, from a byte on.
+    fn refuse(&self, byte: usize, width: usize, reason: &str) -> CliError {
+        self.refuse_at(self.column(byte), width, reason)
+    }
+
+    fn refuse_at(&self, column: usize, width: usize, reason: &str) -> CliError {
+        let marks = "^".repeat(width.max(1));
+        CliError::Input {
+            place: self.flag.to_owned(),
+            reason: format!(
+                "{reason}\n  | {}\n  | {}{marks}",
+                self.text,
+                " ".repeat(column)
+            ),
+        }
+    }
+
+    /// The line that declares the expression as an output of this name: the difference of its sides.
+    fn line(&self, name: &str) -> Line {
+        let (mut text, mut places) = (format!("{name}: "), Vec::new());
+        for (index, (column, side)) in self.sides.iter().enumerate() {
+            text += if index > 0 { " - (" } else { "(" };
+            places.push((text.chars().count(), *column));
+            text += side;
+            text.push(')');
+        }
+        text.push(';');
+        Line { text, places }
+    }
+}
+
+/// A line that declares an output.
+struct Line {
+    text: String,
+    /// For each side, its first column in the line and in the flag.
+    places: Vec<(usize, usize)>,
+}
+
+impl Line {
+    /// The column of the flag for a column of the line.
+    fn column(&self, column: usize) -> usize {
+        let before = self.places.iter().rev().find(|(from, _)| *from <= column);
+        before.map_or(0, |(from, first)| first + column - from)
+    }
+}
+
+/// The model with expressions as its last outputs, in their order.
+///
+/// # Errors
+/// An expression that is not one of the model, at the place where it is wrong; a model without a text.
+pub fn add_to(entry: &Entry, expressions: &[&Expression]) -> Result<Entry, CliError> {
+    let source = &entry.description().source;
+    let Some((body, _)) = source.rsplit_once('}') else {
+        return Err(CliError::Usage(
+            "expressions need the text of the model, and this one has none; declare an output, or a surface",
+        ));
+    };
+    let named = expressions.iter().enumerate();
+    let lines: Vec<Line> = named
+        .map(|(index, expression)| expression.line(&format!("flag_{index}")))
+        .collect();
+    let mut text = body.trim_end().to_owned();
+    text += "\noutputs {\n";
+    let first = text.lines().count() + 1;
+    for line in &lines {
+        let _ = writeln!(text, "{}", line.text);
+    }
+    text += "}\n}\n";
+    let loaded = dalembert_jit::load_without_claims(entry.name(), &text).map_err(|refused| {
+        let mistake = refused.mistakes().first().cloned();
+        let found = mistake.and_then(|mistake| {
+            let index = mistake.line.checked_sub(first)?;
+            let (line, expression) = (lines.get(index)?, expressions.get(index)?);
+            let column = line.column(mistake.column - 1);
+            Some(expression.refuse_at(column, mistake.width, &mistake.message))
+        });
+        found.unwrap_or(CliError::Declaration(refused))
+    })?;
+    let entries: Vec<Entry> = loaded.iter().map(Entry::loaded).collect();
+    let all = entries.iter().map(Entry::name);
+    let index = names::find("MODEL", "model", entry.name(), all)?;
+    entries[index].check_size()?;
+    Ok(entries[index].clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        let error = Expression::parse("--fail", text).expect_err("no expression");
+        error.to_string()
+    }
+
+    #[test]
+    fn sides_keep_their_columns() {
+        let found = Expression::parse("--fail", " theta >=  pi/2 ").unwrap();
+        assert!(found.is_inequality() && !found.is_equation());
+        let line = found.line("o");
+        assert_eq!(line.text, "o: (theta) - (pi/2);");
+        // The columns of `theta` and of `2`.
+        assert_eq!([line.column(4), line.column(17)], [1, 14]);
+        assert!(found.holds(0.0) && !found.holds(-0.1) && !found.holds(f64::NAN));
+        let number = Expression::parse("--class", "x + 1").unwrap();
+        assert_eq!(number.line("o").text, "o: (x + 1);");
+        assert!(!number.is_inequality() && !number.is_equation());
+    }
+
+    #[test]
+    fn mistakes_are_shown_at_their_place() {
+        assert_eq!(
+            refused("x > 1 > y"),
+            "--fail: one comparison at most is expected\n  | x > 1 > y\n  |       ^"
+        );
+        assert!(refused("x >").contains("missing"));
+        assert!(refused("").contains("missing"));
+        assert!(refused("(x").ends_with("  | (x\n  | ^"));
+        assert!(refused("x) ; y: (z").contains("closes none"));
+        assert!(refused("x; y").contains("`;` cannot"));
+        assert!(refused("x // y").contains("`/` cannot"));
+    }
+}

@@ -1,0 +1,188 @@
+//! One cell: its run, watched at its returns, and its result.
+
+use std::collections::VecDeque;
+
+use dalembert_driver::{
+    Contact, Ending, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,
+};
+
+use super::orbits;
+use super::request::{Request, Returns};
+use crate::ensemble::runner::{Runner, details};
+
+/// The outcome of a run that made all returns.
+pub const RETURNED: &str = "returned";
+
+/// The outcome of a run that an expression ended.
+pub const FAILED: &str = "failed";
+
+/// Result of the run of a cell.
+pub struct Cell {
+    /// The outcome.
+    pub outcome: &'static str,
+    /// Number of returns.
+    pub returns: u64,
+    /// The time at the end; NaN if there was no run.
+    pub t: f64,
+    /// The state after the last return if all were made, else at the end.
+    pub end: Vec<f64>,
+    /// The points of the orbit that its returns repeat, the last return first; empty if they do not.
+    pub cycle: Vec<Vec<f64>>,
+    /// The Lyapunov exponent; NaN if there is none.
+    pub exponent: f64,
+    /// The expression of the colours at the end; NaN if there is none.
+    pub value: f64,
+    /// The expressions of the lines at the start.
+    pub contours: Vec<f64>,
+    /// Details of the outcome.
+    pub reason: String,
+}
+
+/// Runs a cell.
+pub fn run(runner: &mut Runner<'_>, request: &Request, member: u64) -> Cell {
+    let mut seen = Seen::new(request);
+    match runner.watched(member, &mut seen) {
+        Ok(ending) => finished(runner, request, seen, &ending),
+        Err((outcome, reason)) => Cell {
+            outcome,
+            returns: seen.returns,
+            t: f64::NAN,
+            end: vec![f64::NAN; request.components.names.len()],
+            cycle: Vec::new(),
+            exponent: f64::NAN,
+            value: f64::NAN,
+            contours: vec![f64::NAN; request.contours.len()],
+            reason: reason.replace(['\n', '\r'], " "),
+        },
+    }
+}
+
+fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &Ending) -> Cell {
+    let components = &request.components;
+    let (outcome, end) = match (&seen.last, seen.has_failed) {
+        (_, true) => (FAILED, &ending.last),
+        (Some(last), false) if seen.has_returned() => (RETURNED, last),
+        _ => (ending.outcome.kind(), &ending.last),
+    };
+    let returned = request.returns.as_ref();
+    let returned = returned.filter(|_| outcome == RETURNED);
+    let (mut cycle, mut exponent, mut reason) = (Vec::new(), f64::NAN, String::new());
+    if let Some(returns) = returned {
+        let recent: Vec<Vec<f64>> = seen.recent.iter().cloned().collect();
+        cycle = orbits::cycle(&recent, returns.period, components);
+        match grown(runner, returns, end) {
+            Some(Ok(grown)) => exponent = grown,
+            Some(Err(missed)) => reason = missed.replace(['\n', '\r'], " "),
+            None => {}
+        }
+    } else if outcome != FAILED {
+        reason = details(&runner.model().description(), &ending.outcome);
+    }
+    Cell {
+        outcome,
+        returns: seen.returns,
+        t: ending.t,
+        end: components.values(end),
+        cycle,
+        exponent,
+        value: request.colours.value(end),
+        contours: request
+            .contours
+            .iter()
+            .map(|line| line.value(&ending.first))
+            .collect(),
+        reason,
+    }
+}
+
+/// The Lyapunov exponent from the last return on, if it is asked for; the error explains why there is none.
+fn grown(runner: &Runner<'_>, returns: &Returns, last: &Point) -> Option<Result<f64, String>> {
+    let search = returns.exponent.as_ref()?;
+    let origin = Origin {
+        q: last.q.clone(),
+        rates: Rates::Velocities(last.qdot.clone()),
+        policy: OffConstraint::Keep,
+    };
+    Some(match runner.model().exponent(&origin, search) {
+        Ok(Some(Ok(exponent))) => Ok(exponent),
+        Ok(Some(Err(error))) => Err(error.to_string()),
+        Ok(None) => Err("the scene has no variations".to_owned()),
+        Err(refusal) => Err(refusal.to_string()),
+    })
+}
+
+/// Watches a run.
+struct Seen<'a> {
+    request: &'a Request,
+    has_begun: bool,
+    has_failed: bool,
+    returns: u64,
+    /// The last returns, as many as two of the longest periods have.
+    recent: VecDeque<Vec<f64>>,
+    /// The last return.
+    last: Option<Point>,
+}
+
+impl<'a> Seen<'a> {
+    fn new(request: &'a Request) -> Self {
+        Self {
+            request,
+            has_begun: false,
+            has_failed: false,
+            returns: 0,
+            recent: VecDeque::new(),
+            last: None,
+        }
+    }
+
+    fn has_returned(&self) -> bool {
+        let returns = self.request.returns.as_ref();
+        returns.is_some_and(|wanted| self.returns >= wanted.count)
+    }
+
+    fn look(&mut self, point: &Point) {
+        if let Some(fail) = &self.request.fail {
+            self.has_failed |= fail.holds(point);
+        }
+    }
+}
+
+impl Watch for Seen<'_> {
+    fn step(&mut self, piece: &dyn Piece) {
+        if self.request.fail.is_none() {
+            return;
+        }
+        let (start, end) = piece.span();
+        if !self.has_begun {
+            self.has_begun = true;
+            self.look(&piece.at(start));
+        }
+        self.look(&piece.at(end));
+    }
+
+    fn impact(&mut self, impact: Impact) {
+        self.look(&impact.after);
+        let Some(returns) = &self.request.returns else {
+            return;
+        };
+        if impact.surface != returns.surface || self.has_failed {
+            return;
+        }
+        self.returns += 1;
+        // Only the last returns are compared.
+        let left = returns.count.saturating_sub(self.returns);
+        if left < 2 * returns.period as u64 {
+            self.recent
+                .push_back(self.request.components.values(&impact.after));
+        }
+        if left == 0 {
+            self.last = Some(impact.after);
+        }
+    }
+
+    fn contact(&mut self, _contact: Contact) {}
+
+    fn is_over(&self) -> bool {
+        self.has_failed || self.has_returned()
+    }
+}

@@ -1,0 +1,95 @@
+//! Maps: a grid of runs, each with the class of its end.
+//!
+//! | file | |
+//! |---|---|
+//! | `request` | the request for every run |
+//! | `cell` | one run, watched at its returns, and its result |
+//! | `orbits` | returns that repeat, and orbits numbered as cells meet them |
+//! | `table` | the columns, and the row of a cell |
+//! | `sums` | classes, orbits and pictures from the rows |
+//!
+//! Members, threads and files are those of [`ensemble`](crate::ensemble). Orbits are numbered in the order of the
+//! cells, so that nothing depends on threads, and an interrupted map numbers them from its rows.
+
+mod cell;
+mod orbits;
+pub mod request;
+mod sums;
+mod table;
+
+use crate::ensemble::Shared;
+use crate::ensemble::output::{Output, Rows, Table};
+use crate::ensemble::pool::{self, Division};
+use crate::ensemble::row::csv_line;
+use crate::ensemble::runner::Runner;
+use crate::error::CliError;
+use crate::progress::Count;
+pub use orbits::Orbit;
+use request::Request;
+pub use sums::{Cells, Sums};
+pub use table::columns;
+
+/// Largest number of cells in a block of a thread.
+const BLOCK: u64 = 64;
+
+/// Plan of a map.
+pub struct Plan<'a> {
+    /// Data common to all cells.
+    pub shared: Shared<'a>,
+    /// The request for every run.
+    pub request: &'a Request,
+    /// Number of threads.
+    pub threads: u64,
+    /// The table of the rows.
+    pub table: Table<'a>,
+    /// True to keep the content of a picture.
+    pub is_drawn: bool,
+}
+
+/// Runs the cells; returns their sums, and the number of cells taken over from an earlier run.
+///
+/// # Errors
+/// A file that cannot be written, that another run is writing, or that belongs to another map. Failures of a cell are
+/// in its row, not errors.
+pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<(Sums, u64), CliError> {
+    let Plan {
+        shared, request, ..
+    } = plan;
+    let nothing = || Sums::new(plan.table.columns, request, plan.is_drawn);
+    let mut sums = nothing();
+    let begun = Output::begin(rows, &plan.table, None, &mut |row| sums.add(row));
+    let (mut output, kept) = begun?;
+    if kept == 0 {
+        sums = nothing();
+    }
+    let count = shared.members.count();
+    let mut progress = Count::new(count - kept, terminal);
+    pool::in_order(
+        kept..count,
+        Division::new(count - kept, plan.threads, BLOCK),
+        || Runner::new(*shared),
+        |runner, members| match runner {
+            Ok(runner) => members
+                .map(|member| Ok(cell::run(runner, request, member)))
+                .collect(),
+            Err(error) => {
+                let refuse = |_| Err(CliError::Start(error.to_string()));
+                members.map(refuse).collect()
+            }
+        },
+        |first, block| {
+            let mut lines = Vec::new();
+            let end = first + block.len() as u64;
+            for (member, cell) in (first..).zip(block) {
+                let row = table::row(shared.members, member, &cell?, request, &sums.orbits);
+                sums.add(&row);
+                lines.append(&mut csv_line(&row));
+                progress.done(sums.refused);
+            }
+            output.append(&lines, end, None)
+        },
+    )?;
+    progress.finish();
+    output.finish(count, None)?;
+    Ok((sums, kept))
+}

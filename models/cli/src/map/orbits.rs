@@ -1,0 +1,79 @@
+//! Returns that repeat, and the orbits of all cells.
+
+use super::request::Components;
+
+/// Returns of one orbit in several cells may differ by this many times what counts as the same in one run: a run
+/// approaches its orbit as slowly as its multipliers are near 1.
+const APART: f64 = 1000.0;
+
+/// Largest number of orbits that are told apart.
+const MOST: usize = 1000;
+
+/// The points of the orbit that the last of some returns repeat, the last return first; empty if they do not. Needs two
+/// periods of returns.
+pub fn cycle(recent: &[Vec<f64>], longest: usize, components: &Components) -> Vec<Vec<f64>> {
+    let last = |back: usize| &recent[recent.len() - 1 - back];
+    let repeats = |period: usize| {
+        2 * period <= recent.len()
+            && (0..period).all(|back| components.are_same(last(back), last(back + period), 1.0))
+    };
+    match (1..=longest).find(|&period| repeats(period)) {
+        Some(period) => (0..period).map(|back| last(back).clone()).collect(),
+        None => Vec::new(),
+    }
+}
+
+/// An orbit that cells tend to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orbit {
+    /// Number of returns after which it closes.
+    pub period: u64,
+    /// The last return of the first cell that tends to it.
+    pub point: Vec<f64>,
+    /// Number of cells that tend to it.
+    pub cells: u64,
+}
+
+/// The orbits of all cells, in the order in which they are met.
+#[derive(Debug, Clone, Default)]
+pub struct Orbits(Vec<Orbit>);
+
+impl Orbits {
+    /// The orbits.
+    pub fn all(&self) -> &[Orbit] {
+        &self.0
+    }
+
+    /// The number, from 1 on, of the orbit with these points; a new number if no cell has tended to it. 0 once too many
+    /// are known.
+    pub fn number(&self, cycle: &[Vec<f64>], components: &Components) -> u64 {
+        let is_same = |orbit: &Orbit| {
+            orbit.period == cycle.len() as u64
+                && cycle
+                    .iter()
+                    .any(|point| components.are_same(point, &orbit.point, APART))
+        };
+        match self.0.iter().position(is_same) {
+            Some(index) => index as u64 + 1,
+            None if self.0.len() < MOST => self.0.len() as u64 + 1,
+            None => 0,
+        }
+    }
+
+    /// Counts a cell that tends to the orbit of this number.
+    pub fn count(&mut self, number: u64, period: u64, point: &[f64]) {
+        let Some(index) = number.checked_sub(1) else {
+            return;
+        };
+        if index as usize == self.0.len() {
+            self.0.push(Orbit {
+                period,
+                point: point.to_vec(),
+                cells: 0,
+            });
+        }
+        if let Some(orbit) = self.0.get_mut(index as usize) {
+            orbit.cells += 1;
+        }
+    }
+}
