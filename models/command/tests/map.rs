@@ -52,15 +52,9 @@ fn boundary(eta: &str) -> [f64; 2] {
     let classes = column(&table, "class");
     let walks = |class: &&str| *class == "orbit 1 (period 1)";
     let falls = |class: &&str| *class == "failed at once";
-    let first = classes.iter().position(|class| falls(class)).unwrap();
-    assert!(
-        classes[..first].iter().all(|class| walks(class)),
-        "{classes:?}"
-    );
-    assert!(
-        classes[first..].iter().all(|class| falls(class)),
-        "{classes:?}"
-    );
+    let first = classes.iter().position(falls).unwrap();
+    assert!(classes[..first].iter().all(walks), "{classes:?}");
+    assert!(classes[first..].iter().all(falls), "{classes:?}");
     let starts = numbers(&table, "in.xi");
     [starts[first - 1], starts[first]]
 }

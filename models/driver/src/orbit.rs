@@ -111,10 +111,10 @@ fn begun(error: OrbitError) -> Result<OrbitError, Refusal> {
 
 /// The state at these positions and velocities.
 fn started<S: Instance>(system: &S, q: &[f64], qdot: &[f64]) -> Result<S::State, Refusal> {
-    let [mut position, mut velocity] = [system.zero_vector(); 2];
-    position.as_mut_slice().copy_from_slice(q);
-    velocity.as_mut_slice().copy_from_slice(qdot);
-    let start = system.state_unchecked(0.0, &position, &velocity);
+    let [mut own_q, mut own_qdot] = [system.zero_vector(); 2];
+    own_q.as_mut_slice().copy_from_slice(q);
+    own_qdot.as_mut_slice().copy_from_slice(qdot);
+    let start = system.state_unchecked(0.0, &own_q, &own_qdot);
     Ok(start.map_err(StateError::from)?)
 }
 

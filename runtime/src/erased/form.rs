@@ -34,6 +34,9 @@ pub(super) const GEOMETRY: usize = 64;
 /// Tables over other numbers than `f64`, each with its own type.
 pub type Kinds = [Option<Held<dyn Any + Send + Sync>>; 5];
 
+/// A function that writes values of parameters.
+pub type Defaults = dyn Fn(&mut [f64]) + Send + Sync;
+
 /// The global form of a form.
 pub enum Global {
     /// The form is the global one.
@@ -66,7 +69,7 @@ pub struct Form {
     /// Number of initial values of a series.
     pub firsts: usize,
     /// Writes the declared values of the parameters; NaN for one without.
-    pub defaults: Held<dyn Fn(&mut [f64]) + Send + Sync>,
+    pub defaults: Held<Defaults>,
     /// The global form.
     pub global: Global,
     /// For a model with modes, the forms of the modes and their global forms, in the order of the kernels

@@ -124,7 +124,7 @@ fn make<F, T>(
 ) -> Result<T, CliError> {
     let model = build_model(models, &args.run.model)?;
     let model = model.as_ref();
-    let members = Members::varied(&args.vary, None, None, &model.description())?;
+    let members = Members::varied(&args.vary, None, None, model.description())?;
     let axes = axes(model, args, &members)?;
     members.check_start(model, &args.run.state)?;
     let request = request(model, args, &members)?;
@@ -272,7 +272,7 @@ fn request(model: &dyn AnyModel, args: &MapArgs, members: &Members) -> Result<Re
         fail,
         colours,
         contours,
-        components: Components::of(&description, args)?,
+        components: Components::of(description, args)?,
         is_bifurcating: members.quantities().iter().any(is_parameter),
     })
 }
@@ -284,7 +284,7 @@ fn started(
     members: &Members,
 ) -> Result<(Component, Expression), CliError> {
     let (name, expression) = Expression::parse("--start", text)?.assigned()?;
-    let component = Component::find(&model.description(), &name);
+    let component = Component::find(model.description(), &name);
     let component = component.map_err(|unknown| CliError::Unknown {
         place: "--start".to_owned(),
         unknown,
@@ -347,7 +347,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
         return Ok(None);
     };
     let description = model.description();
-    let surfaces = names::surfaces(&description);
+    let surfaces = names::surfaces(description);
     let surface = match (&args.surface, description.surfaces.len()) {
         (_, 0) => {
             return Err(CliError::Usage(
@@ -410,7 +410,7 @@ fn asked(model: &dyn AnyModel, args: &MapArgs, request: &Request) -> Value {
     let returns = request.returns.as_ref();
     json!({
         "returns": args.returns,
-        "surface": returns.and_then(|it| names::surfaces(&description).nth(it.surface)),
+        "surface": returns.and_then(|it| names::surfaces(description).nth(it.surface)),
         "start": args.start,
         "fail": args.fail,
         "class": args.class,

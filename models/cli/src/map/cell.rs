@@ -76,7 +76,7 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
             None => {}
         }
     } else if outcome != FAILED {
-        reason = details(&runner.model().description(), &ending.outcome);
+        reason = details(runner.model().description(), &ending.outcome);
     }
     Cell {
         outcome,

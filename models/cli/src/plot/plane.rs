@@ -79,6 +79,8 @@ pub struct Plane {
     width: f64,
     /// Size of the plot itself, in pixels.
     plot: (f64, f64),
+    /// False if the ordinate means nothing.
+    has_ordinate: bool,
 }
 
 impl Plane {
@@ -96,6 +98,7 @@ impl Plane {
             },
             width,
             plot: (plot_width, plot_height),
+            has_ordinate: true,
         }
     }
 
@@ -105,6 +108,7 @@ impl Plane {
             window,
             width,
             plot: (width - EDGE - LEFT - RIGHT, (FREE_HEIGHT * width).round()),
+            has_ordinate: true,
         }
     }
 
@@ -114,6 +118,7 @@ impl Plane {
             window,
             width,
             plot: (width - EDGE - LEFT - RIGHT, STRIP_HEIGHT),
+            has_ordinate: false,
         }
     }
 
@@ -134,7 +139,7 @@ impl Plane {
             words.head.draw(&top, self.width)?;
             let mut chart = self.chart(&area)?;
             behind(&mut chart)?;
-            draw_axes(&mut chart, words.axes)?;
+            draw_some_axes(&mut chart, words.axes, self.has_ordinate)?;
             content(&mut chart)
         })
     }
@@ -180,13 +185,22 @@ impl Plane {
     }
 }
 
-/// Draws grid, axes and labels; no ordinate if it has no name.
+/// Draws grid, axes and labels.
 ///
 /// # Errors
 /// An error of the drawing library.
 pub fn draw_axes(chart: &mut Chart<'_, '_>, names: [&str; 2]) -> Result<(), String> {
+    draw_some_axes(chart, names, true)
+}
+
+/// Draws grid, axes and labels, without the ordinate unless `has_ordinate`.
+fn draw_some_axes(
+    chart: &mut Chart<'_, '_>,
+    names: [&str; 2],
+    has_ordinate: bool,
+) -> Result<(), String> {
     let mut mesh = chart.configure_mesh();
-    if names[1].is_empty() {
+    if !has_ordinate {
         mesh.disable_y_mesh().disable_y_axis();
     }
     mesh.x_desc(names[0])

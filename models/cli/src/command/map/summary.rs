@@ -68,7 +68,7 @@ pub fn caption(finished: &Finished<'_>) -> String {
     let mut parts = Vec::new();
     if let Some(returns) = &request.returns {
         let description = finished.model.description();
-        let surface = names::surfaces(&description).nth(returns.surface);
+        let surface = names::surfaces(description).nth(returns.surface);
         parts.push(format!(
             "{} to {}",
             counted(returns.count as usize, "return"),

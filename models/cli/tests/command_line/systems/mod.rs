@@ -43,7 +43,7 @@ where
     Ok(())
 }
 
-/// Facts of a description, as constants.
+/// What a description is made of.
 #[derive(Clone, Copy)]
 struct Facts {
     type_name: &'static str,
