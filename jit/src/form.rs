@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dalembert::Fault;
-use dalembert::erased::{Form, Global, Held, Kinds, SeriesTable, Shared};
+use dalembert::erased::{Defaults, Form, Global, Held, Kinds, SeriesTable, Shared};
 use dalembert::jet::Work;
 use dalembert::kernels::{At, KernelTable, OfSurface, Plain};
 use dalembert::numbers::{Bent, Interval, Numbers, Rated, TaylorModel};
@@ -138,7 +138,7 @@ fn work(work: Option<Work>) -> Held<dyn Fn() -> Option<Work> + Send + Sync> {
 }
 
 /// Writes declared values of parameters; NaN for one without.
-fn defaults(model: &Model) -> Held<dyn Fn(&mut [f64]) + Send + Sync> {
+fn defaults(model: &Model) -> Held<Defaults> {
     let parameters = model.parameters.iter();
     let defaults: Vec<f64> = parameters
         .map(|parameter| default_value(model, parameter).unwrap_or(f64::NAN))

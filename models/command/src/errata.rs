@@ -1,6 +1,6 @@
 //! Errata of the sources of the shipped models, explained in `docs/theory/errata.md`.
 //!
-//! [C] W. Clark, thesis (2020). [CB] W. Clark and A. Bloch, Invariant forms in hybrid and impact systems. [CV] J. Cortes
+//! `C`: W. Clark, thesis (2020). `CB`: W. Clark and A. Bloch, Invariant forms in hybrid and impact systems. `CV`: J. Cortes
 //! and A. M. Vinogradov (2006). Every right value comes from the declaration of a model; the printed formula is evaluated
 //! at the same state.
 
