@@ -131,7 +131,11 @@ mod tests {
         assert!(both.contains("struct Ball") && both.contains("struct Disk"));
         assert!(both.contains("include_bytes"));
         let one = expanded("one.dal", ONE);
-        assert!(one.contains(&format!("source : {:?}", ONE.trim())), "{one}");
+        let source = format!(
+            "source : :: dalembert :: erased :: Held :: Static ({:?})",
+            ONE.trim()
+        );
+        assert!(one.contains(&source), "{one}");
     }
 
     #[test]
