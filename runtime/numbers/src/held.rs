@@ -33,6 +33,19 @@ impl<T: ?Sized> Held<T> {
     }
 }
 
+// NOTE: beside those of the slice, as constants may not dereference.
+impl<T> Held<[T]> {
+    /// Number of elements.
+    pub const fn len(&self) -> usize {
+        self.value().len()
+    }
+
+    /// True if there is no element.
+    pub const fn is_empty(&self) -> bool {
+        self.value().is_empty()
+    }
+}
+
 impl<T: ?Sized> Deref for Held<T> {
     type Target = T;
 
