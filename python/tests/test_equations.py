@@ -141,7 +141,7 @@ def test_derivations_are_shown_in_notebooks():
 
 def test_verdicts_are_data():
     verdicts = dalembert.models.rolling_disk.check()
-    assert [verdict.claim for verdict in verdicts][:2] == ["density: exact", "conserved: energy"]
+    assert [verdict.claim for verdict in verdicts][:3] == ["density: exact", "volume: kept", "conserved: energy"]
     assert {verdict.verdict for verdict in verdicts} == {"proved"}
     assert verdicts[-1].scene == "free"
     assert all(verdict.chance_of_error < 1e-15 for verdict in verdicts)

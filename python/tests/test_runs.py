@@ -190,6 +190,15 @@ def test_a_parameter_without_default_must_be_given():
     assert Model.from_text(text).with_parameters(g=1).simulate().outcome.reached
 
 
+@pytest.fixture
+def interrupts():
+    """The handler of interrupts that Python installs, which it leaves out where a shell starts it in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interrupts")
 def test_a_run_is_interrupted():
     pendulum = Model.from_text(LONG)
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
