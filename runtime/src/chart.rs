@@ -24,7 +24,7 @@ pub(crate) struct Exit {
 /// The first place in `[0, reach]` at which a coordinate is outside its chart.
 ///
 /// # Errors
-/// Those of the dense output.
+/// Faults of the dense output.
 pub(crate) fn exit<Sys: System, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
     reach: f64,

@@ -133,6 +133,10 @@ fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, boo
     let used = (0..lines.len()).filter(|i| pool.depends_on(gap, lines[*i]));
     let used: Vec<usize> = used.collect();
     let slopes: Vec<ExprId> = used.iter().map(|i| pool.diff(gap, lines[*i])).collect();
+    // NOTE: `x - 1/sin(phi)` bounds nothing from below.
+    if !slopes.iter().chain([&gap]).all(|id| pool.is_finite(*id)) {
+        return Vec::new();
+    }
     if let ([line], [slope]) = (used.as_slice(), slopes.as_slice())
         && !pool.depends_on_any(*slope, lines)
         && is_parameter(pool, *slope)
@@ -156,11 +160,7 @@ fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, boo
             }
         }
     }
-    let all_finite = slopes.iter().chain([&gap]).all(|id| pool.is_finite(*id));
-    match all_finite {
-        true => used.into_iter().map(|i| (i, true, true)).collect(),
-        false => Vec::new(),
-    }
+    used.into_iter().map(|i| (i, true, true)).collect()
 }
 
 /// True if an expression is a number, or made of numbers and symbols that have a sign: parameters.

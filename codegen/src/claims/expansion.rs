@@ -129,7 +129,7 @@ pub(super) struct Tangents {
 }
 
 impl Tangents {
-    /// Those of a model; `None` if no state was found at which the constraints are independent.
+    /// Tangent vectors of a model; `None` if no state was found at which the constraints are independent.
     pub(super) fn of(model: &mut Model, dynamics: &Dynamics) -> Option<Self> {
         let velocities: Vec<SymbolId> = (model.coordinates.iter())
             .map(|coordinate| coordinate.qdot)
@@ -248,7 +248,7 @@ pub(super) struct Products<S> {
 pub(super) enum Part {
     /// All of them, with random weights.
     All(u64),
-    /// That on these tangent vectors.
+    /// The component on these tangent vectors.
     One(Vec<usize>),
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Lie<'l> {
 }
 
 impl<'l> Lie<'l> {
-    /// That of a form which is written out.
+    /// The derivative of a form that is written out.
     pub(super) fn of(
         model: &mut Model,
         dynamics: &'l Dynamics,

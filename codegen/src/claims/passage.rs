@@ -373,7 +373,7 @@ impl Passage {
         let velocity: Vec<_> = self.qdot.iter().map(before).collect();
         let series = |id: ExprId| jets.constant(values[id.index()]);
         let after = self.velocities_along(&jets, point, &series, &velocity)?;
-        Some(after.iter().map(|own| jets.value(own)).collect())
+        Some(after.iter().map(|series| jets.value(series)).collect())
     }
 
     /// The velocities after it as series, given the series of expressions and of the velocities before it.
@@ -462,7 +462,7 @@ impl Passage {
                 let space = JetSpace::new(0, 0, 1)?;
                 let jets = Jets::new(field, &space);
                 let rows = self.projection(&jets, &|id| jets.constant(values[id.index()]))?;
-                let row = |i: &usize| rows[*i].0.iter().map(|own| jets.value(own)).collect();
+                let row = |i: &usize| rows[*i].0.iter().map(|series| jets.value(series)).collect();
                 after.independent.iter().map(row).collect()
             }
             Velocities::Rates | Velocities::Refracted => Vec::new(),

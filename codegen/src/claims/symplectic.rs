@@ -205,7 +205,7 @@ fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
         let (q, p) = (model.coordinates[i].q, model.derived.momenta[i]);
         let pool = &mut model.pool;
         let pair = [p, q].map(|symbol| pool.variable(symbol));
-        let [dp, dq] = pair.map(|own| ExteriorForm::differential(pool, own));
+        let [dp, dq] = pair.map(|function| ExteriorForm::differential(pool, function));
         let area = dp.wedge(pool, &dq);
         form = form.plus(pool, area);
         let name = &model.coordinates[i].name.display;

@@ -13,7 +13,7 @@ const RECURRENT: &str = "almost every start comes back arbitrarily near";
 fn check(declaration: &str, claims: &str, expected: [bool; 2]) {
     let source = declaration.replace("CLAIM", &format!("claims {{ {claims} }}"));
     let found = findings(&source);
-    let kept = found.iter().find(|own| own.claim == "volume: kept");
+    let kept = found.iter().find(|finding| finding.claim == "volume: kept");
     let kept = kept.expect("the claim");
     assert!(
         matches!(kept.verdict, Verdict::Proved(_)),
@@ -63,6 +63,11 @@ fn unbounded_motion_is_not_said_to_be_recurrent() {
         [true, false],
     );
     check(&disk(""), KEPT, [false, false]);
+    // `1/sin(phi)` goes to minus infinity.
+    let pole = "Pole { coordinates { x; phi: angle; } lagrangian = (dot(x)^2 + dot(phi)^2)/2;
+        impacts { low: x - 1/sin(phi) >= 0; high: x <= 5; } CLAIM }";
+    check(pole, KEPT, [true, false]);
+    check(&pole.replace("1/sin(phi)", "sin(phi)"), KEPT, [true; 2]);
 }
 
 #[test]

@@ -41,7 +41,7 @@ pub type Defaults = dyn Fn(&mut [f64]) + Send + Sync;
 pub enum Global {
     /// The form is the global one.
     Itself,
-    /// That of a type.
+    /// The form of a type.
     // NOTE: a function, as the constant of a type cannot refer to itself.
     OfType(fn() -> Option<&'static Form>),
     /// A form of its own.

@@ -95,7 +95,7 @@ pub(crate) struct Line<'a> {
 struct Floors(Option<(Region, f64)>);
 
 impl Floors {
-    /// That about a stretch.
+    /// The rounding about a stretch.
     fn at(&mut self, stretches: &Stretches, rounding: &mut dyn FnMut(f64) -> f64) -> f64 {
         let region = stretches.region();
         match self.0 {

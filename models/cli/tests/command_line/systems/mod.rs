@@ -43,7 +43,7 @@ where
     Ok(())
 }
 
-/// What a description is made of.
+/// Facts that a description is made of.
 #[derive(Clone, Copy)]
 struct Facts {
     type_name: &'static str,
