@@ -8,7 +8,7 @@ use dalembert::Fault;
 use dalembert::erased::{Defaults, Form, Global, Held, Kinds, SeriesTable, Shared};
 use dalembert::jet::Work;
 use dalembert::kernels::{At, KernelTable, OfSurface, Plain};
-use dalembert::numbers::{Bent, Interval, Numbers, Rated, TaylorModel};
+use dalembert::numbers::{Bent, ComplexInterval, Interval, Numbers, Rated, TaylorModel};
 use dalembert::variations::Dual;
 use dalembert_codegen::model::{Model, Scene};
 use dalembert_codegen::spec::SURFACES;
@@ -104,6 +104,7 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Global) -> Arc<Form> {
         kernels_over: [
             (has_surfaces || can_lose_rank).then(|| any(functions.table::<TaylorModel>())),
             has_surfaces.then(|| any(functions.table::<Bent>())),
+            has_surfaces.then(|| any(functions.table::<ComplexInterval>())),
             (may_be_narrow || varies).then(|| any(functions.table::<Rated>())),
             varies.then(|| any(functions.table::<Dual>())),
             varies.then(|| any(functions.table::<Interval>())),
@@ -117,6 +118,7 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Global) -> Arc<Form> {
             Some(any(series_table::<f64x8>(&series))),
             varies.then(|| any(series_table::<Interval>(&series))),
             varies.then(|| any(series_table::<Rated>(&series))),
+            None,
             None,
         ],
         work: work(Some(known.work())),

@@ -5,7 +5,7 @@ use crate::contract::{
 };
 use crate::error::{Fault, ParameterError, StateError};
 use crate::law::{Blow, Contact, Jump, Law};
-use crate::numbers::{Bent, TaylorModel};
+use crate::numbers::{Bent, ComplexInterval, TaylorModel};
 
 /// A system whose declared `inputs` the caller supplies. It stores their values like parameters; they are 0 until
 /// they are set.
@@ -273,6 +273,15 @@ where
 
     fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
         self.system.gap_about(surface, t, component)
+    }
+
+    fn gap_complex(
+        &self,
+        surface: usize,
+        t: ComplexInterval,
+        component: &dyn Fn(usize) -> ComplexInterval,
+    ) -> ComplexInterval {
+        self.system.gap_complex(surface, t, component)
     }
 
     fn gap_accelerations(

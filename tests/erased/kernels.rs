@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use dalembert::Fault;
 use dalembert::erased::Form;
 use dalembert::kernels::{At, Kernel};
-use dalembert::numbers::{Bent, Interval, LENGTH, Numbers, Rated, TaylorModel};
+use dalembert::numbers::{Bent, ComplexInterval, Interval, LENGTH, Numbers, Rated, TaylorModel};
 use dalembert::variations::Dual;
 use dalembert_codegen::spec::{Declaration, STEPS};
 use dalembert_codegen::tables::FormOf;
@@ -86,6 +86,12 @@ impl Drawn for Rated {
 impl Drawn for Bent {
     fn draw(random: &mut Random) -> Self {
         Self::line(short(random), f64::draw(random))
+    }
+}
+
+impl Drawn for ComplexInterval {
+    fn draw(random: &mut Random) -> Self {
+        Self::varying(short(random), f64::draw(random).abs())
     }
 }
 
@@ -245,19 +251,21 @@ fn compare_over<L: Drawn>(pair: Pair, known: &FormOf<'_>, points: usize, given: 
 }
 
 fn compare(pair: Pair, known: &FormOf<'_>) {
-    let mut given = [0; 6];
+    let mut given = [0; 7];
     compare_over::<f64>(pair, known, POINTS, &mut given[0]);
     compare_over::<f64x8>(pair, known, POINTS_OVER, &mut given[1]);
     compare_over::<Dual>(pair, known, POINTS_OVER, &mut given[2]);
     compare_over::<TaylorModel>(pair, known, POINTS_OVER, &mut given[3]);
     compare_over::<Bent>(pair, known, POINTS_OVER, &mut given[4]);
     compare_over::<Rated>(pair, known, POINTS_OVER, &mut given[5]);
+    compare_over::<ComplexInterval>(pair, known, POINTS_OVER, &mut given[6]);
     let name = pair.emitted.documentation.description.name;
     assert_eq!(given[0], known.kernels().len() + 1, "{name}");
     let has_surfaces = !pair.emitted.tables.surfaces.is_empty();
     let is_enclosed = has_surfaces || pair.emitted.tables.can_lose_rank;
     assert_eq!(given[3] > 0, is_enclosed, "{name}");
     assert_eq!(given[4] > 0, has_surfaces, "{name}");
+    assert_eq!(given[6] > 0, has_surfaces, "{name}");
     assert_eq!(given[2] > 0, pair.emitted.tables.varies, "{name}");
 }
 

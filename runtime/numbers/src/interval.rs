@@ -553,8 +553,13 @@ impl Interval {
 pub(crate) mod tests {
     use super::*;
     use crate::bent::Bent;
+    use crate::complex_interval::ComplexInterval;
     use crate::rated::Rated;
     use crate::taylor_model::TaylorModel;
+
+    pub(crate) use complex::Complex;
+
+    mod complex;
 
     /// A function of the language, over doubles and over all kinds of enclosures.
     pub(crate) struct Enclosed {
@@ -564,6 +569,8 @@ pub(crate) mod tests {
         pub(crate) rated: fn(Rated) -> Rated,
         pub(crate) model: fn(TaylorModel) -> TaylorModel,
         pub(crate) bent: fn(Bent) -> Bent,
+        pub(crate) complex_interval: fn(ComplexInterval) -> ComplexInterval,
+        pub(crate) complex: fn(Complex) -> Complex,
         /// Ends of the domain.
         domain: [f64; 2],
     }
@@ -600,6 +607,8 @@ pub(crate) mod tests {
                 rated: |$x: Rated| $value,
                 model: |$x: TaylorModel| $value,
                 bent: |$x: Bent| $value,
+                complex_interval: |$x: ComplexInterval| $value,
+                complex: |$x: Complex| $value,
                 domain: [$lo, $hi],
             }),*];
         };

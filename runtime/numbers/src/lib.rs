@@ -10,6 +10,7 @@
 //! | `smooth.rs` | functions with their derivatives, for numbers that carry derivatives |
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
 //! | `bent.rs` | intervals of values, rates and bends along lines through a box |
+//! | `complex_interval.rs` | rectangles of complex numbers about the real axis, which bound power series |
 //! | `taylor_model.rs` | cubics along a stretch of motion, with bounds of the distance of values and rates from them |
 //! | `tables.rs` | data of a form of a model besides its functions |
 //! | `description.rs` | self-description of a model |
@@ -23,6 +24,7 @@
 
 mod assumption;
 pub mod bent;
+pub mod complex_interval;
 pub mod description;
 pub mod extended;
 pub mod held;
@@ -39,6 +41,7 @@ pub mod tables;
 pub mod taylor_model;
 
 pub use bent::Bent;
+pub use complex_interval::ComplexInterval;
 pub use extended::{Extended, MOST_PARTS, NotDecimal};
 pub use held::{Held, Shared};
 pub use interval::Interval;

@@ -9,6 +9,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::math;
 
 pub use crate::bent::Bent;
+pub use crate::complex_interval::ComplexInterval;
 pub use crate::interval::Interval;
 pub use crate::rated::Rated;
 pub use crate::taylor_model::TaylorModel;

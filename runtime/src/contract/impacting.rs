@@ -4,7 +4,7 @@ use super::System;
 use super::landing::after_reset;
 use crate::error::Fault;
 use crate::law::{Blow, Contact, Jump, Landing, Law};
-use crate::numbers::{Bent, TaylorModel};
+use crate::numbers::{Bent, ComplexInterval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -50,6 +50,18 @@ pub trait Impacting: System {
     fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
         let _ = (surface, t, component);
         Bent::ANYTHING
+    }
+
+    /// The gap of one surface on a box of complex positions and times, with the arguments of [`Impacting::gap_along`].
+    /// It spares most steps that are power series a closer enclosure.
+    fn gap_complex(
+        &self,
+        surface: usize,
+        t: ComplexInterval,
+        component: &dyn Fn(usize) -> ComplexInterval,
+    ) -> ComplexInterval {
+        let _ = (surface, t, component);
+        ComplexInterval::ANYTHING
     }
 
     /// The gap rates `dh_s(qdot) + d_t h_s`.

@@ -8,7 +8,7 @@ use crate::erased::{Expanded, Form, Global, Held, Kinds, MOST_FIRSTS, SeriesTabl
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH};
 use crate::kernels::{ConstantTable, KernelSet, KernelTable};
-use crate::numbers::{Bent, Numbers, Rated, Row, TaylorModel};
+use crate::numbers::{Bent, ComplexInterval, Numbers, Rated, Row, TaylorModel};
 use crate::variations::Dual;
 
 /// The form of a type, if its sizes fit into an erased system.
@@ -81,6 +81,12 @@ impl<S: Emitted> Of<S> {
                     const { &Self::kernels::<Bent>(KernelSet::OF_GAPS) },
                 )),
             },
+            match S::TABLES.surfaces.value() {
+                [] => None,
+                _ => Some(Held::Static(
+                    const { &Self::kernels::<ComplexInterval>(KernelSet::OF_GAPS) },
+                )),
+            },
             match is_narrow {
                 false => None,
                 true => Some(Held::Static(
@@ -123,6 +129,7 @@ impl<S: Emitted> Of<S> {
             false => Some(Held::Static(const { &Self::series::<wide::f64x8>() })),
         },
         #[cfg(not(feature = "lanes"))]
+        None,
         None,
         None,
         None,

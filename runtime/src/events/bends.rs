@@ -126,6 +126,12 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         }
     }
 
+    /// Leaves a step out: nothing is told of it.
+    #[inline]
+    pub(crate) fn skip(&mut self) {
+        self.is_inside = false;
+    }
+
     /// Computes the bounds in the box.
     #[cold]
     fn measure<Sys: Impacting<State = S, Gaps = G>>(&mut self, system: &Sys, path: &Path<S>) {

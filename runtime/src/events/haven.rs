@@ -46,8 +46,11 @@ impl<S: StateVector> Haven<S> {
 
     /// True if a step lies in the box.
     #[inline]
-    pub(crate) fn holds(&self, path: &Path<S>) -> bool {
-        self.room.holds(path)
+    pub(crate) fn holds(&self, path: &mut Path<S>) -> bool {
+        self.room.is_known() && {
+            path.enclose();
+            self.room.holds(path)
+        }
     }
 
     /// Looks for a box about a step that meets no surface. In the box the gaps of walls must be positive, and those
@@ -56,7 +59,7 @@ impl<S: StateVector> Haven<S> {
     pub(crate) fn settle<Sys: Impacting<State = S>>(
         &mut self,
         system: &Sys,
-        path: &Path<S>,
+        path: &mut Path<S>,
         is_passable: impl Fn(usize) -> bool,
         evaluations: &mut u64,
     ) {
@@ -64,6 +67,7 @@ impl<S: StateVector> Haven<S> {
             self.wait -= 1;
             return;
         }
+        path.enclose();
         self.room.surround(path, self.margin);
         let room = &self.room;
         let taken = Cell::new(0_u64);

@@ -3,7 +3,8 @@
 //! Every reported crossing has a witness: two times such that the gap is not negative at the earlier and negative at
 //! the later one. Taylor models of the gap along the motion ([`path`]) show that none was overlooked: they enclose
 //! its values and rates on a stretch of the step ([`piece`]). Stretches that these do not decide are halved
-//! ([`locate`]).
+//! ([`locate`]). Where a step is a power series, the gap is one too, and a bound of the terms that it lacks
+//! ([`tails`]) makes its signs certain without a Taylor model.
 
 pub(crate) mod bends;
 pub(crate) mod crossing;
@@ -12,7 +13,9 @@ pub(crate) mod haven;
 pub(crate) mod locate;
 pub(crate) mod path;
 pub(crate) mod piece;
+pub(crate) mod polynomials;
 pub(crate) mod resolution;
 pub(crate) mod room;
 pub(crate) mod sampled;
 mod stretches;
+pub(crate) mod tails;

@@ -1,25 +1,13 @@
 //! The motion along a step: for each component a polynomial in the fraction of the step, and Taylor models of it on
 //! parts of the step.
-//!
-//! On `[a, b]`, with middle `m` and half length `r`, `p(m + r s) = sum_k q_k s^k` for `s` in `[-1, 1]`. The model
-//! contains the first four terms; all others form its remainder.
 
+use super::polynomials::{FEW, Polynomials, ROUNDING};
 use crate::contract::System;
 use crate::effects::StepView;
 use crate::integrate::Stepper;
-use crate::jet::LENGTH;
 use crate::numbers::{Interval, Rated, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
-
-/// Number of terms that are centred on a part of the step at first; of the others the absolute values are added.
-const FEW: usize = 8;
-
-/// Share of the change above which the terms beyond these are centred as well.
-const SMALL: f64 = 1.0 / (1 << 10) as f64;
-
-/// Rounding of a coefficient, and of the sums that shift it, relative to the sum of the absolute values of all terms.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The motion along a step.
 #[derive(Debug, Clone)]
@@ -27,17 +15,13 @@ pub(crate) struct Path<S> {
     /// Time at the start, and length.
     start: f64,
     length: f64,
-    coefficients: [S; LENGTH],
-    order: usize,
-    /// Error bounds of each component's polynomial, and of its derivative.
-    doubts: [S; 2],
-    /// Sums of the absolute values of the terms that are not centred on long parts: of the component, and of its
-    /// rate.
-    tails: [S; 2],
+    polynomials: Polynomials<S>,
     /// The model of every component on the whole step.
     whole: Whole<S>,
     /// True for the dense output, false for the cubic through the ends.
     is_dense: bool,
+    /// True if the error bounds are complete, and the models of the whole step are computed.
+    is_enclosed: bool,
 }
 
 /// Models of all components, side by side.
@@ -57,10 +41,7 @@ impl<S: StateVector> Path<S> {
         Self {
             start: 0.0,
             length: 0.0,
-            coefficients: [zeros; LENGTH],
-            order: 0,
-            doubts: [zeros; 2],
-            tails: [zeros; 2],
+            polynomials: Polynomials::zero(like),
             whole: Whole {
                 powers: [zeros; 4],
                 error: zeros,
@@ -68,7 +49,19 @@ impl<S: StateVector> Path<S> {
                 bend: zeros,
             },
             is_dense: false,
+            is_enclosed: false,
         }
+    }
+
+    /// Path along polynomials with these coefficients.
+    #[cfg(test)]
+    pub(crate) fn of(coefficients: &[S], length: f64) -> Self {
+        let mut path = Self::new(&coefficients[0]);
+        path.length = length;
+        path.polynomials.order = coefficients.len() - 1;
+        path.polynomials.coefficients[..coefficients.len()].copy_from_slice(coefficients);
+        path.enclose();
+        path
     }
 
     /// Sets the step: its dense output if that is ready, otherwise the cubic through its ends, with an error bound
@@ -81,21 +74,45 @@ impl<S: StateVector> Path<S> {
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<(), Outcome> {
+        self.take(step)?;
+        self.enclose();
+        Ok(())
+    }
+
+    /// Same as [`Path::follow`], without error bounds: [`Path::enclose`] completes them.
+    ///
+    /// # Errors
+    /// The [`Fault`](crate::Fault) of the dense output.
+    #[inline]
+    pub(crate) fn take<Sys: System<State = S>, Step: Stepper<Sys>>(
+        &mut self,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> Result<(), Outcome> {
         if step.stepper.dense_ready() {
-            self.follow_dense(step);
+            self.take_dense(step);
             return Ok(());
         }
         match step.stepper.sway() {
-            Some(sway) => self.follow_ends(step, &sway),
+            Some(sway) => self.take_ends(step, &sway),
             None => {
                 step.prepare()?;
-                self.follow_dense(step);
+                self.take_dense(step);
             }
         }
         Ok(())
     }
 
-    /// Replaces the cubic by the dense output of the step, which it prepares. Returns true if the path changed.
+    /// Completes the error bounds, and computes the models of the whole step, unless that is done.
+    #[inline]
+    pub(crate) fn enclose(&mut self) {
+        if !self.is_enclosed {
+            self.add_rounding();
+            self.is_enclosed = true;
+        }
+    }
+
+    /// Replaces the cubic by the dense output of the step, which it prepares. Returns true if the path changed, and is
+    /// to be enclosed again.
     ///
     /// # Errors
     /// The [`Fault`](crate::Fault) of the dense output.
@@ -106,7 +123,7 @@ impl<S: StateVector> Path<S> {
         step.prepare()?;
         let is_new = !self.is_dense;
         if is_new {
-            self.follow_dense(step);
+            self.take_dense(step);
         }
         Ok(is_new)
     }
@@ -116,14 +133,27 @@ impl<S: StateVector> Path<S> {
         &mut self,
         step: &StepView<'_, Sys, Step>,
     ) {
-        (self.start, self.length) = (step.t_start(), step.length());
-        self.order = step.stepper.powers(&mut self.coefficients);
-        self.is_dense = true;
-        self.doubts = [self.coefficients[0].zeroed(); 2];
-        self.add_rounding();
+        self.take_dense(step);
+        self.enclose();
     }
 
-    fn follow_ends<Sys: System<State = S>, Step: Stepper<Sys>>(
+    fn take_dense<Sys: System<State = S>, Step: Stepper<Sys>>(
+        &mut self,
+        step: &StepView<'_, Sys, Step>,
+    ) {
+        (self.start, self.length) = (step.t_start(), step.length());
+        let Polynomials {
+            coefficients,
+            order,
+            doubts,
+            ..
+        } = &mut self.polynomials;
+        *order = step.stepper.powers(coefficients);
+        *doubts = [coefficients[0].zeroed(); 2];
+        (self.is_dense, self.is_enclosed) = (true, false);
+    }
+
+    fn take_ends<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
         step: &StepView<'_, Sys, Step>,
         sway: &S,
@@ -136,48 +166,31 @@ impl<S: StateVector> Path<S> {
             let bend = at(end) - at(start) - rates[0];
             let twist = 2.0 * bend - (rates[1] - rates[0]);
             let powers = [at(start), rates[0], bend + twist, -twist];
-            for (coefficient, power) in self.coefficients.iter_mut().zip(powers) {
+            for (coefficient, power) in self.polynomials.coefficients.iter_mut().zip(powers) {
                 coefficient.padded_mut()[i] = power;
             }
         }
-        self.order = 3;
-        self.is_dense = false;
-        self.doubts = [*sway; 2];
+        self.polynomials.order = 3;
+        self.polynomials.doubts = [*sway; 2];
+        // NOTE: at once, as the order is known here while compiling.
         self.add_rounding();
+        (self.is_dense, self.is_enclosed) = (false, true);
     }
 
     /// Adds the rounding errors of the coefficients to the error bounds, sums the terms that are not centred, and
     /// builds the models of the whole step.
-    #[inline]
+    #[inline(always)]
     fn add_rounding(&mut self) {
-        let zeros = self.coefficients[0].zeroed();
-        let (mut sizes, mut slopes) = (zeros, zeros);
-        self.tails = [zeros; 2];
-        for (k, coefficient) in self.coefficients[..=self.order].iter().enumerate() {
-            if k == FEW {
-                self.tails = [sizes, slopes];
-            }
-            for i in 0..zeros.padded().len() {
-                let size = coefficient.padded()[i].abs();
-                sizes.padded_mut()[i] += size;
-                slopes.padded_mut()[i] += k as f64 * size;
+        let sums = self.polynomials.sum();
+        let roundings = [ROUNDING, 2.0 * ROUNDING];
+        let doubts = self.polynomials.doubts.iter_mut();
+        for (doubt, (sum, rounding)) in doubts.zip(sums.iter().zip(roundings)) {
+            let entries = doubt.padded_mut().iter_mut();
+            for (entry, sum) in entries.zip(sum.padded()) {
+                *entry += rounding * sum;
             }
         }
-        let has_tails = self.order >= FEW;
-        for i in 0..zeros.padded().len() {
-            let [size, slope] = [sizes.padded()[i], slopes.padded()[i]];
-            self.doubts[0].padded_mut()[i] += ROUNDING * size;
-            self.doubts[1].padded_mut()[i] += 2.0 * ROUNDING * slope;
-            for (tail, sum) in self.tails.iter_mut().zip([size, slope]) {
-                let tail = &mut tail.padded_mut()[i];
-                *tail = if has_tails {
-                    sum - *tail + ROUNDING * sum
-                } else {
-                    0.0
-                };
-            }
-        }
-        match self.order < 4 {
+        match self.polynomials.order < 4 {
             true => self.fill_whole::<4>(),
             false => self.fill_whole::<FEW>(),
         }
@@ -187,10 +200,12 @@ impl<S: StateVector> Path<S> {
     /// centred.
     #[inline]
     fn fill_whole<const COUNT: usize>(&mut self) {
-        let zeros = self.coefficients[0].zeroed();
+        let zeros = self.polynomials.coefficients[0].zeroed();
         let mut powers = [zeros; COUNT];
-        let terms = (self.order + 1).min(COUNT);
-        powers[..terms].copy_from_slice(&self.coefficients[..terms]);
+        let Polynomials { doubts, tails, .. } = &self.polynomials;
+        let coefficients = self.polynomials.terms();
+        let terms = coefficients.len().min(COUNT);
+        powers[..terms].copy_from_slice(&coefficients[..terms]);
         for first in 0..COUNT.saturating_sub(1) {
             for k in (first..COUNT - 1).rev() {
                 let above = powers[k + 1];
@@ -206,7 +221,7 @@ impl<S: StateVector> Path<S> {
             slope,
             bend,
         } = &mut self.whole;
-        let last = self.order as f64 - 1.0;
+        let last = self.polynomials.order as f64 - 1.0;
         for i in 0..zeros.padded().len() {
             let mut scale = 1.0;
             let (mut beyond, mut steep, mut bent) = (0.0, 0.0, 0.0);
@@ -222,74 +237,24 @@ impl<S: StateVector> Path<S> {
                 bent += (k * k.saturating_sub(1)) as f64 * term.abs();
                 scale *= 0.5;
             }
-            bend.padded_mut()[i] = 4.0 * bent + last * self.tails[1].padded()[i];
-            error.padded_mut()[i] = beyond + self.tails[0].padded()[i] + self.doubts[0].padded()[i];
-            slope.padded_mut()[i] =
-                steep + 0.5 * (self.tails[1].padded()[i] + self.doubts[1].padded()[i]);
+            bend.padded_mut()[i] = 4.0 * bent + last * tails[1].padded()[i];
+            error.padded_mut()[i] = beyond + tails[0].padded()[i] + doubts[0].padded()[i];
+            slope.padded_mut()[i] = steep + 0.5 * (tails[1].padded()[i] + doubts[1].padded()[i]);
         }
     }
 
     /// Taylor model of component `i` on a part of the step.
     #[inline]
     pub(crate) fn component(&self, i: usize, part: [f64; 2]) -> TaylorModel {
+        debug_assert!(self.is_enclosed, "the path has no error bounds yet");
         match part {
             [0.0, 1.0] => TaylorModel {
                 error: self.whole.error.as_slice()[i],
                 slope: self.whole.slope.as_slice()[i],
                 ..TaylorModel::exact(core::array::from_fn(|k| self.whole.powers[k].as_slice()[i]))
             },
-            _ => {
-                let (model, tail) = self.centred::<FEW>(i, part);
-                match tail <= SMALL * model.powers[1].abs() {
-                    true => model,
-                    false => self.centred::<LENGTH>(i, part).0,
-                }
-            }
+            _ => self.polynomials.on(i, part),
         }
-    }
-
-    /// The model with the first `COUNT` terms centred, and the contribution of the others to its error.
-    #[inline]
-    fn centred<const COUNT: usize>(&self, i: usize, part: [f64; 2]) -> (TaylorModel, f64) {
-        let [middle, radius] = [0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])];
-        let terms = (self.order + 1).min(COUNT);
-        let mut powers = [0.0; COUNT];
-        for (power, coefficient) in powers.iter_mut().zip(&self.coefficients[..terms]) {
-            *power = coefficient.as_slice()[i];
-        }
-        move_to(&mut powers[..terms], middle);
-        let mut cubic = [0.0; 4];
-        let (mut error, mut slope) = (
-            self.doubts[0].as_slice()[i],
-            radius * self.doubts[1].as_slice()[i],
-        );
-        let mut scale = 1.0;
-        for (k, &power) in powers[..terms].iter().enumerate() {
-            let term = scale * power;
-            match cubic.get_mut(k) {
-                Some(entry) => *entry = term,
-                None => {
-                    error += term.abs();
-                    slope += k as f64 * term.abs();
-                }
-            }
-            scale *= radius;
-        }
-        let mut tail = 0.0;
-        if terms <= self.order {
-            // On `[0, b]` the terms from degree `k` on are at most `b^k` times their values on the whole step.
-            let [b, square] = [part[1], part[1] * part[1]];
-            let power = square * square * square * b;
-            tail = power * b * self.tails[0].as_slice()[i];
-            error += tail;
-            slope += radius * power * self.tails[1].as_slice()[i];
-        }
-        let model = TaylorModel {
-            error,
-            slope,
-            ..TaylorModel::exact(cubic)
-        };
-        (model, tail)
     }
 
     /// Enclosure of component `i` on a part of the step of positive length, and of its derivative by the fraction.
@@ -308,6 +273,7 @@ impl<S: StateVector> Path<S> {
     /// `d min(s, 1 - s)`, less than `4 d s (1 - s)/2`: it counts as a second derivative of `4 d`.
     #[inline]
     pub(crate) fn motion(&self, i: usize) -> [f64; 2] {
+        debug_assert!(self.is_enclosed, "the path has no error bounds yet");
         let Whole {
             powers,
             slope,
@@ -319,8 +285,20 @@ impl<S: StateVector> Path<S> {
             at(&powers[1]).abs() + 2.0 * at(&powers[2]).abs() + 3.0 * at(&powers[3]).abs();
         [
             2.0 * (steepness + at(slope)),
-            at(bend) + 4.0 * at(&self.doubts[1]),
+            at(bend) + 4.0 * at(&self.polynomials.doubts[1]),
         ]
+    }
+
+    /// The coefficients of the polynomials, by power.
+    #[inline]
+    pub(crate) fn coefficients(&self) -> &[S] {
+        self.polynomials.terms()
+    }
+
+    /// Component `i` at the start of the step.
+    #[inline]
+    pub(crate) fn value(&self, i: usize) -> Interval {
+        Interval::point(self.polynomials.coefficients[0].as_slice()[i])
     }
 
     /// Length of the step.
@@ -330,8 +308,7 @@ impl<S: StateVector> Path<S> {
 
     /// Value of the polynomial of component `i` at a fraction of the step.
     pub(crate) fn at(&self, i: usize, part: f64) -> f64 {
-        let terms = self.coefficients[..=self.order].iter().rev();
-        terms.fold(0.0, |sum, term| sum * part + term.as_slice()[i])
+        self.polynomials.at(i, part)
     }
 
     /// Enclosure of component `i` on the whole step.
@@ -364,33 +341,19 @@ impl<S: StateVector> Path<S> {
     }
 }
 
-/// Moves the centre of a polynomial: `p(middle + y)` in powers of `y`, by Horner's scheme.
-#[inline(always)]
-fn move_to(powers: &mut [f64], middle: f64) {
-    let count = powers.len();
-    for first in 0..count.saturating_sub(1) {
-        for k in (first..count - 1).rev() {
-            powers[k] += middle * powers[k + 1];
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
     use nalgebra::SVector;
+    use std::vec::Vec;
 
     type Scalar = SVector<f64, 1>;
 
     fn path(coefficients: &[f64]) -> Path<Scalar> {
-        let mut path = Path::new(&Scalar::zeros());
-        path.length = 2.0;
-        path.order = coefficients.len() - 1;
-        for (to, from) in path.coefficients.iter_mut().zip(coefficients) {
-            to[0] = *from;
-        }
-        path.add_rounding();
-        path
+        let coefficients: Vec<Scalar> = coefficients.iter().map(|&c| Scalar::new(c)).collect();
+        Path::of(&coefficients, 2.0)
     }
 
     #[test]

@@ -49,9 +49,15 @@ impl<S: StateVector> Room<S> {
     /// True if a step lies in the box.
     #[inline]
     pub(crate) fn holds(&self, path: &Path<S>) -> bool {
+        self.holds_box(|i| path.range(i), path.time([0.0, 1.0]).value)
+    }
+
+    /// True if the positions in these ranges, at these times, lie in the box.
+    #[inline(always)]
+    pub(crate) fn holds_box(&self, range: impl Fn(usize) -> Interval, times: Interval) -> bool {
         self.is_known
-            && self.times.contains(path.time([0.0, 1.0]).value)
-            && (0..self.positions).all(|i| !self.keeps(i) || self.range(i).contains(path.range(i)))
+            && self.times.contains(times)
+            && (0..self.positions).all(|i| !self.keeps(i) || self.range(i).contains(range(i)))
     }
 
     /// Range of component `i` in the box.
@@ -86,21 +92,33 @@ impl<S: StateVector> Room<S> {
     /// Sets the box to that of a step, with a margin on every side of this multiple of the distance covered in the
     /// step.
     pub(crate) fn surround(&mut self, path: &Path<S>, margin: f64) {
+        let widened = |range: Interval| range.widened(margin * range.width());
+        self.surround_box(
+            |i| widened(path.range(i)),
+            widened(path.time([0.0, 1.0]).value),
+        );
+    }
+
+    /// Sets the box to these ranges and times.
+    pub(crate) fn surround_box(&mut self, range: impl Fn(usize) -> Interval, times: Interval) {
         for i in 0..self.positions {
-            let range = path.range(i);
-            self.set(i, range.widened(margin * range.width()));
+            self.set(i, range(i));
         }
-        let times = path.time([0.0, 1.0]).value;
-        self.times = times.widened(margin * times.width());
+        self.times = times;
         self.is_known = true;
     }
 
     /// Extends the box to contain a step as well; on a side that the step leaves, by half as much again.
     pub(crate) fn extend(&mut self, path: &Path<S>) {
+        self.extend_box(|i| path.range(i), path.time([0.0, 1.0]).value);
+    }
+
+    /// The same for these ranges and times.
+    pub(crate) fn extend_box(&mut self, range: impl Fn(usize) -> Interval, times: Interval) {
         for i in 0..self.positions {
-            self.set(i, extended(self.range(i), path.range(i)));
+            self.set(i, extended(self.range(i), range(i)));
         }
-        self.times = extended(self.times, path.time([0.0, 1.0]).value);
+        self.times = extended(self.times, times);
     }
 
     fn set(&mut self, i: usize, range: Interval) {

@@ -1,4 +1,4 @@
-//! The first fall of one gap along a step: estimated on its polynomial if there is one, and proved to be the first by
+//! The first fall of one gap along a step: on its polynomial if there is one whose error is bounded, otherwise by
 //! enclosures.
 
 use super::root::Polynomial;
@@ -15,7 +15,7 @@ use crate::state::StateVector;
 
 /// Known data of a gap along a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Known<'a, G> {
+pub(super) struct Known<'a, G: StateVector> {
     /// The polynomials of all gaps, if the step is a power series.
     pub(super) series: Option<&'a GapSeries<G>>,
     /// The gap at both ends.
@@ -24,12 +24,12 @@ pub(super) struct Known<'a, G> {
     pub(super) whole: Option<TaylorModel>,
 }
 
-/// The first fall of a gap, with its time to the last bits. For a series it is searched on the polynomial; enclosures
-/// of the gap itself show that none precedes it.
+/// The first fall of a gap, with its time to the last bits. What the polynomial of a gap does not show to be a single
+/// fall, or none, is left to enclosures of the gap itself.
 pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
-    path: &Path<Sys::State>,
+    path: &mut Path<Sys::State>,
     sizes: &Sys::State,
     Known {
         series,
@@ -46,13 +46,28 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
             .as_slice()[surface]
     };
     let mut along = |part: [f64; 2]| {
-        enclosures += 1;
-        let component = |i: usize| path.component(i, part);
-        step.system
-            .gap_along(surface, path.time_model(part), &component)
+        let certain = series.filter(|series| series.is_certain(surface));
+        let model = certain.and_then(|series| series.on(surface, part));
+        model.unwrap_or_else(|| {
+            enclosures += 1;
+            path.enclose();
+            let component = |i: usize| path.component(i, part);
+            step.system
+                .gap_along(surface, path.time_model(part), &component)
+        })
     };
     let mut rounding = |part: f64| rounding_along(surface, step, part, sizes, &mut more);
-    let plain = series.and_then(|series| plain_fall(surface, series, start, &mut gap));
+    let plain = series.map_or(Plain::Unknown, |series| {
+        plain_fall(surface, series, start, &mut gap)
+    });
+    let known = match plain {
+        Plain::Certain(found) => {
+            step.counters.event_evaluations += evaluations;
+            return found;
+        }
+        Plain::Likely(bracket) => Some(bracket),
+        Plain::Unknown => None,
+    };
     let line = Line {
         gap: &mut gap,
         along: &mut along,
@@ -60,15 +75,23 @@ pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         ends,
         rounding: &mut rounding,
         start,
-        known: plain,
+        known,
     };
-    let found = match (plain, line.first_fall()) {
-        (Some(plain), Search::Clear) => Search::Falls(plain),
+    let found = match (known, line.first_fall()) {
+        (Some(known), Search::Clear) => Search::Falls(known),
         (_, found) => found,
     };
     step.counters.event_evaluations += evaluations + more;
     step.counters.enclosures += enclosures;
     found
+}
+
+/// Result of the search on a polynomial.
+enum Plain {
+    Certain(Search),
+    /// A fall that may not be the first.
+    Likely(Bracket),
+    Unknown,
 }
 
 /// The fall of a polynomial that has one root in the whole step, or in its beginning, corrected with the gap.
@@ -77,20 +100,32 @@ fn plain_fall<G: StateVector>(
     series: &GapSeries<G>,
     start: Start,
     gap: &mut dyn FnMut(f64) -> f64,
-) -> Option<Bracket> {
-    let is_plain = start.from == 0.0 && start.above;
+) -> Plain {
+    let is_certain = series.is_certain(surface);
+    let is_plain = start.from == 0.0 && start.above && (is_certain || series.is_sharp);
     if !is_plain {
-        return None;
+        return Plain::Unknown;
     }
     let at_hand = start.slope.is_some();
     let polynomial = Polynomial::new(series, surface, at_hand);
     let end = match series.signs(surface, at_hand) {
-        Signs::Falls => 1.0,
-        Signs::Unclear => polynomial.first_fall()?,
-        _ => return None,
+        Signs::Falls => Some(1.0),
+        Signs::Positive if is_certain => return Plain::Certain(Search::Clear),
+        Signs::Unclear => polynomial.first_fall(),
+        _ => None,
+    };
+    let Some(end) = end else {
+        return Plain::Unknown;
     };
     if start.until < end && series.is_positive(surface, start.until) {
-        return None;
+        return match is_certain {
+            true => Plain::Certain(Search::Clear),
+            false => Plain::Unknown,
+        };
     }
-    polynomial.fall([0.0, end], gap)
+    match polynomial.fall([0.0, end], gap) {
+        Some((bracket, true)) if is_certain => Plain::Certain(Search::Falls(bracket)),
+        Some((bracket, _)) => Plain::Likely(bracket),
+        None => Plain::Unknown,
+    }
 }

@@ -11,17 +11,14 @@ use crate::state::StateVector;
 /// Difference of times, relative to them, below which they count as the same.
 pub(super) const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
-/// Optional data: rates at the end of the step, and the polynomials of the gaps if the step is a series.
-struct Close<G> {
-    rates: G,
-    series: Option<GapSeries<G>>,
-}
-
-/// Gaps at the end of the step, and the optional data.
-pub(super) struct Glance<G> {
+/// Gaps at the end of the step, and data that most steps do not need.
+pub(super) struct Glance<G: StateVector> {
     pub(super) gaps: G,
-    /// The optional data; most steps need none.
-    close: Option<Close<G>>,
+    /// Rates at the end, once computed.
+    rates: Option<G>,
+    /// Polynomials of the gaps, once computed.
+    series: Option<GapSeries<G>>,
+    /// True if the step is a power series.
     has_series: bool,
     /// Length of the step, and the larger of the absolute values of its times.
     pub(super) length: f64,
@@ -34,31 +31,56 @@ impl<G: StateVector> Glance<G> {
         self.length <= SAME_TIME * self.latest
     }
 
-    /// Computes the optional data, unless that is done. Returns the rates at the end.
+    /// Computes the rates at the end, unless that is done.
     #[inline(always)]
     pub(super) fn look_closer<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
         step: &StepView<'_, Sys, Step>,
     ) -> Result<G, Outcome> {
-        if let Some(rates) = self.rates() {
-            return Ok(*rates);
+        if let Some(rates) = self.rates {
+            return Ok(rates);
         }
-        let series = match self.has_series {
-            true => GapSeries::of(step, &self.gaps),
-            false => None,
-        };
-        let rates = match &series {
-            Some(series) => series.last_rates(self.length),
+        let length = self.length;
+        let rates = match self
+            .expand(step)
+            .and_then(|series| series.last_rates(length))
+        {
+            Some(rates) => rates,
             None => step.system.gap_rates(step.t_end(), step.end())?,
         };
-        self.close = Some(Close { rates, series });
+        self.rates = Some(rates);
         Ok(rates)
+    }
+
+    /// Computes the polynomials of the gaps, unless that is done. `None` if the step is no series.
+    #[inline(always)]
+    pub(super) fn expand<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
+        &mut self,
+        step: &StepView<'_, Sys, Step>,
+    ) -> Option<&mut GapSeries<G>> {
+        if self.has_series && self.series.is_none() {
+            self.series = GapSeries::of(step, &self.gaps);
+        }
+        self.series.as_mut()
+    }
+
+    /// True if the step is a power series.
+    #[inline(always)]
+    pub(super) fn has_series(&self) -> bool {
+        self.has_series
+    }
+
+    /// True if the polynomial of a gap is known, and its error bounded.
+    #[inline(always)]
+    pub(super) fn is_certain(&self, surface: usize) -> bool {
+        self.series()
+            .is_some_and(|series| series.is_certain(surface))
     }
 
     /// The rates at the end; `None` before [`Glance::look_closer`].
     #[inline(always)]
     pub(super) fn rates(&self) -> Option<&G> {
-        self.close.as_ref().map(|close| &close.rates)
+        self.rates.as_ref()
     }
 
     /// The rate of a gap at the end; `None` before [`Glance::look_closer`].
@@ -67,10 +89,10 @@ impl<G: StateVector> Glance<G> {
         self.rates().map(|rates| rates.as_slice()[surface])
     }
 
-    /// The polynomials of the gaps, after [`Glance::look_closer`], if the step is a series.
+    /// The polynomials of the gaps, once computed.
     #[inline(always)]
     pub(super) fn series(&self) -> Option<&GapSeries<G>> {
-        self.close.as_ref()?.series.as_ref()
+        self.series.as_ref()
     }
 
     /// True if the gap vanishes at the end of the step within the rounding of times.
@@ -114,7 +136,8 @@ pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     };
     Ok(Glance {
         gaps: finite(step.system, gaps)?,
-        close: None,
+        rates: None,
+        series: None,
         has_series,
         length,
         latest: t.abs().max(step.t_start().abs()),

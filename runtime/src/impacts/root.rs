@@ -28,7 +28,7 @@ const CLOSE: f64 = 1.0 / (1 << 10) as f64;
 
 /// The polynomial of a surface's gap, after division by a root at the start of the step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Polynomial<'a, G> {
+pub(super) struct Polynomial<'a, G: StateVector> {
     series: &'a GapSeries<G>,
     surface: usize,
     /// True if there is a root at the start.
@@ -41,7 +41,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
     /// The polynomial of this surface; `at_hand` if it is at hand at the start of the step.
     pub(super) fn new(series: &'a GapSeries<G>, surface: usize, at_hand: bool) -> Self {
         let first = usize::from(at_hand);
-        let terms = &series.coefficients[first..=series.order.max(first)];
+        let known = &series.polynomials;
+        let terms = &known.coefficients[first..=known.order.max(first)];
         let is_zero = |term: &G| term.as_slice()[surface] == 0.0;
         let vanishing = terms.iter().rev().take_while(|term| is_zero(term)).count();
         Self {
@@ -59,14 +60,14 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         (signs == Signs::Falls).then_some(end)
     }
 
-    /// The fall of the gap in a bracket at whose ends the polynomial has different signs: Chebyshev's method on the
+    /// The fall of the gap in a bracket in which the polynomial has one root, a fall: Chebyshev's method on the
     /// polynomial, with the gap itself in the last step. `None` if it does not converge soon, or if the gap differs
-    /// from the polynomial.
+    /// from the polynomial. The second value is true if the gap has no other root in the bracket.
     pub(super) fn fall(
         &self,
         [mut before, mut after]: [f64; 2],
         gap: impl FnMut(f64) -> f64,
-    ) -> Option<Bracket> {
+    ) -> Option<(Bracket, bool)> {
         let width = after - before;
         let mut near = self.near(self.terms, self.guess([before, after]));
         let mut steps = 0..STEPS;
@@ -93,13 +94,31 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         let size = self.series.sizes.as_slice()[self.surface];
         // Width that neighbouring numbers and rounding cannot resolve.
         let margin = 8.0 * f64::EPSILON * (root + size / self.slope(&near, root).abs());
+        let is_only = self.falls_through(near.slope + 2.0 * near.bend * (root - near.part));
         let root = self.corrected(&near, root, margin, gap)?;
         let is_plain = margin <= CLOSE * width && root > margin && root + margin < 1.0;
-        is_plain.then_some(Bracket {
+        let bracket = Bracket {
             before: root - margin,
             after: root + margin,
             nearest: root,
-        })
+        };
+        is_plain.then_some((bracket, is_only))
+    }
+
+    /// True if the gap, which has a root only where the polynomial is within its error of zero, falls there: `slope`
+    /// is that of the polynomial at its root.
+    ///
+    /// Within `4 d / |slope|` of the root, with `d` the error, the slope must change by at most half. The polynomial
+    /// then exceeds `d` outside, and inside half the slope must exceed the error of the derivative.
+    #[inline(always)]
+    fn falls_through(&self, slope: f64) -> bool {
+        let doubt = self.series.doubt(self.surface, self.at_hand);
+        let drift = self.series.drift(self.surface);
+        let sizes = self.terms.iter().enumerate();
+        let bend = sizes.fold(0.0, |sum, (k, term)| {
+            sum + (k * k.saturating_sub(1)) as f64 * term.as_slice()[self.surface].abs()
+        });
+        slope < 0.0 && 8.0 * bend * doubt <= slope * slope && -0.5 * slope > drift
     }
 
     /// True if a root is so near that rounding exceeds the error after a step to it: the error of the step itself,
@@ -109,9 +128,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
     fn is_next(&self, near: &Near, root: f64) -> bool {
         let step = (root - near.part).abs();
         let share = step * near.bend;
-        let [size, doubt] =
-            [&self.series.sizes, &self.series.doubts].map(|values| values.as_slice()[self.surface]);
-        let degree = self.series.order as f64;
+        let size = self.series.sizes.as_slice()[self.surface];
+        let doubt = self.series.doubt(self.surface, self.at_hand);
+        let degree = self.series.polynomials.order as f64;
         2.0 * step * share * share <= f64::EPSILON * root * near.slope * near.slope
             && degree * doubt * step <= f64::EPSILON * root * size
     }
@@ -130,12 +149,12 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         let mut value = gap(part);
         let divisor = if self.at_hand { part } else { 1.0 };
         let missed = (value - divisor * near.value).abs();
-        let is_said = missed <= self.series.doubts.as_slice()[self.surface];
+        let is_said = missed <= self.series.doubt(self.surface, false);
         if !(is_said && self.slope(near, root) < 0.0) {
             return None;
         }
         let mut next = near.root(value / divisor);
-        let degree = self.series.order as f64;
+        let degree = self.series.polynomials.order as f64;
         // Error of the slope: the change of the gap's slope between here and the point before; at first, the
         // contribution of a last term that accounts for the error of the polynomial's root.
         let mut apart = (next - root).abs();
@@ -167,7 +186,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             false => middle,
         };
         let first = usize::from(self.at_hand);
-        let [a, b] = [0, 1].map(|k| self.series.coefficients[first + k].as_slice()[self.surface]);
+        let [a, b] = [0, 1]
+            .map(|k| self.series.polynomials.coefficients[first + k].as_slice()[self.surface]);
         let end = self.series.last.as_slice()[self.surface];
         let root = math::sqrt((b * b - 4.0 * a * (end - a - b)).max(0.0));
         // The form of the quotient without cancellation.
@@ -245,25 +265,29 @@ mod tests {
     use nalgebra::SVector;
 
     use super::*;
-    use crate::jet::LENGTH;
+    use crate::events::polynomials::Polynomials;
+    use crate::per_surface::PerSurface;
 
     type One = SVector<f64, 1>;
 
     /// The series of a polynomial with an error of at most `doubt`.
     fn series(terms: &[f64], doubt: f64) -> GapSeries<One> {
-        let mut coefficients = [One::zeros(); LENGTH];
-        for (entry, term) in coefficients.iter_mut().zip(terms) {
+        let mut polynomials = Polynomials::zero(&One::zeros());
+        for (entry, term) in polynomials.coefficients.iter_mut().zip(terms) {
             entry[0] = *term;
         }
+        polynomials.order = terms.len() - 1;
+        polynomials.doubts = [One::new(doubt); 2];
         let size: f64 = terms.iter().map(|term| term.abs()).sum();
         GapSeries {
-            coefficients,
-            order: terms.len() - 1,
+            polynomials,
+            floors: One::zeros(),
             sizes: One::new(size),
             tails: One::zeros(),
-            doubts: One::new(doubt),
+            certain: PerSurface::all(&One::zeros(), Some(true)),
             last: One::new(terms.iter().sum()),
             slopes: One::zeros(),
+            is_sharp: true,
         }
     }
 
@@ -274,7 +298,11 @@ mod tests {
         ends: [f64; 2],
         gap: impl FnMut(f64) -> f64,
     ) -> Option<Bracket> {
-        Polynomial::new(polynomial, 0, at_hand).fall(ends, gap)
+        let found = Polynomial::new(polynomial, 0, at_hand).fall(ends, gap);
+        found.map(|(bracket, is_only)| {
+            assert!(is_only, "{bracket:?}");
+            bracket
+        })
     }
 
     #[test]
@@ -320,7 +348,9 @@ mod tests {
         let polynomial = Polynomial::new(&dip, 0, false);
         let end = polynomial.first_fall().expect("one fall");
         assert!(end > 0.25 && end < 0.75, "{end}");
-        let found = polynomial.fall([0.0, end], gap).map(|fall| fall.nearest);
+        let found = polynomial
+            .fall([0.0, end], gap)
+            .map(|(fall, _)| fall.nearest);
         assert!(
             found.is_some_and(|root| (root - 0.25).abs() <= 1e-15),
             "{found:?}"

@@ -41,7 +41,7 @@ impl<Sys: Impacting> Watch<Sys> {
     pub(super) fn search<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
+        glance: &mut Glance<Sys::Gaps>,
         last_rates: &Sys::Gaps,
         (first, mut whole): (usize, Option<TaylorModel>),
     ) -> Result<(), Outcome> {
@@ -121,9 +121,11 @@ impl<Sys: Impacting> Watch<Sys> {
         &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
+        glance: &mut Glance<Sys::Gaps>,
         whole: Option<TaylorModel>,
     ) -> Result<Found, Outcome> {
+        self.certify(surface, step, glance);
+        let glance = &*glance;
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
@@ -142,7 +144,7 @@ impl<Sys: Impacting> Watch<Sys> {
         };
         let mut tangential = None;
         for _ in 0..FALLS {
-            let found = first_fall(surface, step, &self.path, &self.sizes, known, start);
+            let found = first_fall(surface, step, &mut self.path, &self.sizes, known, start);
             let (part, after, nearest) = match found {
                 Search::Clear => {
                     return match tangential {

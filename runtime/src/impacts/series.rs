@@ -1,122 +1,189 @@
 //! Gaps along a step that is a power series: they are polynomials, and their signs follow from their coefficients.
 //!
 //! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull), and show where a
-//! root may lie. An enclosure of the gap itself must show that no other root exists: the truncated terms of the
-//! series may hide one.
+//! root may lie. A bound of the terms that the series lacks makes them certain ([`Tails`](crate::events::tails::Tails));
+//! without one the signs are unclear.
 //!
 //! Reference: G. Farin, *Curves and Surfaces for CAGD* (2002), chapter 5.
 
 use crate::contract::Impacting;
 use crate::effects::StepView;
 use crate::events::crossing::{COUNT, FROM_POWERS, Signs, read};
+use crate::events::polynomials::Polynomials;
+use crate::events::tails::Tail;
 use crate::integrate::{Series, Stepper};
-use crate::jet::LENGTH;
 use crate::math;
+use crate::numbers::TaylorModel;
+use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Relative error of a polynomial, beside the sum of the absolute values of its terms, up to which it is useful. Its
-/// first terms must also make up most of the sum: otherwise the step is longer than the reach of the series.
+/// Relative error of a polynomial, beside the sum of the absolute values of its terms, up to which its slope is that of
+/// the gap. Its first terms must also make up most of the sum: otherwise the step is longer than the reach of the series.
 const USEFUL: f64 = 1.0 / (1 << 20) as f64;
+
+/// Largest error of a polynomial, as a share of its change on a part of a step, beside which that change is seen.
+const HIDDEN: f64 = 1.0 / 8.0;
 
 /// Rounding of coefficients and of sums over them, relative to the sum of the absolute values of the terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The gaps of a step as polynomials in the fraction of the step.
 #[derive(Debug)]
-pub(super) struct GapSeries<G> {
-    pub(super) coefficients: [G; LENGTH],
-    pub(super) order: usize,
+pub(super) struct GapSeries<G: StateVector> {
+    /// The polynomials. Their error bounds are those of deviations at the end of the step, of rounding, and of the
+    /// missing terms.
+    pub(super) polynomials: Polynomials<G>,
+    /// Error bounds of the constant terms.
+    pub(super) floors: G,
     /// Sums of the absolute values of all terms, and of those above the fourth.
     pub(super) sizes: G,
     pub(super) tails: G,
-    /// Error bound of each polynomial: its deviation at the end of the step, and rounding.
-    pub(super) doubts: G,
+    /// True if the error bounds include the missing terms, false if no bound of those is known; `None` before
+    /// [`GapSeries::certify`].
+    pub(super) certain: PerSurface<Option<bool>, G>,
     /// The gaps at the end of the step, and their slopes by the fraction of the step.
     pub(super) last: G,
     pub(super) slopes: G,
+    /// True if the slopes are accurate.
+    pub(super) is_sharp: bool,
 }
 
 impl<G: StateVector> GapSeries<G> {
-    /// The polynomials of a step that is a series, with the gaps `last` at its end, if they are useful.
+    /// The polynomials of a step that is a series, with the gaps `last` at its end.
     #[inline(always)]
     pub(super) fn of<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         step: &StepView<'_, Sys, Step>,
         last: &G,
     ) -> Option<Self> {
         let Series { unit, order } = step.stepper.series()?;
-        // NOTE: terms above the order stay zero.
-        let mut gaps = [last.zeroed(); LENGTH];
+        let mut polynomials = Polynomials::zero(last);
+        polynomials.order = order;
         let theta = step.length() / unit;
         let mut power = 1.0;
-        let (mut sums, mut sizes, mut tails) = (last.zeroed(), last.zeroed(), last.zeroed());
-        let mut slopes = last.zeroed();
-        for (k, gap) in gaps[..=order].iter_mut().enumerate() {
-            if k == 5 {
-                tails = sizes;
-            }
+        let (mut sums, mut slopes, mut firsts) = (last.zeroed(), last.zeroed(), last.zeroed());
+        for (k, gap) in polynomials.coefficients[..=order].iter_mut().enumerate() {
             let coefficient = step.stepper.gap_coefficient(k);
             for i in 0..last.count() {
                 let term = coefficient[i] * power;
                 gap.as_mut_slice()[i] = term;
                 sums.as_mut_slice()[i] += term;
-                sizes.as_mut_slice()[i] += term.abs();
                 slopes.as_mut_slice()[i] += k as f64 * term;
+                if k < 5 {
+                    firsts.as_mut_slice()[i] += term.abs();
+                }
             }
             power *= theta;
         }
-        let mut doubts = last.zeroed();
+        let [sizes, steeps] = polynomials.sum();
+        let mut tails = last.zeroed();
+        let mut is_sharp = true;
         for i in 0..last.count() {
-            let missed = (sums.as_slice()[i] - last.as_slice()[i]).abs();
-            let size = sizes.as_slice()[i];
-            let first = match order < 5 {
-                true => size,
-                false => tails.as_slice()[i],
-            };
-            let is_useful = missed <= USEFUL * size && size <= 2.0 * first;
-            if !is_useful {
-                return None;
-            }
+            let at = |values: &G| values.as_slice()[i];
+            let missed = (at(&sums) - at(last)).abs();
+            let (size, first) = (at(&sizes), at(&firsts));
+            is_sharp &= missed <= USEFUL * size && size <= 2.0 * first;
+            let [doubts, drifts] = &mut polynomials.doubts;
             doubts.as_mut_slice()[i] = 4.0 * missed + ROUNDING * size;
-            tails.as_mut_slice()[i] = if order < 5 {
-                0.0
-            } else {
-                size - tails.as_slice()[i]
-            };
+            drifts.as_mut_slice()[i] = 4.0 * order as f64 * missed + ROUNDING * at(&steeps);
+            tails.as_mut_slice()[i] = size - first;
         }
         Some(Self {
-            coefficients: gaps,
-            order,
+            polynomials,
+            floors: last.zeroed(),
             sizes,
             tails,
-            doubts,
+            certain: PerSurface::all(last, None),
             last: *last,
             slopes,
+            is_sharp,
         })
     }
 
-    /// The gap of a surface at a fraction of the step.
+    /// Includes a bound of the missing terms in the error bounds of a surface's polynomial, if there is one. Returns
+    /// true if there is. `tail` gets the order and the sum of the absolute values of the terms.
     #[inline(always)]
-    pub(super) fn at(&self, surface: usize, part: f64) -> f64 {
-        let terms = self.coefficients[..=self.order].iter().rev();
-        terms.fold(0.0, |sum, term| {
-            math::mul_add(sum, part, term.as_slice()[surface])
-        })
+    pub(super) fn certify(
+        &mut self,
+        surface: usize,
+        tail: impl FnOnce((usize, f64)) -> Option<Tail>,
+    ) -> bool {
+        if let Some(is_certain) = self.certain[surface] {
+            return is_certain;
+        }
+        let tail = tail((self.polynomials.order, self.sizes.as_slice()[surface]));
+        self.certain[surface] = Some(tail.is_some());
+        let Some(Tail {
+            value,
+            slope,
+            floor,
+        }) = tail
+        else {
+            return false;
+        };
+        let bounds = self.polynomials.doubts.iter_mut();
+        for (bounds, bound) in bounds.zip([value, slope]) {
+            bounds.as_mut_slice()[surface] += bound;
+        }
+        self.floors.as_mut_slice()[surface] = floor;
+        true
+    }
+
+    /// True if the error bounds of a surface's polynomial include the missing terms.
+    #[inline(always)]
+    pub(super) fn is_certain(&self, surface: usize) -> bool {
+        self.certain[surface] == Some(true)
+    }
+
+    /// True after the first [`GapSeries::certify`].
+    #[inline(always)]
+    pub(super) fn has_begun(&self) -> bool {
+        self.certain.iter().any(|known| known.is_some())
+    }
+
+    /// Taylor model of the gap of a surface on a part of the step; `None` where the errors of its polynomial hide it.
+    #[inline]
+    pub(super) fn on(&self, surface: usize, part: [f64; 2]) -> Option<TaylorModel> {
+        let mut model = self.polynomials.on(surface, part);
+        model.error += self.floors.as_slice()[surface];
+        let [middle, first, second, third] = model.powers;
+        let radius = 0.5 * (part[1] - part[0]);
+        let change = first.abs() + second.abs();
+        let error = self.doubt(surface, false).max(radius * self.drift(surface));
+        let is_off = middle.abs() > change + third.abs() + model.error;
+        (is_off || error <= HIDDEN * change).then_some(model)
     }
 
     /// True if the gap of a surface is positive at a fraction of the step, beyond its error.
     pub(super) fn is_positive(&self, surface: usize, part: f64) -> bool {
-        self.at(surface, part) > self.doubts.as_slice()[surface]
+        self.polynomials.at(surface, part) > self.doubt(surface, false)
     }
 
-    /// The gap rates at the end of a step of this length.
+    /// Error bound of the polynomial of a surface; with a surface `at_hand`, whose root at the start is divided out,
+    /// without that of the constant term.
     #[inline(always)]
-    pub(super) fn last_rates(&self, length: f64) -> G {
+    pub(super) fn doubt(&self, surface: usize, at_hand: bool) -> f64 {
+        let doubt = self.polynomials.doubts[0].as_slice()[surface];
+        match at_hand {
+            true => doubt,
+            false => doubt + self.floors.as_slice()[surface],
+        }
+    }
+
+    /// Error bound of its derivative.
+    #[inline(always)]
+    pub(super) fn drift(&self, surface: usize) -> f64 {
+        self.polynomials.doubts[1].as_slice()[surface]
+    }
+
+    /// The gap rates at the end of a step of this length, if they are accurate.
+    #[inline(always)]
+    pub(super) fn last_rates(&self, length: f64) -> Option<G> {
         let mut rates = self.slopes;
         rates
             .as_mut_slice()
             .iter_mut()
             .for_each(|rate| *rate /= length);
-        rates
+        self.is_sharp.then_some(rates)
     }
 
     /// Signs of the polynomial of a surface over the step, after division by a root at the start.
@@ -126,10 +193,10 @@ impl<G: StateVector> GapSeries<G> {
     #[inline(always)]
     pub(super) fn signs(&self, surface: usize, at_hand: bool) -> Signs {
         let first = usize::from(at_hand);
-        let at = |k: usize| self.coefficients[first + k].as_slice()[surface];
+        let at = |k: usize| self.polynomials.coefficients[first + k].as_slice()[surface];
         let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
         let hull = [a, a + b / 3.0, a + (2.0 * b + c) / 3.0, a + b + c + d];
-        let mut rest = self.doubts.as_slice()[surface] + self.tails.as_slice()[surface];
+        let mut rest = self.doubt(surface, at_hand) + self.tails.as_slice()[surface];
         if !at_hand {
             rest += at(4).abs();
         }
@@ -145,8 +212,13 @@ impl<G: StateVector> GapSeries<G> {
     pub(super) fn signs_by_more(&self, surface: usize, at_hand: bool, end: f64) -> Signs {
         let first = usize::from(at_hand);
         // NOTE: terms above the order are zero.
-        let terms = &self.coefficients[first..=self.order.max(COUNT)];
-        let mut doubt = self.doubts.as_slice()[surface];
+        let Polynomials {
+            coefficients,
+            order,
+            ..
+        } = &self.polynomials;
+        let terms = &coefficients[first..=(*order).max(COUNT)];
+        let mut doubt = self.doubt(surface, at_hand);
         let mut behind = [0.0; COUNT - 1];
         let mut power = 1.0;
         for (term, weights) in terms.iter().zip(&FROM_POWERS) {

@@ -75,6 +75,7 @@ impl<Sys: Impacting> Watch<Sys> {
             return Ok(None);
         }
         self.path.refine(step)?;
+        self.path.enclose();
         let mut evaluations = 0;
         let rounding = rounding_along(surface, step, 1.0, &self.sizes, &mut evaluations);
         step.counters.event_evaluations += evaluations;

@@ -20,9 +20,10 @@ use crate::events::haven::Haven;
 use crate::events::path::Path;
 use crate::events::piece::Piece;
 use crate::events::resolution::resolution;
+use crate::events::tails::Tails;
 use crate::integrate::Stepper;
 use crate::law::Law;
-use crate::numbers::TaylorModel;
+use crate::numbers::{ComplexInterval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
@@ -30,6 +31,9 @@ use crate::state::StateVector;
 /// Fraction of a step after a hit within which other surfaces are tested for simultaneous impacts, with their
 /// rounding.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
+
+/// Number of surfaces up to which their gaps along a step that is a series are looked at as polynomials first.
+const FEW: usize = 8;
 
 /// The gaps at the start of the next step, and the results for the last one.
 #[derive(Debug, Clone)]
@@ -78,6 +82,8 @@ pub(super) struct Watch<Sys: Impacting> {
     /// A box in which no gap vanishes, and a box with bounds of the gaps' derivatives.
     haven: Haven<Sys::State>,
     limits: Bends<Sys::State, Sys::Gaps>,
+    /// Bounds of the terms that the power series of the gaps lack.
+    tails: Tails<Sys::State, Sys::Gaps>,
     /// True if the gaps kept are older than the start of the next step, because the last steps were not tested.
     is_stale: bool,
 }
@@ -133,6 +139,7 @@ impl<Sys: Impacting> Watch<Sys> {
             path: Path::new(&state),
             haven: Haven::new(positions, &state),
             limits: Bends::new(positions, &state, &zeros),
+            tails: Tails::new(positions, &state, &zeros),
             is_stale: false,
         }
     }
@@ -144,6 +151,7 @@ impl<Sys: Impacting> Watch<Sys> {
         if (0..self.gaps.count()).any(|surface| held.is_held(surface) != self.held.is_held(surface))
         {
             self.limits.forget();
+            self.tails.forget();
         }
         self.held = *held;
     }
@@ -176,6 +184,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let positions = now.system.coordinate_count();
         self.haven = Haven::new(positions, now.state);
         self.limits = Bends::new(positions, now.state, &self.gaps);
+        self.tails = Tails::new(positions, now.state, &self.gaps);
         self.is_stale = false;
         let rates = now.system.gap_rates(now.t, now.state)?;
         let mut hits = Hits::none(&rates);
@@ -241,6 +250,7 @@ impl<Sys: Impacting> Watch<Sys> {
             |surface: usize| matches!(now.system.law(surface), Law::Reset | Law::Transition);
         if (0..self.gaps.count()).any(|s| hits.is_at_hand(s) && leads_on(s)) {
             self.limits.forget();
+            self.tails.forget();
         }
         self.is_stale = false;
         (self.steps, self.errors) = (0, 0.0);
@@ -394,8 +404,8 @@ impl<Sys: Impacting> Watch<Sys> {
         {
             *size = size.abs().max(value.abs());
         }
-        self.path.follow(step)?;
-        if self.haven.holds(&self.path) {
+        self.path.take(step)?;
+        if self.haven.holds(&mut self.path) {
             self.is_stale = true;
             return Ok(None);
         }
@@ -407,11 +417,20 @@ impl<Sys: Impacting> Watch<Sys> {
             glance.look_closer(step)?;
         }
         let mut surfaces = 0..self.gaps.count();
+        // Polynomials of a few gaps cost less than boxes.
+        let has_series = glance.has_series() && self.gaps.count() <= FEW;
+        let has_limits = !(has_series && self.tails.is_useful());
         let Self { limits, path, .. } = self;
-        limits.follow(step.system, path, &mut step.counters.enclosures);
+        match has_limits {
+            true => {
+                path.enclose();
+                limits.follow(step.system, path, &mut step.counters.enclosures);
+            }
+            false => limits.skip(),
+        }
         let mut has_told = true;
         self.is_told.fill(false);
-        let unclear = surfaces.find_map(|surface| match self.told(surface, step, &glance) {
+        let unclear = surfaces.find_map(|surface| match self.told(surface, step, &mut glance) {
             Told::Unclear(model) => Some((surface, model)),
             told => {
                 has_told &= matches!(told, Told::Passed);
@@ -419,14 +438,16 @@ impl<Sys: Impacting> Watch<Sys> {
                 None
             }
         });
-        self.limits.learn(has_told);
+        if has_limits {
+            self.limits.learn(has_told);
+        }
         if let Some(first) = unclear {
             let last_rates = glance.look_closer(step)?;
             if !self.has_rates {
                 self.rates = step.system.gap_rates(step.t_start(), step.start())?;
                 self.has_rates = true;
             }
-            self.search(step, &glance, &last_rates, first)?;
+            self.search(step, &mut glance, &last_rates, first)?;
         }
         if self.has_guarded {
             self.look_behind(step)?;
@@ -531,13 +552,48 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
+    /// Includes a bound of the terms that the polynomial of a gap lacks in its error, once a step. Returns true if
+    /// there is a polynomial, and a bound.
+    #[inline]
+    pub(super) fn certify<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        step: &mut StepView<'_, Sys, Step>,
+        glance: &mut Glance<Sys::Gaps>,
+    ) -> bool {
+        let Self { tails, path, .. } = self;
+        if glance.is_certain(surface) {
+            return true;
+        }
+        if !glance.has_series() || tails.skips(surface) {
+            return false;
+        }
+        let Some(series) = glance.expand(step) else {
+            return false;
+        };
+        if !series.is_sharp {
+            tails.postpone(surface);
+            return false;
+        }
+        if !series.has_begun() {
+            tails.follow(path);
+        }
+        let (system, enclosures) = (step.system, &mut step.counters.enclosures);
+        series.certify(surface, |terms| {
+            let gap = |t: ComplexInterval, component: &dyn Fn(usize) -> ComplexInterval| {
+                system.gap_complex(surface, t, component)
+            };
+            tails.of(surface, terms, (&gap, path), enclosures)
+        })
+    }
+
     /// True if the step passes this surface.
     #[inline]
     pub(super) fn told<Step: Stepper<Sys>>(
-        &self,
+        &mut self,
         surface: usize,
         step: &mut StepView<'_, Sys, Step>,
-        glance: &Glance<Sys::Gaps>,
+        glance: &mut Glance<Sys::Gaps>,
     ) -> Told {
         if self.held.is_held(surface) {
             return Told::Passed;
@@ -558,10 +614,20 @@ impl<Sys: Impacting> Watch<Sys> {
             return Told::Passed;
         }
         let whole = [0.0, 1.0];
-        step.counters.enclosures += 1;
-        let component = |i: usize| self.path.component(i, whole);
-        let time = self.path.time_model(whole);
-        let model = step.system.gap_along(surface, time, &component);
+        let is_certain = self.certify(surface, step, glance);
+        let model = match glance.series().filter(|_| is_certain) {
+            Some(series) => match series.signs(surface, is_at_hand) {
+                Signs::Positive | Signs::Negative => return Told::Clear,
+                _ => return Told::Unclear(None),
+            },
+            None => {
+                step.counters.enclosures += 1;
+                self.path.enclose();
+                let component = |i: usize| self.path.component(i, whole);
+                let time = self.path.time_model(whole);
+                step.system.gap_along(surface, time, &component)
+            }
+        };
         let piece = Piece::of(&model, whole, whole);
         let signs = match is_at_hand {
             true => piece.signs_from_zero(),

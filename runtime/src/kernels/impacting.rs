@@ -9,7 +9,7 @@ use crate::contract::{Along, Impacting, System, VectorField, after_reset};
 use crate::error::Fault;
 use crate::generated::{OverNumbers, certain};
 use crate::law::{Blow, Contact, Jump, Landing, Law};
-use crate::numbers::{Bent, Interval, Numbers, Row, TaylorModel};
+use crate::numbers::{Bent, ComplexInterval, Interval, Numbers, Row, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
@@ -300,6 +300,15 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     }
 
     fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
+        gap_over(self, surface, t, component)
+    }
+
+    fn gap_complex(
+        &self,
+        surface: usize,
+        t: ComplexInterval,
+        component: &dyn Fn(usize) -> ComplexInterval,
+    ) -> ComplexInterval {
         gap_over(self, surface, t, component)
     }
 

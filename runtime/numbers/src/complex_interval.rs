@@ -1,0 +1,616 @@
+//! Rectangles of complex numbers about the real axis, which bound a function off the axis.
+//!
+//! A rectangle holds all `x + i y` with `x` in an interval and `|y| <= height`. For a function `f` over numbers that is
+//! analytic on the rectangles of its arguments, `f` of them holds all its values there; a function that may have a
+//! singularity inside is [`ComplexInterval::ANYTHING`].
+//!
+//! Such bounds serve for power series of functions along a step, whose arguments are polynomials `p(z)` that stay in
+//! their rectangles for all complex `|z| <= R`. If `|Im f| <= h` there, and `f` is real on the real axis, coefficient
+//! `k >= 1` of its series is at most `2 h / R^k` (Borel and Caratheodory). Heights and roundings of results are at
+//! most proportional to the heights of the arguments: with heights smaller by a factor, they are smaller by it too.
+//!
+//! Reference: E. C. Titchmarsh, *The Theory of Functions* (1939), section 5.5.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::interval::Interval;
+use crate::math;
+use crate::numbers::Numbers;
+
+/// Rounding of the sums of up to 33 products by which a recurrence computes a coefficient of an operation's series,
+/// relative to the sum of their absolute values.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Ratio of the sum of the coefficients of a series to the bound of the function, on a disk whose radius is
+/// [`ComplexInterval::LEAST_RATIO`] times that on which they are summed.
+const SPREAD: f64 = 3.0;
+
+/// The same for the coefficients above the constant one, and the bound of the imaginary part.
+const SWAY: f64 = 4.0;
+
+/// Outward rounding of a few operations.
+const UP: f64 = 1.0 + 32.0 * f64::EPSILON;
+
+/// Degree of a function that is no polynomial.
+const NO_POLYNOMIAL: u32 = u32::MAX;
+
+/// A rectangle of complex numbers; see the module.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ComplexInterval {
+    /// Real parts.
+    pub real: Interval,
+    /// Largest absolute value of an imaginary part.
+    pub height: f64,
+    /// Bound of the rounding error of the constant coefficient of the function's series.
+    pub floor: f64,
+    /// Bound of the sum of the rounding errors of its other coefficients.
+    pub rounding: f64,
+    /// Degree of the function as a polynomial of the quantities that vary; at most this.
+    degree: u32,
+}
+
+/// Bounds of a function of one argument on a rectangle.
+struct Analytic {
+    real: Interval,
+    height: f64,
+    /// Of its first and second derivative.
+    slope: f64,
+    bend: f64,
+    /// Factor by which errors of a coefficient reach later ones.
+    growth: f64,
+}
+
+impl ComplexInterval {
+    /// Bounds of a function that may be singular.
+    pub const ANYTHING: Self = Self {
+        real: Interval::WHOLE,
+        height: f64::INFINITY,
+        floor: f64::INFINITY,
+        rounding: f64::INFINITY,
+        degree: NO_POLYNOMIAL,
+    };
+
+    /// Least ratio of the radius of the disk on which functions are bounded to the length of the step, for bounds of
+    /// rounding errors.
+    pub const LEAST_RATIO: f64 = 1.5;
+
+    /// A quantity that varies along the step: a polynomial of the time.
+    #[inline(always)]
+    pub fn varying(real: Interval, height: f64) -> Self {
+        Self {
+            real,
+            height,
+            floor: ROUNDING * real.magnitude(),
+            rounding: ROUNDING * SWAY * height,
+            degree: 1,
+        }
+    }
+
+    /// A real number that does not change along the step.
+    #[inline(always)]
+    pub fn steady(value: Interval) -> Self {
+        Self {
+            real: value,
+            height: 0.0,
+            floor: ROUNDING * value.magnitude(),
+            rounding: 0.0,
+            degree: 0,
+        }
+    }
+
+    /// The largest absolute value; not finite if nothing is known.
+    #[inline(always)]
+    pub fn magnitude(self) -> f64 {
+        (self.real.magnitude() + self.height) * UP
+    }
+
+    /// The degree as a polynomial of the varying quantities, if the function is one.
+    #[inline(always)]
+    pub fn degree(self) -> Option<u32> {
+        (self.degree != NO_POLYNOMIAL).then_some(self.degree)
+    }
+
+    #[inline(always)]
+    fn is_steady(self) -> bool {
+        self.degree == 0
+    }
+
+    /// Bound of the sum of all coefficients.
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        self.real.magnitude() + self.sway()
+    }
+
+    /// Bound of the sum of the coefficients above the constant one.
+    #[inline(always)]
+    fn sway(self) -> f64 {
+        SWAY * self.height
+    }
+
+    /// A function of one argument.
+    #[inline(always)]
+    fn analytic(self, function: Analytic) -> Self {
+        let Analytic {
+            real,
+            height,
+            slope,
+            bend,
+            growth,
+        } = function;
+        let size = real.magnitude();
+        let local = ROUNDING * SPREAD * (size + height + slope) * self.sway();
+        let carried = SPREAD * slope * self.rounding + SWAY * bend * self.height * self.floor;
+        Self {
+            real,
+            height,
+            floor: (slope * self.floor + ROUNDING * size) * UP,
+            rounding: (carried + SPREAD * growth * local) * UP,
+            degree: NO_POLYNOMIAL,
+        }
+        .or_anything()
+    }
+
+    /// A function of one argument by its values on the real axis and bounds of its derivatives.
+    #[inline(always)]
+    fn carried(self, value: Interval, [slope, bend]: [f64; 2], growth: f64) -> Self {
+        if self.is_steady() {
+            return Self::steady(value);
+        }
+        let reach = self.height * slope * UP;
+        self.analytic(Analytic {
+            real: value.widened(reach),
+            height: reach,
+            slope,
+            bend,
+            growth,
+        })
+    }
+
+    /// A function of one argument by its values on the real axis and its derivative.
+    #[inline(always)]
+    fn by_slope(self, value: Interval, slope: impl FnOnce(Self) -> Self) -> Self {
+        if self.is_steady() {
+            return Self::steady(value);
+        }
+        let derivative = slope(self);
+        let slope = derivative.magnitude();
+        // The height of the derivative bounds what the rounding of the argument does.
+        let bend = match self.height > 0.0 {
+            true => derivative.height / self.height,
+            false => 0.0,
+        };
+        self.carried(value, [slope, bend], slope)
+    }
+
+    /// The rectangle, if everything about it is finite.
+    #[inline(always)]
+    fn or_anything(self) -> Self {
+        // Not a comparison that NaN passes.
+        match self.rounding + self.floor < f64::INFINITY && self.magnitude() < f64::INFINITY {
+            true => self,
+            false => Self::ANYTHING,
+        }
+    }
+
+    /// `1 / a`
+    #[inline(always)]
+    fn inverted(self) -> Self {
+        let value = self.real.inverse();
+        if self.is_steady() {
+            return Self::steady(value);
+        }
+        if !(self.real.excludes_zero() && self.height < f64::INFINITY) {
+            return Self::ANYTHING;
+        }
+        // `1 / (x + i y) = (x - i y) / (x^2 + y^2)`
+        let square = Interval::new(0.0, self.height).square();
+        let share = (Interval::point(1.0) + square / self.real.square()).inverse();
+        let inverse = value.magnitude() * UP;
+        let slope = inverse * inverse * UP;
+        self.analytic(Analytic {
+            real: value * share,
+            height: self.height * slope * UP,
+            slope,
+            bend: 2.0 * slope * inverse,
+            growth: inverse,
+        })
+    }
+
+    /// `f(x) cosh y + i g(x) sinh y`, from the values of `f` and `g` on the real axis and bounds of both hyperbolic
+    /// functions.
+    #[inline(always)]
+    fn wave(self, [real, across]: [Interval; 2], [cosh, sinh]: [f64; 2]) -> Self {
+        self.analytic(Analytic {
+            real: real * Interval::new(1.0, cosh),
+            height: across.magnitude() * sinh * UP,
+            slope: cosh,
+            bend: cosh,
+            growth: SPREAD * cosh * cosh,
+        })
+    }
+
+    /// `f(x) cos y + i g(x) sin y`, from the values of `f` and `g` on the real axis, which bound `|f'|` as well.
+    fn turning(self, [real, across]: [Interval; 2]) -> Self {
+        if self.is_steady() {
+            return Self::steady(real);
+        }
+        let turn = Interval::new(-self.height, self.height);
+        let slope = real.magnitude().max(across.magnitude());
+        // A series and its inverse, without their constant terms, are at most the exponential of the sway.
+        let growth = math::exp(2.0 * self.sway()) * UP;
+        self.analytic(Analytic {
+            real: real * turn.cos(),
+            height: across.magnitude() * self.height * UP,
+            slope,
+            bend: slope,
+            growth,
+        })
+    }
+
+    fn one() -> Self {
+        Self::steady(Interval::point(1.0))
+    }
+}
+
+impl Add for ComplexInterval {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let floor = self.floor + other.floor;
+        let sizes = self.real.magnitude() + other.real.magnitude();
+        let height = (self.height + other.height) * UP;
+        let rounding = self.rounding + other.rounding + ROUNDING * SWAY * height;
+        Self {
+            real: self.real + other.real,
+            height,
+            floor: (floor + ROUNDING * sizes) * UP,
+            rounding: rounding * UP,
+            degree: self.degree.max(other.degree),
+        }
+    }
+}
+
+impl Sub for ComplexInterval {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Neg for ComplexInterval {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            real: -self.real,
+            ..self
+        }
+    }
+}
+
+impl Mul for ComplexInterval {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let value = self.real * other.real;
+        if self.is_steady() && other.is_steady() {
+            return Self::steady(value);
+        }
+        let [size, other_size] = [self, other].map(|factor| factor.real.magnitude());
+        let [sum, other_sum] = [self, other].map(Self::sum);
+        let [sway, other_sway] = [self, other].map(Self::sway);
+        let floor = size * other.floor + other_size * self.floor + ROUNDING * size * other_size;
+        let rounding = sum * other.rounding
+            + other_sum * self.rounding
+            + self.floor * other_sway
+            + other.floor * sway
+            + ROUNDING * (sum * other_sway + other_sum * sway);
+        Self {
+            real: value.widened(self.height * other.height * UP),
+            height: (size * other.height + other_size * self.height) * UP,
+            floor: floor * UP,
+            rounding: rounding * UP,
+            degree: self.degree.saturating_add(other.degree),
+        }
+        .or_anything()
+    }
+}
+
+impl Div for ComplexInterval {
+    type Output = Self;
+
+    // A quotient is the product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
+    fn div(self, other: Self) -> Self {
+        self * other.inverted()
+    }
+}
+
+impl Numbers for ComplexInterval {
+    const LANES: usize = 1;
+    const ZERO: Self = Self {
+        real: Interval::ZERO,
+        height: 0.0,
+        floor: 0.0,
+        rounding: 0.0,
+        degree: 0,
+    };
+
+    fn of(number: f64) -> Self {
+        Self::steady(Interval::of(number))
+    }
+
+    fn constant(parts: [f64; 4]) -> Self {
+        Self::steady(<Interval as Numbers>::constant(parts))
+    }
+
+    fn inverse(k: usize) -> Self {
+        Self::steady(<Interval as Numbers>::inverse(k))
+    }
+
+    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
+        Self::steady(Interval::gathered(of_lane))
+    }
+
+    /// A real number inside. It says nothing about the rest of the rectangle.
+    fn lane(&self, lane: usize) -> f64 {
+        self.real.lane(lane)
+    }
+
+    /// The sign of a real number.
+    fn is_below_zero(&self) -> Option<bool> {
+        match self.is_steady() {
+            true => self.real.is_below_zero(),
+            false => None,
+        }
+    }
+
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    fn square(self) -> Self {
+        let product = self * self;
+        match self.is_steady() {
+            true => Self::steady(self.real.square()),
+            false => Self {
+                real: self.real.square() - Interval::new(0.0, self.height).square(),
+                ..product
+            }
+            .or_anything(),
+        }
+    }
+
+    fn sqrt(self) -> Self {
+        let root = self.real.sqrt();
+        match self.is_steady() || self.real.lo > 0.0 {
+            true => {
+                // The derivatives are at most `1 / (2 sqrt |z|)` and `1 / (4 |z| sqrt |z|)`.
+                let slope = 0.5 / root.lo * UP;
+                let bend = 0.5 * slope / self.real.lo * UP;
+                self.carried(root, [slope, bend], slope)
+            }
+            false => Self::ANYTHING,
+        }
+    }
+
+    fn abs(self) -> Self {
+        self.turned(self)
+    }
+
+    /// No function across a kink.
+    fn max(self, other: Self) -> Self {
+        let ahead = self.real - other.real;
+        match (ahead.lo >= 0.0, ahead.hi <= 0.0) {
+            (true, _) => self,
+            (_, true) => other,
+            _ if self.is_steady() && other.is_steady() => {
+                Self::steady(Numbers::max(self.real, other.real))
+            }
+            _ => Self::ANYTHING,
+        }
+    }
+
+    /// No function across a kink.
+    fn turned(self, sign: Self) -> Self {
+        match (sign.real.lo < 0.0, sign.real.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ if self.is_steady() && sign.is_steady() => Self::steady(self.real.turned(sign.real)),
+            _ => Self::ANYTHING,
+        }
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        let value = self.real.atan2(x.real);
+        if self.is_steady() && x.is_steady() {
+            return Self::steady(value);
+        }
+        let is_off_the_cut = x.real.lo > 0.0 || self.real.excludes_zero();
+        if !is_off_the_cut {
+            return Self::ANYTHING;
+        }
+        // `d angle = (x dy - y dx) / (x^2 + y^2)`
+        let inverse = (self.square() + x.square()).inverted();
+        let [across, along] = [x * inverse, self * inverse];
+        let reach = (across.magnitude() * self.height + along.magnitude() * x.height) * UP;
+        let size = value.magnitude();
+        let carried = SPREAD
+            * (across.magnitude() * self.rounding + along.magnitude() * x.rounding)
+            + SWAY * (across.height * self.floor + along.height * x.floor);
+        let local = ROUNDING
+            * SPREAD
+            * (size + reach + across.magnitude() + along.magnitude())
+            * (self.sway() + x.sway());
+        let growth =
+            SPREAD * SPREAD * inverse.magnitude() * (1.0 + self.magnitude() + x.magnitude());
+        let floor = across.magnitude() * self.floor + along.magnitude() * x.floor + ROUNDING * size;
+        Self {
+            real: value.widened(reach),
+            height: reach,
+            floor: floor * UP,
+            rounding: (carried + growth * local) * UP,
+            degree: NO_POLYNOMIAL,
+        }
+        .or_anything()
+    }
+
+    fn powf(self, exponent: f64) -> Self {
+        match self.is_steady() {
+            true => Self::steady(self.real.powf(exponent)),
+            false => (Self::of(exponent) * self.ln()).exp(),
+        }
+    }
+
+    fn power(self, exponent: Self) -> Self {
+        match self.is_steady() && exponent.is_steady() {
+            true => Self::steady(self.real.power(exponent.real)),
+            false => (exponent * self.ln()).exp(),
+        }
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = self.real.sin_cos();
+        if self.is_steady() {
+            return (Self::steady(sine), Self::steady(cosine));
+        }
+        // `sin(x + i y) = sin x cosh y + i cos x sinh y`, `cos(x + i y) = cos x cosh y - i sin x sinh y`
+        let swell = [math::cosh, math::sinh].map(|function| function(self.height) * UP);
+        (
+            self.wave([sine, cosine], swell),
+            self.wave([cosine, sine], swell),
+        )
+    }
+
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    fn tan(self) -> Self {
+        let (sine, cosine) = self.sin_cos();
+        sine / cosine
+    }
+
+    fn asin(self) -> Self {
+        self.by_slope(self.real.asin(), |z| {
+            (Self::one() - z.square()).sqrt().inverted()
+        })
+    }
+
+    fn acos(self) -> Self {
+        self.by_slope(self.real.acos(), |z| {
+            (Self::one() - z.square()).sqrt().inverted()
+        })
+    }
+
+    fn atan(self) -> Self {
+        self.by_slope(self.real.atan(), |z| (Self::one() + z.square()).inverted())
+    }
+
+    fn exp(self) -> Self {
+        let value = self.real.exp();
+        self.turning([value, value])
+    }
+
+    fn ln(self) -> Self {
+        let value = self.real.ln();
+        match self.is_steady() || self.real.lo > 0.0 {
+            true => {
+                let slope = 1.0 / self.real.lo * UP;
+                self.carried(value, [slope, slope * slope], slope)
+            }
+            false => Self::ANYTHING,
+        }
+    }
+
+    fn sinh(self) -> Self {
+        self.turning([self.real.sinh(), self.real.cosh()])
+    }
+
+    fn cosh(self) -> Self {
+        self.turning([self.real.cosh(), self.real.sinh()])
+    }
+
+    fn tanh(self) -> Self {
+        self.sinh() / self.cosh()
+    }
+
+    fn asinh(self) -> Self {
+        self.by_slope(self.real.asinh(), |z| {
+            (Self::one() + z.square()).sqrt().inverted()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interval::tests::{Complex, FUNCTIONS, Sample};
+
+    #[test]
+    fn values_off_the_axis_lie_in_their_rectangles() {
+        let mut bounded = 0;
+        for function in FUNCTIONS {
+            for Sample { from, to } in function.stretches() {
+                let real = Interval::between(from, to);
+                for height in [0.0, 1e-3, 0.1, 0.7, 2.0] {
+                    let found = (function.complex_interval)(ComplexInterval::varying(real, height));
+                    bounded += u32::from(height > 0.0 && found.magnitude() < f64::INFINITY);
+                    for (k, l) in (0..=8).flat_map(|k| (0..=4).map(move |l| (k, l))) {
+                        let x = from + (to - from) * f64::from(k) / 8.0;
+                        let y = height * (f64::from(l) / 2.0 - 1.0);
+                        let value = (function.complex)(Complex::new(
+                            x.clamp(from.min(to), from.max(to)),
+                            y,
+                        ));
+                        let rounding = 1e-14 * (1.0 + value.magnitude());
+                        let is_inside = found
+                            .real
+                            .widened(rounding)
+                            .contains(Interval::point(value.real()))
+                            && value.imaginary().abs() <= found.height + rounding;
+                        assert!(
+                            is_inside || !(found.magnitude() < f64::INFINITY),
+                            "{} at {x} + i {y}: {value:?} is not in {found:?}",
+                            function.name
+                        );
+                    }
+                }
+            }
+        }
+        assert!(bounded > 10_000, "{bounded} rectangles have bounds");
+    }
+
+    #[test]
+    fn polynomials_have_their_degree() {
+        let x = ComplexInterval::varying(Interval::new(-1.0, 2.0), 0.5);
+        let two = ComplexInterval::of(2.0);
+        assert_eq!((two * x + two).degree(), Some(1));
+        assert_eq!((x.square() * x - x / two).degree(), Some(3));
+        assert_eq!(two.sqrt().degree(), Some(0));
+        assert_eq!((two / (x + two + two)).degree(), None);
+        assert_eq!(x.sin().degree(), None);
+    }
+
+    #[test]
+    fn singular_functions_have_no_bounds() {
+        let about =
+            |middle: f64| ComplexInterval::varying(Interval::point(middle).widened(1.0), 1.0);
+        for singular in [
+            about(0.5).sqrt(),
+            about(0.5).ln(),
+            ComplexInterval::of(1.0) / about(0.5),
+            about(0.5).abs(),
+            about(0.5).asin(),
+            about(0.0).atan(),
+            about(0.0).max(ComplexInterval::ZERO),
+        ] {
+            assert_eq!(singular.magnitude(), f64::INFINITY);
+        }
+    }
+}

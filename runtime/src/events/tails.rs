@@ -1,0 +1,646 @@
+//! Bounds of the terms that a truncated power series of a gap lacks.
+//!
+//! Along a step the positions are polynomials `p_i` in its fraction. On the disk `|z| <= R` of complex fractions
+//! `p_i(z)` is at most `r_i = sum_k |p_ik| R^k`, `k >= 1`, away from `p_i(0)`. If a gap is analytic on a box of complex
+//! positions that contains these disks, with imaginary parts up to `h`, coefficient `k` of its series along the step is
+//! at most `2 h / R^k` ([`ComplexInterval`]). All coefficients above order `n` then add up to at most
+//! `2 h R^-n / (R - 1)`. In a step whose radii are smaller than the box by a factor, `h` is smaller by that factor too.
+//!
+//! The box serves many steps, and grows with the motion. A step that does not fit has a box of its own, unless that
+//! happens often; so has one for which the box of all is useless.
+
+use core::cell::Cell;
+
+use super::path::Path;
+use super::room::{Room, place};
+use crate::jet::LENGTH;
+use crate::numbers::{ComplexInterval, Interval};
+use crate::per_surface::PerSurface;
+use crate::state::StateVector;
+
+/// Radii of the disks, in lengths of the step, for series of low and of high order.
+const RATIOS: [f64; 2] = [3.0, 4.0];
+
+/// The lowest high order.
+const HIGH: usize = 10;
+
+/// `R^k` for these radii.
+const POWERS: [[f64; LENGTH]; 2] = {
+    let mut powers = [[1.0; LENGTH]; 2];
+    let mut k = 1;
+    while k < LENGTH {
+        powers[0][k] = powers[0][k - 1] * RATIOS[0];
+        powers[1][k] = powers[1][k - 1] * RATIOS[1];
+        k += 1;
+    }
+    powers
+};
+
+/// Part of the imaginary parts of the box in which the rounding of the coefficients is bounded: on a disk that is
+/// smaller by a factor, polynomials without constant term are smaller by it too.
+const PARTS: [f64; 2] = [
+    ComplexInterval::LEAST_RATIO / RATIOS[0],
+    ComplexInterval::LEAST_RATIO / RATIOS[1],
+];
+
+/// Factors of the imaginary parts for which the gaps are bounded: bounds of functions grow faster than these.
+const LEVELS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+
+/// Growth of the imaginary parts of the box beyond those of a step that does not fit.
+const GROWTH: f64 = 1.25;
+
+/// Steps that fit for each one that does not, in a box that is large enough, and the largest excess of the others.
+const SHARE: u32 = 32;
+const MOST_STRAIN: u32 = 64;
+
+/// Largest bound of the missing terms that is useful, relative to the terms of the series, and the largest that is not
+/// worth a better box.
+const USEFUL: f64 = 1.0 / (1 << 6) as f64;
+const GOOD: f64 = 1.0 / (1 << 10) as f64;
+
+/// Maximum number of steps to wait after bounds that were useless.
+const MOST_PATIENCE: u32 = 256;
+
+/// Relative rounding errors of the estimate.
+const UP: f64 = 1.0 + 64.0 * f64::EPSILON;
+
+/// The gap of a surface on a box of complex times and components.
+pub(crate) type Gap<'a> =
+    &'a dyn Fn(ComplexInterval, &dyn Fn(usize) -> ComplexInterval) -> ComplexInterval;
+
+/// Bounds of the distance between a gap and its truncated series.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Tail {
+    /// Of the values, if the constant coefficient is right.
+    pub(crate) value: f64,
+    /// Of the derivative by the fraction of the step.
+    pub(crate) slope: f64,
+    /// Rounding of the constant coefficient.
+    pub(crate) floor: f64,
+}
+
+/// The gap on the box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bound {
+    height: f64,
+    rounding: f64,
+    floor: f64,
+    /// Degree as a polynomial of positions and time, if it is one.
+    degree: Option<u32>,
+    takes: Takes,
+}
+
+/// What a gap depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Takes {
+    /// Positions, as a bit mask.
+    positions: u64,
+    time: bool,
+}
+
+impl Takes {
+    const NOTHING: Self = Self {
+        positions: 0,
+        time: false,
+    };
+}
+
+/// Knowledge of one surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Surface {
+    /// The bounds, for each of [`LEVELS`].
+    bounds: [Option<Bound>; LEVELS.len()],
+    takes: Option<Takes>,
+    /// Number of steps to skip before the next measurement, and the number that the last failure added.
+    wait: u32,
+    patience: u32,
+}
+
+/// The box, and the bounds of the gaps in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Tails<S, G: StateVector> {
+    /// Real parts of the box.
+    room: Room<S>,
+    /// Largest imaginary parts, of positions and of the time.
+    heights: S,
+    time_height: f64,
+    surfaces: PerSurface<Surface, G>,
+    /// What some gap depends on; the box bounds this.
+    kept: Takes,
+    /// The radii in use: 0 for low orders, 1 for high ones.
+    ratio: usize,
+    /// Radii of the disks of the last step, of positions and of times.
+    radii: S,
+    time_radius: f64,
+    /// Degree of the components of that step.
+    degree: u32,
+    /// The lowest level in which it lies.
+    level: usize,
+    /// True if it lies in the box.
+    fits: bool,
+    /// True if the box was made for it.
+    is_new: bool,
+    /// Excess of steps that do not fit.
+    strain: u32,
+    /// Number of steps to wait before a better box, and the number that the last one added.
+    wait: u32,
+    patience: u32,
+}
+
+impl<S: StateVector, G: StateVector> Tails<S, G> {
+    /// No box, for systems with this number of positions, and as many components and gaps as these vectors.
+    pub(crate) fn new(positions: usize, state: &S, gaps: &G) -> Self {
+        let unknown = Surface {
+            bounds: [None; LEVELS.len()],
+            takes: None,
+            wait: 0,
+            patience: 0,
+        };
+        let zeros = state.zeroed();
+        Self {
+            room: Room::new(positions, state),
+            heights: zeros,
+            time_height: 0.0,
+            surfaces: PerSurface::all(gaps, unknown),
+            kept: Takes::NOTHING,
+            ratio: 0,
+            radii: zeros,
+            time_radius: 0.0,
+            degree: 0,
+            level: 0,
+            fits: false,
+            is_new: false,
+            strain: 0,
+            wait: 0,
+            patience: 0,
+        }
+    }
+
+    /// Discards the box, after a change of surfaces, parameters or mode.
+    pub(crate) fn forget(&mut self) {
+        self.room.forget();
+        self.kept = Takes::NOTHING;
+        for surface in self.surfaces.iter_mut() {
+            surface.takes = None;
+        }
+    }
+
+    /// True if bounds for a surface were useless, and are not tried in this step.
+    #[inline]
+    pub(crate) fn skips(&mut self, surface: usize) -> bool {
+        let known = &mut self.surfaces[surface];
+        let skips = known.wait > 0;
+        known.wait = known.wait.saturating_sub(1);
+        skips
+    }
+
+    /// True unless some bounds were useless of late.
+    #[inline]
+    pub(crate) fn is_useful(&self) -> bool {
+        self.surfaces.iter().all(|surface| surface.wait == 0)
+    }
+
+    /// Sets the step, and extends the box to contain it.
+    pub(crate) fn follow(&mut self, path: &Path<S>) {
+        self.wait = self.wait.saturating_sub(1);
+        self.is_new = false;
+        self.measure(path);
+        if !self.room.is_known() {
+            return self.surround(path);
+        }
+        self.choose_level();
+        match self.fits {
+            true => self.strain = self.strain.saturating_sub(1),
+            false => {
+                self.strain += SHARE;
+                if self.strain <= MOST_STRAIN {
+                    return;
+                }
+                self.rise();
+            }
+        }
+        let Self { room, radii, .. } = self;
+        let range = |i: usize| disk(path, radii, i);
+        let times = times(path, self.time_radius);
+        if !room.holds_box(range, times) {
+            room.extend_box(range, times);
+            self.discard_bounds();
+        }
+    }
+
+    /// Computes the radii of the disks of a step.
+    #[inline]
+    fn measure(&mut self, path: &Path<S>) {
+        let terms = path.coefficients();
+        let ratio = usize::from(terms.len() > HIGH);
+        if ratio != self.ratio {
+            self.ratio = ratio;
+            self.room.forget();
+        }
+        self.radii = self.radii.zeroed();
+        self.degree = 1;
+        for (k, (coefficient, power)) in terms.iter().zip(&POWERS[ratio]).enumerate().skip(1) {
+            let mut sum = 0.0;
+            for i in 0..coefficient.padded().len() {
+                let term = power * coefficient.padded()[i].abs();
+                self.radii.padded_mut()[i] += term;
+                sum += term;
+            }
+            if sum != 0.0 {
+                self.degree = k as u32;
+            }
+        }
+        let radii = self.radii.padded_mut().iter_mut();
+        radii.for_each(|radius| *radius *= UP);
+        self.time_radius = RATIOS[ratio] * path.length() * UP;
+    }
+
+    /// Bounds for the series of a surface's gap with these terms: its order, and the sum of their absolute values.
+    /// `None` if there is no useful bound.
+    pub(crate) fn of(
+        &mut self,
+        surface: usize,
+        (order, size): (usize, f64),
+        at @ (_, path): (Gap<'_>, &Path<S>),
+        evaluations: &mut u64,
+    ) -> Option<Tail> {
+        let mut tail = match self.fits {
+            true => self.estimate(surface, order, at, evaluations),
+            false => self.estimate_alone(order, at, evaluations),
+        };
+        // Written so that NaN fails the comparison.
+        let is_good = tail.value <= GOOD * size;
+        if !is_good && self.fits && !self.is_new && self.wait == 0 {
+            self.surround(path);
+            self.patience = (2 * self.patience + 1).min(MOST_PATIENCE);
+            self.wait = self.patience;
+            tail = self.estimate(surface, order, at, evaluations);
+        }
+        let is_useful = tail.value <= USEFUL * size && tail.slope + tail.floor < f64::INFINITY;
+        match is_useful {
+            true => self.surfaces[surface].patience = 0,
+            false => self.postpone(surface),
+        }
+        is_useful.then_some(tail)
+    }
+
+    /// Makes later steps wait before bounds for a surface are tried again.
+    pub(crate) fn postpone(&mut self, surface: usize) {
+        let known = &mut self.surfaces[surface];
+        known.patience = (4 * known.patience + 3).min(MOST_PATIENCE);
+        known.wait = known.patience;
+    }
+
+    /// The estimate with the box as it is.
+    fn estimate(
+        &mut self,
+        surface: usize,
+        order: usize,
+        at: (Gap<'_>, &Path<S>),
+        evaluations: &mut u64,
+    ) -> Tail {
+        let bound = match self.surfaces[surface].bounds[self.level] {
+            Some(bound) => bound,
+            None => {
+                *evaluations += 1;
+                self.bound(surface, at)
+            }
+        };
+        self.tail(&bound, self.scale(bound.takes) / LEVELS[self.level], order)
+    }
+
+    /// The estimate with a box for this step alone.
+    #[cold]
+    fn estimate_alone(
+        &self,
+        order: usize,
+        (gap, path): (Gap<'_>, &Path<S>),
+        evaluations: &mut u64,
+    ) -> Tail {
+        *evaluations += 1;
+        let bounded = |part: f64| {
+            let varying =
+                |real: Interval, radius: f64| ComplexInterval::varying(real, part * radius);
+            let component = |i: usize| match i < self.room.positions() {
+                true => varying(disk(path, &self.radii, i), self.radii.as_slice()[i]),
+                false => ComplexInterval::steady(path.value(i)),
+            };
+            let time = varying(times(path, self.time_radius), self.time_radius);
+            gap(time, &component)
+        };
+        let (whole, inner) = (bounded(1.0), bounded(PARTS[self.ratio]));
+        let bound = Bound {
+            height: whole.height,
+            rounding: inner.rounding,
+            floor: inner.floor,
+            degree: whole.degree(),
+            takes: Takes {
+                positions: u64::MAX,
+                time: true,
+            },
+        };
+        self.tail(&bound, 1.0, order)
+    }
+
+    /// Bounds from those of the gap in a box, with radii that are smaller by a factor.
+    #[inline]
+    fn tail(&self, bound: &Bound, scale: f64, order: usize) -> Tail {
+        let is_whole = bound
+            .degree
+            .and_then(|degree| degree.checked_mul(self.degree))
+            .is_some_and(|degree| degree as usize <= order);
+        let beyond = RATIOS[self.ratio] - 1.0;
+        let value = match is_whole {
+            true => 0.0,
+            false => 2.0 * scale * bound.height / (POWERS[self.ratio][order] * beyond),
+        };
+        let rounding = scale * bound.rounding;
+        Tail {
+            value: (value + rounding) * UP,
+            slope: (value * (order as f64 + 1.0 + 1.0 / beyond) + rounding * order as f64) * UP,
+            floor: bound.floor,
+        }
+    }
+
+    /// The bound of a gap in the box. The box begins anew if the gap depends on positions that it did not bound.
+    #[cold]
+    fn bound(&mut self, surface: usize, (gap, path): (Gap<'_>, &Path<S>)) -> Bound {
+        let takes = match self.surfaces[surface].takes {
+            Some(takes) => takes,
+            None => {
+                let takes = taken(gap, path);
+                let all = Takes {
+                    positions: self.kept.positions | takes.positions,
+                    time: self.kept.time || takes.time,
+                };
+                if all != self.kept {
+                    self.kept = all;
+                    self.room.keep(all.positions);
+                    self.surround(path);
+                }
+                takes
+            }
+        };
+        let bounded = |part: f64| {
+            let varying =
+                |real: Interval, height: f64| ComplexInterval::varying(real, part * height);
+            let component = |i: usize| match i < self.room.positions() {
+                true => varying(self.room.range(i), self.heights.as_slice()[i]),
+                false => ComplexInterval::steady(path.value(i)),
+            };
+            let time = varying(self.room.times(), self.time_height);
+            gap(time, &component)
+        };
+        let level = LEVELS[self.level];
+        let (whole, inner) = (bounded(level), bounded(PARTS[self.ratio] * level));
+        let bound = Bound {
+            height: whole.height,
+            rounding: inner.rounding,
+            floor: inner.floor,
+            degree: whole.degree(),
+            takes,
+        };
+        let known = &mut self.surfaces[surface];
+        (known.takes, known.bounds[self.level]) = (Some(takes), Some(bound));
+        bound
+    }
+
+    /// Largest ratio of a radius of the step to the imaginary part of the box, for some quantities.
+    #[inline]
+    fn scale(&self, takes: Takes) -> f64 {
+        let mut scale = match takes.time {
+            true => self.time_radius / self.time_height,
+            false => 0.0,
+        };
+        let heights = self.heights.as_slice()[..self.room.positions()].iter();
+        for (i, (height, radius)) in heights.zip(self.radii.as_slice()).enumerate() {
+            if takes.positions & place(i) != 0 && *radius > scale * height {
+                scale = radius / height;
+            }
+        }
+        scale * UP
+    }
+
+    /// Finds the level of the step.
+    #[inline]
+    fn choose_level(&mut self) {
+        let scale = self.scale(self.kept);
+        let level = LEVELS.iter().rposition(|&level| scale <= level);
+        (self.level, self.fits) = (level.unwrap_or(0), level.is_some());
+    }
+
+    /// Extends the imaginary parts of the box to contain those of the step.
+    fn rise(&mut self) {
+        let heights = self.heights.as_mut_slice().iter_mut();
+        for (height, radius) in heights.zip(self.radii.as_slice()) {
+            if radius > height {
+                *height = GROWTH * radius;
+            }
+        }
+        if self.time_radius > self.time_height {
+            self.time_height = GROWTH * self.time_radius;
+        }
+        (self.strain, self.level, self.fits) = (0, 0, true);
+        self.discard_bounds();
+    }
+
+    /// Sets the box to that of the step.
+    fn surround(&mut self, path: &Path<S>) {
+        let Self { room, radii, .. } = self;
+        room.surround_box(|i| disk(path, radii, i), times(path, self.time_radius));
+        (self.heights, self.time_height) = (self.radii, self.time_radius);
+        (self.strain, self.level) = (0, 0);
+        (self.fits, self.is_new) = (true, true);
+        self.discard_bounds();
+    }
+
+    fn discard_bounds(&mut self) {
+        for surface in self.surfaces.iter_mut() {
+            surface.bounds = [None; LEVELS.len()];
+        }
+    }
+}
+
+/// What a gap depends on.
+fn taken<S: StateVector>(gap: Gap<'_>, path: &Path<S>) -> Takes {
+    let positions = Cell::new(0_u64);
+    let component = |i: usize| {
+        positions.set(positions.get() | place(i));
+        ComplexInterval::steady(path.value(i))
+    };
+    let gap = gap(ComplexInterval::ANYTHING, &component);
+    Takes {
+        positions: positions.get(),
+        time: gap == ComplexInterval::ANYTHING,
+    }
+}
+
+/// Real parts of component `i` on the disk.
+#[inline]
+fn disk<S: StateVector>(path: &Path<S>, radii: &S, i: usize) -> Interval {
+    path.value(i).widened(radii.as_slice()[i])
+}
+
+/// Real parts of the times on the disk.
+#[inline]
+fn times<S: StateVector>(path: &Path<S>, radius: f64) -> Interval {
+    path.time([0.0, 0.0]).value.widened(radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+    use crate::numbers::Numbers;
+    use nalgebra::SVector;
+
+    type One = SVector<f64, 1>;
+
+    /// A gap of one position, by its values, bounds and coefficients about a place.
+    struct Known {
+        name: &'static str,
+        value: fn(f64) -> f64,
+        bounds: fn(ComplexInterval) -> ComplexInterval,
+        /// Coefficient `k` of the Taylor series about a place.
+        coefficient: fn(f64, usize) -> f64,
+        /// Ends of the starts of steps.
+        range: [f64; 2],
+    }
+
+    fn of(number: f64) -> ComplexInterval {
+        <ComplexInterval as Numbers>::of(number)
+    }
+
+    fn binomial(exponent: f64, k: usize) -> f64 {
+        (0..k).fold(1.0, |product, i| {
+            product * (exponent - i as f64) / (i as f64 + 1.0)
+        })
+    }
+
+    fn factorial(k: usize) -> f64 {
+        (1..=k).fold(1.0, |product, i| product * i as f64)
+    }
+
+    const KNOWN: [Known; 5] = [
+        Known {
+            name: "sine",
+            value: |x| x.sin() - 0.3,
+            bounds: |x| Numbers::sin(x) - of(0.3),
+            coefficient: |x, k| {
+                let turn = x + k as f64 * core::f64::consts::FRAC_PI_2;
+                turn.sin() / factorial(k) - if k == 0 { 0.3 } else { 0.0 }
+            },
+            range: [-40.0, 40.0],
+        },
+        Known {
+            name: "distance",
+            value: |x| x.sqrt() - 1.0,
+            bounds: |x| Numbers::sqrt(x) - of(1.0),
+            coefficient: |x, k| {
+                let power = binomial(0.5, k) * x.powf(0.5 - k as f64);
+                power - if k == 0 { 1.0 } else { 0.0 }
+            },
+            range: [0.5, 9.0],
+        },
+        Known {
+            name: "quotient",
+            value: |x| 1.0 / x,
+            bounds: |x| of(1.0) / x,
+            coefficient: |x, k| (-1.0_f64).powi(k as i32) * x.powi(-(k as i32) - 1),
+            range: [0.3, 4.0],
+        },
+        Known {
+            name: "bump",
+            value: |x| 2.0 - x.exp(),
+            bounds: |x| of(2.0) - Numbers::exp(x),
+            coefficient: |x, k| (if k == 0 { 2.0 } else { 0.0 }) - x.exp() / factorial(k),
+            range: [-3.0, 3.0],
+        },
+        Known {
+            name: "cube",
+            value: |x| x * x * x - x,
+            bounds: |x| x * x * x - x,
+            coefficient: |x, k| match k {
+                0 => x * x * x - x,
+                1 => 3.0 * x * x - 1.0,
+                2 => 3.0 * x,
+                3 => 1.0,
+                _ => 0.0,
+            },
+            range: [-2.0, 2.0],
+        },
+    ];
+
+    /// The truncated series of a gap along `x + way z`, its distance from the gap, and the sum of its terms.
+    fn truncated(known: &Known, [x, way]: [f64; 2], order: usize) -> (f64, f64) {
+        let terms = |part: f64| {
+            (0..=order).map(move |k| (known.coefficient)(x, k) * (way * part).powi(k as i32))
+        };
+        let parts = (0..=16).map(|k| f64::from(k) / 16.0);
+        let missed = parts.map(|part| {
+            let sum: f64 = terms(part).sum();
+            (sum - (known.value)(x + way * part)).abs()
+        });
+        let size = terms(1.0).map(f64::abs).sum();
+        (missed.fold(0.0, f64::max), size)
+    }
+
+    #[test]
+    fn missing_terms_are_within_their_bounds() {
+        for known in &KNOWN {
+            let mut tails = Tails::new(1, &One::zeros(), &One::zeros());
+            let gap = |_: ComplexInterval, component: &dyn Fn(usize) -> ComplexInterval| {
+                (known.bounds)(component(0))
+            };
+            let (mut bounded, mut close) = (0, 0);
+            // Steps of many lengths from many places, in the order of a motion that goes to and fro.
+            for k in 0..600_u32 {
+                let share = math::sin(0.37 * f64::from(k));
+                let [low, high] = known.range;
+                let x = 0.5 * (low + high) + 0.5 * (high - low) * share;
+                let way = 0.002 * f64::from(1 + k % 97) * (high - low) / (1.0 + f64::from(k % 7));
+                let order = 6 + (k as usize) % 20;
+                let mut terms = [One::zeros(); LENGTH];
+                (terms[0], terms[1]) = (One::new(x), One::new(way));
+                let path = Path::of(&terms[..=order], 1.0);
+                tails.follow(&path);
+                let (missed, size) = truncated(known, [x, way], order);
+                if tails.skips(0) {
+                    continue;
+                }
+                let Some(tail) = tails.of(0, (order, size), (&gap, &path), &mut 0) else {
+                    continue;
+                };
+                let rounding = 64.0 * f64::EPSILON * size;
+                assert!(
+                    missed <= tail.value + tail.floor + rounding,
+                    "{} from {x} by {way} to order {order}: {missed:e} of {tail:?}",
+                    known.name
+                );
+                bounded += 1;
+                close += u32::from(tail.value <= 1e-6 * size);
+            }
+            assert!(
+                bounded > 60 && close > 20,
+                "{}: {bounded}, {close}",
+                known.name
+            );
+        }
+    }
+
+    #[test]
+    fn a_polynomial_that_is_whole_lacks_nothing() {
+        let mut tails = Tails::new(1, &One::zeros(), &One::zeros());
+        let gap = |_: ComplexInterval, component: &dyn Fn(usize) -> ComplexInterval| {
+            component(0).square() - of(1.0)
+        };
+        let mut terms = [One::zeros(); 5];
+        (terms[0], terms[1], terms[2]) = (One::new(2.0), One::new(0.1), One::new(0.02));
+        let path = Path::of(&terms, 1.0);
+        tails.follow(&path);
+        let tail = tails.of(0, (4, 3.0), (&gap, &path), &mut 0);
+        assert!(tail.is_some_and(|tail| tail.value < 1e-12), "{tail:?}");
+        let tail = tails.of(0, (3, 3.0), (&gap, &path), &mut 0);
+        assert!(tail.is_none_or(|tail| tail.value > 1e-9), "{tail:?}");
+    }
+}
