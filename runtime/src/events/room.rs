@@ -55,9 +55,16 @@ impl<S: StateVector> Room<S> {
     /// True if the positions in these ranges, at these times, lie in the box.
     #[inline(always)]
     pub(crate) fn holds_box(&self, range: impl Fn(usize) -> Interval, times: Interval) -> bool {
-        self.is_known
-            && self.times.contains(times)
-            && (0..self.positions).all(|i| !self.keeps(i) || self.range(i).contains(range(i)))
+        if !(self.is_known && self.times.contains(times)) {
+            return false;
+        }
+        // NOTE: a loop, which is inlined, where an iterator may not be.
+        for i in 0..self.positions {
+            if self.keeps(i) && !self.range(i).contains(range(i)) {
+                return false;
+            }
+        }
+        true
     }
 
     /// Range of component `i` in the box.
