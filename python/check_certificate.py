@@ -16,6 +16,9 @@ digits as that takes, and every claim that was proved is tested at random states
   factor             the determinant of the derivative of the motion through the surface, times the densities
   symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt
   invariant_form     the form is the same on vectors that the motion carries along, between surfaces and through each of them
+  involution         the Poisson bracket of functions that are made constant along the constraint forces is 0 on D
+  integrable         the same, each function is conserved between surfaces and through each of them, and their differentials are
+                     independent
   energy_not_increasing  the energy after an impact is not above that before
 
 States that are random cannot prove an identity, but a false one passes only where it holds to some forty digits. Only the
@@ -1430,6 +1433,67 @@ def check_symmetry(model, claim, source):
     return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
 
+def on_d(model, state):
+    """The velocity in D of positions and momenta: the one of the momenta, projected along the constraint forces."""
+    n = model.n
+
+    def velocity(z):
+        base = [state[0], *z[:n], *state[1 + n:]]
+        g, forms = model.metric_at(base), model.forms_at(base)
+        v = solve(g, [p - own(base) for p, own in zip(z[n:], model.linear)])
+        duals = [solve(g, form) for form in forms]
+        mass = [[dot(form, dual) for dual in duals] for form in forms]
+        lost = [dot(form, v) + own for form, own in zip(forms, model.affine_at(base))]
+        for factor, dual in zip(solve(mass, lost), duals):
+            v = moved(v, dual, -factor)
+        return model.with_velocities(base, v)
+    return velocity
+
+
+def bracket(model, f, g, state):
+    """`f_q g_p - f_p g_q` of functions of positions and momenta."""
+    n, onto = model.n, on_d(model, state)
+    z = [*model.positions(state), *model.momentum_at(state)]
+
+    def slope(function, i):
+        axis = [Decimal(int(k == i)) for k in range(2 * n)]
+        return model.derivative(lambda own: function(onto(own)), z, axis)
+    slopes = [[slope(own, i) for i in range(2 * n)] for own in (f, g)]
+    return dot(slopes[0][:n], slopes[1][n:]) - dot(slopes[0][n:], slopes[1][:n])
+
+
+def check_involution(model, claim, source):
+    if model.is_nonlinear:
+        raise NotChecked("brackets belong to systems with linear constraints")
+    functions = [model.claimed(own) for own in claim["values"]]
+    pairs = [(f, g) for j, g in enumerate(functions) for f in functions[:j]]
+    found = states(model, source, lambda state: [bracket(model, *pair, state) for pair in pairs])
+    found = [own for row in found for own in row] or [Decimal(0)]
+    return all(is_small(own, 1) for own in found), f"largest bracket {float(max(map(abs, found))):.1e}"
+
+
+def check_integrable(model, claim, source):
+    if len(claim["values"]) != model.n - len(model.constraints):
+        return False, "not as many functions as degrees of freedom"
+    for value in claim["values"]:
+        for under in (None, *range(len(model.surfaces))):
+            holds, text = check_conserved(model, {"value": value, "under": under, "holds": True}, source)
+            if not holds:
+                return False, f"{value} {text}"
+    functions = [model.claimed(own) for own in claim["values"]]
+
+    def rank(state):
+        chart = Chart(model, state)
+        z, rows = chart.coordinates(), []
+        for own in functions:
+            axes = [[Decimal(int(k == i)) for k in range(chart.size)] for i in range(1, chart.size)]
+            rows.append([model.derivative(lambda at: own(chart.at(at)), z, axis) for axis in axes])
+        return len(eliminated(rows, chart.size - 1)[1])
+    if max(states(model, source, rank)) < len(functions):
+        return False, "the differentials are dependent"
+    return check_involution(model, claim, source)
+
+
 CHECKS = {
     "conserved": check_conserved,
     "density": check_density,
@@ -1442,6 +1506,8 @@ CHECKS = {
     "symplectic": check_symplectic,
     "invariant_form": check_form,
     "energy_not_increasing": check_energy,
+    "involution": check_involution,
+    "integrable": check_integrable,
 }
 
 

@@ -193,6 +193,37 @@ const FORMS: &str = "
         claims { invariant: d(y); }
     }";
 
+/// Brackets: of canonical momenta beside a magnetic field, beside affine constraints, and integrable systems with walls.
+const BRACKETS: &str = "
+    pub Charged {
+        coordinates { x; y; }
+        parameters { b = 3; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 + b*x*dot(y);
+        claims { involution: momentum(x), momentum(y); involution: dot(x) - b*y, energy; }
+    }
+    pub Belt {
+        coordinates { x; y; th: angle; }
+        parameters { k = 1/3; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
+        constraints { roll: dot(y) = x*dot(th) + k; }
+        claims { involution: x, y, th; involution: dot(x), y, th; }
+    }
+    pub Table {
+        coordinates { x; y; }
+        parameters { k > 0 = 2; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 + k/sqrt(1 + x^2 + y^2);
+        impacts { post: x^2 + y^2 >= 1; rim: 9 - x^2 - y^2 >= 0; }
+        initial { x = 2; }
+        claims { integrable: energy, x*momentum(y) - y*momentum(x); }
+    }
+    pub Disk {
+        coordinates { x; y; theta: angle; phi: angle; }
+        parameters { m > 0 = 7/5; R > 0 = 3/8; I > 0 = 2/9; J > 0 = 1/7; }
+        lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
+        constraints { rolling_x: dot(x) = R*cos(phi)*dot(theta); rolling_y: dot(y) = R*sin(phi)*dot(theta); }
+        claims { integrable: momentum(theta), momentum(phi); }
+    }";
+
 /// A folder for certificates.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -200,16 +231,18 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes the certificate of a model, one of [`FORMS`] if it is so named, and gives its path.
+/// Writes the certificate of a model, one of [`FORMS`] or [`BRACKETS`] if it is so named, and gives its path.
 fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{}.json", model.replace(':', "_")));
     let place = path.to_str().expect("a path");
-    let texts = folder.join("forms.dal");
-    std::fs::write(&texts, FORMS).expect("a file");
-    let model = match model.strip_prefix("forms:") {
-        Some(name) => format!("{}:{name}", texts.display()),
-        None => model.to_owned(),
-    };
+    let mut model = model.to_owned();
+    for (prefix, text) in [("forms", FORMS), ("brackets", BRACKETS)] {
+        let texts = folder.join(format!("{prefix}.dal"));
+        std::fs::write(&texts, text).expect("a file");
+        if let Some((_, name)) = model.split_once(&format!("{prefix}:")) {
+            model = format!("{}:{name}", texts.display());
+        }
+    }
     let mut models = dalembert_command::all();
     models.extend(models![
         Spiral, Belt, Winding, Charge, Cubic, Slowed, Bent, Laws, Doors
@@ -249,6 +282,10 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "forms:damped",
         "forms:media",
         "forms:turned",
+        "brackets:charged",
+        "brackets:belt",
+        "brackets:table",
+        "brackets:disk",
     ];
     let names = names.iter().chain(&others);
     let files: Vec<PathBuf> = names.map(|name| certificate(name, &folder)).collect();
@@ -348,6 +385,27 @@ fn a_certificate_that_was_tampered_with_fails() {
             "forms:turned",
             "/1/content/motion/rates/1",
             json!("1 + 1/1000000000"),
+        ),
+        // A bracket, one beside affine constraints, a wall and two functions that depend on each other.
+        (
+            "brackets:charged",
+            "/0/content/claims/1/values/0",
+            json!("dot(x) - (b + 1/1000000000)*y"),
+        ),
+        (
+            "brackets:belt",
+            "/0/content/claims/0/values/2",
+            json!("th + momentum(y)/1000000000"),
+        ),
+        (
+            "brackets:table",
+            "/0/content/surfaces/0/gap",
+            json!("x^2 + 1000000001/1000000000*y^2 - 1"),
+        ),
+        (
+            "brackets:disk",
+            "/0/content/claims/0/values/0",
+            json!("dot(phi)^2"),
         ),
     ];
     for (model, place, value) in cases {

@@ -54,6 +54,7 @@ mod field;
 #[cfg(test)]
 mod fixture;
 mod function;
+mod generic;
 mod intern;
 mod interval;
 mod modular;

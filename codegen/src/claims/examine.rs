@@ -1,6 +1,6 @@
 //! All claims of a model, one after the other.
 
-use dalembert_expr::{ExprId, Rational, SymbolId};
+use dalembert_expr::{ExprId, SymbolId};
 
 use super::defaults::{
     Defaults, absence_at_defaults, curvature_at_defaults, existence_at_defaults,
@@ -15,9 +15,11 @@ use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
 use super::{
-    alternatives, conserved, density, energy, impact, invariant, jumps, kept, symmetry, symplectic,
+    alternatives, conserved, density, energy, impact, integrable, invariant, involution, jumps,
+    kept, symmetry, symplectic,
 };
 use crate::mechanics::Derivation;
+use crate::mechanics::energy::total_energy;
 use crate::model::{Claim, Existence, Model, Statement};
 
 /// Findings about the claims of a model.
@@ -209,6 +211,16 @@ impl<'e> Examiner<'e> {
                 let written = claim.text.trim_start_matches("invariant: ");
                 let (model, around) = self.around();
                 let verdict = invariant::check_invariant(model, &around, form, written);
+                (verdict, Vec::new())
+            }
+            Statement::Involution(functions) => {
+                let (model, around) = self.around();
+                let verdict = involution::check_involution(model, &around, functions);
+                (verdict, Vec::new())
+            }
+            Statement::Integrable(functions) => {
+                let (model, around) = self.around();
+                let verdict = integrable::check_integrable(model, &around, functions);
                 (verdict, Vec::new())
             }
             Statement::VolumeKept => self.volume_kept(),
@@ -548,22 +560,4 @@ pub(super) fn explicit(model: &mut Model, value: ExprId) -> ExprId {
     let total = total_energy(model);
     replacements.push((model.derived.energy, total));
     model.pool.substitute(value, &replacements)
-}
-
-/// `1/2 g(qdot, qdot) + V`
-fn total_energy(model: &mut Model) -> ExprId {
-    let mut terms = vec![model.lagrangian.potential];
-    for i in 0..model.coordinates.len() {
-        for j in 0..=i {
-            let factor = if i == j {
-                Rational::new(1, 2)
-            } else {
-                Rational::from(1)
-            };
-            let [a, b] = [i, j].map(|k| model.pool.variable(model.coordinates[k].qdot));
-            let product = model.pool.product(&[model.lagrangian.metric[i][j], a, b]);
-            terms.push(model.pool.scale(&factor, product));
-        }
-    }
-    model.pool.sum(&terms)
 }

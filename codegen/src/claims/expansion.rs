@@ -278,6 +278,12 @@ impl<S: Copy> Products<S> {
         Some(sum)
     }
 
+    /// The rows of the differentials of a form that is one product.
+    pub(super) fn only_rows(mut self) -> Option<Vec<Vec<S>>> {
+        let (_, rows) = self.products.pop()?;
+        self.products.is_empty().then_some(rows)
+    }
+
     /// The components of a part together.
     pub(super) fn total<A: Arithmetic<Scalar = S>>(
         &self,

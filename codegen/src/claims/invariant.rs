@@ -115,19 +115,7 @@ fn kept_by_motion(
         differs: format!("the motion changes `{written}`"),
         help: ["leave it out".to_owned(), String::new()],
     };
-    let sizes = (tangents.dimension(), form.degree);
-    let ranked = {
-        let model = &*model;
-        let at = |attempt: usize| {
-            let (_, mut point) = question.sample(model, attempt)?;
-            let products = question.products(model, &mut point)?;
-            let field = dalembert_expr::Reals;
-            let each = choices(sizes.0, sizes.1);
-            let each = each.iter().map(|places| products.component(field, places));
-            Some((each.collect::<Option<Vec<f64>>>()?, products.size()))
-        };
-        ranked(sizes, at)
-    };
+    let ranked = ranked_at_states(model, &question);
     let verdict = decided(around.seed, ranked, &mut |part| {
         question.shown = format!("rate of the form on {}", on(&names, part));
         question.part = part.clone();
@@ -305,6 +293,19 @@ fn on(names: &[String], part: &Part) -> String {
             names.join(", ")
         }
     }
+}
+
+/// Components of a form or of its derivative, those first that are largest at real states.
+pub(super) fn ranked_at_states(model: &Model, question: &Lie<'_>) -> Vec<Vec<usize>> {
+    let (dimension, degree) = question.sizes();
+    let each = choices(dimension, degree);
+    ranked((dimension, degree), |attempt| {
+        let (_, mut point) = question.sample(model, attempt)?;
+        let products = question.products(model, &mut point)?;
+        let field = dalembert_expr::Reals;
+        let each = each.iter().map(|places| products.component(field, places));
+        Some((each.collect::<Option<Vec<f64>>>()?, products.size()))
+    })
 }
 
 /// Components, those first that are largest at real states.

@@ -151,7 +151,8 @@ impl<'l> Lie<'l> {
         Some(products)
     }
 
-    fn sizes(&self) -> (usize, usize) {
+    /// The dimension of the states and the degree.
+    pub(super) fn sizes(&self) -> (usize, usize) {
         (self.tangents.dimension(), self.form.degree)
     }
 }

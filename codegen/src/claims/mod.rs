@@ -19,6 +19,7 @@
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
 //! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs` | forms on vectors of one time, along the motion and through surfaces |
+//! | `involution.rs`, `integrable.rs` | brackets of functions; conserved functions that are enough of them |
 //! | `corollaries.rs` | consequences of a volume that is kept |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
@@ -62,7 +63,9 @@ mod growth;
 mod hybrid;
 mod hypersurfaces;
 mod impact;
+mod integrable;
 mod invariant;
+mod involution;
 mod jumps;
 mod kept;
 mod landing;

@@ -119,11 +119,7 @@ fn forces_are_closed(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
 
 /// The verdict on an expression that must be 0 at all states.
 fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: String) -> Verdict {
-    let question = AtStates {
-        dynamics: around.dynamics,
-        part: Part::Value(value),
-        shown,
-    };
+    let question = AtStates::value(around.dynamics, value, shown);
     let wording = Wording {
         vanishes: KEPT.to_owned(),
         differs: "forces change the symplectic form".to_owned(),
@@ -215,10 +211,21 @@ fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
 }
 
 /// Something that must be 0 at all states on D.
-struct AtStates<'s> {
+pub(super) struct AtStates<'s> {
     dynamics: &'s Dynamics,
     part: Part<'s>,
     shown: String,
+}
+
+impl<'s> AtStates<'s> {
+    /// An expression of positions, velocities and time.
+    pub(super) fn value(dynamics: &'s Dynamics, value: ExprId, shown: String) -> Self {
+        Self {
+            dynamics,
+            part: Part::Value(value),
+            shown,
+        }
+    }
 }
 
 enum Part<'s> {

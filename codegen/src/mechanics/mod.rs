@@ -13,13 +13,16 @@
 //! [`crate::program::linear`]), except for factors that are known as expressions ([`factors`], [`frame::Invariant`]).
 //! Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
 
+pub mod bracket;
 mod common_factor;
 pub mod constraint;
 pub mod density;
+pub(crate) mod energy;
 pub mod factors;
 pub mod field;
 pub mod frame;
 pub mod impact;
+pub(crate) mod inverse;
 pub mod metric;
 mod narrow;
 mod rank;
@@ -28,6 +31,7 @@ use dalembert_expr::{ExprId, SymbolId};
 
 use crate::model::Model;
 
+pub use bracket::{Bracket, NoBracket};
 pub use constraint::ConstraintForm;
 pub use density::DensityTerms;
 pub use factors::FactorRow;

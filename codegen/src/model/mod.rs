@@ -387,6 +387,15 @@ pub struct Claim {
     pub item: ItemId,
 }
 
+/// A function of a claim about several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StatedFunction {
+    /// The function.
+    pub value: ExprId,
+    /// The function as written.
+    pub written: String,
+}
+
 /// Statement of a claim. Its expressions depend on coordinates, velocities, parameters, time and [`DerivedSymbols`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Statement {
@@ -407,6 +416,10 @@ pub enum Statement {
     Symmetry(Vec<ExprId>),
     /// The motion and every event at a surface keep a differential form.
     Invariant(ExteriorForm),
+    /// The brackets of these functions with each other are 0.
+    Involution(Vec<StatedFunction>),
+    /// These functions are as many as D has dimensions, conserved by motion and events, in involution and independent.
+    Integrable(Vec<StatedFunction>),
     /// The motion and every event at a surface keep one invariant volume.
     VolumeKept,
     /// Factor of the volume at a surface.
@@ -434,6 +447,9 @@ impl Statement {
                 vec![*value]
             }
             Self::Symmetry(field) => field.clone(),
+            Self::Involution(functions) | Self::Integrable(functions) => {
+                functions.iter().map(|function| function.value).collect()
+            }
             Self::Invariant(form) => form.expressions().collect(),
         }
     }

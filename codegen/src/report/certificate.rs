@@ -317,6 +317,14 @@ impl Writer<'_> {
                     ("terms", Tree::list(terms)),
                 ]
             }
+            Statement::Involution(_) => vec![
+                ("kind", Tree::text("involution")),
+                ("values", self.expressions(&statement.expressions())),
+            ],
+            Statement::Integrable(_) => vec![
+                ("kind", Tree::text("integrable")),
+                ("values", self.expressions(&statement.expressions())),
+            ],
             Statement::Symplectic => vec![("kind", Tree::text("symplectic"))],
             Statement::EnergyNotIncreasing(under) => vec![
                 ("kind", Tree::text("energy_not_increasing")),

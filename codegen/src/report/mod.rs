@@ -8,21 +8,25 @@
 //! | `mod.rs` | what a report is, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
+//! | `request.rs`, `bracket.rs` | what is asked for in the words of a claim; brackets of functions |
 //! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
 //! | `print.rs` | a report as text and as a document of LaTeX |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
 
+mod bracket;
 pub mod certificate;
 mod density_form;
 mod equations;
 mod frame;
 mod print;
+mod request;
 mod volume;
 
 use std::fmt;
 
 use proc_macro2::{LexError, TokenStream};
 
+pub use bracket::{BracketKind, bracket};
 pub use density_form::density_form;
 
 use certificate::Tree;
@@ -143,10 +147,12 @@ pub fn report_without_claims(source: &str) -> Result<Report, ReportError> {
 }
 
 fn declaration(source: &str) -> Result<Declaration, ReportError> {
-    let tokens: TokenStream = source
-        .parse()
-        .map_err(|error: LexError| ReportError::Tokens(error.to_string()))?;
-    read(tokens).map_err(ReportError::Declaration)
+    read(tokens(source)?).map_err(ReportError::Declaration)
+}
+
+fn tokens(text: &str) -> Result<TokenStream, ReportError> {
+    text.parse()
+        .map_err(|error: LexError| ReportError::Tokens(error.to_string()))
 }
 
 fn report_of_declaration(declaration: Declaration) -> Result<Report, ReportError> {

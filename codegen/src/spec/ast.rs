@@ -562,6 +562,10 @@ pub enum Statement {
     Symmetry(Scalar),
     /// `invariant: e`, with `d(..)` and `^` between forms.
     Invariant(Scalar),
+    /// `involution: f, g, ..`
+    Involution(Vec<Scalar>),
+    /// `integrable: f, g, ..`
+    Integrable(Vec<Scalar>),
     /// `volume: kept`
     VolumeKept,
     /// `density under surface: factor = e`

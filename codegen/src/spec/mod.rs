@@ -28,4 +28,4 @@ pub use limits::{
     COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,
     RESOLVED_DEPTH, RESOLVED_PARTS, SCENES, STEPS, SURFACES,
 };
-pub use parse::{camel_case, mode_help, parse, read};
+pub use parse::{add_claim, camel_case, mode_help, parse, read};

@@ -4,16 +4,20 @@
 //! |---|---|
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
+//! | `brackets.rs`, `involution.rs`, `integrable.rs` | brackets by differences and as they are printed; claims about functions |
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
 
+mod brackets;
 mod carried;
 mod corollaries;
 mod differences;
 mod energy;
 mod factor;
 mod forms;
+mod integrable;
+mod involution;
 mod momenta;
 mod qualified;
 mod quantities;

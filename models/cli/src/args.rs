@@ -203,6 +203,17 @@ pub struct DeriveArgs {
     /// Scene: which forces and surfaces are used, as `list --format json` prints them.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
+    /// Print the bracket of two functions of positions, velocities and momenta, such as `x,momentum(x)`, instead.
+    #[arg(
+        long,
+        value_name = "F,G",
+        conflicts_with = "jacobiator",
+        allow_hyphen_values = true
+    )]
+    pub bracket: Option<String>,
+    /// Print the Jacobiator of three functions instead.
+    #[arg(long, value_name = "F,G,H", allow_hyphen_values = true)]
+    pub jacobiator: Option<String>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
     pub format: DeriveFormat,

@@ -3,7 +3,7 @@
 use dalembert_expr::{Assumption as Known, ExprId, Node};
 
 use super::super::resolve::{DerivedNames, Resolver, Scope};
-use super::super::{Claim, Coordinate, Name, Scene, Statement, Surface};
+use super::super::{Claim, Coordinate, Name, Scene, StatedFunction, Statement, Surface};
 use crate::diagnostics::listed;
 use crate::spec;
 
@@ -52,6 +52,13 @@ pub(super) fn resolve(
         });
     }
     claims
+}
+
+fn listed_as_written(functions: &[StatedFunction]) -> String {
+    let texts: Vec<&str> = (functions.iter())
+        .map(|function| function.written.as_str())
+        .collect();
+    texts.join(", ")
 }
 
 impl Resolver<'_> {
@@ -107,6 +114,20 @@ impl Resolver<'_> {
             spec::Statement::Invariant(written) => {
                 let form = self.invariant_form(written)?;
                 (Statement::Invariant(form), format!("invariant: {written}"))
+            }
+            spec::Statement::Involution(written) => {
+                let functions = self.functions(written)?;
+                let text = format!("involution: {}", listed_as_written(&functions));
+                (Statement::Involution(functions), text)
+            }
+            spec::Statement::Integrable(written) => {
+                let functions = self.functions(written)?;
+                for (value, function) in written.iter().zip(&functions) {
+                    self.check_periodic(&[value], &Scope::default(), function.value);
+                }
+                self.check_count(written)?;
+                let text = format!("integrable: {}", listed_as_written(&functions));
+                (Statement::Integrable(functions), text)
             }
             spec::Statement::VolumeKept => (Statement::VolumeKept, "volume: kept".to_owned()),
             spec::Statement::Symplectic => (Statement::Symplectic, "symplectic".to_owned()),
@@ -177,6 +198,52 @@ impl Resolver<'_> {
         );
         let help = "claim a quantity that both modes have";
         self.refuse(value.at, text, help)
+    }
+
+    /// The functions of a claim about several; their derivatives are periodic.
+    fn functions(&mut self, written: &[spec::Scalar]) -> Option<Vec<StatedFunction>> {
+        let moving = [self.symbols.positions(), self.symbols.velocities()].concat();
+        let values: Vec<Option<ExprId>> = (written.iter())
+            .map(|value| {
+                let expr = self.quantity(value)?;
+                self.forbid_inputs(value, &Scope::default(), expr)?;
+                self.check_periodic_derivatives(&[value], &Scope::default(), expr, &moving);
+                Some(expr)
+            })
+            .collect();
+        let values: Vec<ExprId> = values.into_iter().collect::<Option<_>>()?;
+        for (index, value) in values.iter().enumerate() {
+            if values[..index].contains(value) {
+                let text = format!("`{}` twice", written[index]);
+                let help = "a function has the bracket 0 with itself";
+                return self.refuse(written[index].at, text, help);
+            }
+        }
+        let stated = values.into_iter().zip(written);
+        let stated = stated.map(|(value, written)| StatedFunction {
+            value,
+            written: written.to_string(),
+        });
+        Some(stated.collect())
+    }
+
+    /// Refuses more or fewer functions than D has dimensions.
+    fn check_count(&mut self, written: &[spec::Scalar]) -> Option<()> {
+        let coordinates = self.symbols.coordinates.len();
+        let freedom = coordinates.checked_sub(self.multipliers.len())?;
+        if written.len() == freedom {
+            return Some(());
+        }
+        let at = written.get(freedom).or(written.last())?.at;
+        let text = format!(
+            "{} for {freedom} degrees of freedom",
+            match written.len() {
+                1 => "1 function".to_owned(),
+                count => format!("{count} functions"),
+            }
+        );
+        let help = "an integrable system has as many functions as degrees of freedom; `involution: ..;` takes any";
+        self.refuse(at, text, help)
     }
 
     /// A function of time, positions and velocities.

@@ -126,6 +126,9 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
             Statement::Symmetry(_) => {
                 ("Lagrangian that a symmetry keeps", "write `conserved: ..;`")
             }
+            Statement::Involution(_) | Statement::Integrable(_) => {
+                ("bracket", "write `conserved: ..;` for each function")
+            }
             Statement::Symplectic => ("symplectic form", "write `volume: kept;`"),
             Statement::EnergyNotIncreasing(_) => ("`energy`", "leave it out"),
         };

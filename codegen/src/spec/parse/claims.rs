@@ -1,16 +1,18 @@
 //! `claims { density: exact; volume: kept; conserved: energy; symmetry: partial(theta); }`
 
-use super::super::ast::{Claim, Existence, Spec, Statement};
+use super::super::ast::{Claim, Existence, Scalar, Spec, Statement};
 use super::super::cursor::{Cursor, Read};
 use super::declared;
 use crate::diagnostics::{Location, nearest};
 
-const KINDS: [&str; 9] = [
+const KINDS: [&str; 11] = [
     "density",
     "conserved",
     "not",
     "symmetry",
     "invariant",
+    "involution",
+    "integrable",
     "volume",
     "symplectic",
     "energy",
@@ -40,6 +42,12 @@ pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
                 "conserved" => conserved(cursor, true)?,
                 "symmetry" => symmetry(cursor)?,
                 "invariant" => invariant(cursor)?,
+                "involution" => {
+                    Statement::Involution(quantities(cursor, "involution: energy, momentum(x);")?)
+                }
+                "integrable" => {
+                    Statement::Integrable(quantities(cursor, "integrable: energy, momentum(x);")?)
+                }
                 "volume" => volume(cursor)?,
                 "symplectic" => Statement::Symplectic,
                 "energy" => energy(cursor)?,
@@ -141,6 +149,16 @@ fn symmetry(cursor: &mut Cursor<'_>) -> Read<Statement> {
 fn invariant(cursor: &mut Cursor<'_>) -> Read<Statement> {
     cursor.expect_operator(":", "invariant: d(x)^d(dot(x));")?;
     Ok(Statement::Invariant(cursor.scalar()?))
+}
+
+/// `: f, g, ..`
+fn quantities(cursor: &mut Cursor<'_>, form: &str) -> Read<Vec<Scalar>> {
+    cursor.expect_operator(":", form)?;
+    let mut quantities = vec![cursor.scalar()?];
+    while cursor.eat_operator(",").is_some() {
+        quantities.push(cursor.scalar()?);
+    }
+    Ok(quantities)
 }
 
 fn expect_word(cursor: &mut Cursor<'_>, word: &str, form: &str) -> Read<Location> {

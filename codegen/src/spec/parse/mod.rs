@@ -64,6 +64,21 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     one_piece(spec, &tokens, &body, diagnostics)
 }
 
+/// Reads one more claim of a model, without the `;` behind it.
+///
+/// # Errors
+/// Its first mistake of syntax.
+pub fn add_claim(spec: &mut Spec, tokens: TokenStream) -> Result<(), Diagnostics> {
+    check_nesting(&tokens)?;
+    let tokens = tokens_of(tokens);
+    let mut diagnostics = Diagnostics::new();
+    let start = Location::from(Span::call_site());
+    let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
+    // A mistake is among the diagnostics.
+    let _ = claims::claim(&mut cursor, spec).and_then(|()| cursor.end());
+    diagnostics.finish(())
+}
+
 /// Header of a model, and its braces.
 fn header(tokens: TokenStream) -> Result<(Spec, Group, Diagnostics), Diagnostics> {
     check_nesting(&tokens)?;

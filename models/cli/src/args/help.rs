@@ -9,7 +9,9 @@ pub const LIST: &str = "More examples:
 
 pub const DERIVE: &str = "More examples:
   dalembert derive rolling_disk --format latex > rolling_disk.tex
-  dalembert derive chaplygin_sleigh --format json";
+  dalembert derive chaplygin_sleigh --format json
+  dalembert derive chaplygin_sleigh --bracket 'x,momentum(theta)'
+  dalembert derive rolling_disk --jacobiator 'x,momentum(theta),momentum(phi)'";
 
 pub const CHECK: &str = "More examples:
   dalembert check rolling_disk --format json

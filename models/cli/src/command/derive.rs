@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use dalembert_codegen::report::{Item, Report, report};
+use dalembert_codegen::report::{BracketKind, Item, Report, ReportError, bracket, report};
 use serde_json::{Value, json};
 
 use crate::args::{DeriveArgs, DeriveFormat};
@@ -20,12 +20,8 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
     let entry = find_model(models, &args.model)?;
     let scenes = entry.description().scenes.iter().copied();
     let scene = names::find("--scene", "scene", &args.scene, scenes)?;
-    let mut report =
-        report(&entry.description().source).map_err(|error| CliError::Derive(error.to_string()))?;
-    // The model itself is the first of its scenes.
-    if let Some(scene) = scene.checked_sub(1) {
-        report = report.scenes.swap_remove(scene);
-    }
+    let report =
+        derived(entry, args, scene).map_err(|error| CliError::Derive(error.to_string()))?;
     let text = match args.format {
         DeriveFormat::Text => report.text(),
         DeriveFormat::Latex => report.latex(),
@@ -33,6 +29,23 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
     };
     writeln!(output, "{}", text.trim_end())?;
     Ok(Exit::Reached)
+}
+
+/// The derivation that was asked for; the model itself is the first of its scenes.
+fn derived(entry: &Entry, args: &DeriveArgs, scene: usize) -> Result<Report, ReportError> {
+    let source = &entry.description().source;
+    let part = (scene > 0).then_some(args.scene.as_str());
+    if let Some(functions) = &args.bracket {
+        return bracket(source, part, functions, BracketKind::Bracket);
+    }
+    if let Some(functions) = &args.jacobiator {
+        return bracket(source, part, functions, BracketKind::Jacobiator);
+    }
+    let mut whole = report(source)?;
+    Ok(match scene.checked_sub(1) {
+        Some(scene) => whole.scenes.swap_remove(scene),
+        None => whole,
+    })
 }
 
 /// Index of the two forms of every formula.

@@ -1,0 +1,234 @@
+//! `integrable: f, g, ..`: as many functions as D has dimensions, each conserved by the motion and by all that happens at surfaces, in
+//! involution, and with differentials that are independent at almost all states.
+//!
+//! Without constraints these are the hypotheses of the theorem of Liouville and Arnold. What a surface keeps of each function it keeps of
+//! their common levels (W. Clark, thesis, VIII.6). With constraints the bracket is almost Poisson, and the claim says no more than
+//! what is listed.
+
+use dalembert_expr::ExprId;
+
+use super::conserved::check_conserved;
+use super::evidence::{Vanishing, Wording, evidence};
+use super::examine::explicit;
+use super::expansion::{Part, Tangents, is_too_large};
+use super::finding::{Certificate, Verdict, Witness};
+use super::hybrid::Surroundings;
+use super::impact::check_conserved_under;
+use super::invariant::ranked_at_states;
+use super::involution::check_involution;
+use super::lie::Lie;
+use super::sample::ATTEMPTS;
+use super::undecided::Undecided;
+use crate::model::{ExteriorForm, Model, StatedFunction};
+
+/// A function of positions, velocities and time, with its text.
+type Named<'n> = (ExprId, &'n str);
+
+/// The functions of a claim, with energy and momenta written out.
+fn written_out<'f>(model: &mut Model, functions: &'f [StatedFunction]) -> Vec<Named<'f>> {
+    let functions = functions.iter();
+    functions
+        .map(|function| (explicit(model, function.value), &*function.written))
+        .collect()
+}
+
+/// The verdict on `integrable: f, g, ..`.
+pub(super) fn check_integrable(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    declared: &[StatedFunction],
+) -> Verdict {
+    let names: Vec<String> = (declared.iter())
+        .map(|function| format!("`{}`", function.written))
+        .collect();
+    let functions = &*written_out(model, declared);
+    let mut together = Together {
+        all: Certificate::without_chance(names.join(", "), around.seed),
+        open: None,
+    };
+    let dynamics = std::slice::from_ref(around.dynamics);
+    for function in functions {
+        let verdict = check_conserved(model, dynamics, *function, true, around.seed);
+        if let Some(refuted) = together.add(verdict) {
+            return refuted;
+        }
+    }
+    let involution = check_involution(model, around, declared);
+    if let Some(refuted) = together.add(involution) {
+        return refuted;
+    }
+    let independence = are_independent(model, around, functions);
+    if let Some(refuted) = together.add(independence) {
+        return refuted;
+    }
+    together.all.shown += " are conserved, in involution and independent at almost all states";
+    for surface in 0..model.surfaces.len() {
+        for StatedFunction { value, written } in declared {
+            let stated = (*value, written.as_str());
+            let verdict = check_conserved_under(model, around, surface, stated, true);
+            if let Some(refuted) = together.add(verdict) {
+                return of_surface(model, surface, refuted);
+            }
+        }
+        let name = &model.surfaces[surface].name.display;
+        together.all.shown += &format!("; `{name}` keeps them");
+    }
+    together.verdict()
+}
+
+/// The refutation at a surface, with advice.
+fn of_surface(model: &Model, surface: usize, verdict: Verdict) -> Verdict {
+    let Verdict::Refuted(witness) = verdict else {
+        return verdict;
+    };
+    let name = &model.surfaces[surface].name.display;
+    let help = format!("leave it out, or claim it for a scene that does not use `{name}`");
+    Verdict::Refuted(Witness { help, ..witness })
+}
+
+/// Several proofs that are needed together.
+struct Together {
+    all: Certificate,
+    open: Option<String>,
+}
+
+impl Together {
+    /// Adds a verdict; a refutation is given back.
+    fn add(&mut self, verdict: Verdict) -> Option<Verdict> {
+        match verdict {
+            Verdict::Proved(part) => self.all.rest_on(&part),
+            Verdict::Undecided(reason) => {
+                self.open.get_or_insert(reason);
+            }
+            refuted @ Verdict::Refuted(_) => return Some(refuted),
+        }
+        None
+    }
+
+    fn verdict(self) -> Verdict {
+        match self.open {
+            Some(reason) => Verdict::Undecided(reason),
+            None => Verdict::Proved(self.all),
+        }
+    }
+}
+
+/// The verdict on `df_1 ^ .. ^ df_k` being different from 0 at almost all states: one component at one state shows it.
+fn are_independent(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    functions: &[Named<'_>],
+) -> Verdict {
+    let Some(tangents) = Tangents::of(model, around.dynamics) else {
+        return Verdict::Undecided(Undecided::Degenerate.to_string());
+    };
+    let degree = functions.len();
+    if is_too_large(tangents.dimension(), degree) {
+        let text = "the differentials have more minors than are examined";
+        return Verdict::Undecided(text.to_owned());
+    }
+    let one = model.pool.one();
+    let mut form = ExteriorForm::function(&model.pool, one);
+    for (value, _) in functions {
+        let differential = ExteriorForm::differential(&model.pool, *value);
+        form = form.wedge(&mut model.pool, &differential);
+    }
+    let mut question = Lie::of(model, around.dynamics, &tangents, &form).of_form();
+    question.part = Part::All(around.seed);
+    let all = evidence(model, &question, around.seed);
+    if all.shows_that_it_vanishes() {
+        return Verdict::Refuted(dependent(model, &question, functions));
+    }
+    let open = all.open.to_string();
+    let names = tangents.names(model);
+    for places in ranked_at_states(model, &question) {
+        let vectors: Vec<&str> = places.iter().map(|place| &*names[*place]).collect();
+        question.shown = format!("determinant of the differentials on {}", vectors.join(", "));
+        question.part = Part::One(places);
+        let one = evidence(model, &question, around.seed);
+        let proof = one.verdict(false, Wording::default(), around.seed);
+        if matches!(proof, Verdict::Proved(_)) {
+            return proof;
+        }
+    }
+    Verdict::Undecided(format!("whether they are independent: {open}"))
+}
+
+/// The relation of the differentials at a state.
+fn dependent(model: &Model, question: &Lie<'_>, functions: &[Named<'_>]) -> Witness {
+    let found = (0..ATTEMPTS).find_map(|attempt| {
+        let (sample, mut point) = question.sample(model, attempt)?;
+        let rows = question.products(model, &mut point)?.only_rows()?;
+        Some((sample, relation(rows)?))
+    });
+    let (sample, values) = match found {
+        Some((sample, factors)) => {
+            // The form has its differentials in the order of their indices.
+            let mut order: Vec<usize> = (0..functions.len()).collect();
+            order.sort_by_key(|i| functions[*i].0);
+            let mut named: Vec<(usize, f64)> = order.into_iter().zip(factors).collect();
+            named.sort_by_key(|(i, _)| *i);
+            let named = named.into_iter();
+            let named =
+                named.map(|(i, factor)| (format!("factor of d({})", functions[i].1), factor));
+            (Some(sample), named.collect())
+        }
+        None => (None, Vec::new()),
+    };
+    Witness {
+        reason: "the differentials of the functions are dependent at all states: one function follows from the others; this combination is 0"
+            .to_owned(),
+        sample,
+        values,
+        help: "state functions that are independent".to_owned(),
+    }
+}
+
+/// Factors, the largest of them 1, with which rows add up to 0; `None` if they are independent.
+fn relation(rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    /// The part of a row's size that rounding leaves of it.
+    const ROUNDING: f64 = 1e-9;
+    let size = |row: &[f64]| {
+        row.iter()
+            .fold(0.0_f64, |size, entry| size.max(entry.abs()))
+    };
+    let count = rows.len();
+    let mut done: Vec<(Vec<f64>, Vec<f64>, usize)> = Vec::new();
+    for (i, mut row) in rows.into_iter().enumerate() {
+        let before = size(&row);
+        let mut factors = vec![0.0; count];
+        factors[i] = 1.0;
+        for (other, by, pivot) in &done {
+            let factor = row[*pivot] / other[*pivot];
+            for (entry, value) in row.iter_mut().zip(other) {
+                *entry -= factor * value;
+            }
+            for (entry, value) in factors.iter_mut().zip(by) {
+                *entry -= factor * value;
+            }
+        }
+        if size(&row) <= ROUNDING * before {
+            let largest = size(&factors);
+            return Some(factors.into_iter().map(|factor| factor / largest).collect());
+        }
+        let pivot = (0..row.len()).max_by(|a, b| row[*a].abs().total_cmp(&row[*b].abs()))?;
+        done.push((row, factors, pivot));
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn relations_are_those_of_the_rows() {
+        let rows = vec![
+            vec![1.0, 2.0, 0.0],
+            vec![0.0, 1.0, 1.0],
+            vec![2.0, 5.0, 1.0],
+        ];
+        assert_eq!(relation(rows), Some(vec![-1.0, -0.5, 0.5]));
+        assert_eq!(relation(vec![vec![1.0, 0.0], vec![1.0, 1e-3]]), None);
+    }
+}

@@ -1,0 +1,412 @@
+//! Bracket of functions on D at one time: Poisson without constraints, almost Poisson with them.
+//!
+//! ```text
+//! {f, g} = {f o P, g o P} on D      P the projection of momenta to D along the constraint forces, p - A -> pi_D^*(p - A)
+//! ```
+//!
+//! In a frame X_i of D with `qdot = X_0 + X_i u^i` and `mu_i = <p - A, X_i>`:
+//!
+//! ```text
+//! {q^k, mu_j}  = X_j^k,   {q^k, q^l} = 0,   {mu_i, mu_j} = dA(X_i, X_j) - g(qdot, [X_i, X_j])
+//! {f, g}       = X_j(f) g^j - X_j(g) f^j + f^i g^j S_ij,       f^i = df/dmu_i = G^{ij} df/du^j,   G = X^T g X
+//! S_ij         = {mu_i, mu_j} - X_j(mu_i) + X_i(mu_j)           derivatives X_j at constant u
+//! ```
+//!
+//! The signs are those of `{f, g} = f_q g_p - f_p g_q`. Sources: W. Clark, thesis, III.6 to III.8; J. Cortes and A. Vinogradov, 2.4
+//! and 3.1: this is the bracket of their partial symplectic structure, affine constraints included.
+
+use dalembert_expr::{ExprId, Pool, Rational, SymbolId, Verdict};
+
+use super::energy::total_energy;
+use super::inverse::{Matrix, dot, inverse, minor, tidy};
+use super::{Derivation, Frame};
+use crate::model::Model;
+
+/// Reason for which there is no bracket.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoBracket {
+    /// The rates are declared, not derived.
+    FirstOrder,
+    /// Constraints that are not linear in the velocities.
+    Nonlinear,
+    /// A matrix that is not inverted by minors.
+    TooLarge,
+}
+
+impl NoBracket {
+    /// The reason in words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::FirstOrder => "a system of first order has no bracket",
+            Self::Nonlinear => {
+                "constraints that are not linear in the velocities have no bracket here"
+            }
+            Self::TooLarge => {
+                "the metric or the constraints couple more than four velocities: the bracket is not written out"
+            }
+        }
+    }
+}
+
+/// A frame of D: `qdot = X_0 + X_i u^i`.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameOfD {
+    /// `X_i`, N - M rows of N.
+    pub(crate) fields: Matrix,
+    /// The symbols of `u`.
+    pub(crate) u: Vec<SymbolId>,
+    /// Velocities by `u`.
+    pub(crate) velocity: Vec<(SymbolId, ExprId)>,
+    /// Each `u` by velocities; empty where it is one.
+    pub(crate) quasi: Vec<(SymbolId, ExprId)>,
+}
+
+/// A function on D with its derivatives.
+#[derive(Debug, Clone)]
+pub struct FunctionOnD {
+    /// The function, of positions and quasi-velocities.
+    pub value: ExprId,
+    /// `df/dmu_i`
+    by_momenta: Vec<ExprId>,
+}
+
+/// The bracket of a model.
+#[derive(Debug, Clone)]
+pub struct Bracket {
+    frame: FrameOfD,
+    q: Vec<SymbolId>,
+    /// `G^{-1}`
+    inverse: Matrix,
+    /// `S_ij`
+    structure: Matrix,
+    /// Momenta and energy that functions may name, with what they are on D.
+    named: Vec<(SymbolId, FunctionOnD)>,
+}
+
+/// Derives the bracket of a model.
+///
+/// # Errors
+/// [`NoBracket`].
+pub fn derive_bracket(model: &mut Model, derivation: &Derivation) -> Result<Bracket, NoBracket> {
+    let frame = frame_of_d(model, derivation)?;
+    let q: Vec<SymbolId> = (model.coordinates.iter())
+        .map(|coordinate| coordinate.q)
+        .collect();
+    let metric = model.lagrangian.metric.clone();
+    let linear = model.lagrangian.linear.clone();
+    let pool = &mut model.pool;
+    let velocity: Vec<ExprId> = frame.velocity.iter().map(|(_, value)| *value).collect();
+    let momentum: Vec<ExprId> = metric.iter().map(|row| dot(pool, row, &velocity)).collect();
+    let lowered: Matrix = (frame.fields.iter())
+        .map(|field| metric.iter().map(|row| dot(pool, row, field)).collect())
+        .collect();
+    let reduced: Matrix = (lowered.iter())
+        .map(|form| frame.fields.iter().map(|x| dot(pool, form, x)).collect())
+        .collect();
+    let inverse = inverse(pool, &reduced).ok_or(NoBracket::TooLarge)?;
+    let momenta: Vec<ExprId> = (frame.fields.iter())
+        .map(|field| dot(pool, field, &momentum))
+        .collect();
+    let size = frame.fields.len();
+    let mut structure = vec![vec![pool.zero(); size]; size];
+    for i in 0..size {
+        for j in 0..i {
+            let pair = [&frame.fields[i], &frame.fields[j]];
+            let bracket = commutator(pool, &q, pair);
+            let inertial = dot(pool, &momentum, &bracket);
+            let magnetic = exterior(pool, &q, &linear, pair);
+            let [first, second] = [
+                along(pool, &q, &frame.fields[j], momenta[i]),
+                along(pool, &q, &frame.fields[i], momenta[j]),
+            ];
+            let signed = [(1, magnetic), (-1, inertial), (-1, first), (1, second)];
+            let sum = pool.combine(&signed.map(|(sign, term)| (Rational::from(sign), term)));
+            structure[i][j] = tidy(pool, sum);
+            structure[j][i] = pool.neg(structure[i][j]);
+        }
+    }
+    let bracket = Bracket {
+        frame,
+        q,
+        inverse,
+        structure,
+        named: Vec::new(),
+    };
+    Ok(bracket.with_names(model))
+}
+
+impl Bracket {
+    /// The same, with momenta and energy. Their derivatives are not solved for where they are known.
+    fn with_names(mut self, model: &mut Model) -> Self {
+        let is_free = model.constraints.is_empty();
+        let is_linear = (model.constraints.iter())
+            .all(|constraint| model.pool.is_syntactic_zero(constraint.affine));
+        for i in 0..model.coordinates.len() {
+            let symbol = model.derived.momenta[i];
+            let momentum = model
+                .pool
+                .diff(model.lagrangian.whole, model.coordinates[i].qdot);
+            let mut momentum = self.on_d(&mut model.pool, momentum);
+            if is_free {
+                let (zero, one) = (model.pool.zero(), model.pool.one());
+                momentum.by_momenta = vec![zero; model.coordinates.len()];
+                momentum.by_momenta[i] = one;
+            }
+            self.named.push((symbol, momentum));
+        }
+        let energy = total_energy(model);
+        let mut energy = self.on_d(&mut model.pool, energy);
+        if is_linear {
+            let u = self.frame.u.iter();
+            energy.by_momenta = u.map(|symbol| model.pool.variable(*symbol)).collect();
+        }
+        self.named.push((model.derived.energy, energy));
+        self
+    }
+
+    /// A function of positions, velocities, momenta and energy on D.
+    pub fn on_d(&self, pool: &mut Pool, function: ExprId) -> FunctionOnD {
+        let mut values = self.frame.velocity.clone();
+        let named = self.named.iter();
+        values.extend(named.map(|(symbol, known)| (*symbol, known.value)));
+        let value = pool.substitute(function, &values);
+        // Momenta and energy stay symbols: their own changes are added.
+        let held = pool.substitute(function, &self.frame.velocity);
+        let mut by_momenta = self.solved(pool, held);
+        for (symbol, known) in &self.named {
+            let slope = pool.diff(function, *symbol);
+            for (sum, by) in by_momenta.iter_mut().zip(&known.by_momenta) {
+                let term = dot(pool, &[slope], &[*by]);
+                *sum = pool.add(*sum, term);
+            }
+        }
+        let by_momenta = by_momenta.into_iter().map(|slope| {
+            let slope = pool.substitute(slope, &values);
+            tidy(pool, slope)
+        });
+        FunctionOnD {
+            by_momenta: by_momenta.collect(),
+            value: tidy(pool, value),
+        }
+    }
+
+    /// A function of positions and quasi-velocities by velocities, tidied.
+    pub fn written(&self, pool: &mut Pool, function: ExprId) -> ExprId {
+        let settled = settled(pool, function);
+        let written = pool.substitute(settled, &self.frame.quasi);
+        let written = pool.simplify(written);
+        pool.generic(written)
+    }
+
+    /// `{f, g}` of functions of positions and quasi-velocities.
+    pub fn between(&self, pool: &mut Pool, f: &FunctionOnD, g: &FunctionOnD) -> ExprId {
+        let [first, second] = [f, g].map(|function| &function.by_momenta);
+        let changes = |pool: &mut Pool, function: &FunctionOnD| -> Vec<ExprId> {
+            let fields = self.frame.fields.iter();
+            fields
+                .map(|field| along(pool, &self.q, field, function.value))
+                .collect()
+        };
+        let [of_f, of_g] = [f, g].map(|function| changes(pool, function));
+        let turned: Vec<ExprId> = (self.structure.iter())
+            .map(|row| dot(pool, row, second))
+            .collect();
+        let terms = [
+            (1, dot(pool, &of_f, second)),
+            (-1, dot(pool, &of_g, first)),
+            (1, dot(pool, first, &turned)),
+        ];
+        let sum = pool.combine(&terms.map(|(sign, term)| (Rational::from(sign), term)));
+        settled(pool, sum)
+    }
+
+    /// `{{f, g}, h} + {{h, f}, g} + {{g, h}, f}`
+    pub fn jacobiator(&self, pool: &mut Pool, [f, g, h]: [&FunctionOnD; 3]) -> ExprId {
+        let terms = [(f, g, h), (h, f, g), (g, h, f)].map(|(a, b, c)| {
+            let inner = self.between(pool, a, b);
+            let inner = self.on_d(pool, inner);
+            self.between(pool, &inner, c)
+        });
+        pool.sum(&terms)
+    }
+
+    /// `G^{ij} df/du^j`
+    fn solved(&self, pool: &mut Pool, function: ExprId) -> Vec<ExprId> {
+        let slopes = self
+            .frame
+            .u
+            .iter()
+            .map(|symbol| pool.diff(function, *symbol));
+        let slopes: Vec<ExprId> = slopes.collect();
+        self.inverse
+            .iter()
+            .map(|row| dot(pool, row, &slopes))
+            .collect()
+    }
+}
+
+/// The expression multiplied out, 0 if it is shown to be.
+pub(crate) fn settled(pool: &mut Pool, expression: ExprId) -> ExprId {
+    match pool.zero_test(expression) {
+        Verdict::Proved => pool.zero(),
+        Verdict::Refuted | Verdict::Undecided => tidy(pool, expression),
+    }
+}
+
+/// `X(f)`
+pub(crate) fn along(pool: &mut Pool, q: &[SymbolId], field: &[ExprId], function: ExprId) -> ExprId {
+    let slopes: Vec<ExprId> = q
+        .iter()
+        .map(|symbol| pool.diff(function, *symbol))
+        .collect();
+    dot(pool, field, &slopes)
+}
+
+/// `[X, Y]`
+pub(crate) fn commutator(
+    pool: &mut Pool,
+    q: &[SymbolId],
+    [x, y]: [&Vec<ExprId>; 2],
+) -> Vec<ExprId> {
+    let components = x.iter().zip(y);
+    let components = components.map(|(&of_x, &of_y)| {
+        let [first, second] = [along(pool, q, x, of_y), along(pool, q, y, of_x)];
+        pool.sub(first, second)
+    });
+    components.collect()
+}
+
+/// `dA(X, Y)`
+pub(crate) fn exterior(
+    pool: &mut Pool,
+    q: &[SymbolId],
+    form: &[ExprId],
+    [x, y]: [&Vec<ExprId>; 2],
+) -> ExprId {
+    let changes = |pool: &mut Pool, field: &Vec<ExprId>| -> Vec<ExprId> {
+        form.iter()
+            .map(|entry| along(pool, q, field, *entry))
+            .collect()
+    };
+    let [by_x, by_y] = [changes(pool, x), changes(pool, y)];
+    let [first, second] = [dot(pool, &by_x, y), dot(pool, &by_y, x)];
+    pool.sub(first, second)
+}
+
+/// A frame of D: the one that the motion is reduced in, or one of independent velocities that is regular at almost all states.
+pub(crate) fn frame_of_d(
+    model: &mut Model,
+    derivation: &Derivation,
+) -> Result<FrameOfD, NoBracket> {
+    if model.is_first_order() {
+        return Err(NoBracket::FirstOrder);
+    }
+    if model.is_nonlinear() {
+        return Err(NoBracket::Nonlinear);
+    }
+    let known = match (&derivation.frame, model.constraints.is_empty()) {
+        (Ok(frame), false) => of_motion(model, frame),
+        _ => None,
+    };
+    match known {
+        Some(frame) => Ok(frame),
+        None => of_velocities(model).ok_or(NoBracket::TooLarge),
+    }
+}
+
+/// The frame that the motion is reduced in, where it is written out.
+fn of_motion(model: &mut Model, frame: &Frame) -> Option<FrameOfD> {
+    let invariant = frame.invariant.as_ref()?;
+    let fields: Option<Matrix> = (invariant.written.iter())
+        .map(|row| row.iter().copied().collect())
+        .collect();
+    let velocity: Option<Vec<ExprId>> = invariant.written_velocity.iter().copied().collect();
+    let velocities: Vec<SymbolId> = (model.coordinates.iter())
+        .map(|coordinate| coordinate.qdot)
+        .collect();
+    let pool = &mut model.pool;
+    let qdot: Vec<ExprId> = velocities
+        .iter()
+        .map(|symbol| pool.variable(*symbol))
+        .collect();
+    let quasi = invariant.u.iter().zip(&frame.quasi);
+    let quasi = quasi.map(|(symbol, quasi)| (*symbol, dot(pool, &quasi.form, &qdot)));
+    Some(FrameOfD {
+        quasi: quasi.collect(),
+        fields: fields?,
+        u: invariant.u.clone(),
+        velocity: velocities.into_iter().zip(velocity?).collect(),
+    })
+}
+
+/// A frame of as many velocities as are independent; `None` if the constraints couple too many.
+fn of_velocities(model: &mut Model) -> Option<FrameOfD> {
+    let n = model.coordinates.len();
+    let forms: Matrix = (model.constraints.iter())
+        .map(|constraint| constraint.form.clone())
+        .collect();
+    let affine: Vec<ExprId> = (model.constraints.iter())
+        .map(|constraint| constraint.affine)
+        .collect();
+    let velocities: Vec<SymbolId> = (model.coordinates.iter())
+        .map(|coordinate| coordinate.qdot)
+        .collect();
+    let pool = &mut model.pool;
+    let dependent = dependent_columns(pool, &forms)?;
+    let select = |row: &Vec<ExprId>| dependent.iter().map(|j| row[*j]).collect();
+    let minor: Matrix = forms.iter().map(select).collect();
+    let solved = inverse(pool, &minor)?;
+    let independent: Vec<usize> = (0..n).filter(|i| !dependent.contains(i)).collect();
+    let mut fields = vec![vec![pool.zero(); n]; independent.len()];
+    let mut drift = vec![pool.zero(); n];
+    for (field, i) in fields.iter_mut().zip(&independent) {
+        field[*i] = pool.one();
+        let column: Vec<ExprId> = forms.iter().map(|row| row[*i]).collect();
+        for (j, row) in dependent.iter().zip(&solved) {
+            let lost = dot(pool, row, &column);
+            field[*j] = pool.neg(lost);
+        }
+    }
+    for (j, row) in dependent.iter().zip(&solved) {
+        let lost = dot(pool, row, &affine);
+        drift[*j] = pool.neg(lost);
+    }
+    let u: Vec<SymbolId> = independent.iter().map(|i| velocities[*i]).collect();
+    let free: Vec<ExprId> = u.iter().map(|symbol| pool.variable(*symbol)).collect();
+    let velocity = (0..n).map(|k| {
+        let column: Vec<ExprId> = fields.iter().map(|field| field[k]).collect();
+        let sum = dot(pool, &column, &free);
+        (velocities[k], pool.add(drift[k], sum))
+    });
+    Some(FrameOfD {
+        velocity: velocity.collect(),
+        fields,
+        u,
+        quasi: Vec::new(),
+    })
+}
+
+/// Columns in which rows have a determinant that is not 0 identically: one more for each row. `None` if there are none, or if the
+/// determinant is too large to be written out.
+fn dependent_columns(pool: &mut Pool, rows: &[Vec<ExprId>]) -> Option<Vec<usize>> {
+    /// Rows beyond which no determinant is written out.
+    const LARGEST: usize = 8;
+    let mut columns: Vec<usize> = Vec::new();
+    let width = rows.first().map_or(0, Vec::len);
+    if rows.len() > LARGEST {
+        return None;
+    }
+    for count in 1..=rows.len() {
+        let above: Vec<usize> = (0..count).collect();
+        let next = (0..width)
+            .rev()
+            .filter(|j| !columns.contains(j))
+            .find(|j| {
+                let together = [&*columns, &[*j]].concat();
+                let determinant = minor(pool, rows, &above, &together);
+                pool.zero_test(determinant) == Verdict::Refuted
+            })?;
+        columns.push(next);
+    }
+    Some(columns)
+}

@@ -1,0 +1,117 @@
+//! Inverses and determinants as explicit expressions, for small matrices: by minors, products of sums multiplied out.
+
+use dalembert_expr::{ExprId, Pool};
+
+/// Rows of expressions.
+pub(crate) type Matrix = Vec<Vec<ExprId>>;
+
+/// Larger blocks of a matrix are not inverted by minors.
+const LARGEST_BLOCK: usize = 4;
+
+/// An expression multiplied out and simplified, of almost all states.
+pub(crate) fn tidy(pool: &mut Pool, expression: ExprId) -> ExprId {
+    let flat = pool.multiply_out(expression);
+    let flat = pool.generic(flat);
+    let tidy = pool.simplify(flat);
+    pool.generic(tidy)
+}
+
+/// `a.b`, tidied. Products with 0 are left out, whatever the other factor is.
+pub(crate) fn dot(pool: &mut Pool, a: &[ExprId], b: &[ExprId]) -> ExprId {
+    let mut products = Vec::new();
+    for (a, b) in a.iter().zip(b) {
+        if ![a, b].iter().any(|factor| pool.is_syntactic_zero(**factor)) {
+            products.push(pool.mul(*a, *b));
+        }
+    }
+    let sum = pool.sum(&products);
+    tidy(pool, sum)
+}
+
+/// The inverse of a matrix, block by block; `None` if a block is too large.
+pub(crate) fn inverse(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix> {
+    let zero = pool.zero();
+    let mut inverse = vec![vec![zero; matrix.len()]; matrix.len()];
+    for block in blocks(pool, matrix) {
+        if block.len() > LARGEST_BLOCK {
+            return None;
+        }
+        let determinant = minor(pool, matrix, &block, &block);
+        for (i, row) in block.iter().enumerate() {
+            for (j, column) in block.iter().enumerate() {
+                let without = |omitted: usize| -> Vec<usize> {
+                    block
+                        .iter()
+                        .copied()
+                        .filter(|index| *index != omitted)
+                        .collect()
+                };
+                let cofactor = minor(pool, matrix, &without(*column), &without(*row));
+                let signed = match (i + j) % 2 {
+                    0 => cofactor,
+                    _ => pool.neg(cofactor),
+                };
+                if !pool.is_syntactic_zero(signed) {
+                    inverse[*row][*column] = pool.div(signed, determinant);
+                }
+            }
+        }
+    }
+    Some(inverse)
+}
+
+/// The indices that are connected by entries that are not 0.
+fn blocks(pool: &Pool, matrix: &[Vec<ExprId>]) -> Vec<Vec<usize>> {
+    let mut left: Vec<usize> = (0..matrix.len()).collect();
+    let mut blocks = Vec::new();
+    while let Some(first) = left.first().copied() {
+        let mut block = vec![first];
+        let mut visited = 0;
+        left.retain(|index| *index != first);
+        while let Some(row) = block.get(visited).copied() {
+            visited += 1;
+            let (connected, rest): (Vec<usize>, Vec<usize>) =
+                left.iter().copied().partition(|&j| {
+                    [matrix[row][j], matrix[j][row]]
+                        .iter()
+                        .any(|entry| !pool.is_syntactic_zero(*entry))
+                });
+            block.extend(connected);
+            left = rest;
+        }
+        block.sort_unstable();
+        blocks.push(block);
+    }
+    blocks
+}
+
+/// The determinant of some rows and columns, by the first row.
+pub(crate) fn minor(
+    pool: &mut Pool,
+    matrix: &[Vec<ExprId>],
+    rows: &[usize],
+    columns: &[usize],
+) -> ExprId {
+    let Some((row, rest)) = rows.split_first() else {
+        return pool.one();
+    };
+    let mut terms = Vec::new();
+    for (position, column) in columns.iter().enumerate() {
+        if pool.is_syntactic_zero(matrix[*row][*column]) {
+            continue;
+        }
+        let others: Vec<usize> = columns
+            .iter()
+            .copied()
+            .filter(|other| other != column)
+            .collect();
+        let below = minor(pool, matrix, rest, &others);
+        let product = pool.mul(matrix[*row][*column], below);
+        terms.push(match position % 2 {
+            0 => product,
+            _ => pool.neg(product),
+        });
+    }
+    let sum = pool.sum(&terms);
+    tidy(pool, sum)
+}

@@ -1,0 +1,125 @@
+//! Derivations that are asked for in the words of a claim: of the functions or the fields that it names.
+
+use proc_macro2::{Span, TokenStream};
+
+use super::{Report, ReportError, Section, Tree, tokens};
+use crate::diagnostics::{Diagnostics, Location};
+use crate::mechanics::{Derivation, derive};
+use crate::model::{Model, StatedFunction, Statement, check_modes, check_within};
+use crate::refuse_exhausted;
+use crate::spec::{self, Declaration};
+use crate::tables::text_of;
+
+/// A model or a mode with what was asked of it.
+pub(super) struct Asked {
+    pub(super) model: Model,
+    pub(super) derivation: Derivation,
+    pub(super) statements: Vec<Statement>,
+    name: String,
+}
+
+impl Asked {
+    /// Reads a declaration and resolves claims about it, in place of its own. `part` names a scene or a mode; `None` is the model itself.
+    ///
+    /// # Errors
+    /// [`ReportError`]; a model with modes is none without the name of one.
+    pub(super) fn of(
+        source: &str,
+        part: Option<&str>,
+        claims: &[String],
+    ) -> Result<Self, ReportError> {
+        let declaration = super::declaration(source)?.without_claims();
+        let claims = claims.iter().map(|claim| tokens(claim));
+        let claims = claims.collect::<Result<Vec<TokenStream>, _>>()?;
+        Self::resolved(declaration, part, claims).map_err(ReportError::Declaration)
+    }
+
+    fn resolved(
+        declaration: Declaration,
+        part: Option<&str>,
+        claims: Vec<TokenStream>,
+    ) -> Result<Self, Diagnostics> {
+        let (spec, mut model, name) = match declaration {
+            Declaration::Model(mut spec) => {
+                add(&mut spec, claims)?;
+                let model = check_within(&spec, spec::STEPS)?;
+                let scene = model
+                    .scenes
+                    .iter()
+                    .position(|scene| Some(&*scene.name) == part);
+                let name = scene.map_or(&model.snake_name, |scene| &model.scenes[scene].name);
+                let (name, claims) = (name.clone(), model.claims.clone());
+                let model = match scene {
+                    Some(scene) => model.in_scene(scene),
+                    None => model,
+                };
+                (*spec, Model { claims, ..model }, name)
+            }
+            Declaration::Modes(mut modes) => {
+                let named = |mode: &spec::Mode| Some(&*mode.name.text) == part;
+                let Some(mode) = modes.modes.iter().position(named) else {
+                    let mut mistakes = Diagnostics::new();
+                    let first = &modes.modes[0];
+                    mistakes
+                        .error(first.spec.name.at, "each mode has equations of its own")
+                        .help(format!("name a mode, such as `{}`", first.name.text));
+                    return Err(mistakes);
+                };
+                add(&mut modes.modes[mode].spec, claims)?;
+                let mut graph = check_modes(&modes)?;
+                let name = modes.modes[mode].name.text.clone();
+                let spec = modes.modes.swap_remove(mode).spec;
+                (spec, graph.modes.swap_remove(mode).model, name)
+            }
+        };
+        let derivation = derive(&mut model);
+        refuse_exhausted(&spec, &model)?;
+        model.pool.lift_budget();
+        let statements = model.claims.drain(..);
+        let statements = statements.map(|claim| claim.statement).collect();
+        Ok(Self {
+            model,
+            derivation,
+            statements,
+            name,
+        })
+    }
+
+    /// The functions of the only claim.
+    pub(super) fn functions(&self) -> Vec<StatedFunction> {
+        match self.statements.as_slice() {
+            [Statement::Involution(functions)] => functions.clone(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A refusal of what was asked.
+    pub(super) fn refusal(text: impl Into<String>, help: &str) -> ReportError {
+        let mut mistakes = Diagnostics::new();
+        let at = Location::from(Span::call_site());
+        let error = mistakes.error(at, text);
+        if !help.is_empty() {
+            error.help(help);
+        }
+        ReportError::Declaration(mistakes)
+    }
+
+    /// The report of these sections.
+    pub(super) fn report(self, mut sections: Vec<Section>) -> Report {
+        sections.retain(|section| !section.items.is_empty());
+        Report {
+            name: self.name,
+            documentation: text_of(&self.model.documentation),
+            sections,
+            findings: Vec::new(),
+            certificate: Tree::Absent,
+            scenes: Vec::new(),
+        }
+    }
+}
+
+fn add(spec: &mut spec::Spec, claims: Vec<TokenStream>) -> Result<(), Diagnostics> {
+    claims
+        .into_iter()
+        .try_for_each(|claim| spec::add_claim(spec, claim))
+}
