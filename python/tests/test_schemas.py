@@ -22,7 +22,11 @@ Ball {
 #: Schemas with the command lines whose output they describe.
 OUTPUTS = {
     "list": [["list", "--format", "json"]],
-    "derive": [["derive", name, "--format", "json"] for name in ("rolling_disk", "tent_map", "dimensionless_walker")],
+    "derive": [
+        *(["derive", name, "--format", "json"] for name in ("rolling_disk", "tent_map", "dimensionless_walker")),
+        ["derive", "rolling_disk", "--bracket", "x,momentum(theta)", "--format", "json"],
+        ["derive", "rolling_disk", "--group", "partial(x),partial(y)", "--format", "json"],
+    ],
     "check": [
         ["check", name, "--format", "json"]
         for name in ("rolling_disk", "tent_map", "chaplygin_sleigh", "rolling_ball_euler", "spring_mass_walker")

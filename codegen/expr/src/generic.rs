@@ -23,22 +23,15 @@ impl Pool {
                         .map(|(coefficient, term)| (coefficient.clone(), results.get(*term)))
                         .collect();
                     summands.push((Rational::ONE, self.number(constant)));
-                    self.combine(&summands)
+                    self.over_denominators(&summands)
                 }
                 Node::Product(factors) => {
-                    let mut powers: Vec<(ExprId, Rational)> = Vec::new();
-                    for (base, exponent) in &factors {
-                        let base = results.get(*base);
-                        let merged = powers.iter_mut().find(|(known, power)| {
-                            *known == base && power.is_integer() && exponent.is_integer()
-                        });
-                        match merged {
-                            Some((_, power)) => *power = &*power + exponent,
-                            None => powers.push((base, exponent.clone())),
-                        }
-                    }
-                    powers.retain(|(_, exponent)| !exponent.is_zero());
-                    self.power_product(&powers)
+                    let factors = factors.iter();
+                    let powers: Vec<(ExprId, Rational)> = factors
+                        .map(|(base, exponent)| (results.get(*base), exponent.clone()))
+                        .collect();
+                    let product = self.power_product(&merged(&powers));
+                    self.without_guards(product)
                 }
                 other => self.map_operands(other, |operand| results.get(operand)),
             };
@@ -46,6 +39,80 @@ impl Pool {
         }
         results.get(id)
     }
+
+    /// A sum in which terms over one denominator that add up to a factor of it are cancelled.
+    fn over_denominators(&mut self, summands: &[(Rational, ExprId)]) -> ExprId {
+        let mut terms = Vec::new();
+        let mut groups: Vec<(Factors, Vec<(Rational, ExprId)>)> = Vec::new();
+        for (coefficient, term) in summands {
+            let (below, above) = match self.node(*term) {
+                Node::Product(factors) => (factors.iter().cloned())
+                    .partition(|(_, exponent)| exponent.is_negative() && exponent.is_integer()),
+                _ => (Vec::new(), vec![(*term, Rational::ONE)]),
+            };
+            if below.is_empty() {
+                terms.push((coefficient.clone(), *term));
+                continue;
+            }
+            let above = (coefficient.clone(), self.power_product(&above));
+            match groups.iter_mut().find(|(known, _)| *known == below) {
+                Some((_, numerator)) => numerator.push(above),
+                None => groups.push((below, vec![above])),
+            }
+        }
+        for (below, numerator) in groups {
+            let whole = self.combine(&numerator);
+            let (coefficient, factor) = self.as_multiple(whole);
+            match below.iter().any(|(base, _)| *base == factor) {
+                true => {
+                    let factors = [&*below, &[(factor, Rational::ONE)]].concat();
+                    terms.push((coefficient, self.power_product(&merged(&factors))));
+                }
+                false => {
+                    let below = self.power_product(&below);
+                    for (coefficient, above) in numerator {
+                        terms.push((coefficient, self.mul(above, below)));
+                    }
+                }
+            }
+        }
+        self.combine(&terms)
+    }
+
+    /// A multiple of a product, in which factors that were products themselves may have met others of their bases.
+    fn without_guards(&mut self, mut id: ExprId) -> ExprId {
+        loop {
+            let (coefficient, term) = self.as_multiple(id);
+            let Node::Product(factors) = self.node(term) else {
+                return id;
+            };
+            let powers = merged(factors);
+            if powers.len() == factors.len() {
+                return id;
+            }
+            let product = self.power_product(&powers);
+            id = self.scale(&coefficient, product);
+        }
+    }
+}
+
+/// Bases and exponents.
+type Factors = Vec<(ExprId, Rational)>;
+
+/// The factors with integer powers of one base merged.
+fn merged(factors: &[(ExprId, Rational)]) -> Factors {
+    let mut powers = Factors::new();
+    for (base, exponent) in factors {
+        let known = powers
+            .iter_mut()
+            .find(|(known, power)| known == base && power.is_integer() && exponent.is_integer());
+        match known {
+            Some((_, power)) => *power = &*power + exponent,
+            None => powers.push((*base, exponent.clone())),
+        }
+    }
+    powers.retain(|(_, exponent)| !exponent.is_zero());
+    powers
 }
 
 #[cfg(test)]
@@ -60,6 +127,12 @@ mod tests {
             ("y + 1/x - 1/x", "y"),
             ("x^2*sin(y)/sin(y)/x", "x"),
             ("cos(y*x/x)^2/cos(y)", "cos(y)"),
+            ("2*x*(x + y)/(x*(x + y))^1", "2"),
+            ("x/(x + 2*y) + 2*y/(x + 2*y) + 1/x", "1 + 1/x"),
+            (
+                "3*x^2/(x + 2*y)^2 + 6*x*y/(x + 2*y)^2",
+                "3*x^2/(x + 2*y)^2 + 6*x*y/(x + 2*y)^2",
+            ),
             ("1/x + 1/y", "1/x + 1/y"),
         ];
         for (written, expected) in cases {

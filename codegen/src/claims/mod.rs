@@ -108,6 +108,7 @@ pub use obstruction::{Obstruction, find_obstruction};
 pub use potential::{Potential, Term, potential_text};
 pub use problem::Problem;
 pub use sample::Sample;
+pub(crate) use symmetry::{check_symmetry, keeps_lagrangian};
 pub use trace::{Operation, Step, Trace};
 pub use undecided::Undecided;
 pub use volume::Volume;

@@ -21,17 +21,30 @@ use super::gauge;
 use super::sample::{Sample, sample, state_on_d, uses};
 use crate::model::Model;
 
+/// True if the flow of a field is shown to keep the Lagrangian itself.
+pub(crate) fn keeps_lagrangian(model: &mut Model, field: &[ExprId], seed: u64) -> bool {
+    let kept = kept(model, field);
+    evidence(model, &kept, seed).shows_that_it_vanishes()
+}
+
+/// The rate of the Lagrangian along the flow of a field.
+fn kept(model: &mut Model, field: &[ExprId]) -> Change<'static> {
+    let directions = lifted(model, field);
+    let whole = model.lagrangian.whole;
+    let rate = model.pool.derivative_along(whole, &directions);
+    Change::of_lagrangian("rate of L along its flow".to_owned(), rate)
+}
+
 /// The verdict on a symmetry, with remarks.
-pub(super) fn check_symmetry(
+pub(crate) fn check_symmetry(
     model: &mut Model,
     dynamics: &Dynamics,
     field: &[ExprId],
     seed: u64,
 ) -> (Verdict, Vec<String>) {
     let directions = lifted(model, field);
-    let whole = model.lagrangian.whole;
-    let rate = model.pool.derivative_along(whole, &directions);
-    let kept = Change::of_lagrangian("rate of L along its flow".to_owned(), rate);
+    let kept = kept(model, field);
+    let rate = kept.rate;
     let is_kept = evidence(model, &kept, seed).shows_that_it_vanishes();
     let mut changes = match is_kept {
         true => vec![kept],

@@ -15,10 +15,10 @@
 //! The signs are those of `{f, g} = f_q g_p - f_p g_q`. Sources: W. Clark, thesis, III.6 to III.8; J. Cortes and A. Vinogradov, 2.4
 //! and 3.1: this is the bracket of their partial symplectic structure, affine constraints included.
 
-use dalembert_expr::{ExprId, Pool, Rational, SymbolId, Verdict};
+use dalembert_expr::{Assumption, ExprId, Pool, Rational, SymbolId, Verdict};
 
 use super::energy::total_energy;
-use super::inverse::{Matrix, dot, inverse, minor, tidy};
+use super::inverse::{Matrix, dot, independent_minor, inverse, tidy};
 use super::{Derivation, Frame};
 use crate::model::Model;
 
@@ -73,10 +73,12 @@ pub struct FunctionOnD {
 /// The bracket of a model.
 #[derive(Debug, Clone)]
 pub struct Bracket {
-    frame: FrameOfD,
-    q: Vec<SymbolId>,
+    /// The frame that it is written in.
+    pub(crate) frame: FrameOfD,
+    /// The coordinates.
+    pub(crate) q: Vec<SymbolId>,
     /// `G^{-1}`
-    inverse: Matrix,
+    pub(crate) inverse: Matrix,
     /// `S_ij`
     structure: Matrix,
     /// Momenta and energy that functions may name, with what they are on D.
@@ -308,10 +310,78 @@ pub(crate) fn frame_of_d(
         (Ok(frame), false) => of_motion(model, frame),
         _ => None,
     };
-    match known {
-        Some(frame) => Ok(frame),
-        None => of_velocities(model).ok_or(NoBracket::TooLarge),
+    if let Some(frame) = known {
+        return Ok(frame);
     }
+    let velocities = of_velocities(model).ok_or(NoBracket::TooLarge)?;
+    let turned = match (&derivation.frame, model.constraints.is_empty()) {
+        (Ok(frame), false) => turned(model, &velocities, frame),
+        _ => None,
+    };
+    Ok(turned.unwrap_or(velocities))
+}
+
+/// A frame of velocities turned into that of quasi-velocities; `None` where these are velocities, or are not solved for.
+fn turned(model: &mut Model, known: &FrameOfD, frame: &Frame) -> Option<FrameOfD> {
+    if frame.quasi.iter().all(|quasi| quasi.coordinate.is_some()) {
+        return None;
+    }
+    let velocities: Vec<SymbolId> = known.velocity.iter().map(|(symbol, _)| *symbol).collect();
+    let pool = &mut model.pool;
+    let matrix: Matrix = (frame.quasi.iter())
+        .map(|quasi| {
+            known
+                .fields
+                .iter()
+                .map(|field| dot(pool, &quasi.form, field))
+                .collect()
+        })
+        .collect();
+    let inverse = inverse(pool, &matrix)?;
+    let zero: Vec<(SymbolId, ExprId)> = known
+        .u
+        .iter()
+        .map(|symbol| (*symbol, pool.zero()))
+        .collect();
+    let flows: Vec<ExprId> = known.velocity.iter().map(|(_, value)| *value).collect();
+    let drift = pool.substitute_all(&flows, &zero);
+    let u: Vec<SymbolId> = (frame.quasi.iter())
+        .map(|quasi| pool.symbol(&quasi.name, &quasi.name, Assumption::None))
+        .collect();
+    let free: Vec<ExprId> = (u.iter().zip(&frame.quasi))
+        .map(|(symbol, quasi)| {
+            let lost = dot(pool, &quasi.form, &drift);
+            let u = pool.variable(*symbol);
+            pool.sub(u, lost)
+        })
+        .collect();
+    let solved: Vec<ExprId> = inverse.iter().map(|row| dot(pool, row, &free)).collect();
+    let values: Vec<(SymbolId, ExprId)> = known.u.iter().copied().zip(solved).collect();
+    let velocity = pool.substitute_all(&flows, &values);
+    let fields = (0..u.len()).map(|i| {
+        let by: Vec<ExprId> = inverse.iter().map(|row| row[i]).collect();
+        let entry = |k: usize| {
+            let column: Vec<ExprId> = known.fields.iter().map(|field| field[k]).collect();
+            dot(pool, &by, &column)
+        };
+        (0..velocities.len()).map(entry).collect()
+    });
+    let fields = fields.collect();
+    let qdot: Vec<ExprId> = velocities
+        .iter()
+        .map(|symbol| pool.variable(*symbol))
+        .collect();
+    let quasi = u.iter().zip(&frame.quasi);
+    let quasi = quasi.map(|(symbol, quasi)| (*symbol, dot(pool, &quasi.form, &qdot)));
+    let quasi = quasi.collect();
+    let velocity = velocity.into_iter().map(|value| tidy(pool, value));
+    let velocity = velocities.into_iter().zip(velocity.collect::<Vec<_>>());
+    Some(FrameOfD {
+        velocity: velocity.collect(),
+        fields,
+        u,
+        quasi,
+    })
 }
 
 /// The frame that the motion is reduced in, where it is written out.
@@ -352,7 +422,10 @@ fn of_velocities(model: &mut Model) -> Option<FrameOfD> {
         .map(|coordinate| coordinate.qdot)
         .collect();
     let pool = &mut model.pool;
-    let dependent = dependent_columns(pool, &forms)?;
+    let (rows, dependent) = independent_minor(pool, &forms)?;
+    if rows.len() < forms.len() {
+        return None;
+    }
     let select = |row: &Vec<ExprId>| dependent.iter().map(|j| row[*j]).collect();
     let minor: Matrix = forms.iter().map(select).collect();
     let solved = inverse(pool, &minor)?;
@@ -384,29 +457,4 @@ fn of_velocities(model: &mut Model) -> Option<FrameOfD> {
         u,
         quasi: Vec::new(),
     })
-}
-
-/// Columns in which rows have a determinant that is not 0 identically: one more for each row. `None` if there are none, or if the
-/// determinant is too large to be written out.
-fn dependent_columns(pool: &mut Pool, rows: &[Vec<ExprId>]) -> Option<Vec<usize>> {
-    /// Rows beyond which no determinant is written out.
-    const LARGEST: usize = 8;
-    let mut columns: Vec<usize> = Vec::new();
-    let width = rows.first().map_or(0, Vec::len);
-    if rows.len() > LARGEST {
-        return None;
-    }
-    for count in 1..=rows.len() {
-        let above: Vec<usize> = (0..count).collect();
-        let next = (0..width)
-            .rev()
-            .filter(|j| !columns.contains(j))
-            .find(|j| {
-                let together = [&*columns, &[*j]].concat();
-                let determinant = minor(pool, rows, &above, &together);
-                pool.zero_test(determinant) == Verdict::Refuted
-            })?;
-        columns.push(next);
-    }
-    Some(columns)
 }

@@ -1,6 +1,6 @@
 //! Inverses and determinants as explicit expressions, for small matrices: by minors, products of sums multiplied out.
 
-use dalembert_expr::{ExprId, Pool};
+use dalembert_expr::{ExprId, Pool, Verdict};
 
 /// Rows of expressions.
 pub(crate) type Matrix = Vec<Vec<ExprId>>;
@@ -10,10 +10,19 @@ const LARGEST_BLOCK: usize = 4;
 
 /// An expression multiplied out and simplified, of almost all states.
 pub(crate) fn tidy(pool: &mut Pool, expression: ExprId) -> ExprId {
+    /// Rounds of simplification, each of which may let powers merge.
+    const ROUNDS: usize = 3;
     let flat = pool.multiply_out(expression);
-    let flat = pool.generic(flat);
-    let tidy = pool.simplify(flat);
-    pool.generic(tidy)
+    let mut tidy = pool.generic(flat);
+    for _ in 0..ROUNDS {
+        let simple = pool.simplify(tidy);
+        let next = pool.generic(simple);
+        if next == tidy {
+            break;
+        }
+        tidy = next;
+    }
+    tidy
 }
 
 /// `a.b`, tidied. Products with 0 are left out, whatever the other factor is.
@@ -114,4 +123,38 @@ pub(crate) fn minor(
     }
     let sum = pool.sum(&terms);
     tidy(pool, sum)
+}
+
+/// As many rows as are independent, and columns in which they have a determinant that is not 0 identically, as far as possible one that is
+/// 0 nowhere. `None` if determinants are too large to be written out.
+pub(crate) fn independent_minor(
+    pool: &mut Pool,
+    rows: &[Vec<ExprId>],
+) -> Option<(Vec<usize>, Vec<usize>)> {
+    /// Rows beyond which no determinant is written out.
+    const LARGEST: usize = 8;
+    let (mut chosen, mut columns) = (Vec::new(), Vec::new());
+    let width = rows.first().map_or(0, Vec::len);
+    for row in 0..rows.len() {
+        let above = [&*chosen, &[row]].concat();
+        let mut found = None;
+        for column in (0..width).rev().filter(|j| !columns.contains(j)) {
+            let together = [&*columns, &[column]].concat();
+            let determinant = minor(pool, rows, &above, &together);
+            if pool.sign(determinant).is_nonzero() {
+                found = Some(column);
+                break;
+            }
+            if found.is_none() && pool.zero_test(determinant) == Verdict::Refuted {
+                found = Some(column);
+            }
+        }
+        if let Some(column) = found {
+            (chosen, columns) = (above, [&*columns, &[column]].concat());
+        }
+        if chosen.len() > LARGEST {
+            return None;
+        }
+    }
+    Some((chosen, columns))
 }

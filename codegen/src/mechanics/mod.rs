@@ -26,6 +26,7 @@ pub(crate) mod inverse;
 pub mod metric;
 mod narrow;
 mod rank;
+pub mod reduction;
 
 use dalembert_expr::{ExprId, SymbolId};
 

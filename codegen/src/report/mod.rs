@@ -8,7 +8,7 @@
 //! | `mod.rs` | what a report is, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
-//! | `request.rs`, `bracket.rs` | what is asked for in the words of a claim; brackets of functions |
+//! | `request.rs`, `bracket.rs`, `group.rs` | what is asked for in the words of a claim: brackets of functions, reduction by a group |
 //! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
 //! | `print.rs` | a report as text and as a document of LaTeX |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
@@ -18,6 +18,7 @@ pub mod certificate;
 mod density_form;
 mod equations;
 mod frame;
+mod group;
 mod print;
 mod request;
 mod volume;
@@ -28,6 +29,7 @@ use proc_macro2::{LexError, TokenStream};
 
 pub use bracket::{BracketKind, bracket};
 pub use density_form::density_form;
+pub use group::group;
 
 use certificate::Tree;
 use equations::Writer;

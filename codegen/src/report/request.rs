@@ -15,6 +15,8 @@ pub(super) struct Asked {
     pub(super) model: Model,
     pub(super) derivation: Derivation,
     pub(super) statements: Vec<Statement>,
+    /// The claims as written.
+    pub(super) texts: Vec<String>,
     name: String,
 }
 
@@ -75,12 +77,13 @@ impl Asked {
         let derivation = derive(&mut model);
         refuse_exhausted(&spec, &model)?;
         model.pool.lift_budget();
-        let statements = model.claims.drain(..);
-        let statements = statements.map(|claim| claim.statement).collect();
+        let claims = model.claims.drain(..);
+        let (statements, texts) = claims.map(|claim| (claim.statement, claim.text)).unzip();
         Ok(Self {
             model,
             derivation,
             statements,
+            texts,
             name,
         })
     }

@@ -1,12 +1,13 @@
 //! Brackets by differences of functions of `(q, p)` that are made constant along the constraint forces, and what is printed of them.
 
-use dalembert_codegen::mechanics::{Bracket, bracket::derive_bracket, derive};
-use dalembert_codegen::model::{Model, Statement, check};
+use dalembert_codegen::mechanics::{Bracket, bracket::derive_bracket};
+use dalembert_codegen::model::{Model, Statement};
 use dalembert_codegen::report::{BracketKind, bracket};
-use dalembert_codegen::{read, spec};
-use dalembert_expr::{ExprId, SymbolId};
+use dalembert_expr::ExprId;
 
+use crate::derived;
 use crate::systems::disk;
+use crate::values::{Row, inner, matrices, moving, projected, solved, value};
 
 const STEP: f64 = 1e-5;
 
@@ -32,12 +33,7 @@ struct Case {
 
 fn case(declaration: &str, functions: &str) -> Case {
     let source = declaration.replace("CLAIM", &format!("claims {{ involution: {functions}; }}"));
-    let spec::Declaration::Model(spec) = read(source.parse().expect("tokens")).expect("syntax")
-    else {
-        panic!("no model in one piece");
-    };
-    let mut model = check(&spec).expect("a model");
-    let derivation = derive(&mut model);
+    let (mut model, derivation) = derived(&source);
     let bracket = derive_bracket(&mut model, &derivation).expect("a bracket");
     let Statement::Involution(stated) = &model.claims[0].statement else {
         panic!("another claim");
@@ -50,103 +46,41 @@ fn case(declaration: &str, functions: &str) -> Case {
     }
 }
 
-type Row = Vec<f64>;
-
 impl Case {
-    fn value(&self, id: ExprId, state: &[(SymbolId, f64)]) -> f64 {
-        let known = |symbol: SymbolId| {
-            let given = state.iter().find(|(key, _)| *key == symbol);
-            let parameter = || {
-                let mut parameters = self.model.parameters.iter();
-                let default = parameters.find(|own| own.symbol == symbol)?.default?;
-                Some(self.model.pool.eval(&[default], &|_| f64::NAN)[0])
-            };
-            given
-                .map(|(_, value)| *value)
-                .or_else(parameter)
-                .unwrap_or(f64::NAN)
-        };
-        self.model.pool.eval(&[id], &known)[0]
-    }
-
-    fn at(&self, q: &[f64]) -> Vec<(SymbolId, f64)> {
-        let symbols = self.model.coordinates.iter().map(|own| own.q);
-        symbols.zip(q.iter().copied()).collect()
-    }
-
-    /// Metric, `A`, constraint forms and their affine parts.
-    fn matrices(&self, q: &[f64]) -> (Vec<Row>, Row, Vec<Row>, Row) {
-        let at = self.at(q);
-        let row = |row: &Vec<ExprId>| row.iter().map(|id| self.value(*id, &at)).collect::<Row>();
-        let lagrangian = &self.model.lagrangian;
-        let constraints = &self.model.constraints;
-        (
-            lagrangian.metric.iter().map(row).collect(),
-            row(&lagrangian.linear),
-            constraints.iter().map(|own| row(&own.form)).collect(),
-            constraints
-                .iter()
-                .map(|own| self.value(own.affine, &at))
-                .collect(),
-        )
-    }
-
-    /// The velocity in D of a momentum: that of `g^{-1}(p - A)` projected along the constraint forces.
+    /// The velocity in D of a momentum.
     fn velocity(&self, q: &[f64], p: &[f64]) -> Row {
-        let (metric, linear, forms, affine) = self.matrices(q);
+        let (metric, linear, ..) = matrices(&self.model, q);
         let kinetic: Row = p.iter().zip(&linear).map(|(p, a)| p - a).collect();
-        let mut v = solved(&metric, &kinetic);
-        let duals: Vec<Row> = forms.iter().map(|form| solved(&metric, form)).collect();
-        let mass: Vec<Row> = (forms.iter())
-            .map(|form| duals.iter().map(|dual| inner(form, dual)).collect())
-            .collect();
-        let lost: Row = (forms.iter().zip(&affine))
-            .map(|(form, affine)| inner(form, &v) + affine)
-            .collect();
-        let factors = solved(&mass, &lost);
-        for (factor, dual) in factors.iter().zip(&duals) {
-            for (entry, by) in v.iter_mut().zip(dual) {
-                *entry -= factor * by;
-            }
-        }
-        v
-    }
-
-    /// The function at the state in D that belongs to a momentum.
-    fn projected(&self, function: ExprId, q: &[f64], p: &[f64]) -> f64 {
-        let velocity = self.velocity(q, p);
-        self.function(function, q, &velocity)
+        projected(&self.model, q, solved(&metric, &kinetic))
     }
 
     fn function(&self, function: ExprId, q: &[f64], velocity: &[f64]) -> f64 {
-        let (metric, linear, ..) = self.matrices(q);
-        let mut state = self.at(q);
-        let symbols = self.model.coordinates.iter().map(|own| own.qdot);
-        state.extend(symbols.zip(velocity.iter().copied()));
-        let kinetic: f64 = metric
+        let (metric, linear, ..) = matrices(&self.model, q);
+        let mut state = moving(&self.model, q, velocity);
+        let lowered: Row = metric.iter().map(|row| inner(row, velocity)).collect();
+        let potential = value(&self.model, self.model.lagrangian.potential, &state);
+        let energy = inner(&lowered, velocity) / 2.0 + potential;
+        state.push((self.model.derived.energy, energy));
+        let momenta = self
+            .model
+            .derived
+            .momenta
             .iter()
-            .zip(velocity)
-            .map(|(row, v)| v * inner(row, velocity))
-            .sum();
-        let potential = self.value(self.model.lagrangian.potential, &state);
-        state.push((self.model.derived.energy, kinetic / 2.0 + potential));
-        for (i, symbol) in self.model.derived.momenta.iter().enumerate() {
-            state.push((*symbol, inner(&metric[i], velocity) + linear[i]));
-        }
-        self.value(function, &state)
+            .zip(lowered.iter().zip(&linear));
+        state.extend(momenta.map(|(symbol, (p, a))| (*symbol, p + a)));
+        value(&self.model, function, &state)
     }
 
-    /// `f_q g_p - f_p g_q` by central differences.
+    /// `f_q g_p - f_p g_q` by central differences of functions at the velocities in D of momenta.
     fn by_differences(&self, [f, g]: [ExprId; 2], q: &[f64], p: &[f64]) -> f64 {
         let slope = |function: ExprId, i: usize, of_momentum: bool| {
             let [ahead, behind] = [STEP, -STEP].map(|step| {
                 let (mut q, mut p) = (q.to_vec(), p.to_vec());
-                if of_momentum {
-                    p[i] += step
-                } else {
-                    q[i] += step
+                match of_momentum {
+                    true => p[i] += step,
+                    false => q[i] += step,
                 }
-                self.projected(function, &q, &p)
+                self.function(function, &q, &self.velocity(&q, &p))
             });
             (ahead - behind) / (2.0 * STEP)
         };
@@ -155,33 +89,6 @@ impl Case {
         };
         (0..q.len()).map(term).sum()
     }
-}
-
-fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// `matrix^{-1} right` of a positive matrix.
-fn solved(matrix: &[Row], right: &[f64]) -> Row {
-    let n = right.len();
-    let mut rows: Vec<Row> = matrix
-        .iter()
-        .zip(right)
-        .map(|(row, b)| [&row[..], &[*b]].concat())
-        .collect();
-    for i in 0..n {
-        let pivot: Row = rows[i].iter().map(|entry| entry / rows[i][i]).collect();
-        for (j, row) in rows.iter_mut().enumerate() {
-            let factor = row[i];
-            for (entry, by) in row.iter_mut().zip(&pivot) {
-                if j != i {
-                    *entry -= factor * by
-                }
-            }
-        }
-        rows[i] = pivot;
-    }
-    rows.iter().map(|row| row[n]).collect()
 }
 
 #[track_caller]
@@ -203,7 +110,7 @@ fn compare(declaration: &str, functions: &str) {
                 let velocity = case.velocity(&q, &p);
                 let derived = case.function(value, &q, &velocity);
                 // Differences are taken at a state on D.
-                let (metric, linear, ..) = case.matrices(&q);
+                let (metric, linear, ..) = matrices(&case.model, &q);
                 let p: Row = (0..n)
                     .map(|i| inner(&metric[i], &velocity) + linear[i])
                     .collect();

@@ -5,6 +5,8 @@
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
 //! | `brackets.rs`, `involution.rs`, `integrable.rs` | brackets by differences and as they are printed; claims about functions |
+//! | `reduction.rs` | reduction by groups: equations against the full motion, connections and jumps against their definitions |
+//! | `values.rs` | numbers of a model at a state |
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
@@ -21,11 +23,14 @@ mod involution;
 mod momenta;
 mod qualified;
 mod quantities;
+mod reduction;
 mod symplectic;
 mod systems;
+mod values;
 mod volume;
 
 use dalembert_codegen::claims::{Finding, Verdict, examine, examine_mode};
+use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::{mechanics, model, read, spec};
 
 /// Expected verdict on a claim.
@@ -100,4 +105,18 @@ fn check(declaration: &str, claim: &str, expected: Expected) {
             finding.note()
         );
     }
+}
+
+/// A model in one piece, with its equations.
+///
+/// # Panics
+/// If it is refused.
+fn derived(source: &str) -> (model::Model, Derivation) {
+    let spec::Declaration::Model(spec) = read(source.parse().expect("tokens")).expect("syntax")
+    else {
+        panic!("no model in one piece");
+    };
+    let mut model = model::check(&spec).expect("a model");
+    let derivation = mechanics::derive(&mut model);
+    (model, derivation)
 }

@@ -214,6 +214,10 @@ pub struct DeriveArgs {
     /// Print the Jacobiator of three functions instead.
     #[arg(long, value_name = "F,G,H", allow_hyphen_values = true)]
     pub jacobiator: Option<String>,
+    /// Print the reduction by symmetries instead: locked inertia, momentum map, connection, curvature, reduced equations. Fields are
+    /// written as in claims: `partial(x),partial(y)`.
+    #[arg(long, value_name = "XI,..", conflicts_with_all = ["bracket", "jacobiator"], allow_hyphen_values = true)]
+    pub group: Option<String>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
     pub format: DeriveFormat,

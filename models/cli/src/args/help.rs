@@ -11,7 +11,9 @@ pub const DERIVE: &str = "More examples:
   dalembert derive rolling_disk --format latex > rolling_disk.tex
   dalembert derive chaplygin_sleigh --format json
   dalembert derive chaplygin_sleigh --bracket 'x,momentum(theta)'
-  dalembert derive rolling_disk --jacobiator 'x,momentum(theta),momentum(phi)'";
+  dalembert derive rolling_disk --jacobiator 'x,momentum(theta),momentum(phi)'
+  dalembert derive rolling_disk --group 'partial(x),partial(y)'
+  dalembert derive chaplygin_sleigh --group 'partial(x),partial(y),partial(theta) - y*partial(x) + x*partial(y)'";
 
 pub const CHECK: &str = "More examples:
   dalembert check rolling_disk --format json

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use dalembert_codegen::report::{BracketKind, Item, Report, ReportError, bracket, report};
+use dalembert_codegen::report::{BracketKind, Item, Report, ReportError, bracket, group, report};
 use serde_json::{Value, json};
 
 use crate::args::{DeriveArgs, DeriveFormat};
@@ -20,8 +20,10 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
     let entry = find_model(models, &args.model)?;
     let scenes = entry.description().scenes.iter().copied();
     let scene = names::find("--scene", "scene", &args.scene, scenes)?;
-    let report =
-        derived(entry, args, scene).map_err(|error| CliError::Derive(error.to_string()))?;
+    let report = derived(entry, args, scene).map_err(|error| {
+        let flag = flag(args).map_or(String::new(), |flag| format!("{flag}: "));
+        CliError::Derive(format!("{flag}{error}"))
+    })?;
     let text = match args.format {
         DeriveFormat::Text => report.text(),
         DeriveFormat::Latex => report.latex(),
@@ -29,6 +31,18 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
     };
     writeln!(output, "{}", text.trim_end())?;
     Ok(Exit::Reached)
+}
+
+/// The flag that asks for something else than the equations.
+fn flag(args: &DeriveArgs) -> Option<&'static str> {
+    let flags = [
+        (&args.bracket, "--bracket"),
+        (&args.jacobiator, "--jacobiator"),
+        (&args.group, "--group"),
+    ];
+    flags
+        .into_iter()
+        .find_map(|(value, flag)| value.is_some().then_some(flag))
 }
 
 /// The derivation that was asked for; the model itself is the first of its scenes.
@@ -40,6 +54,9 @@ fn derived(entry: &Entry, args: &DeriveArgs, scene: usize) -> Result<Report, Rep
     }
     if let Some(functions) = &args.jacobiator {
         return bracket(source, part, functions, BracketKind::Jacobiator);
+    }
+    if let Some(fields) = &args.group {
+        return group(source, part, fields);
     }
     let mut whole = report(source)?;
     Ok(match scene.checked_sub(1) {

@@ -27,3 +27,55 @@ fn a_source_that_the_generator_refuses_is_an_error() {
         done.errors
     );
 }
+
+#[test]
+fn brackets_and_groups_are_printed_in_every_format() {
+    for (flags, line) in [
+        ("--bracket x,momentum(x)", "  {x, momentum(x)} = 1\n"),
+        (
+            "--bracket momentum(x),energy",
+            "  {momentum(x), energy} = -m*g\n",
+        ),
+        (
+            "--jacobiator x,momentum(x),energy",
+            "  Jac(x, momentum(x), energy) = 0\n",
+        ),
+    ] {
+        let done = run(&format!("derive bouncing_ball {flags}"));
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        assert!(done.output.contains(line), "{flags}: {}", done.output);
+    }
+    let done = run("derive bouncing_ball --bracket x,momentum(x) --format latex");
+    assert!(done.output.contains("\\[ \\{x, "), "{}", done.output);
+    let bracket = run("derive bouncing_ball --bracket x,momentum(x) --format json").json();
+    let item = &bracket["sections"][0]["items"][0];
+    assert_eq!(item["left"]["text"], "{x, momentum(x)}");
+    assert_eq!(item["right"]["text"], "1");
+}
+
+#[test]
+fn what_has_no_bracket_and_what_is_no_symmetry_is_refused_with_the_flag() {
+    for (flags, parts) in [
+        ("--bracket x", vec!["--bracket: ", "2 functions"]),
+        ("--bracket x,z", vec!["--bracket: ", "`z`"]),
+        (
+            "--jacobiator x,energy",
+            vec!["--jacobiator: ", "3 functions"],
+        ),
+        (
+            "--group partial(x)",
+            vec!["--group: ", "`partial(x)` is no symmetry"],
+        ),
+        ("--group x", vec!["--group: ", "is not a vector field"]),
+        (
+            "--group partial(x) --bracket x,energy",
+            vec!["--bracket", "cannot be used with"],
+        ),
+    ] {
+        let done = run(&format!("derive bouncing_ball {flags}"));
+        assert_eq!(done.exit, Exit::Refused, "{flags}: {}", done.output);
+        for part in parts {
+            assert!(done.errors.contains(part), "{flags}: {}", done.errors);
+        }
+    }
+}
