@@ -37,7 +37,8 @@ fn contradictions(claim: &str) -> Vec<String> {
         // A density and a symmetry have no negation; they are perturbed below. Claims of motion and impacts together are perturbed in
         // `codegen/tests/hybrid_claims`.
         [
-            "density" | "symmetry" | "volume" | "symplectic" | "energy",
+            "density" | "symmetry" | "volume" | "symplectic" | "energy" | "integrable"
+            | "involution",
             ..,
         ] => Vec::new(),
         other => panic!("{other:?}"),

@@ -132,7 +132,7 @@ pub(crate) fn independent_minor(
     rows: &[Vec<ExprId>],
 ) -> Option<(Vec<usize>, Vec<usize>)> {
     /// Rows beyond which no determinant is written out.
-    const LARGEST: usize = 8;
+    const LARGEST: usize = 6;
     let (mut chosen, mut columns) = (Vec::new(), Vec::new());
     let width = rows.first().map_or(0, Vec::len);
     for row in 0..rows.len() {

@@ -100,7 +100,7 @@ pub fn derive_reduction(
     let constrained = products(pool, &metric, &sections);
     let momenta = momenta(model, fields);
     let on_d = momenta_of(model, &bracket, &sections);
-    let forces = forces_on_d(model, &bracket);
+    let forces = forces_on_d(model, &bracket, fields);
     let rates = rates_of(model, &bracket, &on_d, (&sections, &forces));
     let pool = &mut model.pool;
     let connection = match is_principal {
@@ -297,10 +297,20 @@ fn momenta_of(model: &mut Model, bracket: &Bracket, sections: &[Vec<ExprId>]) ->
 }
 
 /// The sum of the forces on D; `None` where the motion is not that of the bracket: affine constraints, or what depends on time.
-fn forces_on_d(model: &mut Model, bracket: &Bracket) -> Option<Vec<ExprId>> {
+fn forces_on_d(
+    model: &mut Model,
+    bracket: &Bracket,
+    fields: &[Vec<ExprId>],
+) -> Option<Vec<ExprId>> {
     let time = model.time;
     let mut parts: Vec<ExprId> = model.lagrangian.metric.iter().flatten().copied().collect();
-    parts.extend(model.lagrangian.linear.iter());
+    parts.extend(
+        model
+            .lagrangian
+            .linear
+            .iter()
+            .chain(fields.iter().flatten()),
+    );
     parts.extend(model.constraints.iter().flat_map(|own| own.form.iter()));
     let moves = parts.iter().any(|part| model.pool.depends_on(*part, time));
     let is_affine = (model.constraints.iter())

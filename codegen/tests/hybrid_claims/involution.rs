@@ -77,6 +77,12 @@ fn functions_that_are_not_in_involution_are_refuted() {
         "involution: momentum(x), y, x^2*momentum(y)",
         Shown("{momentum(x), x^2*momentum(y)}", 2.0 * 0.36 * 0.75),
     );
+    // Every pair counts.
+    check(
+        &particle(""),
+        "involution: momentum(x), momentum(y), y",
+        Shown("{momentum(y), y}", -1.0),
+    );
     check(
         &ball("elastic"),
         "involution: dot(x), x",
