@@ -31,6 +31,16 @@ static WHEEL: Text = Text::new(
     }",
 );
 
+/// A number that grows until a clock stands at `c`, where it is mapped.
+static CLOCK: Text = Text::new(
+    "Clock {
+        coordinates { x; tau; }
+        parameters { c = 1; a = 0.7; }
+        field { dot(x) = a*x; dot(tau) = 1; }
+        impacts { tick: tau <= c => reset { x = c*x*(1 - x); tau = 0; }; }
+    }",
+);
+
 /// Largest duration of a return in these tests.
 const HORIZON: f64 = 1e4;
 
@@ -361,4 +371,71 @@ fn the_command_says_what_it_cannot_do() {
     let document: Value = serde_json::from_str(&text).expect("JSON");
     assert_ne!(document["outcome"]["kind"], "done");
     assert!(document.get("multipliers").is_none());
+}
+
+/// The point moves with the surface, and its image is `e^(a c) c x (1 - x)`.
+#[test]
+fn the_return_map_has_its_derivative_in_a_parameter() {
+    let (x, c, a) = (0.3, 1.25, 0.7);
+    let clock = CLOCK.with([("c", c)]);
+    let section = Returns::new(&clock, 0, HORIZON);
+    let grown = f64::exp(a * c) * x * (1.0 - x);
+    for (parameter, shift, slope) in [(0, 1.0, (1.0 + a * c) * grown), (1, 0.0, c * c * grown)] {
+        let image = section
+            .image(&vector(&[x, c]), parameter)
+            .expect("an image");
+        assert_eq!((image.dimension, image.is_closed), (1, false));
+        let along = image.directions[0].as_ref()[0];
+        assert_eq!((along.abs(), image.directions[0].as_ref()[1]), (1.0, 0.0));
+        assert!((image.image.before.as_ref()[0] - c * grown).abs() < 1e-14);
+        assert!((along * image.miss.as_ref()[0] - (c * grown - x)).abs() < 1e-14);
+        let expected = c * f64::exp(a * c) * (1.0 - 2.0 * x);
+        assert!((image.derivative[0].as_ref()[0] - expected).abs() < 1e-14);
+        assert_eq!(image.shift.as_ref()[..2], [0.0, shift]);
+        let found = along * image.slope.as_ref()[0];
+        assert!((found - slope).abs() < 1e-14, "{found} for {slope}");
+    }
+}
+
+/// The branch of the compass walker over the slope, as a document.
+fn walks(flags: &str) -> Value {
+    let Finished { exit, output, .. } = run(&format!(
+        "orbit compass_walker --surface heel {flags} --json -"
+    ));
+    assert_eq!(exit, Exit::Reached);
+    serde_json::from_str(&output).expect("JSON")
+}
+
+/// Real parts of the multipliers of a point.
+fn multipliers(point: &Value) -> Vec<f64> {
+    let all = point["multipliers"].as_array().expect("multipliers").iter();
+    all.map(|it| it["re"].as_f64().expect("a number")).collect()
+}
+
+/// The slope is that at which a Runge-Kutta method of fixed step finds `1 + trace + determinant = 0` from central differences
+/// of its return map with extrapolation, to about nine digits.
+#[test]
+fn the_compass_walker_doubles_its_period_where_a_multiplier_passes_minus_one() {
+    const SLOPE: f64 = 0.015_088_437_7;
+    let branch = walks("--continue gamma=0.001..0.019");
+    let found = branch["bifurcations"].as_array().expect("bifurcations");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0]["bifurcation"], "flip");
+    let slope = found[0]["parameter"].as_f64().expect("a number");
+    assert!((slope - SLOPE).abs() < 1e-9, "{slope}");
+    assert!((multipliers(&found[0])[0] + 1.0).abs() < 1e-9);
+    // The long gait on both sides, found anew.
+    let start = "--initial theta=0.2371,phi=0.4742,omega=-0.2319,psi=-0.0255";
+    for (change, is_stable) in [(-1e-6, true), (1e-6, false)] {
+        let orbit = walks(&format!("{start} --set gamma={}", slope + change));
+        assert_eq!(multipliers(&orbit)[0] > -1.0, is_stable);
+        assert!((multipliers(&orbit)[0] + 1.0).abs() < 1e-3);
+    }
+    let stable = |point: &&Value| point["stability"] == "stable";
+    let points = branch["points"].as_array().expect("points");
+    let slopes = points
+        .iter()
+        .filter(stable)
+        .map(|it| it["parameter"].as_f64());
+    assert!(slopes.flatten().all(|gamma| gamma < slope));
 }

@@ -53,6 +53,11 @@ OUTPUTS = {
         ["orbit", "bouncing_ball", "--surface", "floor", "--until", "0.1"],
         ["orbit", "rolling_disk", "--surface", "leading_edge", "--until", "5"],
     ],
+    "branch": [
+        ["orbit", "compass_walker", "--surface", "heel", "--continue", "gamma=0.012..0.016"],
+        ["orbit", "dimensionless_walker", "--surface", "step", "--continue", "alpha=0.1..0.2", "--set", "alpha=0.2"],
+        ["orbit", "bouncing_ball", "--surface", "floor", "--until", "0.1", "--continue", "g=1..2"],
+    ],
     "accuracy": [
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--wanted", "1e-6"],
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--integrator", "dopri5", "--wanted", "1e-30"],

@@ -103,6 +103,29 @@ fn is_the_dimensionless_walker_in_other_units() -> Result<(), Fault> {
     Ok(())
 }
 
+/// The gait on a slope of 0.009, from M. Wisse and A. L. Schwab, *First steps in passive dynamic walking* (2005).
+#[test]
+fn the_simplest_walker_repeats_its_step() {
+    let walker = shipped("compass_walker").model();
+    let (theta, omega): (f64, f64) = (0.200_310_900_544_287, -0.199_832_473_004_977);
+    let psi = (1.0 - (2.0 * theta).cos()) * omega;
+    let start = vector(&[theta, 2.0 * theta, omega, psi]);
+    // A little after the step.
+    let run = end(Course::from_state(&walker, start, 3.8825).tol(1e-13));
+    assert_eq!(run.counters.impacts, 1);
+    let late = run.t - 3.882_463_752_85;
+    let state = run.state.as_ref();
+    assert!((state[0] - late * omega - theta).abs() < 1e-8, "{state:?}");
+    assert!(
+        (state[2] - late * (theta - 0.009).sin() - omega).abs() < 1e-8,
+        "{state:?}"
+    );
+    assert!(
+        (state[1] - late * psi - 2.0 * theta).abs() < 1e-8,
+        "{state:?}"
+    );
+}
+
 #[test]
 fn it_walks_and_keeps_its_energy() -> Result<(), Fault> {
     let walker = shipped("spring_mass_walker").large([]);

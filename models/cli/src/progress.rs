@@ -145,6 +145,38 @@ impl Count {
     }
 }
 
+/// Progress along a branch of orbits.
+pub struct Points {
+    made: u64,
+    bar: Option<ProgressBar>,
+}
+
+impl Points {
+    /// Progress; shown only if `terminal`.
+    pub fn new(terminal: bool) -> Self {
+        let bar = terminal.then(|| new_bar(PARTS));
+        if let Some(bar) = &bar {
+            bar.enable_steady_tick(TICK);
+        }
+        Self { made: 0, bar }
+    }
+
+    /// Notes a point at this value of a parameter, and its place in the range as a fraction.
+    pub fn at(&mut self, name: &str, value: f64, fraction: f64) {
+        self.made += 1;
+        let Some(bar) = &self.bar else { return };
+        bar.set_position((fraction.clamp(0.0, 1.0) * PARTS as f64) as u64);
+        bar.set_message(format!("{} points, {name} = {value:.6}", self.made));
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 fn new_bar(parts: u64) -> ProgressBar {
     let bar = ProgressBar::new(parts);
     // The template is a constant. If indicatif refuses it, the default style serves as well.

@@ -7,6 +7,7 @@
 //! | `run/` | one run: its settings, its observer, its end |
 //! | `accuracy/` | measured errors of integrators, with work and time |
 //! | `orbit.rs` | periodic orbits, Lyapunov exponents |
+//! | `continuation/` | branches of periodic orbits over a parameter, with their bifurcations |
 //! | `variation.rs` | derivatives of runs |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
@@ -22,6 +23,7 @@
 pub mod accuracy;
 mod beginning;
 mod certify;
+mod continuation;
 pub mod course;
 pub mod drift;
 mod grid;
@@ -38,6 +40,7 @@ pub mod words;
 
 pub use beginning::{Beginning, Component};
 pub use certify::{Certification, Certified, Ranges, Strike};
+pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};
 pub use model::{

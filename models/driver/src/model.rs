@@ -6,6 +6,7 @@ use dalembert::{Fault, OrbitError, ParameterError, StateError};
 
 use crate::accuracy::{Plan, Study, Verified};
 use crate::certify::{Certification, Certified, Strike};
+use crate::continuation::{Branch, Continuation, Member};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{Ending, Settings, Watch};
@@ -203,6 +204,16 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
+    /// Follows the periodic orbit near the first arrival from this state over a parameter, and reports the points of its
+    /// branch as they are found; `None` for a scene without variations. If the model's value lies outside of the range,
+    /// the orbit is followed to the nearest end of the range first; a branch without points has not come there.
+    fn branch(
+        &self,
+        origin: &Origin,
+        search: &Search,
+        request: &Continuation,
+        watch: &mut dyn FnMut(&Member),
+    ) -> Result<Option<Result<Branch, OrbitError>>, Refusal>;
     /// The largest Lyapunov exponent per return, over the returns of the search from the first arrival after this state;
     /// `None` for a scene without variations.
     fn exponent(

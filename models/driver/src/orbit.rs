@@ -1,4 +1,4 @@
-//! Periodic orbits and Lyapunov exponents of a model whose type is erased.
+//! Periodic orbits, their branches, and Lyapunov exponents of a model whose type is erased.
 
 use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
@@ -10,6 +10,10 @@ use dalembert::{
     Instance, Policies, Scene, SceneEffects, StateError, StateVector, Taylor, Tolerance,
 };
 
+use crate::continuation::family::Failure;
+use crate::continuation::orbits::Orbits;
+use crate::continuation::trace::{Tracer, Watch};
+use crate::continuation::{Branch, Continuation};
 use crate::model::Point;
 use crate::refusal::Refusal;
 use crate::typed::point;
@@ -52,53 +56,119 @@ pub struct Found {
     pub multipliers: Vec<[f64; 2]>,
 }
 
-/// Searches for an orbit of a model of any type, from the first arrival from this state on.
-pub(crate) struct Finder<'a> {
+/// Work on the section of a search, on a system of any type.
+pub(crate) trait Work {
+    /// Its result.
+    type Output;
+
+    /// Does the work, from the first arrival after a start.
+    fn on<S: Instance + Scene + Variational>(
+        self,
+        system: &S,
+        start: &S::State,
+        search: &Search,
+    ) -> Result<Self::Output, OrbitError>;
+}
+
+/// Visitor that does some work from this state on.
+pub(crate) struct Visit<'a, W> {
     pub search: &'a Search,
     pub q: &'a [f64],
     pub qdot: &'a [f64],
+    pub work: W,
 }
 
-impl VariationalVisitor for Finder<'_> {
-    /// The inner error explains why there is no orbit, the outer one why no run starts.
-    type Output = Result<Result<Found, OrbitError>, Refusal>;
+impl<W: Work> VariationalVisitor for Visit<'_, W> {
+    /// The inner error explains why the work was not done, the outer one why no run starts.
+    type Output = Result<Result<W::Output, OrbitError>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
         let start = started(system, self.q, self.qdot)?;
-        let mut stepper = Taylor::new(self.search.tolerance);
-        let mut section =
-            section(system, self.search, &mut stepper).with_returns(self.search.returns);
-        let orbit = section
-            .arrive(&start, &mut [])
-            .map_err(OrbitError::from)
-            .and_then(|first| section.periodic(&first.before, ITERATIONS));
-        match orbit {
-            Ok(orbit) => Ok(Ok(found(system, &orbit))),
+        match self.work.on(system, &start, self.search) {
+            Ok(output) => Ok(Ok(output)),
             Err(error) => begun(error).map(Err),
         }
     }
 }
 
-/// Computes the exponent of a model of any type, from the first arrival from this state on.
-pub(crate) struct Measurer<'a> {
-    pub search: &'a Search,
-    pub q: &'a [f64],
-    pub qdot: &'a [f64],
+/// Search for an orbit.
+pub(crate) struct ForOrbit;
+
+impl Work for ForOrbit {
+    type Output = Found;
+
+    fn on<S: Instance + Scene + Variational>(
+        self,
+        system: &S,
+        start: &S::State,
+        search: &Search,
+    ) -> Result<Found, OrbitError> {
+        let orbit = orbit(system, start, search)?;
+        Ok(found(system, &orbit))
+    }
 }
 
-impl VariationalVisitor for Measurer<'_> {
-    /// The inner error explains why there is no exponent, the outer one why no run starts.
-    type Output = Result<Result<f64, OrbitError>, Refusal>;
+/// Computation of an exponent.
+pub(crate) struct ForExponent;
 
-    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
-        let start = started(system, self.q, self.qdot)?;
-        let mut stepper = Taylor::new(self.search.tolerance);
-        let mut section = section(system, self.search, &mut stepper);
-        match section.exponent(&start, self.search.returns) {
-            Ok(exponent) => Ok(Ok(exponent)),
-            Err(error) => begun(error).map(Err),
-        }
+impl Work for ForExponent {
+    type Output = f64;
+
+    fn on<S: Instance + Scene + Variational>(
+        self,
+        system: &S,
+        start: &S::State,
+        search: &Search,
+    ) -> Result<f64, OrbitError> {
+        let mut stepper = Taylor::new(search.tolerance);
+        let mut section = section(system, search, search.horizon, &mut stepper);
+        section.exponent(start, search.returns)
     }
+}
+
+/// Continuation of an orbit.
+pub(crate) struct ForBranch<'a> {
+    pub request: Continuation,
+    pub watch: Watch<'a>,
+}
+
+impl Work for ForBranch<'_> {
+    type Output = Branch;
+
+    fn on<S: Instance + Scene + Variational>(
+        self,
+        system: &S,
+        start: &S::State,
+        search: &Search,
+    ) -> Result<Branch, OrbitError> {
+        let orbit = orbit(system, start, search)?;
+        let parameter = self.request.parameter;
+        let mut family = Orbits::new(system, search, parameter, &orbit)?;
+        let mut tracer = Tracer::new(&mut family, self.request, self.watch);
+        let value = system.parameter(parameter);
+        let state = orbit.point.before;
+        let branch = tracer.branch(state.as_slice(), value);
+        branch.map_err(|failure| match failure {
+            Failure::Missed(error) => error,
+            _ => OrbitError::NotConverged {
+                residual: orbit.residual,
+                iterations: orbit.iterations,
+            },
+        })
+    }
+}
+
+/// The orbit near the first arrival after a start.
+fn orbit<S: Instance + Scene + Variational>(
+    system: &S,
+    start: &S::State,
+    search: &Search,
+) -> Result<Orbit<S>, OrbitError> {
+    let mut stepper = Taylor::new(search.tolerance);
+    let mut section =
+        section(system, search, search.horizon, &mut stepper).with_returns(search.returns);
+    let first = section.arrive(start, &mut [])?;
+    section.periodic(&first.before, ITERATIONS)
 }
 
 /// The error, unless it is that no run starts.
@@ -118,10 +188,11 @@ fn started<S: Instance>(system: &S, q: &[f64], qdot: &[f64]) -> Result<S::State,
     Ok(start.map_err(StateError::from)?)
 }
 
-/// The section of a search, with one return.
-fn section<'a, S: Instance + Scene + Variational>(
+/// The section of a search, with one return, which takes at most the time `horizon`.
+pub(crate) fn section<'a, S: Instance + Scene + Variational>(
     system: &'a S,
     search: &Search,
+    horizon: f64,
     stepper: &'a mut Taylor<S>,
 ) -> Section<'a, S, Chosen<'a, S>, S::Effects> {
     let mut effects = system.effects();
@@ -134,7 +205,7 @@ fn section<'a, S: Instance + Scene + Variational>(
         Chosen::new(stepper),
         effects,
         search.surface,
-        search.horizon,
+        horizon,
     )
 }
 

@@ -14,11 +14,13 @@ use dalembert::{
 
 use crate::accuracy::{self, Plan, Study, Verified};
 use crate::certify::{Certification, Certified, Strike, Subject};
+use crate::continuation::trace::Watch as BranchWatch;
+use crate::continuation::{Branch, Continuation};
 use crate::integrator::Form;
 use crate::model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
-use crate::orbit::{Finder, Found, Measurer, Search};
+use crate::orbit::{ForBranch, ForExponent, ForOrbit, Found, Search, Visit, Work};
 use crate::refusal::Refusal;
 use crate::run::{self, Abreast, Ending, Settings, Watch};
 
@@ -437,14 +439,18 @@ impl<O: Owner> Runs for Typed<O> {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal> {
-        let model = self.owner.system();
-        let (q, qdot) = located(&model, origin)?;
-        let finder = Finder {
-            search,
-            q: q.as_slice(),
-            qdot: qdot.as_slice(),
-        };
-        model.visit_variational(finder).transpose()
+        self.at_section(origin, search, ForOrbit)
+    }
+
+    fn branch(
+        &self,
+        origin: &Origin,
+        search: &Search,
+        request: &Continuation,
+        watch: BranchWatch<'_>,
+    ) -> Result<Option<Result<Branch, OrbitError>>, Refusal> {
+        let request = *request;
+        self.at_section(origin, search, ForBranch { request, watch })
     }
 
     fn exponent(
@@ -452,14 +458,7 @@ impl<O: Owner> Runs for Typed<O> {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<f64, OrbitError>>, Refusal> {
-        let model = self.owner.system();
-        let (q, qdot) = located(&model, origin)?;
-        let measurer = Measurer {
-            search,
-            q: q.as_slice(),
-            qdot: qdot.as_slice(),
-        };
-        model.visit_variational(measurer).transpose()
+        self.at_section(origin, search, ForExponent)
     }
 
     fn certify(
@@ -478,6 +477,26 @@ impl<O: Owner> Runs for Typed<O> {
             };
             subject.certify(request, observer)
         })
+    }
+}
+
+impl<O: Owner> Typed<O> {
+    /// Does some work at the section of a search; `None` for a scene without variations.
+    fn at_section<W: Work>(
+        &self,
+        origin: &Origin,
+        search: &Search,
+        work: W,
+    ) -> Result<Option<Result<W::Output, OrbitError>>, Refusal> {
+        let model = self.owner.system();
+        let (q, qdot) = located(&model, origin)?;
+        let visit = Visit {
+            search,
+            q: q.as_slice(),
+            qdot: qdot.as_slice(),
+            work,
+        };
+        model.visit_variational(visit).transpose()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use dalembert::contract::Variational;
 use dalembert::variations::orbit::ITERATIONS;
-use dalembert::variations::{Arrival, Orbit, OrbitError, Section, SectionError, Undefined};
+use dalembert::variations::{Arrival, Image, Orbit, OrbitError, Section, SectionError, Undefined};
 use dalembert::{
     Event, Instance, Law, Observer, Run, Scene, SceneEffects, Tangent, Taylor, Tolerance,
     Variations,
@@ -51,6 +51,16 @@ pub trait Varied: Driven + Instance + Variational {
     /// [`OrbitError`] if none is found.
     fn periodic(returns: &Returns<'_, Self>, near: &Self::State)
     -> Result<Orbit<Self>, OrbitError>;
+
+    /// The image of a point, with its derivative in a parameter (see [`Section::image`]).
+    ///
+    /// # Errors
+    /// [`OrbitError`] if there is none.
+    fn image(
+        returns: &Returns<'_, Self>,
+        point: &Self::State,
+        parameter: usize,
+    ) -> Result<Image<Self>, OrbitError>;
 }
 
 macro_rules! varied {
@@ -89,6 +99,16 @@ macro_rules! varied {
                 near: &Self::State,
             ) -> Result<Orbit<Self>, OrbitError> {
                 returns.section().periodic(near, ITERATIONS)
+            }
+
+            fn image(
+                returns: &Returns<'_, Self>,
+                point: &Self::State,
+                parameter: usize,
+            ) -> Result<Image<Self>, OrbitError> {
+                let mut section = returns.section();
+                let anchor = section.anchor(point)?;
+                section.image(&anchor, point, parameter)
             }
         }
     )*};
@@ -153,6 +173,14 @@ impl<'a, M: Varied> Returns<'a, M> {
     /// [`OrbitError`] if none is found.
     pub fn periodic(&self, near: &M::State) -> Result<Orbit<M>, OrbitError> {
         M::periodic(self, near)
+    }
+
+    /// The image of a point of the section, with its derivative in a parameter.
+    ///
+    /// # Errors
+    /// [`OrbitError`] if there is none.
+    pub fn image(&self, point: &M::State, parameter: usize) -> Result<Image<M>, OrbitError> {
+        M::image(self, point, parameter)
     }
 }
 

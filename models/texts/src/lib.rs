@@ -17,6 +17,7 @@ macro_rules! shipped {
             chain8: Chain8,
             chain16: Chain16,
             chaplygin_sleigh: ChaplyginSleigh,
+            compass_walker: CompassWalker,
             constant_speed: ConstantSpeed,
             dimensionless_walker: DimensionlessWalker,
             double_pendulum: DoublePendulum,

@@ -83,12 +83,14 @@ impl<Sys: Variational> Fixed<Sys> {
 }
 
 impl<Sys: Variational> Chart<Sys> {
-    /// The directions at a point, and the step that moves the point onto the section to first order.
+    /// The directions at a point, and a step to first order: without a parameter the step that moves the point onto the
+    /// section, with one the step that keeps it there, per unit of the parameter.
     fn at(
         system: &Sys,
         fixed: &Fixed<Sys>,
         t: f64,
         point: &Sys::State,
+        parameter: Option<usize>,
     ) -> Result<(Self, Sys::State), Undefined> {
         let scale = system.scale(t, point);
         let mut frame = columns(system);
@@ -116,6 +118,12 @@ impl<Sys: Variational> Chart<Sys> {
                 }
             })?;
         }
+        if let Some(parameter) = parameter {
+            let along = [Tangent::<Sys>::of_parameter(parameter)];
+            fixed.excess(system, t, point, &along, |equation, excess| {
+                values.as_mut_slice()[equation] = excess.slopes()[0];
+            })?;
+        }
         let mut correction = system.zero_state();
         let left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
         complete(frame.as_mut(), left_out);
@@ -138,7 +146,7 @@ impl<Sys: Variational> Chart<Sys> {
         mut point: Sys::State,
     ) -> Result<(Self, Sys::State), Undefined> {
         for _ in 0..STEPS {
-            let (_, correction) = Self::at(system, fixed, t, &point)?;
+            let (_, correction) = Self::at(system, fixed, t, &point, None)?;
             let before = point;
             add(&mut point, 1.0, &correction);
             if point == before || !point.is_finite() {
@@ -146,9 +154,25 @@ impl<Sys: Variational> Chart<Sys> {
             }
         }
         match point.is_finite() {
-            true => Ok((Self::at(system, fixed, t, &point)?.0, point)),
+            true => Ok((Self::at(system, fixed, t, &point, None)?.0, point)),
             false => Err(Undefined::NotFinite { t }),
         }
+    }
+
+    /// The least change of a point of the section, per unit of a parameter, that keeps it on the section.
+    pub(super) fn shift(
+        system: &Sys,
+        fixed: &Fixed<Sys>,
+        t: f64,
+        point: &Sys::State,
+        parameter: usize,
+    ) -> Result<Sys::State, Undefined> {
+        Ok(Self::at(system, fixed, t, point, Some(parameter))?.1)
+    }
+
+    /// The units of the components.
+    pub(super) fn scale(&self) -> &Sys::State {
+        &self.scale
     }
 
     /// Number of directions.

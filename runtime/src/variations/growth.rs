@@ -65,7 +65,7 @@ where
         let mut unit = self.system.zero_state();
         add(&mut unit, 1.0 / length, deviation);
         let mut tangents = [Tangent::of_state(unit)];
-        let (_, event) = self.pass(point, self.returns, &mut tangents)?;
+        let event = self.pass(point, self.returns, &mut tangents)?.event;
         if is_first && transition::depends_on_time(self.system, &event)? {
             return Err(OrbitError::DependsOnTime);
         }

@@ -14,7 +14,7 @@
 //!
 //! [`Section`] is the map from one arrival at a surface to a later one (Poincare map), with its derivative.
 //! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers; [`Section::exponent`] is
-//! its largest Lyapunov exponent.
+//! its largest Lyapunov exponent. [`Section::image`] has the derivative in a parameter too, for families of orbits.
 //!
 //! The result is [`Undefined`] if the flow of a system with impacts has no derivative.
 
@@ -23,6 +23,7 @@ mod chart;
 mod dual;
 mod eigenvalues;
 mod extrapolation;
+pub mod family;
 mod flow;
 pub(crate) mod graze;
 mod growth;
@@ -37,9 +38,10 @@ use core::fmt;
 pub use crate::contract::Tangent;
 pub use dual::{DIRECTIONS, Dual};
 pub use eigenvalues::Multipliers;
+pub use family::{Anchor, Image};
 pub use observer::Variations;
 pub use orbit::{Orbit, OrbitError};
-pub use section::{Arrival, Section, SectionError};
+pub use section::{Arrival, Itinerary, Section, SectionError};
 
 use crate::error::Fault;
 

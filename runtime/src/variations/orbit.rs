@@ -4,14 +4,13 @@ use core::fmt;
 
 use super::chart::{Chart, Fixed, add, columns, dot, least_squares};
 use super::eigenvalues::{Multipliers, eigenvalues};
-use super::section::{Arrival, Section, SectionError};
+use super::section::{Arrival, Passed, Section, SectionError};
 use super::transition;
 use super::{Tangent, Undefined};
 use crate::contract::Variational;
 use crate::describe::{Instance, Topology};
 use crate::effects::Effect;
 use crate::integrate::Stepper;
-use crate::record::Event;
 use crate::state::StateVector;
 
 /// Default maximum of Newton steps.
@@ -105,16 +104,18 @@ impl From<Undefined> for OrbitError {
 }
 
 /// A point of the section and its return.
-struct Trial<Sys: Variational> {
-    point: Sys::State,
-    chart: Chart<Sys>,
-    /// Duration and end of the return.
-    time: f64,
-    event: Event<Sys::State>,
+pub(super) struct Trial<Sys: Variational> {
+    pub(super) point: Sys::State,
+    pub(super) chart: Chart<Sys>,
+    pub(super) passed: Passed<Sys>,
     /// Image minus point, along the directions.
-    miss: Sys::State,
-    residual: f64,
-    derivative: Sys::Columns,
+    pub(super) miss: Sys::State,
+    pub(super) residual: f64,
+    pub(super) derivative: Sys::Columns,
+    /// Per unit of the parameter, if there is one: the change of the point that keeps it on the section, and the change
+    /// of the miss along the directions.
+    pub(super) shift: Sys::State,
+    pub(super) slope: Sys::State,
 }
 
 impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
@@ -139,8 +140,8 @@ where
         iterations: u32,
     ) -> Result<Orbit<Sys>, OrbitError> {
         let fixed = Fixed::of(self.system, self.surface, 0.0, near)?;
-        let mut trial = self.attempt(&fixed, *near)?;
-        if transition::depends_on_time(self.system, &trial.event)? {
+        let mut trial = self.attempt(&fixed, *near, None)?;
+        if transition::depends_on_time(self.system, &trial.passed.event)? {
             return Err(OrbitError::DependsOnTime);
         }
         let mut made = 0;
@@ -166,10 +167,10 @@ where
 
     /// True if a point is its own image, up to rounding and relative to the distance between them along the orbit. A
     /// motion that comes to rest returns to its point without being an orbit.
-    fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
+    pub(super) fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
         let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
-        let way = trial.chart.size(&rate) * trial.time;
+        let way = trial.chart.size(&rate) * trial.passed.time;
         let size = trial.chart.size(&trial.point) * amplification::<Sys>(trial);
         let least = f64::max(ROUNDING, STEPS * self.tolerance) * f64::max(size, 1.0);
         Ok(trial.residual <= f64::min(least, CLOSED * way))
@@ -187,7 +188,7 @@ where
         for _ in 0..HALVINGS {
             let mut point = trial.point;
             add(&mut point, factor, &step);
-            match self.attempt(fixed, point) {
+            match self.attempt(fixed, point, None) {
                 Ok(better) if better.residual < trial.residual => return Ok(Some(better)),
                 Ok(_) => failure = None,
                 Err(error) => failure = Some(error),
@@ -200,32 +201,52 @@ where
         }
     }
 
-    /// Maps the point of the section near a given point, with its directions.
-    fn attempt(&mut self, fixed: &Fixed<Sys>, point: Sys::State) -> Result<Trial<Sys>, OrbitError> {
+    /// Maps the point of the section near a given point, with its directions and with a parameter.
+    pub(super) fn attempt(
+        &mut self,
+        fixed: &Fixed<Sys>,
+        point: Sys::State,
+        parameter: Option<usize>,
+    ) -> Result<Trial<Sys>, OrbitError> {
         let (chart, point) = Chart::onto(self.system, fixed, 0.0, point)?;
         let dimension = chart.dimension();
         let mut tangents = Sys::tangents();
         for (index, tangent) in tangents.as_mut()[..dimension].iter_mut().enumerate() {
             *tangent = Tangent::of_state(chart.direction(index));
         }
-        let returns = self.returns;
-        let (time, event) = self.pass(&point, returns, &mut tangents.as_mut()[..dimension])?;
+        let mut shift = self.system.zero_state();
+        let mut carried = dimension;
+        if let Some(parameter) = parameter {
+            // The surface is one equation at least, so that there is room for one direction more.
+            shift = Chart::shift(self.system, fixed, 0.0, &point, parameter)?;
+            tangents.as_mut()[dimension] = Tangent {
+                state: shift,
+                ..Tangent::of_parameter(parameter)
+            };
+            carried += 1;
+        }
+        let passed = self.pass(&point, self.returns, &mut tangents.as_mut()[..carried])?;
         let mut derivative = columns(self.system);
         let images = tangents.as_ref()[..dimension].iter();
         for (column, image) in derivative.as_mut().iter_mut().zip(images) {
             *column = chart.components(&image.state);
         }
-        let mut change = event.before;
+        let slope = match tangents.as_ref()[..carried].get(dimension) {
+            Some(image) => chart.components(&image.state),
+            None => self.system.zero_state(),
+        };
+        let mut change = passed.event.before;
         add(&mut change, -1.0, &point);
         close_angles(self.system, &mut change);
         Ok(Trial {
             point,
             chart,
-            time,
-            event,
+            passed,
             miss: chart.components(&change),
             residual: chart.size(&change),
             derivative,
+            shift,
+            slope,
         })
     }
 }
@@ -244,7 +265,7 @@ fn finish<Sys: Variational>(
     let mut work = trial.derivative;
     let multipliers = eigenvalues(work.as_mut(), dimension);
     Ok(Orbit {
-        point: Arrival::of(trial.time, &trial.event),
+        point: Arrival::of(trial.passed.time, &trial.passed.event),
         residual: trial.residual,
         iterations,
         dimension,

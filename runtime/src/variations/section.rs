@@ -3,10 +3,12 @@
 use core::fmt;
 use core::ops::ControlFlow;
 
+use super::transition::gap_rate;
 use super::{Tangent, Undefined, Variations};
 use crate::contract::Variational;
 use crate::effects::Effect;
 use crate::integrate::Stepper;
+use crate::numbers::Row;
 use crate::outcome::{Outcome, StartError};
 use crate::record::{Event, Hold, Observer, Segment};
 use crate::simulation::Simulation;
@@ -124,8 +126,8 @@ where
         state: &Sys::State,
         tangents: &mut [Tangent<Sys>],
     ) -> Result<Arrival<Sys::State>, SectionError> {
-        let (time, event) = self.pass(state, 0, tangents)?;
-        Ok(Arrival::of(time, &event))
+        let passed = self.pass(state, 0, tangents)?;
+        Ok(Arrival::of(passed.time, &passed.event))
     }
 
     /// The image of a point of the section under the Poincare map. `tangents`, directions along the section, become
@@ -141,24 +143,25 @@ where
         point: &Sys::State,
         tangents: &mut [Tangent<Sys>],
     ) -> Result<Arrival<Sys::State>, SectionError> {
-        let (time, event) = self.pass(point, self.returns, tangents)?;
-        Ok(Arrival::of(time, &event))
+        let passed = self.pass(point, self.returns, tangents)?;
+        Ok(Arrival::of(passed.time, &passed.event))
     }
 
-    /// Runs until the surface has been met `returns` times and once more. Returns the duration since the first of
-    /// these times, or since the start if there is none, and the end of the run.
+    /// Runs until the surface has been met `returns` times and once more.
     pub(super) fn pass(
         &mut self,
         state: &Sys::State,
         returns: u32,
         tangents: &mut [Tangent<Sys>],
-    ) -> Result<(f64, Event<Sys::State>), SectionError> {
+    ) -> Result<Passed<Sys>, SectionError> {
         let mut passage = Passage {
+            system: self.system,
             variations: Variations::new(self.system, tangents),
             surface: self.surface,
             left: returns,
             first: None,
             last: None,
+            itinerary: Itinerary::new(),
         };
         // NOTE: through a pointer, so that the driver is compiled once for every such observer.
         let mut observer: &mut dyn Observer<Sys> = &mut passage;
@@ -170,12 +173,72 @@ where
             return Err(SectionError::Ended(run.outcome));
         };
         passage.variations.tangents()?;
-        Ok((last.t - passage.first.unwrap_or(0.0), last))
+        let delay = passage.first.unwrap_or(0.0);
+        Ok(Passed {
+            delay,
+            time: last.t - delay,
+            event: last,
+            itinerary: passage.itinerary,
+        })
+    }
+}
+
+/// A run from one arrival to another.
+pub(super) struct Passed<Sys: Variational> {
+    /// Time of the first arrival at the surface, 0 for a run without one before the last.
+    pub(super) delay: f64,
+    /// Duration since the first arrival, or since the start if there is none.
+    pub(super) time: f64,
+    /// The last arrival.
+    pub(super) event: Event<Sys::State>,
+    pub(super) itinerary: Itinerary<Sys>,
+}
+
+/// The surfaces that a run meets, by their index.
+pub struct Itinerary<Sys: Variational> {
+    /// Number of arrivals at each surface.
+    pub arrivals: Sys::Clearances<f64>,
+    /// Least rate at which the gap of each surface falls at an arrival; infinite without one.
+    pub speeds: Sys::Clearances<f64>,
+}
+
+impl<Sys: Variational> Clone for Itinerary<Sys> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys: Variational> Copy for Itinerary<Sys> {}
+
+impl<Sys: Variational> Itinerary<Sys> {
+    fn new() -> Self {
+        let zeros = || Sys::Clearances::<f64>::zeros(Sys::Clearances::<f64>::CAPACITY);
+        let mut speeds = zeros();
+        speeds.as_mut_slice().fill(f64::INFINITY);
+        Self {
+            arrivals: zeros(),
+            speeds,
+        }
+    }
+
+    fn add(&mut self, system: &Sys, event: &Event<Sys::State>) {
+        if let Some(count) = self.arrivals.as_mut_slice().get_mut(event.surface) {
+            *count += 1.0;
+        }
+        let mut rate = system.zero_state();
+        let falling = system
+            .rate(event.t, &event.before, &mut rate)
+            .and_then(|()| gap_rate(system, event, &rate));
+        let least = self.speeds.as_mut_slice().get_mut(event.surface);
+        if let (Some(least), Ok(rate)) = (least, falling) {
+            *least = f64::min(*least, -rate);
+        }
     }
 }
 
 /// Observes a run from one arrival to another.
 struct Passage<'a, Sys: Variational> {
+    system: &'a Sys,
     variations: Variations<'a, Sys>,
     surface: usize,
     /// Number of arrivals before the requested one.
@@ -183,6 +246,7 @@ struct Passage<'a, Sys: Variational> {
     /// Time of the first arrival at the surface.
     first: Option<f64>,
     last: Option<Event<Sys::State>>,
+    itinerary: Itinerary<Sys>,
 }
 
 impl<Sys: Variational> Observer<Sys> for Passage<'_, Sys> {
@@ -191,6 +255,7 @@ impl<Sys: Variational> Observer<Sys> for Passage<'_, Sys> {
     }
 
     fn event(&mut self, event: &Event<Sys::State>) -> ControlFlow<()> {
+        self.itinerary.add(self.system, event);
         if event.surface != self.surface {
             return self.variations.event(event);
         }

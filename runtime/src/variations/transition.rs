@@ -184,7 +184,7 @@ fn arrival_at<Sys: Variational>(
 }
 
 /// `h_z . f + h_t`, along the motion before a transition.
-fn gap_rate<Sys: Variational>(
+pub(super) fn gap_rate<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
     rate: &Sys::State,

@@ -15,7 +15,20 @@ section. The direction of the motion is not among them; a conserved energy gives
 not a wall, declare a surface with the law `reset { }`. Exit status: 0 an orbit was found, 1 none was found, 2 bad
 flags or input.
 
+--continue follows the orbit that is found over a parameter (pseudo-arclength continuation), through folds, to both ends of the
+range. If the model's value of the parameter lies outside of the range, the orbit is followed to the nearest end first.
+Derivatives in the state and in the parameter are exact across impacts. Bifurcations are located to rounding:
+
+  fold            the branch turns back; a multiplier is 1
+  flip            a multiplier is -1; orbits of twice the period branch off
+  neimark_sacker  two complex multipliers have modulus 1; a torus branches off
+  branch_point    a multiplier is 1 without a fold; another branch crosses
+
+A branch may end inside of the range: at a surface that the orbit grazes, where the map is not defined, or where the parameter
+leaves the values of its declaration. What was found before is kept, and the exit status is 0.
+
 More examples:
+  dalembert orbit compass_walker --surface heel --continue gamma=0.001..0.017 --plot gaits.svg --axis omega
   dalembert orbit dimensionless_walker --surface step --set alpha=0.3 --initial xi=-0.9 --json -
   dalembert orbit point_billiard --surface wall --period 2 --set ta=2 --initial x=0,y=0,x_dot=0,y_dot=1";
 
@@ -46,7 +59,36 @@ pub struct OrbitArgs {
     /// Treatment of impacts after which the law alone does not determine the motion.
     #[command(flatten)]
     pub policies: PolicyArgs,
+    /// Continuation.
+    #[command(flatten)]
+    pub branch: BranchArgs,
     /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+/// Flags of the branch of an orbit.
+#[derive(Debug, Args)]
+pub struct BranchArgs {
+    /// Follow the orbit over a parameter to both ends of a range, and locate its bifurcations.
+    #[arg(
+        long = "continue",
+        id = "continue",
+        value_name = "NAME=A..B",
+        allow_hyphen_values = true
+    )]
+    pub range: Option<String>,
+    /// Largest number of steps along the branch in either direction.
+    #[arg(long, value_name = "N", requires = "continue", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000)]
+    pub points: u32,
+    /// Write a row for every point of the branch. `-` is the standard output.
+    #[arg(long, value_name = "FILE", requires = "continue")]
+    pub csv: Option<PathBuf>,
+    /// Draw the branch over the parameter.
+    #[arg(long, value_name = "FILE.svg", requires = "continue")]
+    pub plot: Option<PathBuf>,
+    /// Quantity along y: `period`, or a coordinate, a velocity `x_dot`, a momentum `p_x`, `energy` or an output at the surface,
+    /// before the event there. Default: the first coordinate or velocity that changes along the branch.
+    #[arg(long, value_name = "NAME", requires = "plot")]
+    pub axis: Option<String>,
 }

@@ -1,10 +1,11 @@
-//! `orbit`: a periodic orbit of a section, and its Floquet multipliers.
+//! `orbit`: a periodic orbit of a section and its Floquet multipliers, or a branch of such orbits.
 
+pub mod branch;
 mod document;
 mod summary;
 
 use dalembert::{OrbitError, Tolerance};
-use dalembert_driver::{AnyModel, Found, OffConstraint, Search};
+use dalembert_driver::{AnyModel, OffConstraint, Refusal, Search};
 
 use crate::args::OrbitArgs;
 use crate::entry::Entry;
@@ -17,12 +18,12 @@ use crate::{Streams, names, run_request};
 /// Longest time of a return, unless the model's own `until` is longer.
 const HORIZON: f64 = 3600.0;
 
-/// A finished search: the request and its result.
-struct Finished<'a> {
+/// A finished search: the request and its result, an orbit or a branch of orbits.
+struct Finished<'a, T> {
     model: &'a dyn AnyModel,
     scene: &'a str,
     search: Search,
-    result: Result<Found, OrbitError>,
+    result: Result<T, OrbitError>,
 }
 
 /// Carries out `orbit`.
@@ -35,30 +36,46 @@ pub fn run(
     args: &OrbitArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
+    if let Some(range) = &args.branch.range {
+        return branch::run(models, args, range, streams);
+    }
     let model = build_model(models, &args.model)?;
     let search = search(model.as_ref(), args)?;
     let origin = initial_state(model.as_ref(), &args.state)?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
-    let result = model
-        .orbit(&origin, &search)
-        .map_err(|refusal| CliError::refused(model.as_ref(), &refusal))?
-        .ok_or_else(|| invariable(model.as_ref(), args))?;
-    let finished = Finished {
-        model: model.as_ref(),
-        scene: &args.model.scene,
-        search,
-        result,
-    };
+    let result = model.orbit(&origin, &search);
+    let finished = finished(model.as_ref(), args, search, result)?;
     if let Some(sink) = json {
         sink.write(streams, |output| document::write(output, &finished))?;
     }
     if !args.json.as_deref().is_some_and(is_stdout) {
         summary::write(streams.output, &finished)?;
     }
-    Ok(match finished.result {
+    Ok(exit(&finished))
+}
+
+/// A search with the result of the driver.
+fn finished<'a, T>(
+    model: &'a dyn AnyModel,
+    args: &'a OrbitArgs,
+    search: Search,
+    result: Result<Option<Result<T, OrbitError>>, Refusal>,
+) -> Result<Finished<'a, T>, CliError> {
+    let result = result.map_err(|refusal| CliError::refused(model, &refusal))?;
+    Ok(Finished {
+        model,
+        scene: &args.model.scene,
+        search,
+        result: result.ok_or_else(|| invariable(model, args))?,
+    })
+}
+
+/// The exit status of a search.
+const fn exit<T>(finished: &Finished<'_, T>) -> Exit {
+    match finished.result {
         Ok(_) => Exit::Reached,
         Err(_) => Exit::Other,
-    })
+    }
 }
 
 /// The error that explains why there are no variations.

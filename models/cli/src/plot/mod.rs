@@ -2,6 +2,7 @@
 //! against time or each other.
 
 mod bar;
+pub mod branch;
 mod canvas;
 pub mod cloud;
 mod colours;

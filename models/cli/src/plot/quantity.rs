@@ -99,6 +99,34 @@ pub fn parse(flag: &str, text: &str, description: &Description) -> Result<Vec<Qu
     }
 }
 
+/// Parses one quantity of a single state.
+///
+/// # Errors
+/// An unknown name; `others` are names that the flag accepts besides.
+pub fn parse_one(
+    flag: &str,
+    name: &str,
+    others: &[&str],
+    description: &Description,
+) -> Result<Option<Quantity>, CliError> {
+    let quantities = of_state(description);
+    let names = quantities.iter().map(|quantity| quantity.name(description));
+    let accepted: Vec<String> = names
+        .chain(others.iter().map(|&name| name.to_owned()))
+        .collect();
+    let accepted = accepted.iter().map(String::as_str);
+    let index = names::find(flag, "quantity", name.trim(), accepted)?;
+    Ok(quantities.get(index).copied())
+}
+
+/// The quantities of a single state.
+pub fn of_state(description: &Description) -> Vec<Quantity> {
+    let of_runs = [Quantity::Time, Quantity::EnergyError];
+    let mut quantities = everything(description);
+    quantities.retain(|quantity| !of_runs.contains(quantity));
+    quantities
+}
+
 /// All quantities of a model. Of two quantities with the same name the first is used.
 fn everything(description: &Description) -> Vec<Quantity> {
     let n = description.coordinates.len();

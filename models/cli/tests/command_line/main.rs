@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod accuracy;
+mod branch;
 mod certify;
 mod check;
 mod derive;
@@ -18,6 +19,7 @@ mod pictures;
 mod simulate;
 mod stability;
 mod systems;
+mod tables;
 mod verify;
 
 use dalembert_cli::{Entry, Exit, Streams, models, run_with};

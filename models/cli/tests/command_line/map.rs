@@ -2,8 +2,8 @@
 //! flags that are refused.
 
 use std::fs;
-use std::path::PathBuf;
 
+use super::tables::{Folder, column, numbers_of};
 use super::*;
 
 /// A particle that tends to 1 or -1, or stays at 0, and a clock that ticks at every unit of time.
@@ -16,32 +16,6 @@ const SWITCH: &str = "
         initial { x = 0.5; until = 3; }
         outputs { square: x^2; }
     }";
-
-/// A folder with a file of a model, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = format!("dalembert-map-{name}-{}", std::process::id());
-        let path = std::env::temp_dir().join(folder);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        fs::remove_dir_all(&self.0).unwrap();
-    }
-}
 
 /// Runs `map` over the switch, with flags given as words.
 fn map_of(words: &[&str]) -> Done {
@@ -59,20 +33,6 @@ fn rows(flags: &str) -> String {
     let done = map(&format!("{flags} --csv -"));
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     done.output
-}
-
-/// A column of a table.
-fn column(table: &str, name: &str) -> Vec<String> {
-    let mut reader = csv::Reader::from_reader(table.as_bytes());
-    let place = reader.headers().unwrap().iter().position(|it| it == name);
-    let place = place.unwrap_or_else(|| panic!("no column {name} in {table}"));
-    let records = reader.records().map(Result::unwrap);
-    records.map(|record| record[place].to_owned()).collect()
-}
-
-fn numbers_of(table: &str, name: &str) -> Vec<f64> {
-    let column = column(table, name);
-    column.iter().map(|text| text.parse().unwrap()).collect()
 }
 
 /// Nine starts, of which the middle one stays at 0.
@@ -199,7 +159,7 @@ const GRID: &str = "--vary x=-2..2:13 --vary c=0..0.5:11 --returns 20 --lyapunov
 
 #[test]
 fn rows_and_documents_do_not_depend_on_threads() {
-    let folder = Folder::new("threads");
+    let folder = Folder::new("map-threads");
     let files = |threads: u32| {
         let [rows, plot] = ["rows.csv", "map.svg"].map(|name| folder.path(name));
         let done = map(&format!(
@@ -217,7 +177,7 @@ fn rows_and_documents_do_not_depend_on_threads() {
 
 #[test]
 fn a_map_that_was_cut_off_goes_on_to_the_same_files() {
-    let folder = Folder::new("resume");
+    let folder = Folder::new("map-resume");
     let path = folder.path("rows.csv");
     let plot = folder.path("map.svg");
     let line = format!("{GRID} --csv {path} --plot {plot}");
@@ -225,7 +185,7 @@ fn a_map_that_was_cut_off_goes_on_to_the_same_files() {
     let complete = document(&line);
     let (whole, picture) = (folder.read("rows.csv"), folder.read("map.svg"));
     for cut in [10, whole.len() / 3, whole.len() - 1, whole.len()] {
-        fs::write(folder.0.join("rows.csv"), &whole.as_bytes()[..cut]).unwrap();
+        fs::write(folder.path("rows.csv"), &whole.as_bytes()[..cut]).unwrap();
         assert_eq!(document(&line), complete, "cut at {cut}");
         assert_eq!(folder.read("rows.csv"), whole, "cut at {cut}");
         assert_eq!(folder.read("map.svg"), picture, "cut at {cut}");
@@ -296,7 +256,7 @@ fn image(svg: &str) -> ((u32, u32), Vec<[u8; 3]>) {
 
 #[test]
 fn a_picture_has_a_pixel_for_each_cell() {
-    let folder = Folder::new("picture");
+    let folder = Folder::new("map-picture");
     let plot = folder.path("map.svg");
     let words = "--vary x=-2..2:5 --vary c=0..0.5:3 --returns 20 --plot".split(' ');
     let words: Vec<&str> = words
@@ -338,7 +298,7 @@ fn a_picture_has_a_pixel_for_each_cell() {
 
 #[test]
 fn one_axis_is_a_strip_and_numbers_have_a_bar() {
-    let folder = Folder::new("strip");
+    let folder = Folder::new("map-strip");
     let plot = folder.path("map.svg");
     for class in ["end", "returns", "lyapunov", "x^2", "x>0"] {
         let done = map(&format!(

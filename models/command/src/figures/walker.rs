@@ -1,4 +1,4 @@
-//! Gaits and falls of a walker with foot slip: W. Clark, thesis, Figures 4.4 and 4.5.
+//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4 and 4.5), and gaits that double their period.
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
@@ -6,7 +6,7 @@ use dalembert_cli::gallery::{Figure, Panel, Picture};
 const WALK: &str = "--returns 50 --fail 'theta > pi/2' --tol 1e-7";
 
 pub fn figures() -> Vec<Figure> {
-    vec![gaits(), basin()]
+    vec![gaits(), basin(), doubling()]
 }
 
 fn mapped(name: &str, title: &str, flags: String) -> Panel {
@@ -61,5 +61,31 @@ fn basin() -> Figure {
                 "--vary eta=-2..2:400 --vary xi=-3..1:400 {WALK} --contour 'xi = -0.988692*(sin(alpha) - eta)'"
             ),
         )],
+    }
+}
+
+fn doubling() -> Figure {
+    let panel = |name: &str, title: &str, flags: &str| Panel {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        picture: Picture::Branch(format!("--surface heel --axis theta {flags}")),
+    };
+    Figure {
+        model: "compass_walker",
+        name: "doubling",
+        title: "Gaits of the simplest walker over the slope",
+        caption: "Every point is a gait: the angle of the stance leg before the heel strikes. The long gait loses its stability at a \
+                  slope of 0.015088, where a multiplier passes -1, to a gait of two unlike steps; that doubles its period at \
+                  0.017669."
+            .to_owned(),
+        source: Some("M. Garcia et al., J. Biomech. Eng. 120 (1998)"),
+        panels: vec![
+            panel("one", "One step", "--continue gamma=0.001..0.019"),
+            panel(
+                "two",
+                "Two steps",
+                "--period 2 --set gamma=0.017 --initial theta=0.25,phi=0.5,omega=-0.24,psi=-0.03 --continue gamma=0.0151..0.019",
+            ),
+        ],
     }
 }

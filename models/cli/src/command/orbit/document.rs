@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use dalembert_driver::Point;
+use dalembert::OrbitError;
+use dalembert::describe::Description;
+use dalembert_driver::{Found, Point};
 use serde_json::{Map, Value, json};
 
 use super::Finished;
@@ -11,7 +13,35 @@ use crate::json::{Document, matrix, named, number, vector};
 use crate::outcome;
 
 /// Writes the document.
-pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result<()> {
+    let mut document = begin(output, finished)?;
+    let found = match &finished.result {
+        Err(missed) => return end_missed(document, finished.model.description(), missed),
+        Ok(found) => found,
+    };
+    document.field("outcome", json!({ "kind": "done" }))?;
+    document.field("period", number(found.period))?;
+    document.field("before", state(&found.before))?;
+    document.field("after", state(&found.after))?;
+    document.field("residual", number(found.residual))?;
+    document.field("iterations", found.iterations)?;
+    let names = components(finished.model.description());
+    document.field("components", names)?;
+    document.rows(
+        "directions",
+        found.directions.iter().map(|direction| vector(direction)),
+    )?;
+    let derivative = matrix(found.directions.len(), &found.derivative);
+    document.field("derivative", derivative)?;
+    document.rows("multipliers", found.multipliers.iter().map(multiplier))?;
+    document.end()
+}
+
+/// Opens the document of a search with its request.
+pub(super) fn begin<'a, T>(
+    output: &'a mut dyn Write,
+    finished: &Finished<'_, T>,
+) -> io::Result<Document<'a>> {
     let (model, search) = (finished.model, &finished.search);
     let description = model.description();
     let values: Vec<f64> = (0..description.parameters.len())
@@ -28,42 +58,31 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     document.field("surface", description.surfaces[search.surface].name)?;
     document.field("returns", search.returns)?;
     document.field("tol", number(search.tolerance.relative()))?;
-    let found = match &finished.result {
-        Err(missed) => {
-            let mut outcome = Map::new();
-            let (kind, details) = outcome::missed(description, missed);
-            outcome.insert("kind".to_owned(), kind.into());
-            outcome.extend(
-                details
-                    .into_iter()
-                    .map(|(name, value)| (name.to_owned(), value)),
-            );
-            document.field("outcome", outcome)?;
-            return document.end();
-        }
-        Ok(found) => found,
-    };
-    document.field("outcome", json!({ "kind": "done" }))?;
-    document.field("period", number(found.period))?;
-    document.field("before", state(&found.before))?;
-    document.field("after", state(&found.after))?;
-    document.field("residual", number(found.residual))?;
-    document.field("iterations", found.iterations)?;
-    document.field("components", components(description))?;
-    document.rows(
-        "directions",
-        found.directions.iter().map(|direction| vector(direction)),
-    )?;
-    let derivative = matrix(found.directions.len(), &found.derivative);
-    document.field("derivative", derivative)?;
-    let multipliers = found.multipliers.iter().map(
-        |&[re, im]| json!({ "re": number(re), "im": number(im), "modulus": number(re.hypot(im)) }),
-    );
-    document.rows("multipliers", multipliers)?;
+    Ok(document)
+}
+
+/// Writes why no orbit was found, and closes the document.
+pub(super) fn end_missed(
+    mut document: Document<'_>,
+    description: &Description,
+    missed: &OrbitError,
+) -> io::Result<()> {
+    let mut outcome = Map::new();
+    let (kind, details) = outcome::missed(description, missed);
+    outcome.insert("kind".to_owned(), kind.into());
+    let details = details.into_iter();
+    outcome.extend(details.map(|(name, value)| (name.to_owned(), value)));
+    document.field("outcome", outcome)?;
     document.end()
 }
 
-fn state(point: &Point) -> Value {
+/// A multiplier.
+pub(super) fn multiplier(&[re, im]: &[f64; 2]) -> Value {
+    json!({ "re": number(re), "im": number(im), "modulus": number(re.hypot(im)) })
+}
+
+/// A state.
+pub(super) fn state(point: &Point) -> Value {
     json!({
         "q": vector(&point.q),
         "qdot": vector(&point.qdot),

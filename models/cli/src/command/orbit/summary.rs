@@ -2,46 +2,26 @@
 
 use std::io::{self, Write};
 
+use dalembert::OrbitError;
 use dalembert::describe::Description;
-use dalembert_driver::Point;
+use dalembert_driver::{Found, Point};
 
 use super::Finished;
+use crate::error::counted;
 use crate::{names, outcome};
 
 /// Writes the summary.
-pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
-    let (description, search) = (finished.model.description(), &finished.search);
-    match finished.scene {
-        "all" => writeln!(output, "{}", description.name)?,
-        scene => writeln!(output, "{}, scene {scene}", description.name)?,
-    }
-    let surface = description.surfaces[search.surface].name;
-    let returns = match search.returns {
-        1 => "1 return".to_owned(),
-        several => format!("{several} returns"),
-    };
-    writeln!(output, "  section      {surface}, {returns}")?;
+pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result<()> {
+    let description = finished.model.description();
+    head(output, finished)?;
     let found = match &finished.result {
-        Err(missed) => {
-            let (kind, details) = outcome::missed(description, missed);
-            let details: String = details
-                .iter()
-                .map(|(name, detail)| format!(", {name} {detail}"))
-                .collect();
-            writeln!(output, "  outcome      {kind}{details}")?;
-            return outcome::remarks_on_orbit(description, missed)
-                .iter()
-                .try_for_each(|(title, text)| writeln!(output, "  {title:<11}  {text}"));
-        }
+        Err(missed) => return tell_missed(output, description, missed),
         Ok(found) => found,
-    };
-    let steps = match found.iterations {
-        1 => "1 step".to_owned(),
-        several => format!("{several} steps"),
     };
     writeln!(
         output,
-        "  outcome      found in {steps}, closes up to {:.1e}",
+        "  outcome      found in {}, closes up to {:.1e}",
+        counted(found.iterations as usize, "step"),
         found.residual
     )?;
     writeln!(output, "  period       {}", found.period)?;
@@ -58,9 +38,48 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     let multipliers: Vec<String> = found
         .multipliers
         .iter()
-        .map(|multiplier| complex(*multiplier))
+        .map(|multiplier| complex(*multiplier, |part| part.to_string()))
         .collect();
     writeln!(output, "  multipliers  {}", multipliers.join(", "))
+}
+
+/// Writes the model, its scene and the section.
+pub(super) fn head<T>(output: &mut dyn Write, finished: &Finished<'_, T>) -> io::Result<()> {
+    writeln!(output, "{}", title(finished))?;
+    writeln!(output, "  section      {}", section(finished))
+}
+
+/// The model and its scene.
+pub(super) fn title<T>(finished: &Finished<'_, T>) -> String {
+    let name = finished.model.description().name;
+    match finished.scene {
+        "all" => name.to_owned(),
+        scene => format!("{name}, scene {scene}"),
+    }
+}
+
+/// `wall, 2 returns`
+pub(super) fn section<T>(finished: &Finished<'_, T>) -> String {
+    let search = &finished.search;
+    let surface = finished.model.description().surfaces[search.surface].name;
+    format!("{surface}, {}", counted(search.returns as usize, "return"))
+}
+
+/// Writes why no orbit was found.
+pub(super) fn tell_missed(
+    output: &mut dyn Write,
+    description: &Description,
+    missed: &OrbitError,
+) -> io::Result<()> {
+    let (kind, details) = outcome::missed(description, missed);
+    let details: String = details
+        .iter()
+        .map(|(name, detail)| format!(", {name} {detail}"))
+        .collect();
+    writeln!(output, "  outcome      {kind}{details}")?;
+    outcome::remarks_on_orbit(description, missed)
+        .iter()
+        .try_for_each(|(title, text)| writeln!(output, "  {title:<11}  {text}"))
 }
 
 /// The names of the components of a state.
@@ -96,11 +115,11 @@ fn state(description: &Description, point: &Point) -> String {
     parts.join(", ")
 }
 
-/// A complex number.
-fn complex([re, im]: [f64; 2]) -> String {
+/// A complex number with parts in this notation.
+pub(super) fn complex([re, im]: [f64; 2], number: impl Fn(f64) -> String) -> String {
     match im {
-        0.0 => format!("{re}"),
-        im if im < 0.0 => format!("{re} - {}i", -im),
-        im => format!("{re} + {im}i"),
+        0.0 => number(re),
+        im if im < 0.0 => format!("{} - {}i", number(re), number(-im)),
+        im => format!("{} + {}i", number(re), number(im)),
     }
 }

@@ -1,0 +1,224 @@
+//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a picture.
+
+mod document;
+mod spreadsheet;
+mod summary;
+
+use dalembert_driver::{AnyModel, Branch, BranchEnd, Continuation, Member};
+
+use super::Finished;
+use crate::args::OrbitArgs;
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::plot::branch::{Chart, Ordinate};
+use crate::plot::{self, Drawn, quantity};
+use crate::progress::Points;
+use crate::sink::{Sink, is_stdout};
+use crate::state_input::{build_model, initial_state};
+use crate::{Streams, names, outcome, run_request, scalar};
+
+/// A finished continuation.
+struct Followed<'a> {
+    finished: Finished<'a, Branch>,
+    request: Continuation,
+}
+
+/// Carries out `orbit --continue`.
+///
+/// # Errors
+/// The errors of [`run`](super::run).
+pub fn run(
+    models: &[Entry],
+    args: &OrbitArgs,
+    range: &str,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let flags = &args.branch;
+    run_request::check_outputs([&flags.csv, &args.json, &flags.plot])?;
+    let open = || {
+        Ok([
+            Sink::open_given("--csv", flags.csv.as_deref())?,
+            Sink::open_given("--json", args.json.as_deref())?,
+            Sink::open_given("--plot", flags.plot.as_deref())?,
+        ])
+    };
+    let terminal = streams.terminal;
+    follow(
+        models,
+        args,
+        range,
+        terminal,
+        open,
+        |sinks, followed, ordinate| write(args, sinks, followed, ordinate, streams),
+    )
+}
+
+/// Writes the files of `--csv`, `--json` and `--plot`, and the summary unless one of them is the standard output.
+fn write(
+    args: &OrbitArgs,
+    [csv, json, plot]: [Option<Sink>; 3],
+    followed: &Followed<'_>,
+    ordinate: Option<Ordinate>,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let branch = followed.finished.result.as_ref().ok();
+    if let (Some(sink), Some(branch)) = (csv, branch) {
+        sink.write(streams, |output| {
+            spreadsheet::write(output, followed, branch)
+        })?;
+    }
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, followed))?;
+    }
+    if let (Some(sink), Some(branch)) = (plot, branch) {
+        let svg = picture(followed, branch, ordinate);
+        let svg = svg.map_err(|reason| CliError::picture(&args.branch.plot, reason))?;
+        sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
+    }
+    // Without a branch there is no table, but a reason.
+    let table = args.branch.csv.as_deref().filter(|_| branch.is_some());
+    let mut outputs = [table, args.json.as_deref()].into_iter().flatten();
+    if !outputs.any(is_stdout) {
+        summary::write(streams.output, followed)?;
+    }
+    Ok(match branch {
+        Some(branch) if !branch.points.is_empty() => Exit::Reached,
+        _ => Exit::Other,
+    })
+}
+
+/// The picture of a branch, without any file.
+///
+/// # Errors
+/// The errors of [`run`], and a branch without points.
+pub fn draw(models: &[Entry], args: &OrbitArgs) -> Result<Drawn, CliError> {
+    let Some(range) = &args.branch.range else {
+        return Err(CliError::Usage("--plot needs --continue NAME=A..B"));
+    };
+    follow(
+        models,
+        args,
+        range,
+        false,
+        || Ok(()),
+        |(), followed, ordinate| {
+            let description = followed.finished.model.description();
+            let svg = match &followed.finished.result {
+                Ok(branch) => picture(followed, branch, ordinate),
+                Err(missed) => Err(outcome::missed(description, missed).0.to_owned()),
+            };
+            Ok(Drawn {
+                svg: svg.map_err(|reason| CliError::picture(&args.branch.plot, reason))?,
+                outcome: summary::bifurcations(followed),
+            })
+        },
+    )
+}
+
+/// Follows the branch and hands it on. `open` opens files once the flags are checked.
+fn follow<F, T>(
+    models: &[Entry],
+    args: &OrbitArgs,
+    range: &str,
+    terminal: bool,
+    open: impl FnOnce() -> Result<F, CliError>,
+    finish: impl FnOnce(F, &Followed<'_>, Option<Ordinate>) -> Result<T, CliError>,
+) -> Result<T, CliError> {
+    let model = build_model(models, &args.model)?;
+    let model = model.as_ref();
+    let request = request(model, args, range)?;
+    let ordinate = args
+        .branch
+        .axis
+        .as_deref()
+        .map(|name| ordinate(model, name));
+    let ordinate = ordinate.transpose()?;
+    let search = super::search(model, args)?;
+    let origin = initial_state(model, &args.state)?;
+    let files = open()?;
+    let name = model.description().parameters[request.parameter].name;
+    let [first, last] = request.range;
+    let mut progress = Points::new(terminal);
+    let result = model.branch(&origin, &search, &request, &mut |member: &Member| {
+        let fraction = (member.parameter - first) / (last - first);
+        progress.at(name, member.parameter, fraction);
+    });
+    progress.finish();
+    let finished = super::finished(model, args, search, result)?;
+    finish(files, &Followed { finished, request }, ordinate)
+}
+
+fn request(model: &dyn AnyModel, args: &OrbitArgs, text: &str) -> Result<Continuation, CliError> {
+    const FLAG: &str = "--continue";
+    let (name, range) = names::assignment(FLAG, text, "NAME=A..B")?;
+    let parameters = &model.description().parameters;
+    let accepted = parameters.iter().map(|parameter| parameter.name);
+    let parameter = names::find(FLAG, "parameter", name, accepted)?;
+    let refuse = |expected: &str| CliError::value(FLAG, text, expected);
+    let (first, last) = range.split_once("..").ok_or_else(|| refuse("NAME=A..B"))?;
+    let end =
+        |text: &str| scalar::parse(text).map_err(|expected| CliError::value(FLAG, text, expected));
+    let range = [end(first)?, end(last)?];
+    if range[0] == range[1] || !(range[1] - range[0]).is_finite() {
+        return Err(refuse("NAME=A..B with two different ends"));
+    }
+    Ok(Continuation {
+        parameter,
+        range,
+        points: args.branch.points,
+    })
+}
+
+fn ordinate(model: &dyn AnyModel, name: &str) -> Result<Ordinate, CliError> {
+    let found = quantity::parse_one("--axis", name, &["period"], model.description())?;
+    Ok(found.map_or(Ordinate::Period, Ordinate::Before))
+}
+
+fn picture(
+    followed: &Followed<'_>,
+    branch: &Branch,
+    ordinate: Option<Ordinate>,
+) -> Result<String, String> {
+    let description = followed.finished.model.description();
+    plot::branch::draw(&Chart {
+        title: &super::summary::title(&followed.finished),
+        subtitle: &format!("section {}", super::summary::section(&followed.finished)),
+        parameter: followed.name(),
+        range: followed.request.range,
+        ordinate: ordinate.unwrap_or_else(|| Ordinate::first(branch, description)),
+        description,
+        branch,
+        ends: [0, 1].map(|side| reason(followed, &branch.ends[side])),
+    })
+}
+
+impl Followed<'_> {
+    /// The name of the parameter.
+    fn name(&self) -> &'static str {
+        self.finished.model.description().parameters[self.request.parameter].name
+    }
+}
+
+/// Explains in words why a branch ends.
+fn reason(followed: &Followed<'_>, end: &BranchEnd) -> String {
+    let description = followed.finished.model.description();
+    match end {
+        BranchEnd::Range => "the end of the range".to_owned(),
+        BranchEnd::Grazing { surface } => {
+            let name = names::surfaces(description).nth(*surface);
+            format!("the orbit grazes `{}`", name.unwrap_or_default())
+        }
+        BranchEnd::Closed => "the branch is closed".to_owned(),
+        BranchEnd::Parameter(error) => error.to_string(),
+        BranchEnd::Missed(error) => {
+            let told = outcome::remarks_on_orbit(description, error).into_iter();
+            told.map(|(_, text)| text).next().unwrap_or_default()
+        }
+        BranchEnd::NotConverged => {
+            "Newton's method does not converge at the smallest step".to_owned()
+        }
+        BranchEnd::Points => "the number of steps in --points".to_owned(),
+        BranchEnd::Turned => "the branch turns back before it".to_owned(),
+    }
+}

@@ -1,0 +1,65 @@
+//! A branch as one JSON document.
+
+use std::io::{self, Write};
+
+use dalembert_driver::{BranchEnd, Member};
+use serde_json::{Value, json};
+
+use super::super::document::{begin, end_missed, multiplier, state};
+use super::{Followed, reason};
+use crate::json::number;
+use crate::names;
+
+/// Writes the document.
+///
+/// # Errors
+/// An I/O error of the stream.
+pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> {
+    let description = followed.finished.model.description();
+    let mut document = begin(output, &followed.finished)?;
+    document.field("parameter", followed.name())?;
+    let range = followed.request.range.map(number);
+    document.field("range", Value::from(range.to_vec()))?;
+    let branch = match &followed.finished.result {
+        Err(missed) => return end_missed(document, description, missed),
+        Ok(branch) => branch,
+    };
+    let kind = match branch.points.is_empty() {
+        true => "out_of_reach",
+        false => "done",
+    };
+    document.field("outcome", json!({ "kind": kind }))?;
+    let bifurcations = branch.points.iter();
+    let bifurcations = bifurcations.filter(|member| member.bifurcation.is_some());
+    document.rows("bifurcations", bifurcations.map(member))?;
+    let at = [branch.points.first(), branch.points.last()];
+    let ends = branch.ends.iter().zip(at).map(|(end, member)| {
+        let surface = match end {
+            BranchEnd::Grazing { surface } => names::surfaces(description).nth(*surface),
+            _ => None,
+        };
+        json!({
+            "kind": end.kind(),
+            "parameter": member.map(|member| number(member.parameter)),
+            "surface": surface,
+            "reason": reason(followed, end),
+        })
+    });
+    document.rows("ends", ends)?;
+    document.rows("points", branch.points.iter().map(member))?;
+    document.end()
+}
+
+fn member(member: &Member) -> Value {
+    let multipliers: Vec<Value> = member.multipliers.iter().map(multiplier).collect();
+    json!({
+        "parameter": number(member.parameter),
+        "period": number(member.period),
+        "before": state(&member.before),
+        "after": state(&member.after),
+        "multipliers": multipliers,
+        "stability": member.stability.name(),
+        "bifurcation": member.bifurcation.map(|it| it.name()),
+        "residual": number(member.residual),
+    })
+}

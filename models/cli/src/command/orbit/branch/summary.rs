@@ -1,0 +1,130 @@
+//! A branch in a few lines of text, and its points as a table.
+
+use std::io::{self, Write};
+
+use dalembert_driver::{Branch, Member};
+
+use super::super::summary::{complex, head, tell_missed};
+use super::spreadsheet::{components, values};
+use super::{Followed, reason};
+use crate::error::counted;
+
+/// Writes the summary.
+///
+/// # Errors
+/// An I/O error of the stream.
+pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> {
+    let description = followed.finished.model.description();
+    head(output, &followed.finished)?;
+    let (name, [first, last]) = (followed.name(), followed.request.range);
+    writeln!(output, "  continued    {name} from {first} to {last}")?;
+    let branch = match &followed.finished.result {
+        Err(missed) => return tell_missed(output, description, missed),
+        Ok(branch) => branch,
+    };
+    if branch.points.is_empty() {
+        let text = reason(followed, &branch.ends[0]);
+        writeln!(output, "  outcome      out_of_reach")?;
+        return writeln!(output, "  reason       on the way to the range: {text}");
+    }
+    let count = counted(branch.points.len(), "point");
+    writeln!(output, "  outcome      {count}")?;
+    for member in &branch.points {
+        if let Some(bifurcation) = member.bifurcation {
+            let kind = bifurcation.name();
+            writeln!(output, "  {kind:<14} {}", located(followed, member))?;
+        }
+    }
+    let ends = [
+        ("first end", branch.points.first()),
+        ("last end", branch.points.last()),
+    ];
+    for ((title, member), end) in ends.into_iter().zip(&branch.ends) {
+        let at = member.map_or(f64::NAN, |member| member.parameter);
+        let text = reason(followed, end);
+        writeln!(output, "  {title:<12} {name} = {at}: {text}")?;
+    }
+    write_table(output, followed, branch)
+}
+
+/// `alpha = .., period .., multipliers ..`
+fn located(followed: &Followed<'_>, member: &Member) -> String {
+    format!(
+        "{} = {}, period {}, multipliers {}",
+        followed.name(),
+        member.parameter,
+        member.period,
+        multipliers(member, |part| part.to_string())
+    )
+}
+
+fn multipliers(member: &Member, number: impl Fn(f64) -> String + Copy) -> String {
+    let told = member.multipliers.iter();
+    let told: Vec<String> = told
+        .map(|&multiplier| complex(multiplier, number))
+        .collect();
+    told.join(", ")
+}
+
+/// The bifurcations with their values of the parameter.
+pub fn bifurcations(followed: &Followed<'_>) -> String {
+    let Ok(branch) = &followed.finished.result else {
+        return String::new();
+    };
+    let told = branch.points.iter().filter_map(|member| {
+        let kind = member.bifurcation?.name();
+        Some(format!(
+            "{kind} at {} = {:.9}",
+            followed.name(),
+            member.parameter
+        ))
+    });
+    let told: Vec<String> = told.collect();
+    match told.is_empty() {
+        true => "no bifurcation".to_owned(),
+        false => told.join("; "),
+    }
+}
+
+/// Writes a row for each point, under a line of names.
+fn write_table(output: &mut dyn Write, followed: &Followed<'_>, branch: &Branch) -> io::Result<()> {
+    let description = followed.finished.model.description();
+    let mut head = vec![followed.name().to_owned(), "period".to_owned()];
+    head.extend(components(description));
+    head.extend(["stability", "multipliers", ""].map(str::to_owned));
+    let mut rows = vec![head];
+    rows.extend(branch.points.iter().map(|member| {
+        let numbers = [member.parameter, member.period];
+        let numbers = numbers
+            .into_iter()
+            .chain(values(description, &member.before));
+        let mut row: Vec<String> = numbers.map(short).collect();
+        row.push(member.stability.name().to_owned());
+        row.push(multipliers(member, short));
+        row.push(member.bifurcation.map_or("", |it| it.name()).to_owned());
+        row
+    }));
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: Vec<usize> = (0..rows[0].len())
+        .map(|it| width(it).unwrap_or(0))
+        .collect();
+    writeln!(output)?;
+    for row in &rows {
+        let cells = row.iter().zip(&widths);
+        let line: Vec<String> = cells
+            .map(|(cell, width)| format!("{cell:<width$}"))
+            .collect();
+        writeln!(output, "  {}", line.join("  ").trim_end())?;
+    }
+    Ok(())
+}
+
+/// A number with nine significant digits.
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
+    match rounded.abs() {
+        0.0 => "0".to_owned(),
+        size if !(1e-4..1e9).contains(&size) => format!("{rounded:e}"),
+        _ => rounded.to_string(),
+    }
+}

@@ -1,0 +1,411 @@
+//! Branches of orbits: bifurcations, ends and multipliers that are known in closed form, and flags that are refused.
+
+use std::f64::consts::TAU;
+use std::fs;
+
+use super::tables::{Folder, column, numbers_of};
+use super::*;
+
+/// A clock at whose ticks a number takes its next value.
+const LOGISTIC: &str = "
+    Logistic {
+        coordinates { x; tau; }
+        parameters { r = 2.5; idle > 0 = 1; }
+        field { dot(x) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = r*x*(1 - x); tau = 0; }; }
+        initial { x = 0.6; until = 10; }
+        outputs { square: x^2; }
+    }";
+
+/// A parabola: a fold at `r = 0`, a flip at `r = 1`.
+const PARABOLA: &str = "
+    Parabola {
+        coordinates { x; tau; }
+        parameters { r = 0.5; }
+        field { dot(x) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = x + r - x^2; tau = 0; }; }
+        initial { x = 0.7; until = 10; }
+    }";
+
+/// The delayed logistic map, whose fixed point loses its stability to a circle at `r = 2`.
+const DELAYED: &str = "
+    Delayed {
+        coordinates { x; y; tau; }
+        parameters { r = 1.8; }
+        field { dot(x) = 0; dot(y) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = r*x*(1 - y); y = x; tau = 0; }; }
+        initial { x = 0.44; y = 0.44; until = 10; }
+    }";
+
+/// Fixed points on the circle `x^2 + r^2 = 1`.
+const CIRCLE: &str = "
+    Circle {
+        coordinates { x; tau; }
+        parameters { r = 0; }
+        field { dot(x) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = x + (1 - x^2 - r^2)/4; tau = 0; }; }
+        initial { x = 0.9; until = 10; }
+    }";
+
+/// A fixed point that gives its stability to two others at `r = 1`.
+const PITCHFORK: &str = "
+    Pitchfork {
+        coordinates { x; tau; }
+        parameters { r = 1.5; }
+        field { dot(x) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = r*x - x^3; tau = 0; }; }
+        initial { x = 0.7; until = 10; }
+    }";
+
+/// An arc of height `r` between two ticks, and a ceiling at the height 1.
+const ARC: &str = "
+    Arc {
+        coordinates { y; tau; }
+        parameters { r = 0.5; }
+        field { dot(y) = 4*r*(1 - 2*tau); dot(tau) = 1; }
+        impacts { ceiling: y <= 1 => reset { }; tick: tau <= 1 => reset { y = y/2; tau = 0; }; }
+        initial { until = 10; }
+    }";
+
+/// An oscillator that is driven against a stop.
+const STOP: &str = "
+    Stop {
+        coordinates { x; v; phi: angle; }
+        parameters { stop = 2; w = 1.6; rho = 0.8; }
+        field { dot(x) = v; dot(v) = cos(phi) - x; dot(phi) = w; }
+        impacts { wall: x <= stop => reset { v = -rho*v; }; }
+        initial { x = 2; v = -5; phi = 2.7; until = 100; }
+    }";
+
+/// Runs `orbit --continue` over a model.
+fn follow(text: &str, flags: &str) -> Done {
+    let line = format!("orbit - {flags}");
+    run_on(text, &line.split_whitespace().collect::<Vec<_>>())
+}
+
+/// The rows of a branch.
+fn rows(text: &str, flags: &str) -> String {
+    let done = follow(text, &format!("{flags} --csv -"));
+    assert_eq!((done.exit, done.errors.as_str()), (Exit::Reached, ""));
+    done.output
+}
+
+/// The bifurcations of a table: kind and parameter.
+fn bifurcations(table: &str, parameter: &str) -> Vec<(String, f64)> {
+    let kinds = column(table, "bifurcation").into_iter();
+    let pairs = kinds.zip(numbers_of(table, &format!("in.{parameter}")));
+    pairs.filter(|(kind, _)| !kind.is_empty()).collect()
+}
+
+fn assert_near(found: f64, expected: f64, bound: f64) {
+    assert!((found - expected).abs() < bound, "{found} for {expected}");
+}
+
+/// Asserts kinds and places of all bifurcations.
+fn assert_bifurcations(table: &str, parameter: &str, expected: &[(&str, f64)], bound: f64) {
+    let found = bifurcations(table, parameter);
+    let kinds: Vec<&str> = found.iter().map(|(kind, _)| kind.as_str()).collect();
+    let known: Vec<&str> = expected.iter().map(|(kind, _)| *kind).collect();
+    assert_eq!(kinds, known, "{found:?}");
+    for ((_, found), (_, expected)) in found.iter().zip(expected) {
+        assert_near(*found, *expected, bound);
+    }
+}
+
+/// Asserts the first and last parameter of a table.
+fn assert_ends(table: &str, parameter: &str, ends: [f64; 2]) {
+    let values = numbers_of(table, &format!("in.{parameter}"));
+    assert_eq!([values[0], values[values.len() - 1]], ends);
+}
+
+#[test]
+fn a_flip_and_a_crossing_of_the_logistic_map() {
+    let table = rows(LOGISTIC, "--surface tick --continue r=0.5..3.5");
+    assert_ends(&table, "r", [0.5, 3.5]);
+    let expected = [("branch_point", 1.0), ("flip", 3.0)];
+    assert_bifurcations(&table, "r", &expected, 1e-9);
+    let values = numbers_of(&table, "in.r").into_iter();
+    let points = numbers_of(&table, "before.x");
+    let multipliers = numbers_of(&table, "multiplier.1.re");
+    let stabilities = column(&table, "stability");
+    for (index, r) in values.enumerate() {
+        assert_near(points[index], 1.0 - 1.0 / r, 1e-9);
+        assert_near(multipliers[index], 2.0 - r, 1e-9);
+        let expected = match (r - 2.0).abs() {
+            distance if (distance - 1.0).abs() < 1e-9 => "neutral",
+            distance if distance < 1.0 => "stable",
+            _ => "unstable",
+        };
+        assert_eq!(stabilities[index], expected, "{r}");
+    }
+    assert_eq!(numbers_of(&table, "period"), vec![1.0; points.len()]);
+}
+
+#[test]
+fn a_branch_from_exactly_the_crossing_meets_it_once() {
+    let flags = "--surface tick --set r=1 --initial x=0 --continue r=0.5..1.5";
+    let table = rows(LOGISTIC, flags);
+    assert_bifurcations(&table, "r", &[("branch_point", 1.0)], 1e-9);
+    assert_ends(&table, "r", [0.5, 1.5]);
+}
+
+#[test]
+fn orbits_of_two_returns_double_their_period_too() {
+    let flags = "--surface tick --period 2 --set r=3.2 --initial x=0.51 --continue r=3.1..3.5";
+    let table = rows(LOGISTIC, flags);
+    assert_bifurcations(&table, "r", &[("flip", 1.0 + 6f64.sqrt())], 1e-9);
+    assert_ends(&table, "r", [3.1, 3.5]);
+    assert_near(numbers_of(&table, "period")[0], 2.0, 1e-12);
+}
+
+#[test]
+fn a_branch_goes_on_behind_its_fold() {
+    for (range, ends) in [("1.2..-0.5", [1.2; 2]), ("-0.5..1.2", [1.2; 2])] {
+        let table = rows(PARABOLA, &format!("--surface tick --continue r={range}"));
+        assert_ends(&table, "r", ends);
+        let found = bifurcations(&table, "r");
+        let mut kinds: Vec<&str> = found.iter().map(|(kind, _)| kind.as_str()).collect();
+        kinds.sort_unstable();
+        assert_eq!(kinds, ["flip", "fold"]);
+        for (kind, r) in &found {
+            assert_near(*r, if kind == "fold" { 0.0 } else { 1.0 }, 1e-9);
+        }
+        let (values, points) = (numbers_of(&table, "in.r"), numbers_of(&table, "before.x"));
+        for (r, x) in values.iter().zip(&points) {
+            assert_near(x * x, *r, 1e-12);
+        }
+        assert!(points[0] * points[points.len() - 1] < 0.0);
+    }
+}
+
+#[test]
+fn a_pair_of_multipliers_passes_the_circle() {
+    let table = rows(DELAYED, "--surface tick --continue r=1.5..2.2");
+    assert_bifurcations(&table, "r", &[("neimark_sacker", 2.0)], 1e-9);
+    let kinds = column(&table, "bifurcation");
+    let place = kinds.iter().position(|kind| !kind.is_empty()).unwrap();
+    let part = |name: &str| numbers_of(&table, &format!("multiplier.1.{name}"))[place];
+    assert_near(part("re"), 0.5, 1e-9);
+    assert_near(part("im").abs(), 0.75f64.sqrt(), 1e-9);
+}
+
+#[test]
+fn a_closed_branch_is_followed_once() {
+    let done = follow(CIRCLE, "--surface tick --continue r=-2..2 --json -");
+    let document = done.json();
+    let ends = document["ends"].as_array().unwrap();
+    assert_eq!(
+        (&ends[0]["kind"], &ends[1]["kind"]),
+        (&"closed".into(), &"closed".into())
+    );
+    let folds = document["bifurcations"].as_array().unwrap();
+    let folds: Vec<f64> = folds
+        .iter()
+        .map(|it| it["parameter"].as_f64().unwrap())
+        .collect();
+    assert_eq!(folds.len(), 2);
+    assert_near(folds[0].abs(), 1.0, 1e-9);
+    assert_near(folds[0] + folds[1], 0.0, 1e-9);
+}
+
+#[test]
+fn a_pitchfork_is_one_branch_point() {
+    let table = rows(PITCHFORK, "--surface tick --continue r=0.5..1.5");
+    assert_ends(&table, "r", [1.5, 1.5]);
+    let found = bifurcations(&table, "r");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].0, "branch_point");
+    assert_near(found[0].1, 1.0, 1e-6);
+}
+
+#[test]
+fn a_parameter_that_does_not_matter_changes_nothing() {
+    let table = rows(LOGISTIC, "--surface tick --continue idle=0.5..4");
+    assert_ends(&table, "idle", [0.5, 4.0]);
+    assert_eq!(bifurcations(&table, "idle"), []);
+    for (x, multiplier) in numbers_of(&table, "before.x")
+        .iter()
+        .zip(numbers_of(&table, "multiplier.1.re"))
+    {
+        assert_near(*x, 0.6, 1e-14);
+        assert_near(multiplier, -0.5, 1e-13);
+    }
+}
+
+#[test]
+fn a_branch_begins_at_the_nearest_end_of_a_range_beyond_its_start() {
+    let table = rows(LOGISTIC, "--surface tick --continue r=2.9..2.7");
+    assert_ends(&table, "r", [2.9, 2.7]);
+    let done = follow(PARABOLA, "--surface tick --continue r=-2..-1 --json -");
+    assert_eq!(done.exit, Exit::Other);
+    let document = done.json();
+    assert_eq!(document["outcome"]["kind"], "out_of_reach");
+    assert_eq!(document["ends"][0]["kind"], "turned");
+    assert_eq!(document["points"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn a_branch_ends_where_its_orbit_grazes_a_surface() {
+    let done = follow(ARC, "--surface tick --continue r=0.2..2 --json -");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let document = done.json();
+    let ends = document["ends"].as_array().unwrap();
+    assert_eq!(ends[0]["kind"], "range");
+    assert_eq!(ends[0]["parameter"], 0.2);
+    assert_eq!(
+        (&ends[1]["kind"], &ends[1]["surface"]),
+        (&"grazing".into(), &"ceiling".into())
+    );
+    assert_near(ends[1]["parameter"].as_f64().unwrap(), 1.0, 1e-6);
+}
+
+#[test]
+fn a_branch_ends_where_its_parameter_may_not_go() {
+    let done = follow(LOGISTIC, "--surface tick --continue idle=2..-1");
+    assert_eq!(done.exit, Exit::Reached);
+    assert!(
+        done.output.contains("parameter `idle` is"),
+        "{}",
+        done.output
+    );
+    let first = done.output.lines().find(|line| line.contains("first end"));
+    assert!(first.unwrap().contains("idle = 2: the end of the range"));
+}
+
+/// Orbits of one impact per period of the force: with `G = 1/(1 - w^2)`, `t = tan(pi/w)` and
+/// `k = w (1 + e)/(t (1 - e))` the stop is at `d = G (cos phi + k sin phi)` for the phase `phi` of the impact, and the impact
+/// has the speed `-2 G w sin(phi)/(1 - e)`. So there is a fold at `d = |G| sqrt(1 + k^2)`, and the impact grazes at `d = |G|`.
+#[test]
+fn the_driven_oscillator_folds_and_grazes_where_formulas_say() {
+    let (w, e) = (1.6, 0.8);
+    let g: f64 = 1.0 / (1.0 - w * w);
+    let k = w * (1.0 + e) / ((0.5 * TAU / w).tan() * (1.0 - e));
+    let done = follow(STOP, "--surface wall --continue stop=0.1..5 --json -");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let document = done.json();
+    let found = document["bifurcations"].as_array().unwrap();
+    let folds: Vec<&Value> = found
+        .iter()
+        .filter(|it| it["bifurcation"] == "fold")
+        .collect();
+    assert_eq!(folds.len(), 1, "{found:?}");
+    let fold = g.abs() * (1.0 + k * k).sqrt();
+    assert_near(folds[0]["parameter"].as_f64().unwrap(), fold, 1e-9);
+    let grazes = |end: &&Value| end["kind"] == "grazing" && end["surface"] == "wall";
+    let ends = document["ends"].as_array().unwrap();
+    let grazing: Vec<&Value> = ends.iter().filter(grazes).collect();
+    assert_eq!(grazing.len(), 1, "{ends:?}");
+    assert_near(grazing[0]["parameter"].as_f64().unwrap(), g.abs(), 1e-6);
+    let points = document["points"].as_array().unwrap();
+    assert!(points.len() > 20);
+    for point in points {
+        let (d, q) = (
+            point["parameter"].as_f64().unwrap(),
+            numbers(&point["before"]["q"]),
+        );
+        let (speed, phi) = (q[1], q[2]);
+        assert_near(g * (phi.cos() + k * phi.sin()), d, 1e-9);
+        assert_near(speed, -2.0 * g * w * phi.sin() / (1.0 - e), 1e-8);
+        assert_near(point["period"].as_f64().unwrap(), TAU / w, 1e-9);
+        let multipliers = point["multipliers"].as_array().unwrap().iter();
+        let parts = multipliers.map(|it| [&it["re"], &it["im"]].map(|part| part.as_f64().unwrap()));
+        let [re, _] = parts.fold([1.0, 0.0], |[a, b], [c, d]| [a * c - b * d, a * d + b * c]);
+        // The force does no volume, and the impact contracts positions and velocities by `e` each.
+        if speed > 0.1 {
+            assert_near(re, e * e, 1e-7);
+        }
+    }
+}
+
+#[test]
+fn files_tell_the_same_branch() {
+    let folder = Folder::new("branch");
+    let [csv, json, svg] = ["b.csv", "b.json", "b.svg"].map(|name| folder.path(name));
+    let flags = format!(
+        "--surface tick --continue r=2..3.5 --csv {csv} --json {json} --plot {svg} --axis square"
+    );
+    let done = follow(LOGISTIC, &flags);
+    assert_eq!((done.exit, done.errors.as_str()), (Exit::Reached, ""));
+    let (table, svg) = (folder.read("b.csv"), folder.read("b.svg"));
+    let document: Value = serde_json::from_str(&folder.read("b.json")).unwrap();
+    let points = document["points"].as_array().unwrap();
+    let values: Vec<f64> = points
+        .iter()
+        .map(|it| it["parameter"].as_f64().unwrap())
+        .collect();
+    assert_eq!(values, numbers_of(&table, "in.r"));
+    assert_eq!(document["parameter"], "r");
+    assert_eq!(numbers(&document["range"]), [2.0, 3.5]);
+    for word in [
+        "logistic",
+        "stable",
+        "unstable",
+        "flip",
+        "square",
+        "section tick, 1 return",
+    ] {
+        assert!(svg.contains(word), "{word}");
+    }
+    // The name of the axis stands on its line.
+    assert!(svg.lines().any(|line| line == "r"), "{svg}");
+    for line in [
+        "continued    r from 2 to 3.5",
+        "flip           r = 3",
+        "last end     r = 3.5: the end",
+    ] {
+        assert!(done.output.contains(line), "{line} in {}", done.output);
+    }
+    // One line for each point under the names.
+    let lines = done
+        .output
+        .lines()
+        .skip_while(|line| !line.is_empty())
+        .count();
+    assert_eq!(lines, values.len() + 2);
+    fs::metadata(folder.path("b.svg")).unwrap();
+}
+
+#[test]
+fn few_steps_end_a_branch_early() {
+    let flags = "--surface tick --continue r=0.5..3.5 --points 3";
+    let done = follow(LOGISTIC, flags);
+    assert_eq!(done.exit, Exit::Reached);
+    assert_eq!(
+        done.output
+            .matches("the number of steps in --points")
+            .count(),
+        2
+    );
+}
+
+#[test]
+fn unusable_flags_are_refused() {
+    let refused = |flags: &str, part: &str| {
+        let done = follow(LOGISTIC, flags);
+        assert_eq!(done.exit, Exit::Refused, "{flags}: {}", done.output);
+        assert!(done.errors.contains(part), "{flags}: {}", done.errors);
+    };
+    let with = |range: &str| format!("--surface tick --continue {range}");
+    refused(&with("q=0..1"), "--continue: unknown parameter `q`");
+    refused(&with("x=0..1"), "--continue: unknown parameter `x`");
+    refused(&with("r"), "expected NAME=A..B");
+    refused(&with("r=1"), "expected NAME=A..B");
+    refused(&with("r=1..1"), "two different ends");
+    refused(&with("r=1..inf"), "expected a finite number");
+    refused(&with("r=1..2:5"), "expected a finite number");
+    refused(
+        &with("r=2..3 --axis z --plot /tmp/none.svg"),
+        "--axis: unknown quantity `z`",
+    );
+    refused(&with("r=2..3 --plot none.png"), "ends in .svg");
+    refused(&with("r=2..3 --csv - --json -"), "need different files");
+    refused("--surface tick --csv -", "--continue");
+    refused("--surface tick --plot b.svg", "--continue");
+    refused("--continue r=2..3", "--surface");
+    refused("--surface tock --continue r=2..3", "unknown surface `tock`");
+    let done = follow(
+        LOGISTIC,
+        "--surface tick --initial x=0.6,tau=2 --continue r=2..3 --json -",
+    );
+    assert_ne!(done.exit, Exit::Reached);
+}

@@ -1,0 +1,226 @@
+//! Bifurcations between two members of a branch: zeros of test functions.
+
+use super::family::{Failure, Node, Unknowns};
+use super::indicator::{Test, outside};
+use super::trace::{REACH, Tracer};
+use super::{Bifurcation, Member};
+
+/// Length of steps down to which bifurcations that were not seen are looked for.
+const REFINED: f64 = 1e-4;
+
+/// Largest number of steps to a bifurcation, and the length of the last one.
+const ZOOM: usize = 100;
+const LOCATED: f64 = 1e-13;
+
+/// Largest distance of the members between which a branch point is interpolated.
+const BESIDE: f64 = 1e-3;
+
+/// Distance of a fold from a branch point, along the branch, below which they are one: a pitchfork.
+const SAME: f64 = 1e-4;
+
+/// A bifurcation between two members, at a fraction of the way.
+pub(super) struct Located {
+    pub fraction: f64,
+    pub member: Member,
+}
+
+impl Tracer<'_, '_> {
+    /// The bifurcations between two members, in order.
+    pub(super) fn bifurcations(
+        &mut self,
+        node: &Node,
+        next: &Node,
+        length: f64,
+    ) -> Result<Vec<Located>, Failure> {
+        let mut located: Vec<Located> = Vec::new();
+        let mut passing = 0;
+        for test in Test::ALL {
+            if let Some(values) = test.change([node, next], self.width) {
+                passing += test.passing();
+                located.extend(self.zero(test, [node, next], values, length)?);
+            }
+        }
+        let [before, after] = [node, next].map(|node| outside(&node.local.member.multipliers));
+        if before.abs_diff(after) > passing && length > REFINED {
+            // Two test functions, or one of them twice, have changed their sign inside.
+            return Err(Failure::TooLong);
+        }
+        let is_crossing =
+            |located: &Located| located.member.bifurcation == Some(Bifurcation::BranchPoint);
+        let crossing = located
+            .iter()
+            .find(|it| is_crossing(it))
+            .map(|it| it.fraction);
+        located.retain(|it| {
+            let is_fold = it.member.bifurcation == Some(Bifurcation::Fold);
+            let distance = crossing.map(|crossing| length * (crossing - it.fraction).abs());
+            !(is_fold && distance.is_some_and(|distance| distance < SAME))
+        });
+        located.sort_by(|one, other| one.fraction.total_cmp(&other.fraction));
+        Ok(located)
+    }
+
+    /// The member between two others at which a test function is 0; `None` if it is not that of a bifurcation.
+    fn zero(
+        &mut self,
+        test: Test,
+        [node, next]: [&Node; 2],
+        values: [f64; 2],
+        length: f64,
+    ) -> Result<Option<Located>, Failure> {
+        let mut bracket = Bracket::new(values);
+        let (mut fraction, mut best) = (1.0, next.clone());
+        for _ in 0..ZOOM {
+            fraction = bracket.guess();
+            best = match self.on_arc([node, next], fraction, REACH * length) {
+                Ok(found) => found,
+                Err(failure) if length > REFINED => return Err(failure),
+                // Beside a crossing members of the other branch may be nearer.
+                Err(_) => break,
+            };
+            let value = test.value(&best, self.width);
+            if value == 0.0 || bracket.narrow(fraction, value) * length < LOCATED {
+                break;
+            }
+        }
+        if !test.is_met(&best) {
+            return Ok(None);
+        }
+        let refined = match test {
+            Test::Crossing => self.crossing(fraction, [node, next], length).ok(),
+            _ => None,
+        };
+        let mut member = refined.unwrap_or(best.local.member);
+        member.bifurcation = Some(test.bifurcation());
+        Ok(Some(Located { fraction, member }))
+    }
+
+    /// The place where another branch crosses, between members on both sides of it. Nearer to that place members of both
+    /// branches differ by rounding alone, and a test function has half the digits.
+    fn crossing(
+        &mut self,
+        near: f64,
+        [node, next]: [&Node; 2],
+        length: f64,
+    ) -> Result<Member, Failure> {
+        let distance = f64::min(BESIDE, 0.25 * length);
+        let reach = f64::max(REACH * length, distance);
+        let unit = distance / length;
+        let sides = SIDES.map(|side| self.on_arc([node, next], near + side * unit, reach));
+        let [a, b, c, d] = sides;
+        let sides = [a?, b?, c?, d?];
+        let place = self.root(&sides);
+        let components = 0..node.local.state.len();
+        let state: Vec<f64> = components
+            .map(|index| interpolated(place, |k| sides[k].local.state[index]))
+            .collect();
+        let parameter = interpolated(place, |k| sides[k].parameter());
+        Ok(self.family.local(&state, parameter)?.member)
+    }
+
+    /// The place among members on both sides at which the determinant is 0.
+    fn root(&self, sides: &[Node]) -> f64 {
+        let values = sides
+            .iter()
+            .map(|side| Test::Crossing.value(side, self.width));
+        let values: Vec<f64> = values.collect();
+        let at = |place: f64| interpolated(place, |k| values[k]);
+        let mut bracket = Bracket::new([at(-1.0), at(1.0)]);
+        let mut place = 0.0;
+        for _ in 0..ZOOM {
+            let fraction = bracket.guess();
+            place = 2.0 * fraction - 1.0;
+            if bracket.narrow(fraction, at(place)) < f64::EPSILON {
+                break;
+            }
+        }
+        place
+    }
+
+    /// The member nearest to a fraction of the way between two others, along an arc with their directions.
+    fn on_arc(&mut self, ends: [&Node; 2], fraction: f64, reach: f64) -> Result<Node, Failure> {
+        let (state, along) = arc(ends, fraction, self.width);
+        let local = self.corrected(&state, along, Unknowns::All, reach)?;
+        Ok(Node::new(local, self.width, &ends[0].heading))
+    }
+}
+
+/// State and parameter on the cubic arc between two members (Hermite). On a chord, the other branch of a crossing may be
+/// nearer than this one.
+pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f64>, f64) {
+    let rest = 1.0 - fraction;
+    let ends = [
+        rest * rest * (1.0 + 2.0 * fraction),
+        fraction * fraction * (1.0 + 2.0 * rest),
+    ];
+    let slopes = [fraction * rest * rest, -fraction * fraction * rest];
+    let at = |values: [f64; 2], headings: [f64; 2], scales: [f64; 2]| -> f64 {
+        let parts = [0, 1]
+            .map(|k| ends[k] * values[k] + slopes[k] * next.distance * headings[k] * scales[k]);
+        parts[0] + parts[1]
+    };
+    let members = [node, next];
+    let state = (0..node.local.state.len()).map(|index| {
+        at(
+            members.map(|it| it.local.state[index]),
+            members.map(|it| it.heading[index]),
+            members.map(|it| it.local.scale[index]),
+        )
+    });
+    let headings = members.map(|it| it.heading.last().copied().unwrap_or(0.0));
+    let parameter = at(members.map(Node::parameter), headings, [width; 2]);
+    (state.collect(), parameter)
+}
+
+/// Places of members beside a crossing.
+const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+
+/// The polynomial through the values at these places.
+fn interpolated(at: f64, value: impl Fn(usize) -> f64) -> f64 {
+    let weight = |k: usize| {
+        let others = SIDES.iter().enumerate().filter(|(other, _)| *other != k);
+        let factors = others.map(|(_, place)| (at - place) / (SIDES[k] - place));
+        factors.product::<f64>()
+    };
+    (0..SIDES.len()).map(|k| weight(k) * value(k)).sum()
+}
+
+/// Fractions of a step with values of different signs, for false position with halved values (Illinois).
+struct Bracket {
+    /// Fraction and value at both ends.
+    ends: [(f64, f64); 2],
+    /// The end that was moved last.
+    moved: Option<usize>,
+}
+
+impl Bracket {
+    fn new([first, last]: [f64; 2]) -> Self {
+        Self {
+            ends: [(0.0, first), (1.0, last)],
+            moved: None,
+        }
+    }
+
+    /// The next fraction: the zero of the secant, or the middle if that has none inside.
+    fn guess(&self) -> f64 {
+        let [low, high] = self.ends;
+        let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        match secant > low.0 && secant < high.0 {
+            true => secant,
+            false => 0.5 * (low.0 + high.0),
+        }
+    }
+
+    /// Moves the end whose value has the same sign; returns how far it was moved, at most the length of the bracket.
+    fn narrow(&mut self, fraction: f64, value: f64) -> f64 {
+        let is_first = value.is_sign_negative() == self.ends[0].1.is_sign_negative();
+        let end = usize::from(!is_first);
+        let moved = (fraction - self.ends[end].0).abs();
+        self.ends[end] = (fraction, value);
+        if self.moved == Some(end) {
+            self.ends[1 - end].1 *= 0.5;
+        }
+        self.moved = Some(end);
+        f64::min(moved, self.ends[1].0 - self.ends[0].0)
+    }
+}

@@ -1,0 +1,149 @@
+//! Continuation: a branch of periodic orbits over one parameter, with its bifurcations.
+//!
+//! | file | |
+//! |---|---|
+//! | `family` | one member of a branch and its neighbours, without the type of the system |
+//! | `orbits` | the members that are periodic orbits of a section |
+//! | `trace` | pseudo-arclength continuation with steps adapted to the branch |
+//! | `indicator` | test functions of bifurcations |
+//! | `locate` | the places where they are 0 |
+//! | `linear` | linear equations with more unknowns than equations |
+
+pub(crate) mod family;
+mod indicator;
+mod linear;
+mod locate;
+pub(crate) mod orbits;
+pub(crate) mod trace;
+
+use dalembert::{OrbitError, ParameterError};
+
+use crate::model::Point;
+
+/// Request for a branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Continuation {
+    /// The index of the parameter.
+    pub parameter: usize,
+    /// The range of the parameter; the second end may be the lower one.
+    pub range: [f64; 2],
+    /// Largest number of points in either direction.
+    pub points: u32,
+}
+
+/// A branch of periodic orbits.
+#[derive(Debug, Clone)]
+pub struct Branch {
+    /// Its points in their order along the branch. The first ones lie towards the first end of the range.
+    pub points: Vec<Member>,
+    /// Both ends of the branch.
+    pub ends: [BranchEnd; 2],
+}
+
+/// A point of a branch.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// The value of the parameter.
+    pub parameter: f64,
+    /// The period.
+    pub period: f64,
+    /// The point of the section.
+    pub before: Point,
+    /// The state after the event at the section.
+    pub after: Point,
+    /// Distance between the point of the section and its image.
+    pub residual: f64,
+    /// The Floquet multipliers: real and imaginary parts.
+    pub multipliers: Vec<[f64; 2]>,
+    /// The stability by these multipliers.
+    pub stability: Stability,
+    /// The bifurcation at this point.
+    pub bifurcation: Option<Bifurcation>,
+}
+
+/// Stability to first order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stability {
+    /// All multipliers lie inside the unit circle.
+    Stable,
+    /// None lies outside, some on it.
+    Neutral,
+    /// Some multiplier lies outside.
+    Unstable,
+}
+
+impl Stability {
+    /// The name in tables and documents.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Neutral => "neutral",
+            Self::Unstable => "unstable",
+        }
+    }
+}
+
+/// A bifurcation of codimension one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bifurcation {
+    /// The branch turns back in the parameter; a multiplier is 1.
+    Fold,
+    /// A multiplier passes -1: an orbit of twice the period branches off.
+    Flip,
+    /// A pair of complex multipliers passes the unit circle: an invariant circle branches off.
+    NeimarkSacker,
+    /// A multiplier passes 1 without a fold: another branch of orbits crosses this one.
+    BranchPoint,
+}
+
+impl Bifurcation {
+    /// The name in tables and documents.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::Flip => "flip",
+            Self::NeimarkSacker => "neimark_sacker",
+            Self::BranchPoint => "branch_point",
+        }
+    }
+}
+
+/// Reason for which a branch was followed no further.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BranchEnd {
+    /// An end of the range was reached, exactly.
+    Range,
+    /// The orbit grazes a surface.
+    Grazing {
+        /// The surface.
+        surface: usize,
+    },
+    /// The branch has returned to its first point.
+    Closed,
+    /// The parameter leaves the values that its declaration allows.
+    Parameter(ParameterError),
+    /// The return map is not defined beyond.
+    Missed(OrbitError),
+    /// Newton's method does not converge at the smallest step.
+    NotConverged,
+    /// The largest number of points was reached.
+    Points,
+    /// The branch turns back before it reaches the range.
+    Turned,
+}
+
+impl BranchEnd {
+    /// The kind in snake case, as documents write it.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Range => "range",
+            Self::Grazing { .. } => "grazing",
+            Self::Closed => "closed",
+            Self::Parameter(_) => "parameter",
+            Self::Missed(_) => "missed",
+            Self::NotConverged => "not_converged",
+            Self::Points => "points",
+            Self::Turned => "turned",
+        }
+    }
+}

@@ -1,0 +1,385 @@
+//! Pseudo-arclength continuation: steps along the branch, corrected at right angles to it.
+//!
+//! Lengths are measured in the units of the state and, for the parameter, in the length of its range. The correction is the
+//! shortest Newton step (Moore and Penrose), so that it needs no further equation, and converges where orbits are families
+//! at a constant parameter too.
+
+use super::family::{Failure, Family, Local, Node, Unknowns};
+use super::indicator::is_degenerate;
+use super::linear::{dot, norm};
+use super::locate::{Located, arc};
+use super::{Branch, BranchEnd, Continuation, Member};
+
+/// First, largest and smallest length of a step.
+const FIRST: f64 = 0.01;
+const LONGEST: f64 = 0.2;
+const SHORTEST: f64 = 1e-9;
+
+/// Largest change of the parameter in a step, as a share of the range.
+const WIDEST: f64 = 0.04;
+
+/// Least cosine of the angle between the directions at both ends of a step (10 degrees), and the one above which the next
+/// step is longer (3 degrees).
+const TURN: f64 = 0.984_8;
+const STRAIGHT: f64 = 0.998_6;
+
+/// Largest correction, as a share of the step.
+pub(super) const REACH: f64 = 0.3;
+
+/// Largest number of Newton steps.
+const NEWTON: usize = 12;
+
+/// Distance along the branch to arrivals without speed, below which arrivals graze.
+const GRAZING: f64 = 1e-5;
+
+/// Distance along the branch to an end inside of the range, below which points are left out.
+const CROWDED: f64 = 1e-3;
+
+/// Observer of the points of a branch.
+pub(crate) type Watch<'a> = &'a mut dyn FnMut(&Member);
+
+/// Continuation under way.
+pub(crate) struct Tracer<'a, 'w> {
+    pub(super) family: &'a mut dyn Family,
+    request: Continuation,
+    /// The unit of the parameter: the length of the range.
+    pub(super) width: f64,
+    watch: Watch<'w>,
+}
+
+impl<'a, 'w> Tracer<'a, 'w> {
+    pub fn new(family: &'a mut dyn Family, request: Continuation, watch: Watch<'w>) -> Self {
+        let [first, last] = request.range;
+        Self {
+            family,
+            request,
+            width: (last - first).abs(),
+            watch,
+        }
+    }
+
+    /// The branch through the member near a state.
+    pub fn branch(&mut self, state: &[f64], parameter: f64) -> Result<Branch, Failure> {
+        let local = self.corrected(state, parameter, Unknowns::State, f64::INFINITY)?;
+        let mut rising = vec![0.0; local.state.len()];
+        rising.push(1.0);
+        let start = Node::new(local, self.width, &rising);
+        let [low, high] = self.limits();
+        let is_outside = start.parameter() < low || start.parameter() > high;
+        let start = match is_outside {
+            true => match self.approached(start)? {
+                Ok(start) => start,
+                Err(end) => {
+                    return Ok(Branch {
+                        points: Vec::new(),
+                        ends: [end; 2],
+                    });
+                }
+            },
+            false => start,
+        };
+        let start = self.shifted(start);
+        Ok(self.both_ways(&start))
+    }
+
+    /// The range in increasing order.
+    fn limits(&self) -> [f64; 2] {
+        let [first, last] = self.request.range;
+        [f64::min(first, last), f64::max(first, last)]
+    }
+
+    /// The member at the nearest end of the range, on the branch through a member outside of it; or the end of the way there.
+    fn approached(&mut self, start: Node) -> Result<Result<Node, BranchEnd>, Failure> {
+        let [low, high] = self.limits();
+        let from = start.parameter();
+        // As far to the other side.
+        let (limits, is_rising) = match from < low {
+            true => ([from - (low - from), low], true),
+            false => ([high, from + (from - high)], false),
+        };
+        let start = match is_rising {
+            true => start,
+            false => start.reversed(),
+        };
+        let mut last = start.clone();
+        let end = self.followed(&start, limits, &mut |_, _, next| last = next.clone());
+        let is_there = [low, high].contains(&last.parameter());
+        Ok(match end {
+            BranchEnd::Range if is_there && is_rising => Ok(last),
+            BranchEnd::Range if is_there => Ok(last.reversed()),
+            BranchEnd::Range => Err(BranchEnd::Turned),
+            end => Err(end),
+        })
+    }
+
+    /// The member, or the next one if it is a bifurcation itself, so that this lies between two members.
+    fn shifted(&mut self, start: Node) -> Node {
+        if !is_degenerate(&start, self.width) {
+            return start;
+        }
+        let is_room = start.parameter() + FIRST * self.width < self.limits()[1];
+        let length = if is_room { FIRST } else { -FIRST };
+        self.reached(&start, length, None).unwrap_or(start)
+    }
+
+    fn both_ways(&mut self, start: &Node) -> Branch {
+        let is_rising = self.request.range[0] < self.request.range[1];
+        let falling = start.reversed();
+        let [back, forth] = match is_rising {
+            true => [&falling, start],
+            false => [start, &falling],
+        };
+        let (before, first) = self.side(back);
+        let (after, last) = match first {
+            // The other side would go around once more.
+            BranchEnd::Closed => (Vec::new(), BranchEnd::Closed),
+            _ => self.side(forth),
+        };
+        let mut points: Vec<Member> = before.into_iter().rev().collect();
+        points.push(start.local.member.clone());
+        points.extend(after);
+        Branch {
+            points,
+            ends: [first, last],
+        }
+    }
+
+    /// The branch from a member on, with its bifurcations, and its end.
+    fn side(&mut self, start: &Node) -> (Vec<Member>, BranchEnd) {
+        let limits = self.limits();
+        let mut side: Vec<(Member, f64)> = Vec::new();
+        let mut way = 0.0;
+        let end = self.followed(start, limits, &mut |tracer, located, next| {
+            let before = way;
+            way += next.distance;
+            for located in located {
+                let at = before + located.fraction * next.distance;
+                side.push((located.member.clone(), at));
+            }
+            side.push((next.local.member.clone(), way));
+            (tracer.watch)(&next.local.member);
+        });
+        let last = side.len().saturating_sub(1);
+        let is_crowded = |at: f64| end != BranchEnd::Range && at > way - CROWDED;
+        let numbered = side.into_iter().enumerate();
+        let kept = numbered.filter(|(index, (member, at))| {
+            *index == last || member.bifurcation.is_some() || !is_crowded(*at)
+        });
+        (kept.map(|(_, (member, _))| member).collect(), end)
+    }
+
+    /// Steps from a member on until the branch ends.
+    fn followed(
+        &mut self,
+        start: &Node,
+        limits: [f64; 2],
+        take: &mut dyn FnMut(&mut Self, &[Located], &Node),
+    ) -> BranchEnd {
+        let mut node = start.clone();
+        let mut before = start.clone();
+        let (mut length, mut made) = (FIRST, 0);
+        let mut failures = Vec::new();
+        while made < self.request.points {
+            if leaves(&node, limits) {
+                return BranchEnd::Range;
+            }
+            let (next, located) = match self.stride(&node, length, limits) {
+                Ok(made) => made,
+                Err(_) if length < SHORTEST => {
+                    return diagnosed([&before, &node], &failures);
+                }
+                Err(failure) => {
+                    failures.push(failure);
+                    length *= 0.5;
+                    continue;
+                }
+            };
+            failures.clear();
+            made += 1;
+            take(self, &located, &next);
+            if made > 5 && self.is_back(&next, start, length) {
+                return BranchEnd::Closed;
+            }
+            if dot(&node.heading, &next.heading) > STRAIGHT {
+                length = f64::min(1.5 * length, LONGEST);
+            }
+            length = f64::min(length, WIDEST / next.rise().abs());
+            before = std::mem::replace(&mut node, next);
+        }
+        match leaves(&node, limits) {
+            true => BranchEnd::Range,
+            false => BranchEnd::Points,
+        }
+    }
+
+    /// True if a member lies within a step of the first one, in the same direction.
+    fn is_back(&self, node: &Node, start: &Node, length: f64) -> bool {
+        let to = start
+            .local
+            .change_to(self.width, &node.local.state, node.parameter());
+        norm(&to) < length && dot(&node.heading, &start.heading) > TURN
+    }
+
+    /// The next member, at this distance or at a limit of the parameter, and the bifurcations before it.
+    fn stride(
+        &mut self,
+        node: &Node,
+        length: f64,
+        limits: [f64; 2],
+    ) -> Result<(Node, Vec<Located>), Failure> {
+        let crossed = |to: f64| {
+            let ends = [node.parameter(), to];
+            let is_between = |limit: &f64| (ends[0] - limit) * (ends[1] - limit) < 0.0;
+            limits.into_iter().find(is_between)
+        };
+        let predicted = node.parameter() + self.width * length * node.rise();
+        let next = match crossed(predicted) {
+            Some(limit) => {
+                let share = (limit - node.parameter()) / (predicted - node.parameter());
+                self.reached(node, share * length, Some(limit))?
+            }
+            None => {
+                let next = self.reached(node, length, None)?;
+                match crossed(next.parameter()) {
+                    Some(limit) => self.cut(node, &next, length, limit)?,
+                    None => next,
+                }
+            }
+        };
+        let located = self.bifurcations(node, &next, length)?;
+        Ok((next, located))
+    }
+
+    /// The member at a distance along the direction of another, or nearest to that at a value of the parameter.
+    fn reached(
+        &mut self,
+        node: &Node,
+        length: f64,
+        parameter: Option<f64>,
+    ) -> Result<Node, Failure> {
+        let step: Vec<f64> = node.tangent.iter().map(|entry| length * entry).collect();
+        let (state, along) = node.local.moved(self.width, &step);
+        let (along, unknowns) = match parameter {
+            Some(parameter) => (parameter, Unknowns::State),
+            None => (along, Unknowns::All),
+        };
+        self.neighbour(node, (&state, along), unknowns, length)
+    }
+
+    /// The member between two others at a value of the parameter.
+    fn cut(&mut self, node: &Node, next: &Node, length: f64, limit: f64) -> Result<Node, Failure> {
+        let share = (limit - node.parameter()) / (next.parameter() - node.parameter());
+        let (state, _) = arc([node, next], share, self.width);
+        self.neighbour(node, (&state, limit), Unknowns::State, length)
+    }
+
+    /// The member near a place, if it continues the branch.
+    fn neighbour(
+        &mut self,
+        node: &Node,
+        (state, parameter): (&[f64], f64),
+        unknowns: Unknowns,
+        length: f64,
+    ) -> Result<Node, Failure> {
+        let reach = REACH * length.abs();
+        let local = self.corrected(state, parameter, unknowns, reach)?;
+        let counts = node.local.arrivals.iter().zip(&local.arrivals);
+        let other = counts.enumerate().find(|(_, (before, now))| before != now);
+        if let Some((surface, _)) = other {
+            return Err(Failure::Itinerary(surface));
+        }
+        let mut next = Node::new(local, self.width, &node.heading);
+        let way = node
+            .local
+            .change_to(self.width, &next.local.state, next.parameter());
+        next.distance = norm(&way);
+        match dot(&node.heading, &next.heading) >= TURN {
+            true => Ok(next),
+            false => Err(Failure::TooLong),
+        }
+    }
+
+    /// The member near a place, not further away than `reach`.
+    pub(super) fn corrected(
+        &mut self,
+        state: &[f64],
+        parameter: f64,
+        unknowns: Unknowns,
+        reach: f64,
+    ) -> Result<Local, Failure> {
+        let mut local = self.family.local(state, parameter)?;
+        for _ in 0..NEWTON {
+            let was_closed = local.is_closed;
+            if local.member.residual == 0.0 {
+                break;
+            }
+            let step = local.newton(self.width, unknowns);
+            if norm(&step) > 2.0 * reach {
+                return Err(Failure::Diverged);
+            }
+            let (to, along) = local.moved(self.width, &step);
+            let along = match unknowns {
+                Unknowns::All => along,
+                Unknowns::State => parameter,
+            };
+            let better = self.family.local(&to, along)?;
+            // A last step takes what rounding allows.
+            let is_better = better.member.residual < local.member.residual;
+            if is_better || !was_closed {
+                local = better;
+            }
+            if was_closed {
+                break;
+            }
+        }
+        let strayed = norm(&local.change_to(self.width, state, parameter)) > f64::max(reach, 1e-10);
+        match local.is_closed && !strayed {
+            true => Ok(local),
+            false => Err(Failure::Diverged),
+        }
+    }
+}
+
+/// The reason why no step from the second of two members is short enough.
+fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
+    let grazed = failures.iter().rev().find_map(|failure| match failure {
+        Failure::Itinerary(surface) => Some(*surface),
+        Failure::Missed(error) => grazed(error),
+        _ => None,
+    });
+    if let Some(surface) = grazed.or_else(|| slowing(last)) {
+        return BranchEnd::Grazing { surface };
+    }
+    let told = failures.iter().rev().find_map(|failure| match failure {
+        Failure::Parameter(error) => Some(BranchEnd::Parameter(*error)),
+        Failure::Missed(error) => Some(BranchEnd::Missed(*error)),
+        _ => None,
+    });
+    told.unwrap_or(BranchEnd::NotConverged)
+}
+
+/// The surface at which the slowest arrival is about to lose its speed, if there is one.
+fn slowing([before, last]: [&Node; 2]) -> Option<usize> {
+    let mut speeds = before.local.speeds.iter().zip(&last.local.speeds);
+    speeds.position(|(before, speed)| {
+        let slope = (before - speed) / last.distance;
+        speed.is_finite() && slope > 0.0 && *speed < GRAZING * slope
+    })
+}
+
+/// The surface that is grazed, if that is the error.
+fn grazed(error: &dalembert::OrbitError) -> Option<usize> {
+    use dalembert::{OrbitError, SectionError, Undefined};
+    match error {
+        OrbitError::Section(SectionError::Undefined(Undefined::Graze { surface, .. })) => {
+            Some(*surface)
+        }
+        _ => None,
+    }
+}
+
+/// True if a member at a limit of the parameter is about to leave.
+fn leaves(node: &Node, [low, high]: [f64; 2]) -> bool {
+    let at = node.parameter();
+    (at >= high && node.rise() > 0.0) || (at <= low && node.rise() < 0.0)
+}

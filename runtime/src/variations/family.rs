@@ -1,0 +1,107 @@
+//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives in state and parameter.
+
+use super::OrbitError;
+use super::chart::{Fixed, columns};
+use super::eigenvalues::{Multipliers, eigenvalues};
+use super::orbit::Trial;
+use super::section::{Arrival, Itinerary, Section};
+use super::transition;
+use crate::contract::Variational;
+use crate::describe::Instance;
+use crate::effects::Effect;
+use crate::integrate::Stepper;
+
+/// The section of one member of a family: what the constraints conserve is the same for all members.
+pub struct Anchor<Sys: Variational>(Fixed<Sys>);
+
+/// A point of a section and its image. Vectors along the section have their components in the first `dimension` entries.
+pub struct Image<Sys: Variational> {
+    /// The point of the section near the given one.
+    pub point: Sys::State,
+    /// The image, with the states before and after the transition there; the time is the duration of the way to it.
+    pub image: Arrival<Sys::State>,
+    /// Time before the first arrival. It is 0 up to rounding, unless the point leaves the surface.
+    pub delay: f64,
+    /// Number of directions of the section.
+    pub dimension: usize,
+    /// The first `dimension` columns are directions along the section, orthonormal in units of the components.
+    pub directions: Sys::Columns,
+    /// The units of the components.
+    pub scale: Sys::State,
+    /// Image minus point, along the directions.
+    pub miss: Sys::State,
+    /// Distance of the point from its image, in units of the components.
+    pub residual: f64,
+    /// True if that distance is 0 up to rounding.
+    pub is_closed: bool,
+    /// Derivative of the map in the directions.
+    pub derivative: Sys::Columns,
+    /// Eigenvalues of that derivative; `None` if they are not finite.
+    pub multipliers: Option<Multipliers<Sys::State>>,
+    /// Least change of the point per unit of the parameter that keeps it on the section.
+    pub shift: Sys::State,
+    /// Derivative of the miss in the parameter, while the point moves with the shift.
+    pub slope: Sys::State,
+    /// The surfaces on the way.
+    pub itinerary: Itinerary<Sys>,
+}
+
+impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
+where
+    Sys: Variational + Instance,
+    Step: Stepper<Sys>,
+    Effects: Effect<Sys>,
+{
+    /// The section through a point, for all values of the parameters.
+    ///
+    /// # Errors
+    /// [`OrbitError::Section`] where the equations of the section have no derivative.
+    pub fn anchor(&self, point: &Sys::State) -> Result<Anchor<Sys>, OrbitError> {
+        Ok(Anchor(Fixed::of(self.system, self.surface, 0.0, point)?))
+    }
+
+    /// The image of the point of the section near a given one, with the derivatives of the map in the state and in the
+    /// parameter of this index. Derivatives are those of [`Variations`](super::Variations), exact to rounding.
+    ///
+    /// # Errors
+    /// [`OrbitError::Section`] where the point is not mapped or the map has no derivative,
+    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time.
+    pub fn image(
+        &mut self,
+        anchor: &Anchor<Sys>,
+        point: &Sys::State,
+        parameter: usize,
+    ) -> Result<Image<Sys>, OrbitError> {
+        let trial = self.attempt(&anchor.0, *point, Some(parameter))?;
+        if transition::depends_on_time(self.system, &trial.passed.event)? {
+            return Err(OrbitError::DependsOnTime);
+        }
+        let is_closed = self.is_closed(&trial)?;
+        Ok(image(self.system, &trial, is_closed))
+    }
+}
+
+fn image<Sys: Variational>(system: &Sys, trial: &Trial<Sys>, is_closed: bool) -> Image<Sys> {
+    let dimension = trial.chart.dimension();
+    let mut directions = columns(system);
+    for (index, direction) in directions.as_mut()[..dimension].iter_mut().enumerate() {
+        *direction = trial.chart.direction(index);
+    }
+    let mut work = trial.derivative;
+    Image {
+        point: trial.point,
+        image: Arrival::of(trial.passed.time, &trial.passed.event),
+        delay: trial.passed.delay,
+        dimension,
+        directions,
+        scale: *trial.chart.scale(),
+        miss: trial.miss,
+        residual: trial.residual,
+        is_closed,
+        derivative: trial.derivative,
+        multipliers: eigenvalues(work.as_mut(), dimension),
+        shift: trial.shift,
+        slope: trial.slope,
+        itinerary: trial.passed.itinerary,
+    }
+}
