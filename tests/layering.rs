@@ -114,7 +114,7 @@ fn a_stage_uses_only_those_to_its_left() {
 }
 
 /// The modules of the runtime, each after those it uses.
-const RUNTIME: [&str; 38] = [
+const RUNTIME: [&str; 39] = [
     "error",
     "state",
     "per_surface",
@@ -128,6 +128,7 @@ const RUNTIME: [&str; 38] = [
     "nearest",
     "rank",
     "record",
+    "action",
     "audit",
     "work",
     "integrate",

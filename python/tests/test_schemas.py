@@ -58,6 +58,11 @@ OUTPUTS = {
         ["orbit", "dimensionless_walker", "--surface", "step", "--continue", "alpha=0.1..0.2", "--set", "alpha=0.2"],
         ["orbit", "bouncing_ball", "--surface", "floor", "--until", "0.1", "--continue", "g=1..2"],
     ],
+    "connect": [
+        ["connect", "bouncing_ball", "--from", "x=0", "--to", "x=0.2", "--time", "5", "--impacts", "0..3", "--envelope", "5"],
+        ["connect", "point_billiard", "--to", "x=0.5,y=0", "--time", "1", "--impacts", "1"],
+        ["connect", "rolling_disk", "--to", "x=0.05,y=0.02", "--time", "1", "--energy", "1e-5"],
+    ],
     "accuracy": [
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--wanted", "1e-6"],
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--integrator", "dopri5", "--wanted", "1e-30"],

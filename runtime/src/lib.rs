@@ -114,6 +114,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod action;
 pub mod audit;
 pub mod certified;
 mod chart;
@@ -157,6 +158,7 @@ pub mod work;
 
 pub use dalembert_numbers::{math, numbers};
 
+pub use action::Action;
 pub use contract::{
     Constrained, Divergence, Impacting, InvariantVolume, Keep, Lagrangian, Level, Powered,
     RankDrop, System, Tangent, TaylorField, Variational, VectorField,

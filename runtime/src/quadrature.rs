@@ -1,4 +1,5 @@
-//! Line integrals of a gradient, for the logarithm of a density without closed form.
+//! Integrals by Gauss-Legendre rules: line integrals of a gradient, for the logarithm of a density without closed form,
+//! and integrals over steps.
 
 use crate::error::Fault;
 use crate::state::StateVector;
@@ -33,7 +34,7 @@ pub fn line_integral<V: StateVector>(
     to: &V,
     gradient: impl Fn(&V) -> Result<V, Fault>,
 ) -> Result<f64, Fault> {
-    let slope = |s: f64| -> Result<f64, Fault> {
+    let mut slope = |s: f64| -> Result<f64, Fault> {
         let mut place = to.zeroed();
         let ends = from.iter().zip(to.as_slice());
         for (entry, (from, to)) in place.as_mut_slice().iter_mut().zip(ends) {
@@ -47,10 +48,10 @@ pub fn line_integral<V: StateVector>(
             .sum())
     };
     let mut panels = 1;
-    let mut coarse = composite(&slope, panels)?;
+    let mut coarse = composite(&mut slope, panels)?;
     while panels < PANELS {
         panels *= 2;
-        let fine = composite(&slope, panels)?;
+        let fine = composite(&mut slope, panels)?;
         let is_settled = (fine.0 - coarse.0).abs() <= AGREEMENT * fine.1;
         if is_settled && (fine.1 - coarse.1).abs() <= GROWTH * fine.1 {
             return Ok(fine.0);
@@ -64,8 +65,8 @@ pub fn line_integral<V: StateVector>(
 }
 
 /// The integrals of a function and of its absolute value over (0, 1).
-fn composite(
-    function: &impl Fn(f64) -> Result<f64, Fault>,
+pub(crate) fn composite(
+    function: &mut impl FnMut(f64) -> Result<f64, Fault>,
     panels: u32,
 ) -> Result<(f64, f64), Fault> {
     let width = 1.0 / f64::from(panels);

@@ -3,6 +3,7 @@
 
 mod certify;
 mod choice;
+mod connect;
 mod ensemble;
 mod errata;
 mod file;
@@ -22,6 +23,7 @@ use dalembert_driver::{Form, Integrator, OffConstraint};
 
 use crate::scalar;
 pub use certify::CertifyArgs;
+pub use connect::ConnectArgs;
 pub use ensemble::EnsembleArgs;
 pub use errata::ErrataArgs;
 pub use file::{BuildArgs, NewArgs, WatchArgs};
@@ -95,6 +97,13 @@ pub enum Command {
         after_help = orbit::EXAMPLES
     )]
     Orbit(Box<OrbitArgs>),
+    /// Find all motions that join two configurations in a given time, with given numbers of impacts.
+    #[command(
+        help_template = help::TEMPLATE,
+        before_help = "Example: dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 0..3 --plot paths.svg",
+        after_help = connect::EXAMPLES
+    )]
+    Connect(Box<ConnectArgs>),
     /// Evaluate all derived quantities at given states.
     #[command(
         help_template = help::TEMPLATE,
@@ -156,6 +165,7 @@ impl Command {
             Self::Map(args) => Some(&mut args.run.model),
             Self::Accuracy(args) => Some(&mut args.run.model),
             Self::Orbit(args) => Some(&mut args.model),
+            Self::Connect(args) => Some(&mut args.model),
             Self::Eval(args) => Some(&mut args.model),
             _ => None,
         }

@@ -177,6 +177,41 @@ impl Points {
     }
 }
 
+/// Progress bar of a search, whose number of tasks is known as it goes on; for searches of more than a second.
+pub struct Stages {
+    started: Option<Instant>,
+    bar: Option<ProgressBar>,
+}
+
+impl Stages {
+    /// Progress of a search; shown only if `terminal`.
+    pub fn new(terminal: bool) -> Self {
+        Self {
+            started: terminal.then(Instant::now),
+            bar: None,
+        }
+    }
+
+    /// Notes that `done` of `all` tasks are done.
+    pub fn at(&mut self, done: usize, all: usize, message: &str) {
+        let Some(started) = self.started else { return };
+        if started.elapsed() < Duration::from_secs(1) {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| new_bar(all as u64));
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        bar.set_message(message.to_owned());
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 fn new_bar(parts: u64) -> ProgressBar {
     let bar = ProgressBar::new(parts);
     // The template is a constant. If indicatif refuses it, the default style serves as well.

@@ -9,6 +9,7 @@
 //! | `orbit.rs` | periodic orbits, Lyapunov exponents |
 //! | `continuation/` | branches of periodic orbits over a parameter, with their bifurcations |
 //! | `variation.rs` | derivatives of runs |
+//! | `connect/` | motions between two configurations |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
 //! | `course.rs` | defaults of a run for values that its request leaves open |
@@ -23,6 +24,7 @@
 pub mod accuracy;
 mod beginning;
 mod certify;
+mod connect;
 mod continuation;
 pub mod course;
 pub mod drift;
@@ -40,6 +42,7 @@ pub mod words;
 
 pub use beginning::{Beginning, Component};
 pub use certify::{Certification, Certified, Ranges, Strike};
+pub use connect::{Bounce, Boundary, Conjugate, Connected, Connection, Stage, Unjoined};
 pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};

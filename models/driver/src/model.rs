@@ -6,6 +6,7 @@ use dalembert::{Fault, OrbitError, ParameterError, StateError};
 
 use crate::accuracy::{Plan, Study, Verified};
 use crate::certify::{Certification, Certified, Strike};
+use crate::connect::{Boundary, Connected, Stage, Unjoined};
 use crate::continuation::{Branch, Continuation, Member};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
@@ -221,6 +222,16 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<f64, OrbitError>>, Refusal>;
+    /// Searches all motions between two configurations; `None` for a scene without variations. Calls `tell` with the
+    /// progress.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a start that the system refuses. The inner error explains why nothing can be sought.
+    fn connect(
+        &self,
+        boundary: &Boundary,
+        tell: &mut dyn FnMut(Stage),
+    ) -> Result<Option<Result<Connected, Unjoined>>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

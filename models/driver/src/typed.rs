@@ -14,6 +14,7 @@ use dalembert::{
 
 use crate::accuracy::{self, Plan, Study, Verified};
 use crate::certify::{Certification, Certified, Strike, Subject};
+use crate::connect::{Boundary, Connected, Joiner, Stage, Unjoined};
 use crate::continuation::trace::Watch as BranchWatch;
 use crate::continuation::{Branch, Continuation};
 use crate::integrator::Form;
@@ -461,6 +462,16 @@ impl<O: Owner> Runs for Typed<O> {
         self.at_section(origin, search, ForExponent)
     }
 
+    fn connect(
+        &self,
+        boundary: &Boundary,
+        tell: &mut dyn FnMut(Stage),
+    ) -> Result<Option<Result<Connected, Unjoined>>, Refusal> {
+        let model = self.owner.system();
+        let joiner = Joiner { boundary, tell };
+        model.visit_variational(joiner).transpose()
+    }
+
     fn certify(
         &self,
         origin: &Origin,
@@ -564,7 +575,7 @@ pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
 }
 
 /// A vector of the same length, with these components; missing components are 0.
-fn vector<V: StateVector>(like: &V, components: &[f64]) -> V {
+pub(crate) fn vector<V: StateVector>(like: &V, components: &[f64]) -> V {
     let mut vector = like.zeroed();
     for (component, &value) in vector.as_mut_slice().iter_mut().zip(components) {
         *component = value;

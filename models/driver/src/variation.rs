@@ -314,7 +314,7 @@ impl Differentiator<'_> {
 }
 
 /// Constants: numbers with derivative 0.
-fn constant<R: Row<Dual>>(values: &[f64]) -> R {
+pub(crate) fn constant<R: Row<Dual>>(values: &[f64]) -> R {
     let mut row = R::zeros(values.len());
     for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
         *entry = Dual::of(*value);

@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod build;
 pub mod check;
+pub mod connect;
 pub mod derive;
 pub mod ensemble;
 pub mod errata;

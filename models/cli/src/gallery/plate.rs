@@ -7,7 +7,7 @@ use clap::Parser;
 use super::{Figure, Panel, Picture, density, starts};
 use crate::args::{Command, CommandLine, SimulateArgs};
 use crate::command::orbit::branch;
-use crate::command::{accuracy, map, simulate};
+use crate::command::{accuracy, connect, map, simulate};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::Drawn;
@@ -81,6 +81,7 @@ impl<'a> Plate<'a> {
         match &self.panel.picture {
             Picture::Simulate(flags) => self.drawing("simulate", flags),
             Picture::Accuracy(flags) => self.drawing("accuracy", flags),
+            Picture::Connect(flags) => self.drawing("connect", flags),
             Picture::Branch(flags) => self.drawing("orbit", flags),
             Picture::Map(flags) if self.effort == Effort::Full => self.drawing("map", flags),
             Picture::Starts(_) | Picture::Density(_) | Picture::Map(_) => {
@@ -126,6 +127,10 @@ impl<'a> Plate<'a> {
             Picture::Branch(_) => match self.parse(&self.command())? {
                 Command::Orbit(args) => branch::draw(models, &args),
                 _ => Err(self.refusal("no `orbit`")),
+            },
+            Picture::Connect(_) => match self.parse(&self.command())? {
+                Command::Connect(args) => connect::draw(models, &args),
+                _ => Err(self.refusal("no `connect`")),
             },
             Picture::Map(flags) => match self.parse(&self.drawing("map", flags))? {
                 Command::Map(mut args) => {

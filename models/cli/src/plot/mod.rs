@@ -14,6 +14,7 @@ mod image;
 mod legend;
 pub mod logarithmic;
 pub mod map;
+pub mod paths;
 mod phase;
 mod plane;
 mod portrait;

@@ -3,6 +3,7 @@
 //!
 //! The papers do not state every parameter; captions name the values chosen here.
 
+mod connections;
 mod density;
 mod rolling_disk;
 mod walker;
@@ -22,6 +23,7 @@ pub fn all() -> Vec<Figure> {
     figures.extend([
         density::of_the_sleigh(),
         density::of_the_disk(),
+        connections::bouncing_ball(),
         zeno::bouncing_ball(),
     ]);
     figures.extend(work::figures());

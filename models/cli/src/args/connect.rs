@@ -1,0 +1,97 @@
+//! The flags of `connect`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::ValueParser;
+
+use super::{ModelArgs, PolicyArgs, law_help};
+use crate::scalar;
+
+pub(super) const EXAMPLES: &str =
+    "The velocity at the start is unknown. It has as many free components as coordinates must be given at the end: all of
+them without constraints. Coordinates that --from does not name are those of the model's initial state. Angles are
+numbers here: a whole turn more is another end.
+
+With one unknown both directions are scanned, and every change of sign of the miss is a bracket. With more unknowns the
+starts of --starts directions are scanned, and Newton's method goes on from those that come nearest, within one
+sequence of impacts. Derivatives across impacts are exact. The scan begins with the energies that the problem suggests,
+and goes on to faster starts until all of them have too many impacts, or to a large multiple. No search is exhaustive:
+two motions that differ by less than the scan resolves may be missed.
+
+An impact at the moment of the end is not counted. A conjugate point is where the determinant of the derivative of the
+configuration by the velocity at the start passes through 0: motions with neighbouring velocities meet there.
+
+Exit status: 0 motions were found, 1 none was found, 2 bad flags or input.
+
+More examples:
+  dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 2 --json -
+  dalembert connect point_billiard --from x=0.5,y=0 --to x=-0.5,y=0 --time 1 --impacts 1 --axes x,y --plot chords.svg
+  dalembert connect double_pendulum --from theta1=0,theta2=0 --to theta1=1,theta2=1 --time 1 --energy 100";
+
+/// `connect`
+#[derive(Debug, Args)]
+pub struct ConnectArgs {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Positions at the start, at `t = 0`. Default: the model's initial positions. May be repeated.
+    #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true)]
+    pub from: Vec<String>,
+    /// Positions at the end. May be repeated.
+    #[arg(
+        long,
+        value_name = "NAME=VALUE,..",
+        allow_hyphen_values = true,
+        required = true
+    )]
+    pub to: Vec<String>,
+    /// Time of the end.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub time: f64,
+    /// Number of impacts, or its least and largest value, both included: `2`, `0..3`.
+    #[arg(
+        long,
+        value_name = "N|A..B",
+        allow_hyphen_values = true,
+        default_value = "0"
+    )]
+    pub impacts: String,
+    /// Number of directions in which starts are scanned, for two unknowns or more. Default: 96 for two, 400 for three,
+    /// 1200 for more.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    pub starts: Option<u32>,
+    /// Seed that turns these directions.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Largest kinetic energy of a start. Default: as the problem suggests, see below.
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub energy: Option<f64>,
+    /// Look for the envelope of the motions too: the conjugate points of N starts in each direction, with one unknown.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub envelope: Option<u32>,
+    /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.
+    #[arg(long, value_name = "X", default_value = "1e-14", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
+    pub tol: f64,
+    /// Laws in place of the declared ones.
+    #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
+    pub law: Vec<String>,
+    /// Treatment of impacts after which the law alone does not determine the motion.
+    #[command(flatten)]
+    pub policies: PolicyArgs,
+    /// Write a table with a row for each motion. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write the results as one JSON document. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Draw all motions: over the time, or on the axes of --axes.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Quantities of the picture: one along x, one or more along y, as for `simulate`. Default: t,q
+    #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
+    pub axes: Option<String>,
+    /// Width of the picture, in pixels.
+    #[arg(long, value_name = "PIXELS", requires = "plot", value_parser = clap::value_parser!(u32).range(300..=4000), default_value_t = 900)]
+    pub plot_width: u32,
+}

@@ -1,0 +1,279 @@
+//! `connect`: all motions between two configurations, as a summary, a table, a document and a picture.
+
+mod document;
+mod film;
+mod spreadsheet;
+mod summary;
+
+use dalembert::Tolerance;
+use dalembert::describe::Description;
+use dalembert_driver::{AnyModel, Boundary, Connected, Unjoined};
+
+use crate::args::ConnectArgs;
+use crate::entry::Entry;
+use crate::error::{self, CliError};
+use crate::exit::Exit;
+use crate::plot::{Drawn, quantity};
+use crate::progress::Stages;
+use crate::sink::Sink;
+use crate::state_input::build_model;
+use crate::{Streams, names, run_request, scalar};
+
+/// Largest number of impacts.
+const MOST_IMPACTS: usize = 1000;
+
+/// A finished search: the request and its result.
+struct Finished<'a> {
+    model: &'a dyn AnyModel,
+    scene: &'a str,
+    seed: u64,
+    boundary: Boundary,
+    connected: Connected,
+}
+
+/// Carries out `connect`.
+///
+/// # Errors
+/// Invalid flags, a configuration that is refused, a file that cannot be written. If no motion is found, the result is not
+/// an error but [`Exit::Other`].
+pub fn run(
+    models: &[Entry],
+    args: &ConnectArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
+    let model = build_model(models, &args.model)?;
+    let boundary = boundary(model.as_ref(), args)?;
+    check_axes(model.description(), args)?;
+    // Opened before the search, so that a path that cannot be written is reported at once.
+    let csv = Sink::open_given("--csv", args.csv.as_deref())?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let plot = Sink::open_given("--plot", args.plot.as_deref())?;
+    let finished = find(model.as_ref(), args, boundary, streams.terminal)?;
+    if let Some(sink) = csv {
+        sink.write(streams, |output| spreadsheet::write(output, &finished))?;
+    }
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &finished))?;
+    }
+    if let Some(sink) = plot {
+        let svg = film::picture(&finished, args)?;
+        sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
+    }
+    if !run_request::uses_stdout([&args.csv, &args.json]) {
+        summary::write(streams.output, &finished)?;
+    }
+    Ok(match finished.connected.connections.is_empty() {
+        false => Exit::Reached,
+        true => Exit::Other,
+    })
+}
+
+/// The picture that `connect` writes with these flags.
+///
+/// # Errors
+/// The errors of [`run`] except those of files.
+pub fn draw(models: &[Entry], args: &ConnectArgs) -> Result<Drawn, CliError> {
+    let model = build_model(models, &args.model)?;
+    let boundary = boundary(model.as_ref(), args)?;
+    check_axes(model.description(), args)?;
+    let finished = find(model.as_ref(), args, boundary, false)?;
+    Ok(Drawn {
+        svg: film::picture(&finished, args)?,
+        outcome: summary::counted(&finished),
+    })
+}
+
+fn check_axes(description: &Description, args: &ConnectArgs) -> Result<(), CliError> {
+    let axes = args.axes.as_deref();
+    axes.map_or(Ok(()), |axes| {
+        quantity::parse("--axes", axes, description).map(drop)
+    })
+}
+
+/// Makes the search.
+fn find<'a>(
+    model: &'a dyn AnyModel,
+    args: &'a ConnectArgs,
+    boundary: Boundary,
+    terminal: bool,
+) -> Result<Finished<'a>, CliError> {
+    let mut stages = Stages::new(terminal);
+    let result = model.connect(&boundary, &mut |stage| {
+        stages.at(stage.done, stage.all, &format!("{} found", stage.found));
+    });
+    stages.finish();
+    let description = model.description();
+    let result = result.map_err(|refusal| CliError::Input {
+        place: "--from".to_owned(),
+        reason: error::refusal_text(description, &refusal),
+    })?;
+    let connected = match result {
+        Some(Ok(connected)) => connected,
+        Some(Err(unjoined)) => return Err(refused(description, &unjoined)),
+        None => {
+            return Err(CliError::Invariable {
+                scene: args.model.scene.clone(),
+            });
+        }
+    };
+    Ok(Finished {
+        model,
+        scene: &args.model.scene,
+        seed: args.seed,
+        boundary,
+        connected,
+    })
+}
+
+/// The error for a problem without an answer, in the model's names.
+fn refused(description: &Description, unjoined: &Unjoined) -> CliError {
+    let coordinates: Vec<&str> = names::coordinates(description).collect();
+    let surface = |index: usize| names::surfaces(description).nth(index).unwrap_or_default();
+    let (place, reason) = match unjoined {
+        Unjoined::FirstOrder => ("MODEL", format!("{unjoined}; use simulate")),
+        Unjoined::Unreduced => ("MODEL", format!("{unjoined}; `derive` says why")),
+        &Unjoined::Count {
+            equations,
+            unknowns,
+        } => {
+            let given = error::counted(equations, "coordinate");
+            let verb = if equations == 1 { "is" } else { "are" };
+            let free = match unknowns {
+                1 => "1 free component".to_owned(),
+                several => format!("{several} free components"),
+            };
+            let list = coordinates.join(", ");
+            let reason = format!(
+                "{given} {verb} given, and the velocity at the start has {free}; name {unknowns} of {list}"
+            );
+            ("--to", reason)
+        }
+        &Unjoined::Behind {
+            is_end,
+            surface: index,
+            gap,
+        } => {
+            let place = if is_end { "--to" } else { "--from" };
+            (
+                place,
+                format!(
+                    "the configuration lies behind `{}`: its gap is {gap}",
+                    surface(index)
+                ),
+            )
+        }
+        &Unjoined::Level {
+            constraint,
+            difference,
+        } => {
+            let name = description.constraints[constraint].name;
+            (
+                "--to",
+                format!("the constraint `{name}` keeps a value that differs by {difference} there"),
+            )
+        }
+        Unjoined::Envelope { .. } => ("--envelope", unjoined.to_string()),
+        Unjoined::End(error) => ("--to", error::state_text(description, error)),
+        other => ("connect", other.to_string()),
+    };
+    CliError::Input {
+        place: place.to_owned(),
+        reason,
+    }
+}
+
+/// The request of the flags.
+fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliError> {
+    let description = model.description();
+    if !description.modes.is_empty() {
+        return Err(CliError::Usage(
+            "connect: runs that change between modes have no derivatives; choose one mode with --scene",
+        ));
+    }
+    let impacts = impacts(&args.impacts)?;
+    if description.surfaces.is_empty() && impacts[1] > 0 {
+        return Err(CliError::Usage(
+            "--impacts: the model has no impact surfaces",
+        ));
+    }
+    let to = positions(description, "--to", &args.to)?;
+    if to.iter().all(Option::is_none) {
+        return Err(CliError::value(
+            "--to",
+            args.to.join(","),
+            "a coordinate, NAME=VALUE",
+        ));
+    }
+    let tolerance = Tolerance::new(args.tol)
+        .map_err(|error| CliError::value("--tol", args.tol.to_string(), error.to_string()))?;
+    Ok(Boundary {
+        from: start(model, args)?,
+        to,
+        time: args.time,
+        impacts,
+        tolerance,
+        laws: run_request::laws(model, &args.law)?,
+        policies: args.policies.policies(),
+        directions: args.starts.map(|count| count as usize),
+        seed: args.seed,
+        kinetic: args.energy,
+        envelope: args.envelope.map_or(0, |count| count as usize),
+    })
+}
+
+/// The positions at the start: those of `--from`, and of the model's initial state. Constraints determine the others.
+fn start(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Vec<f64>, CliError> {
+    let description = model.description();
+    let mut start = model.initial();
+    let given = positions(description, "--from", &args.from)?;
+    for (index, value) in given.into_iter().enumerate() {
+        if let Some(value) = value {
+            start.q[index] = value;
+            start.placed[index] = true;
+        }
+    }
+    let completed = model.complete_position(&start.q, &start.placed);
+    completed.map_err(|error| CliError::state("--from", description, error))
+}
+
+/// The positions of a flag; `None` for those that it does not name.
+fn positions(
+    description: &Description,
+    flag: &str,
+    texts: &[String],
+) -> Result<Vec<Option<f64>>, CliError> {
+    let mut positions = vec![None; description.coordinates.len()];
+    let changes = texts.iter().flat_map(|list| list.split(','));
+    for text in changes.filter(|text| !text.trim().is_empty()) {
+        let (name, value) = names::assignment(flag, text, "NAME=VALUE,..")?;
+        let coordinates = names::coordinates(description);
+        let index = names::find(flag, "coordinate", name, coordinates)?;
+        let number = scalar::parse(value)
+            .map_err(|expected| CliError::value(format!("{flag} {name}"), value, expected))?;
+        if positions[index].replace(number).is_some() {
+            return Err(CliError::value(flag, text, "every coordinate once"));
+        }
+    }
+    Ok(positions)
+}
+
+/// Least and largest number of impacts.
+fn impacts(text: &str) -> Result<[usize; 2], CliError> {
+    let refuse = || {
+        CliError::value(
+            "--impacts",
+            text,
+            "a number such as 2, or A..B with A not above B, such as 0..3; 1000 at most",
+        )
+    };
+    let number = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
+    let range = match text.split_once("..") {
+        Some((least, most)) => [number(least)?, number(most.trim_start_matches('='))?],
+        None => [number(text)?; 2],
+    };
+    match range[0] <= range[1] && range[1] <= MOST_IMPACTS {
+        true => Ok(range),
+        false => Err(refuse()),
+    }
+}

@@ -1,0 +1,291 @@
+//! Boundary-value problems: all motions found that join two configurations in a given time, with given numbers of
+//! impacts.
+//!
+//! The unknowns are the velocity components of the start in its reduced form (momenta without constraints), the equations
+//! are the given coordinates of the end. A motion and its derivatives by the unknowns, across impacts, are those of
+//! [`Variations`](dalembert::Variations).
+//!
+//! | file | job |
+//! |---|---|
+//! | `shooter.rs` | one motion from given unknowns, and what is asked of a motion that was found |
+//! | `observers.rs` | observers of a motion: impacts, action, derivatives |
+//! | `units.rs` | units of the unknowns, and the energies that a problem suggests |
+//! | `scan.rs` | motions along rays of the space of unknowns, with every change of their sequence of impacts |
+//! | `line.rs` | all ends that agree along a line of starts, by brackets |
+//! | `newton.rs` | a start that agrees, by Newton's method within one sequence of impacts |
+//! | `search.rs` | the search: rays, starts, deflation |
+//! | `directions.rs` | directions that cover a sphere |
+//! | `conjugate.rs` | conjugate points of a motion |
+//! | `least_squares.rs` | linear equations |
+
+mod conjugate;
+mod directions;
+mod least_squares;
+mod line;
+mod newton;
+mod observers;
+mod scan;
+mod search;
+mod shooter;
+mod units;
+
+use dalembert::contract::Variational;
+use dalembert::describe::VariationalVisitor;
+use dalembert::law::Law;
+use dalembert::{Fault, Instance, Policies, Scene, StateError, Tolerance, Undefined};
+use thiserror::Error;
+
+use crate::model::Point;
+use crate::refusal::Refusal;
+use search::Search;
+use shooter::Shooter;
+
+/// Relative difference of two actions that are one up to rounding.
+const SAME_ACTION: f64 = 1e-9;
+
+/// Request for all motions between two configurations.
+#[derive(Debug, Clone)]
+pub struct Boundary {
+    /// Positions at `t = 0`, one per coordinate.
+    pub from: Vec<f64>,
+    /// Positions at the end; a coordinate without one is free.
+    pub to: Vec<Option<f64>>,
+    /// The time of the end.
+    pub time: f64,
+    /// Least and largest number of impacts.
+    pub impacts: [usize; 2],
+    /// The tolerance of the integrator, a Taylor series.
+    pub tolerance: Tolerance,
+    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
+    pub laws: Vec<(usize, Law)>,
+    /// Policies of impacts after which the law alone does not determine the motion.
+    pub policies: Policies,
+    /// Number of directions in which starts are scanned, for two unknowns or more; by default by their number.
+    pub directions: Option<usize>,
+    /// Seed that turns the directions.
+    pub seed: u64,
+    /// Largest kinetic energy of a start; by default the scan goes on until every start has too many impacts, or to
+    /// a large multiple of the energies that the problem suggests.
+    pub kinetic: Option<f64>,
+    /// Number of starts in each direction whose conjugate points are sought, for one unknown: they lie on the envelope of
+    /// all motions from the first configuration.
+    pub envelope: usize,
+}
+
+/// An impact of a motion that was found.
+#[derive(Debug, Clone)]
+pub struct Bounce {
+    /// The time.
+    pub t: f64,
+    /// The index of the surface.
+    pub surface: usize,
+    /// The state before.
+    pub before: Point,
+    /// The state after.
+    pub after: Point,
+}
+
+/// A conjugate point: the derivative of the configuration by the velocity of the start is singular there.
+#[derive(Debug, Clone)]
+pub struct Conjugate {
+    /// The time.
+    pub t: f64,
+    /// The state.
+    pub at: Point,
+    /// Number of impacts before it.
+    pub impacts: usize,
+}
+
+/// A motion that joins the configurations.
+#[derive(Debug, Clone)]
+pub struct Connection {
+    /// The state at the start.
+    pub first: Point,
+    /// The state at the end.
+    pub last: Point,
+    /// The impacts, in order of time.
+    pub bounces: Vec<Bounce>,
+    /// Integral of the Lagrangian along the motion.
+    pub action: f64,
+    /// Largest difference between a coordinate of the end and its given value.
+    pub residual: f64,
+    /// Points after the start and before the end at which the determinant of the derivative of the configuration by the
+    /// velocity of the start passes through 0.
+    pub conjugate: Vec<Conjugate>,
+    /// The determinant at the end, divided by that of free motion with the same start to first order.
+    pub determinant: f64,
+    /// False if the determinant at the end is 0 up to rounding: neighbouring starts reach the end too, to first order.
+    pub is_isolated: bool,
+    /// Number of motions that are not isolated, with the same surfaces and the same action, of which this is one.
+    pub family: usize,
+}
+
+/// The result of a search.
+#[derive(Debug, Clone)]
+pub struct Connected {
+    /// The motions, by number of impacts, then by time of the impacts.
+    pub connections: Vec<Connection>,
+    /// Conjugate points of other starts, by number of impacts, then by time.
+    pub envelope: Vec<Conjugate>,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Number of directions that were scanned.
+    pub directions: usize,
+    /// Largest kinetic energy of a scanned start.
+    pub kinetic: f64,
+    /// True if at that energy every direction has too many impacts or no motion to the end.
+    pub is_bounded: bool,
+    /// Number of motions that were computed.
+    pub runs: u64,
+    /// Intervals of a scan with a change that was not resolved.
+    pub unresolved: usize,
+}
+
+/// Stage of a search, for its progress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stage {
+    /// Number of directions, then of starts, that were worked off.
+    pub done: usize,
+    /// Number of all of them.
+    pub all: usize,
+    /// Number of motions found.
+    pub found: usize,
+}
+
+/// Reasons for which two configurations cannot be joined by a search.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Unjoined {
+    /// The model has no velocities of its start to choose.
+    #[error("a first-order system has no free velocities: its motion follows from its start")]
+    FirstOrder,
+    /// The equations are solved in the global form and there are constraints.
+    #[error(
+        "motions of a model with constraints are sought in its reduced form, and this one has none"
+    )]
+    Unreduced,
+    /// The number of equations differs from that of the unknowns.
+    #[error(
+        "{equations} coordinates are given at the end, and the velocity at the start has {unknowns} free components"
+    )]
+    Count {
+        /// Number of given coordinates of the end.
+        equations: usize,
+        /// Number of free velocities of the start.
+        unknowns: usize,
+    },
+    /// An envelope of motions with several unknowns.
+    #[error("envelopes are known for one free velocity, and the start has {unknowns}")]
+    Envelope {
+        /// Number of free velocities of the start.
+        unknowns: usize,
+    },
+    /// A configuration lies behind a surface.
+    #[error("the gap of surface {surface} is {gap:e} there, which is behind it")]
+    Behind {
+        /// True for the configuration at the end.
+        is_end: bool,
+        /// The surface.
+        surface: usize,
+        /// Its gap.
+        gap: f64,
+    },
+    /// A constraint of positions keeps the motion away from the end.
+    #[error("constraint {constraint} keeps a value that differs by {difference:e} there")]
+    Level {
+        /// The constraint.
+        constraint: usize,
+        /// The difference of its value between both configurations.
+        difference: f64,
+    },
+    /// The configuration at the end is refused.
+    #[error("the configuration at the end is refused: {0}")]
+    End(StateError),
+    /// A quantity of a motion that was found does not exist.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+    /// A motion that was found has no derivative.
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+}
+
+/// Searches motions of a model of any type.
+pub(crate) struct Joiner<'a, 'b> {
+    pub boundary: &'a Boundary,
+    pub tell: &'b mut dyn FnMut(Stage),
+}
+
+impl VariationalVisitor for Joiner<'_, '_> {
+    /// The inner error explains why no motion can be sought, the outer one why no run starts.
+    type Output = Result<Result<Connected, Unjoined>, Refusal>;
+
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
+        let mut shooter = match Shooter::aimed(system, self.boundary)? {
+            Ok(shooter) => shooter,
+            Err(unjoined) => return Ok(Err(unjoined)),
+        };
+        let found = Search::of(&mut shooter, self.boundary, self.tell).found();
+        let connections = found.roots.iter().map(|root| shooter.connection(&root.w));
+        let connections: Result<Vec<Connection>, Unjoined> = connections.collect();
+        let mut envelope = Vec::new();
+        for w in &found.fan {
+            envelope.extend(shooter.envelope(w));
+        }
+        envelope.sort_by(|left, right| {
+            let impacts = left.impacts.cmp(&right.impacts);
+            impacts.then(left.t.total_cmp(&right.t))
+        });
+        let connected = connections.map(|mut connections| {
+            connections.sort_by(in_order);
+            Connected {
+                connections: families(connections),
+                envelope,
+                unknowns: shooter.unknowns(),
+                directions: found.directions,
+                kinetic: found.kinetic,
+                is_bounded: found.is_bounded,
+                runs: shooter.runs(),
+                unresolved: found.unresolved,
+            }
+        });
+        Ok(connected)
+    }
+}
+
+/// One motion of each family of motions that are not isolated.
+fn families(connections: Vec<Connection>) -> Vec<Connection> {
+    let mut kept: Vec<Connection> = Vec::new();
+    for connection in connections {
+        match kept.iter_mut().find(|it| are_one_family(it, &connection)) {
+            Some(first) => first.family += 1,
+            None => kept.push(connection),
+        }
+    }
+    kept
+}
+
+fn are_one_family(left: &Connection, right: &Connection) -> bool {
+    let surfaces = |it: &Connection| it.bounces.iter().map(|it| it.surface).collect::<Vec<_>>();
+    let size = left.action.abs().max(right.action.abs());
+    !left.is_isolated
+        && !right.is_isolated
+        && surfaces(left) == surfaces(right)
+        && (left.action - right.action).abs() <= SAME_ACTION * size
+}
+
+/// The order of motions: by number of impacts, then by the times of their impacts, then by their start.
+fn in_order(left: &Connection, right: &Connection) -> std::cmp::Ordering {
+    let key = |it: &Connection| {
+        let times = it.bounces.iter().map(|bounce| bounce.t);
+        let velocity = it.first.qdot.iter().copied();
+        times.chain(velocity).collect::<Vec<f64>>()
+    };
+    let counts = left.bounces.len().cmp(&right.bounces.len());
+    counts.then_with(|| {
+        let (left, right) = (key(left), key(right));
+        let pairs = left.iter().zip(&right);
+        let mut orders = pairs.map(|(left, right)| left.total_cmp(right));
+        let first = orders.find(|order| order.is_ne());
+        first.unwrap_or(std::cmp::Ordering::Equal)
+    })
+}

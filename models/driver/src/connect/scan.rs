@@ -1,0 +1,176 @@
+//! Starts along a ray of the space of unknowns, from rest on, with every change of their sequence of impacts.
+
+use super::least_squares::norm;
+use super::shooter::{Aim, Course, Shot};
+
+/// A start on a ray.
+#[derive(Debug, Clone)]
+pub(super) struct Sample {
+    /// Its speed: the root of twice its kinetic energy.
+    pub speed: f64,
+    pub shot: Shot,
+}
+
+impl Sample {
+    /// The distance between the end and the given one.
+    pub fn miss(&self) -> f64 {
+        norm(&self.shot.misses)
+    }
+}
+
+/// Density of a scan.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Density {
+    /// Number of equal intervals up to the first speed.
+    pub first: usize,
+    /// Number of intervals in each doubling of the speed.
+    pub doubling: usize,
+    /// Number of halvings of an interval at whose ends the sequences of impacts differ.
+    pub halvings: u32,
+    /// Number of steps of the integrator after which the speed is no longer doubled.
+    pub steps: u64,
+}
+
+/// Speeds of a scan.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Speeds {
+    /// End of the equal intervals.
+    pub first: f64,
+    /// Largest speed.
+    pub most: f64,
+    /// True if the scan may end before, where faster starts lead away from the end.
+    pub is_open: bool,
+}
+
+/// The starts along a ray.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ray {
+    /// In order of their speed.
+    pub samples: Vec<Sample>,
+    /// True if at the last of them no motion can reach the end with few enough impacts.
+    pub is_bounded: bool,
+}
+
+/// Scans the ray of a direction; `units` are the values of unknowns at speed 1.
+pub(super) fn ray(
+    aim: &mut dyn Aim,
+    direction: &[f64],
+    units: &[f64],
+    density: Density,
+    speeds: Speeds,
+) -> Ray {
+    let mut scan = Scan {
+        aim,
+        direction,
+        units,
+    };
+    let mut ray = Ray::default();
+    let step = speeds.first / density.first as f64;
+    for index in 0..=density.first {
+        scan.extend(&mut ray.samples, step * index as f64, density.halvings);
+    }
+    let mut speed = speeds.first;
+    let mut doublings = Doublings::default();
+    let begun = scan.aim.steps();
+    while speed < speeds.most && !ray.is_bounded {
+        let is_long = scan.aim.steps() - begun > density.steps;
+        if speeds.is_open && (doublings.are_over() || is_long) {
+            break;
+        }
+        let begin = ray.samples.len();
+        for index in 1..=density.doubling {
+            let next = speed * (1.0 + index as f64 / density.doubling as f64);
+            scan.extend(&mut ray.samples, next.min(speeds.most), density.halvings);
+            if next >= speeds.most {
+                break;
+            }
+        }
+        let (before, made) = ray.samples.split_at(begin);
+        let reaches = |it: &Sample| matches!(it.shot.course, Course::Reached(_));
+        ray.is_bounded = !made.iter().any(reaches);
+        doublings.note(before, made);
+        speed *= 2.0;
+    }
+    ray
+}
+
+/// Number of quiet doublings after which faster starts lead away from the end.
+const QUIET: u32 = 5;
+
+/// What the last doublings of the speed of a ray have shown.
+#[derive(Debug, Default)]
+struct Doublings {
+    /// Number of the last of them along which the sequence of impacts stayed and the miss grew.
+    quiet: u32,
+    /// True once the sequence of impacts has changed.
+    has_changed: bool,
+}
+
+impl Doublings {
+    fn note(&mut self, before: &[Sample], made: &[Sample]) {
+        let last = before.last().map(|it| &it.shot.course);
+        let stays = made.iter().all(|it| Some(&it.shot.course) == last);
+        let grows = made.windows(2).all(|pair| pair[0].miss() < pair[1].miss());
+        let differs = |pair: &[Sample]| pair[0].shot.course != pair[1].shot.course;
+        self.has_changed |= !stays || before.windows(2).any(differs);
+        self.quiet = if stays && grows { self.quiet + 1 } else { 0 };
+    }
+
+    /// True if faster starts lead away from the end.
+    fn are_over(&self) -> bool {
+        self.has_changed && self.quiet >= QUIET
+    }
+}
+
+/// A ray that is scanned.
+struct Scan<'a> {
+    aim: &'a mut dyn Aim,
+    direction: &'a [f64],
+    units: &'a [f64],
+}
+
+impl Scan<'_> {
+    fn sample(&mut self, speed: f64) -> Sample {
+        let w = unknowns(speed, self.direction, self.units);
+        let shot = self.aim.shoot(&w, false);
+        Sample { speed, shot }
+    }
+
+    /// Adds the start of a speed, after those between it and the last with other sequences of impacts.
+    fn extend(&mut self, samples: &mut Vec<Sample>, speed: f64, halvings: u32) {
+        let sample = self.sample(speed);
+        if let Some(last) = samples.last() {
+            let last = last.clone();
+            self.halve(&last, &sample, halvings, samples);
+        }
+        samples.push(sample);
+    }
+
+    fn halve(&mut self, left: &Sample, right: &Sample, halvings: u32, samples: &mut Vec<Sample>) {
+        if halvings == 0 || left.shot.course == right.shot.course {
+            return;
+        }
+        let middle = self.sample(0.5 * (left.speed + right.speed));
+        if middle.speed <= left.speed || middle.speed >= right.speed {
+            return;
+        }
+        self.halve(left, &middle, halvings - 1, samples);
+        samples.push(middle.clone());
+        self.halve(&middle, right, halvings - 1, samples);
+    }
+}
+
+/// The unknowns at a speed in a direction.
+pub(super) fn unknowns(speed: f64, direction: &[f64], units: &[f64]) -> Vec<f64> {
+    let pairs = direction.iter().zip(units);
+    pairs.map(|(part, unit)| speed * part * unit).collect()
+}
+
+/// The stretches of starts with one sequence of impacts that reaches the end, with at least `least` impacts.
+pub(super) fn windows(samples: &[Sample], least: usize) -> impl Iterator<Item = &[Sample]> {
+    let stretches = samples.chunk_by(|left, right| left.shot.course == right.shot.course);
+    stretches.filter(move |stretch| match &stretch[0].shot.course {
+        Course::Reached(surfaces) => surfaces.len() >= least,
+        Course::Beyond | Course::Lost => false,
+    })
+}

@@ -1,0 +1,353 @@
+//! The search for all starts whose motion ends as given.
+//!
+//! With one unknown both rays of starts are scanned, and every stretch of one sequence of impacts is searched by brackets
+//! ([`line`](super::line)). With more unknowns rays in many directions are scanned; each stretch gives the start that
+//! comes nearest, and Newton's method goes on from there. Directions between which the sequences of impacts differ are
+//! halved. At last known roots are divided out, and the nearest starts are tried again.
+
+use super::directions;
+use super::line;
+use super::newton::{Arrival, Newton, is_same};
+use super::scan::{self, Density, Ray, Sample, Speeds, windows};
+use super::shooter::{Aim, Course, Shooter};
+use super::units::Units;
+use super::{Boundary, Stage};
+use dalembert::contract::Variational;
+use dalembert::{Instance, Scene};
+
+/// First speeds of a scan, in multiples of the speed that the problem suggests.
+const FIRST: f64 = 4.0;
+
+/// Largest speed of a scan, in multiples of the first: with surfaces that faster starts may meet, and without.
+const MOST: [f64; 2] = [65_536.0, 4.0];
+
+/// Largest miss of a root, in multiples of the size of the coordinates.
+const NEAR: f64 = 1e-9;
+
+/// Number of halvings of the angle between neighbouring directions in the plane.
+const TURNS: u32 = 3;
+
+/// Number of starts of each sequence of impacts that are tried again with known roots divided out.
+const AGAIN: usize = 6;
+
+/// Number of starts of each sequence of impacts from which Newton's method goes on.
+const TRIED: usize = 240;
+
+/// A start that agrees.
+#[derive(Debug, Clone)]
+pub(super) struct Root {
+    /// The unknowns.
+    pub w: Vec<f64>,
+    /// The same in units.
+    y: Vec<f64>,
+}
+
+/// Result of a search.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Found {
+    pub roots: Vec<Root>,
+    /// Unknowns of the starts of an envelope.
+    pub fan: Vec<Vec<f64>>,
+    pub directions: usize,
+    pub kinetic: f64,
+    pub is_bounded: bool,
+    pub unresolved: usize,
+}
+
+/// A start from which Newton's method goes on.
+#[derive(Debug, Clone)]
+struct Candidate {
+    course: Course,
+    miss: f64,
+    y: Vec<f64>,
+}
+
+/// A search.
+pub(super) struct Search<'a> {
+    aim: &'a mut dyn Aim,
+    boundary: &'a Boundary,
+    units: Units,
+    unknowns: usize,
+    tell: &'a mut dyn FnMut(Stage),
+    found: Found,
+}
+
+impl<'a> Search<'a> {
+    /// The search among the motions of a shooter.
+    pub fn of<S: Instance + Scene + Variational>(
+        shooter: &'a mut Shooter<'_, S>,
+        boundary: &'a Boundary,
+        tell: &'a mut dyn FnMut(Stage),
+    ) -> Self {
+        Self {
+            units: shooter.units(),
+            unknowns: shooter.unknowns(),
+            aim: shooter,
+            boundary,
+            tell,
+            found: Found {
+                is_bounded: true,
+                ..Found::default()
+            },
+        }
+    }
+
+    /// All starts that are found.
+    pub fn found(mut self) -> Found {
+        match self.unknowns {
+            0 => self.fixed(),
+            1 => self.on_a_line(),
+            2 => self.in_the_plane(),
+            _ => self.in_space(),
+        }
+        self.found
+    }
+
+    fn speeds(&self) -> Speeds {
+        let first = FIRST * self.units.speed;
+        match self.boundary.kinetic {
+            Some(kinetic) => {
+                let most = (2.0 * kinetic).sqrt();
+                Speeds {
+                    first: first.min(most),
+                    most,
+                    is_open: false,
+                }
+            }
+            None => Speeds {
+                first,
+                most: first * MOST[usize::from(!self.units.has_surfaces)],
+                is_open: true,
+            },
+        }
+    }
+
+    fn near(&self) -> f64 {
+        NEAR * self.units.size
+    }
+
+    /// Without unknowns there is one motion.
+    fn fixed(&mut self) {
+        let shot = self.aim.shoot(&[], false);
+        let is_near = shot.misses.iter().all(|miss| miss.abs() <= self.near());
+        let counts = |surfaces: &Vec<usize>| surfaces.len() >= self.boundary.impacts[0];
+        if let Course::Reached(surfaces) = &shot.course
+            && is_near
+            && counts(surfaces)
+        {
+            self.keep(&[]);
+        }
+    }
+
+    /// Scans a ray, and notes its end.
+    fn scan(&mut self, direction: &[f64], density: Density) -> Ray {
+        let speeds = self.speeds();
+        let ray = scan::ray(self.aim, direction, &self.units.unknowns, density, speeds);
+        self.found.directions += 1;
+        self.found.is_bounded &= ray.is_bounded;
+        let last = ray.samples.last().map_or(0.0, |sample| sample.speed);
+        self.found.kinetic = self.found.kinetic.max(0.5 * last * last);
+        ray
+    }
+
+    fn on_a_line(&mut self) {
+        let density = Density {
+            first: 160,
+            doubling: 24,
+            halvings: 40,
+            steps: 200_000,
+        };
+        for (done, side) in [1.0, -1.0].into_iter().enumerate() {
+            let ray = self.scan(&[side], density);
+            let unit = side * self.units.unknowns[0];
+            for window in windows(&ray.samples, self.boundary.impacts[0]) {
+                for equation in 0..window[0].shot.misses.len() {
+                    self.solve(window, unit, equation);
+                }
+            }
+            self.spread(&ray, unit);
+            self.note(done + 1, 2);
+        }
+    }
+
+    /// Keeps the starts of a stretch that satisfy one of the equations, if they satisfy all.
+    fn solve(&mut self, window: &[Sample], unit: f64, equation: usize) {
+        let near = self.near();
+        let (roots, unresolved) = line::roots(self.aim, window, unit, near, equation);
+        self.found.unresolved += unresolved;
+        for w in roots {
+            let shot = self.aim.shoot(&[w], false);
+            if shot.misses.iter().all(|miss| miss.abs() <= near) {
+                self.keep(&[w / self.units.unknowns[0]]);
+            }
+        }
+    }
+
+    /// Takes the starts of an envelope: evenly up to the fastest that meets a surface.
+    fn spread(&mut self, ray: &Ray, unit: f64) {
+        let meets = |it: &&Sample| match &it.shot.course {
+            Course::Reached(surfaces) => !surfaces.is_empty(),
+            Course::Beyond => true,
+            Course::Lost => false,
+        };
+        let fastest = ray.samples.iter().rev().find(meets);
+        let fastest = fastest.map_or(self.speeds().first, |it| it.speed);
+        let count = self.boundary.envelope;
+        let at = |index: usize| fastest * (index as f64 + 0.5) / count as f64;
+        let fan = (0..count).map(|index| vec![at(index) * unit]);
+        self.found.fan.extend(fan);
+    }
+
+    /// Keeps a root, given in units, that is not known.
+    fn keep(&mut self, y: &[f64]) -> bool {
+        let speed = self.units.speed;
+        let is_known = |root: &Root| is_same(&root.y, y, speed);
+        if self.found.roots.iter().any(is_known) {
+            return false;
+        }
+        let units = self.units.unknowns.iter();
+        let w = y.iter().zip(units).map(|(y, unit)| y * unit).collect();
+        self.found.roots.push(Root { w, y: y.to_vec() });
+        true
+    }
+
+    fn note(&mut self, done: usize, all: usize) {
+        let found = self.found.roots.len();
+        (self.tell)(Stage { done, all, found });
+    }
+
+    fn in_the_plane(&mut self) {
+        let count = self
+            .boundary
+            .directions
+            .unwrap_or(directions::default_count(2));
+        let turn = directions::turn(self.boundary.seed);
+        let angle = |index: usize| turn + std::f64::consts::TAU * index as f64 / count as f64;
+        let mut candidates = Vec::new();
+        let mut last = self.fan(angle(0), &mut candidates);
+        for index in 1..=count {
+            let next = self.fan(angle(index), &mut candidates);
+            self.between(
+                [angle(index - 1), angle(index)],
+                [&last, &next],
+                TURNS,
+                &mut candidates,
+            );
+            last = next;
+            self.note(index, 2 * count);
+        }
+        self.pursue(candidates);
+    }
+
+    /// Scans the ray of an angle; returns its sequences of impacts.
+    fn fan(&mut self, angle: f64, candidates: &mut Vec<Candidate>) -> Vec<Course> {
+        self.gather(&[angle.cos(), angle.sin()], candidates)
+    }
+
+    /// Scans between two rays whose sequences of impacts differ.
+    fn between(
+        &mut self,
+        [from, to]: [f64; 2],
+        [left, right]: [&Vec<Course>; 2],
+        turns: u32,
+        candidates: &mut Vec<Candidate>,
+    ) {
+        if turns == 0 || left == right {
+            return;
+        }
+        let angle = 0.5 * (from + to);
+        let middle = self.fan(angle, candidates);
+        self.between([from, angle], [left, &middle], turns - 1, candidates);
+        self.between([angle, to], [&middle, right], turns - 1, candidates);
+    }
+
+    fn in_space(&mut self) {
+        let count = directions::default_count(self.unknowns);
+        let count = self.boundary.directions.unwrap_or(count);
+        let mut candidates = Vec::new();
+        let all = directions::on_sphere(self.unknowns, count, self.boundary.seed);
+        for (index, direction) in all.iter().enumerate() {
+            self.gather(direction, &mut candidates);
+            self.note(index + 1, 2 * count);
+        }
+        self.pursue(candidates);
+    }
+
+    /// Scans a ray, and takes from each stretch the starts that come nearest.
+    fn gather(&mut self, direction: &[f64], candidates: &mut Vec<Candidate>) -> Vec<Course> {
+        let density = Density {
+            first: 24,
+            doubling: 6,
+            halvings: 7,
+            steps: 3000,
+        };
+        let ray = self.scan(direction, density);
+        let mut courses = Vec::new();
+        for window in windows(&ray.samples, self.boundary.impacts[0]) {
+            courses.push(window[0].shot.course.clone());
+            let misses: Vec<f64> = window.iter().map(Sample::miss).collect();
+            for (index, sample) in window.iter().enumerate() {
+                let before = index.checked_sub(1).map_or(f64::INFINITY, |it| misses[it]);
+                let after = misses.get(index + 1).copied().unwrap_or(f64::INFINITY);
+                if misses[index] < before && misses[index] <= after && misses[index].is_finite() {
+                    candidates.push(Candidate {
+                        course: sample.shot.course.clone(),
+                        miss: misses[index],
+                        y: direction.iter().map(|part| part * sample.speed).collect(),
+                    });
+                }
+            }
+        }
+        courses
+    }
+
+    /// Goes on from all candidates, those of each sequence of impacts by their miss.
+    fn pursue(&mut self, mut candidates: Vec<Candidate>) {
+        let key = |it: &Candidate| match &it.course {
+            Course::Reached(surfaces) => (surfaces.len(), surfaces.clone()),
+            Course::Beyond | Course::Lost => (usize::MAX, Vec::new()),
+        };
+        candidates.sort_by(|left, right| {
+            let courses = key(left).cmp(&key(right));
+            courses.then(left.miss.total_cmp(&right.miss))
+        });
+        let groups = || candidates.chunk_by(|left, right| left.course == right.course);
+        let all: usize = groups().map(|group| group.len().min(TRIED)).sum();
+        let mut done = 0;
+        for group in groups() {
+            let mut known = Vec::new();
+            for candidate in group.iter().take(TRIED) {
+                self.try_from(candidate, &mut known, false);
+                done += 1;
+                self.note(all + done, 2 * all);
+            }
+            for candidate in group.iter().take(AGAIN) {
+                while !known.is_empty() && self.try_from(candidate, &mut known, true) {}
+            }
+        }
+    }
+
+    /// Goes on from a candidate; true if that gives a root that was not known.
+    fn try_from(
+        &mut self,
+        candidate: &Candidate,
+        known: &mut Vec<Vec<f64>>,
+        deflated: bool,
+    ) -> bool {
+        let (most, near) = (self.speeds().most, self.near());
+        let mut newton = Newton {
+            aim: self.aim,
+            units: &self.units.unknowns,
+            course: &candidate.course,
+            most,
+            near,
+            least: self.units.speed,
+        };
+        let Arrival::Root(y) = newton.search(&candidate.y, known, deflated) else {
+            return false;
+        };
+        let is_new = self.keep(&y);
+        known.push(y);
+        is_new
+    }
+}

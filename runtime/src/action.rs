@@ -1,0 +1,85 @@
+//! Action of a run: the integral of the Lagrangian along its motion.
+//!
+//! `L = <p, qdot> - H` with `H = 1/2 g(qdot, qdot) + V`, so that a term of `L` that is linear in the velocities is
+//! counted. Impacts take no time and add nothing to the integral.
+
+use core::ops::ControlFlow;
+
+use crate::contract::System;
+use crate::error::Fault;
+use crate::quadrature::composite;
+use crate::record::{Observer, Segment};
+use crate::state::StateVector;
+
+/// Largest number of panels of one step; their number doubles until the integral agrees.
+const PANELS: u32 = 64;
+
+/// Largest change of the integral over a step, as a share of the integral of the absolute value.
+const AGREEMENT: f64 = 1e-15;
+
+/// The Lagrangian at a state.
+///
+/// # Errors
+/// The [`Fault`] of the velocities, the momenta or the energy; [`Fault::FirstOrder`] for a first-order system.
+pub fn lagrangian<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> Result<f64, Fault> {
+    let (qdot, p) = (system.velocity(t, state)?, system.momentum(t, state)?);
+    let pairs = p.as_slice().iter().zip(qdot.as_slice());
+    let product: f64 = pairs.map(|(p, qdot)| p * qdot).sum();
+    Ok(product - system.energy(t, state)?)
+}
+
+/// Integrates the Lagrangian along the run that it observes, with 16 Gauss-Legendre nodes in each panel of a step of
+/// the dense output.
+#[derive(Debug)]
+pub struct Action<'a, Sys> {
+    system: &'a Sys,
+    value: Result<f64, Fault>,
+}
+
+impl<'a, Sys: System> Action<'a, Sys> {
+    /// The action of the next run, 0 at its start.
+    pub const fn new(system: &'a Sys) -> Self {
+        Self {
+            system,
+            value: Ok(0.0),
+        }
+    }
+
+    /// The action from the start of the run to its last state.
+    ///
+    /// # Errors
+    /// The first [`Fault`] of the Lagrangian or of the dense output.
+    pub const fn value(&self) -> Result<f64, Fault> {
+        self.value
+    }
+
+    /// The integral over one stretch of motion.
+    fn integral(&self, segment: &mut Segment<'_, Sys::State>) -> Result<f64, Fault> {
+        let (start, length) = (segment.t_start(), segment.t_end() - segment.t_start());
+        let mut density = |part: f64| {
+            let t = start + part * length;
+            lagrangian(self.system, t, &segment.at(t)?)
+        };
+        let mut panels = 1;
+        let mut coarse = composite(&mut density, panels)?;
+        while panels < PANELS {
+            panels *= 2;
+            let fine = composite(&mut density, panels)?;
+            let change = (fine.0 - coarse.0).abs();
+            coarse = fine;
+            if change <= AGREEMENT * fine.1 {
+                break;
+            }
+        }
+        Ok(coarse.0 * length)
+    }
+}
+
+impl<Sys: System> Observer<Sys> for Action<'_, Sys> {
+    fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
+        if let Ok(sum) = self.value {
+            self.value = self.integral(segment).map(|integral| sum + integral);
+        }
+        ControlFlow::Continue(())
+    }
+}
