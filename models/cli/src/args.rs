@@ -100,7 +100,7 @@ pub enum Command {
     /// Find all motions that join two configurations in a given time, with given numbers of impacts.
     #[command(
         help_template = help::TEMPLATE,
-        before_help = "Example: dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 0..3 --plot paths.svg",
+        before_help = "Example: dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 0..3",
         after_help = connect::EXAMPLES
     )]
     Connect(Box<ConnectArgs>),

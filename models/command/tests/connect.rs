@@ -197,10 +197,10 @@ fn conjugate_points_of_the_ball_lie_on_the_envelope() {
     let line = "bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 0..4 --envelope 30 --json -";
     let document: Value = serde_json::from_str(&connect_on("", line).output).unwrap();
     let points = document["envelope"].as_array().unwrap();
-    let own = document["motions"].as_array().unwrap().iter();
-    let own = own.flat_map(|motion| motion["conjugate"].as_array().unwrap());
+    let touched = document["motions"].as_array().unwrap().iter();
+    let touched = touched.flat_map(|motion| motion["conjugate"].as_array().unwrap());
     let mut impacts = Vec::new();
-    for point in points.iter().chain(own) {
+    for point in points.iter().chain(touched) {
         let (k, t) = (number(&point["impacts"]), number(&point["t"]));
         assert_near(number(&point["q"][0]), t * t / (8.0 * k * (k + 1.0)), 1e-10);
         impacts.push(k as usize);
@@ -446,6 +446,7 @@ fn nothing_found_is_no_error() {
         "bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 4",
     );
     assert_eq!(done.exit, Exit::Other);
+    assert!(done.output.contains("motions may be missed"));
     assert!(
         done.output.contains("found       no motion"),
         "{}",

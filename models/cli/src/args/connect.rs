@@ -25,6 +25,7 @@ configuration by the velocity at the start passes through 0: motions with neighb
 Exit status: 0 motions were found, 1 none was found, 2 bad flags or input.
 
 More examples:
+  dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 0..3 --plot paths.svg
   dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 2 --json -
   dalembert connect point_billiard --from x=0.5,y=0 --to x=-0.5,y=0 --time 1 --impacts 1 --axes x,y --plot chords.svg
   dalembert connect double_pendulum --from theta1=0,theta2=0 --to theta1=1,theta2=1 --time 1 --energy 100";
@@ -57,8 +58,8 @@ pub struct ConnectArgs {
         default_value = "0"
     )]
     pub impacts: String,
-    /// Number of directions in which starts are scanned, for two unknowns or more. Default: 96 for two, 400 for three,
-    /// 1200 for more.
+    /// Number of directions in which starts are scanned, for two unknowns or more. Default: 96 for two, 240 for three,
+    /// 480 for more.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
     pub starts: Option<u32>,
     /// Seed that turns these directions.

@@ -67,7 +67,7 @@ pub fn draw(sheet: &Sheet<'_>) -> Result<String, String> {
             "a motion has values beyond {LARGEST:e}, which cannot be drawn"
         ));
     }
-    let items = items(sheet.paths);
+    let items = items(sheet);
     let strip = legend::height(&items, sheet.width);
     let panel = ABOVE + plot_height(sheet.width) + BELOW + EDGE;
     let panels = sheet.names.len() - 1;
@@ -88,10 +88,13 @@ fn plot_height(width: f64) -> f64 {
     (HEIGHT * width).round()
 }
 
-/// The legend: a line for each number of impacts.
-fn items(paths: &[Path]) -> Vec<Item> {
+/// The legend, with a line for each number of impacts.
+fn items(sheet: &Sheet<'_>) -> Vec<Item> {
     let mut items = Vec::new();
-    for group in paths.chunk_by(|left, right| left.impacts == right.impacts) {
+    for group in sheet
+        .paths
+        .chunk_by(|left, right| left.impacts == right.impacts)
+    {
         let plural = if group[0].impacts == 1 { "" } else { "s" };
         let label = format!("{} impact{plural} ({})", group[0].impacts, group.len());
         items.push(Item::new(
@@ -103,6 +106,13 @@ fn items(paths: &[Path]) -> Vec<Item> {
     items.push(Item::new(Symbol::Ring, style::INK, "start"));
     items.push(Item::new(Symbol::Square, style::INK, "end"));
     items.push(Item::new(Symbol::Dot, style::INK, "impact"));
+    if !sheet.envelope.is_empty() {
+        items.push(Item::new(
+            Symbol::Dot,
+            style::FAINT_INK,
+            "small: conjugate point of another start",
+        ));
+    }
     items
 }
 
@@ -145,6 +155,9 @@ fn draw_panel(area: &Area<'_>, sheet: &Sheet<'_>, ordinate: usize) -> Result<(),
         let corners = path.corners.iter().map(|corner| (at(corner), colour));
         plane::dots(&mut chart, corners, 3.0)?;
     }
+    let points = sheet.envelope.iter();
+    let points = points.map(|(impacts, point)| (at(point), style::curve(*impacts)));
+    plane::dots(&mut chart, points, 1.4)?;
     let ends = paths
         .iter()
         .filter_map(|path| Some((path.points.first()?, path.points.last()?)));

@@ -24,74 +24,96 @@ pub(super) struct Units {
 /// Number of places on a circle or a line at which the potential energy is compared.
 const PLACES: usize = 32;
 
-/// The energies that a problem suggests: of uniform motion from one configuration to the other, of the velocity that the
-/// forces at the start give in the time, and of the differences of the potential about the configurations.
+/// The units of a problem.
 pub(super) fn units<S: Instance + Scene + Variational>(
     system: &S,
     boundary: &Boundary,
     rest: &S::State,
-    [start, count]: [usize; 2],
+    motion: [usize; 2],
 ) -> Units {
-    let energy = |state: &S::State| system.energy(0.0, state).unwrap_or(f64::NAN);
-    let with = |w: &[f64]| {
-        let mut state = *rest;
-        state.as_mut_slice()[start..start + count].copy_from_slice(w);
-        energy(&state) - energy(rest)
-    };
-    let unknown = |index: usize| {
-        let sides = with(&unit(count, index))
-            + with(&unit(count, index).iter().map(|w| -w).collect::<Vec<_>>());
-        match sides > 0.0 && sides.is_finite() {
-            true => 1.0 / sides.sqrt(),
-            false => 1.0,
-        }
-    };
-    let unknowns: Vec<f64> = (0..count).map(unknown).collect();
-    let speed_of = |w: &[f64]| {
-        let parts: Vec<f64> = w.iter().zip(&unknowns).map(|(w, unit)| w / unit).collect();
-        norm(&parts)
-    };
-    let mut rate = system.zero_state();
-    let fallen = match system.rate(0.0, rest, &mut rate) {
-        Ok(()) => {
-            let rates = &rate.as_slice()[start..start + count];
-            speed_of(
-                &rates
-                    .iter()
-                    .map(|rate| rate * boundary.time)
-                    .collect::<Vec<_>>(),
-            )
-        }
-        Err(_) => 0.0,
-    };
     let q = system.position(rest);
     let ways = boundary.to.iter().zip(q.as_slice());
     let ways: Vec<f64> = ways
         .map(|(to, from)| to.map_or(0.0, |to| to - from))
         .collect();
-    let speed_along = |way: &[f64]| {
-        let rates: Vec<f64> = way.iter().map(|way| way / boundary.time).collect();
-        let state = system.state_nearest(0.0, &q, &vector(&q, &rates));
-        state.map_or(0.0, |state| {
-            speed_of(&state.as_slice()[start..start + count])
-        })
-    };
-    let climbed = (2.0 * climb(system, &q, &ways)).sqrt();
-    let suggested = [fallen, speed_along(&ways), climbed];
-    let suggested = suggested.into_iter().filter(|it| it.is_finite());
-    let mut speed = suggested.fold(0.0, f64::max);
-    if speed == 0.0 {
-        speed = speed_along(&vec![1.0; ways.len()]);
-    }
     let coordinates = boundary.to.iter().flatten().chain(q.as_slice());
     let size = coordinates
         .chain(&ways)
         .fold(0.0_f64, |most, it| most.max(it.abs()));
+    let problem = Problem {
+        system,
+        rest,
+        motion,
+        time: boundary.time,
+    };
+    let unknowns: Vec<f64> = (0..motion[1]).map(|index| problem.unit(index)).collect();
     Units {
+        speed: problem.speed(&unknowns, &ways),
         unknowns,
-        speed: if speed > 0.0 { speed } else { 1.0 },
         size: if size > 0.0 { size } else { 1.0 },
         has_surfaces: !system.description().surfaces.is_empty(),
+    }
+}
+
+/// A problem whose energies are estimated.
+struct Problem<'a, S: Instance + Scene + Variational> {
+    system: &'a S,
+    rest: &'a S::State,
+    motion: [usize; 2],
+    time: f64,
+}
+
+impl<S: Instance + Scene + Variational> Problem<'_, S> {
+    /// The value of an unknown whose kinetic energy is 1/2.
+    fn unit(&self, index: usize) -> f64 {
+        let [start, count] = self.motion;
+        let energy = |value: f64| {
+            let mut state = *self.rest;
+            let unknowns = &mut state.as_mut_slice()[start..start + count];
+            unknowns[index] = value;
+            self.system.energy(0.0, &state).unwrap_or(f64::NAN)
+        };
+        let sides = energy(1.0) + energy(-1.0) - 2.0 * energy(0.0);
+        match sides > 0.0 && sides.is_finite() {
+            true => 1.0 / sides.sqrt(),
+            false => 1.0,
+        }
+    }
+
+    /// The largest of the speeds that the problem suggests: of uniform motion from one configuration to the other, of the
+    /// velocity that the forces at the start give in the time, and of the differences of the potential about the
+    /// configurations.
+    fn speed(&self, units: &[f64], ways: &[f64]) -> f64 {
+        let [start, count] = self.motion;
+        let size = |state: &S::State| {
+            let unknowns = &state.as_slice()[start..start + count];
+            let parts: Vec<f64> = unknowns
+                .iter()
+                .zip(units)
+                .map(|(w, unit)| w / unit)
+                .collect();
+            norm(&parts)
+        };
+        let mut rate = self.system.zero_state();
+        let fallen = match self.system.rate(0.0, self.rest, &mut rate) {
+            Ok(()) => size(&rate) * self.time,
+            Err(_) => 0.0,
+        };
+        let q = self.system.position(self.rest);
+        let along = |ways: &[f64]| {
+            let rates: Vec<f64> = ways.iter().map(|way| way / self.time).collect();
+            let state = self.system.state_nearest(0.0, &q, &vector(&q, &rates));
+            state.map_or(0.0, |state| size(&state))
+        };
+        let climbed = (2.0 * climb(self.system, &q, ways)).sqrt();
+        let suggested = [fallen, along(ways), climbed].into_iter();
+        let speed = suggested.filter(|it| it.is_finite()).fold(0.0, f64::max);
+        match speed > 0.0 {
+            true => speed,
+            false => Some(along(&vec![1.0; ways.len()]))
+                .filter(|it| *it > 0.0 && it.is_finite())
+                .unwrap_or(1.0),
+        }
     }
 }
 
