@@ -61,6 +61,11 @@ struct Done {
 
 /// Runs `connect` with this standard input.
 fn connect_on(input: &str, line: &str) -> Done {
+    run_on(input, &format!("connect {line}"))
+}
+
+/// Runs a command with this standard input.
+fn run_on(input: &str, line: &str) -> Done {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {
         input: &mut input.as_bytes(),
@@ -68,9 +73,7 @@ fn connect_on(input: &str, line: &str) -> Done {
         errors: &mut errors,
         terminal: false,
     };
-    let words = ["dalembert", "connect"]
-        .into_iter()
-        .chain(line.split_whitespace());
+    let words = ["dalembert"].into_iter().chain(line.split_whitespace());
     let exit = dalembert_command::catalogue().run_with(words, &mut streams);
     let text = |bytes| String::from_utf8(bytes).unwrap();
     Done {
@@ -393,11 +396,24 @@ fn motions_through_a_focus_are_one_family() {
 }
 
 #[test]
-fn a_disk_that_rolls_is_steered_to_a_point() {
-    let line = "rolling_disk --from x=0,y=0 --to x=0.05,y=0.02 --time 1 --energy 1e-5";
-    for motion in motions(line) {
-        assert_near(number(&motion["end"]["q"][0]), 0.05, 1e-12);
-        assert_near(number(&motion["end"]["q"][1]), 0.02, 1e-12);
+fn a_disk_that_rolls_is_steered_to_a_point_and_simulated_there() {
+    let line = "rolling_disk --from x=0,y=0 --to x=0.05,y=0.02 --time 1 --energy 1e-5 --starts 8";
+    let found = motions(line);
+    assert!(found.len() >= 3, "{}", found.len());
+    for motion in found {
+        let list = |key: &str| {
+            let values = motion["start"][key].as_array().unwrap().iter();
+            values.map(Value::to_string).collect::<Vec<_>>().join(",")
+        };
+        let state = format!("--q {} --qdot {}", list("q"), list("qdot"));
+        let done = run_on(
+            "",
+            &format!("simulate rolling_disk {state} --until 1 --json -"),
+        );
+        let run: Value = serde_json::from_str(&done.output).unwrap();
+        let end = &run["samples"].as_array().unwrap().last().unwrap()["q"];
+        assert_near(number(&end[0]), 0.05, 1e-9);
+        assert_near(number(&end[1]), 0.02, 1e-9);
     }
 }
 
