@@ -343,17 +343,18 @@ impl<S: StateVector> Path<S> {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
-
     use super::*;
+    use crate::jet::LENGTH;
     use nalgebra::SVector;
-    use std::vec::Vec;
 
     type Scalar = SVector<f64, 1>;
 
     fn path(coefficients: &[f64]) -> Path<Scalar> {
-        let coefficients: Vec<Scalar> = coefficients.iter().map(|&c| Scalar::new(c)).collect();
-        Path::of(&coefficients, 2.0)
+        let mut terms = [Scalar::zeros(); LENGTH];
+        for (to, &from) in terms.iter_mut().zip(coefficients) {
+            to[0] = from;
+        }
+        Path::of(&terms[..coefficients.len()], 2.0)
     }
 
     #[test]
