@@ -22,6 +22,7 @@ mod series;
 mod sides;
 mod sliding;
 mod tangency;
+mod told;
 mod touch;
 mod watch;
 

@@ -12,18 +12,16 @@ use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
 use super::hits::Hits;
 use super::place::Place;
+use super::told::Told;
 use crate::contract::Impacting;
 use crate::effects::{Moment, StepView};
 use crate::events::bends::Bends;
-use crate::events::crossing::Signs;
 use crate::events::haven::Haven;
 use crate::events::path::Path;
-use crate::events::piece::Piece;
 use crate::events::resolution::resolution;
 use crate::events::tails::Tails;
 use crate::integrate::Stepper;
 use crate::law::Law;
-use crate::numbers::{ComplexInterval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
@@ -69,7 +67,7 @@ pub(super) struct Watch<Sys: Impacting> {
     /// Sum of their local errors, in units of the tolerance.
     pub(super) errors: f64,
     /// Surfaces that hold the motion: their gaps are 0, and are not tested.
-    held: Held<Sys::Gaps>,
+    pub(super) held: Held<Sys::Gaps>,
     /// The surface that begins to count behind the motion where the last step is to be cut.
     pub(super) behind: Option<usize>,
     /// True if a surface is a wall with conditions, behind which the motion may be.
@@ -81,9 +79,9 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) path: Path<Sys::State>,
     /// A box in which no gap vanishes, and a box with bounds of the gaps' derivatives.
     haven: Haven<Sys::State>,
-    limits: Bends<Sys::State, Sys::Gaps>,
+    pub(super) limits: Bends<Sys::State, Sys::Gaps>,
     /// Bounds of the terms that the power series of the gaps lack.
-    tails: Tails<Sys::State, Sys::Gaps>,
+    pub(super) tails: Tails<Sys::State, Sys::Gaps>,
     /// True if the gaps kept are older than the start of the next step, because the last steps were not tested.
     is_stale: bool,
 }
@@ -99,16 +97,6 @@ pub(super) enum Graze {
     Crossing,
     /// A grazing impact within the error of the integrator.
     WithinError,
-}
-
-/// Result of the first tests of a step for a surface.
-pub(super) enum Told {
-    /// No hit, from the gaps at the ends and the bounds of their derivatives.
-    Passed,
-    /// No hit, from the gap on the whole step.
-    Clear,
-    /// Undecided, with the gap on the whole step if it was computed.
-    Unclear(Option<TaylorModel>),
 }
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -549,96 +537,6 @@ impl<Sys: Impacting> Watch<Sys> {
             // It began to count within rounding of the end of the step, or where conditions are not enclosed.
             Err(Outcome::StartsInside { surface, .. }) => self.end_where_behind(surface, step),
             checked => checked,
-        }
-    }
-
-    /// Includes a bound of the terms that the polynomial of a gap lacks in its error, once a step. Returns true if
-    /// there is a polynomial, and a bound.
-    #[inline]
-    pub(super) fn certify<Step: Stepper<Sys>>(
-        &mut self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &mut Glance<Sys::Gaps>,
-    ) -> bool {
-        let Self { tails, path, .. } = self;
-        if glance.is_certain(surface) {
-            return true;
-        }
-        if !glance.has_series() || tails.skips(surface) {
-            return false;
-        }
-        let Some(series) = glance.expand(step) else {
-            return false;
-        };
-        if !series.is_sharp {
-            tails.postpone(surface);
-            return false;
-        }
-        if !series.has_begun() {
-            tails.follow(path);
-        }
-        let (system, enclosures) = (step.system, &mut step.counters.enclosures);
-        series.certify(surface, |terms| {
-            let gap = |t: ComplexInterval, component: &dyn Fn(usize) -> ComplexInterval| {
-                system.gap_complex(surface, t, component)
-            };
-            tails.of(surface, terms, (&gap, path), enclosures)
-        })
-    }
-
-    /// True if the step passes this surface.
-    #[inline]
-    pub(super) fn told<Step: Stepper<Sys>>(
-        &mut self,
-        surface: usize,
-        step: &mut StepView<'_, Sys, Step>,
-        glance: &mut Glance<Sys::Gaps>,
-    ) -> Told {
-        if self.held.is_held(surface) {
-            return Told::Passed;
-        }
-        let at = |values: &Sys::Gaps| values.as_slice()[surface];
-        let (first, last) = (at(&self.gaps), at(&glance.gaps));
-        let is_at_hand = first == 0.0;
-        // NOTE: a surface at hand whose gap is negative throughout is pressed, not clear, unless the motion passes
-        // it.
-        let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
-        if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
-            return Told::Unclear(None);
-        }
-        if !is_at_hand && (first > 0.0) != (last > 0.0) {
-            return Told::Unclear(None);
-        }
-        if self.limits.tell(surface, [first, last]) {
-            return Told::Passed;
-        }
-        let whole = [0.0, 1.0];
-        let is_certain = self.certify(surface, step, glance);
-        let model = match glance.series().filter(|_| is_certain) {
-            Some(series) => match series.signs(surface, is_at_hand) {
-                Signs::Positive | Signs::Negative => return Told::Clear,
-                _ => return Told::Unclear(None),
-            },
-            None => {
-                step.counters.enclosures += 1;
-                self.path.enclose();
-                let component = |i: usize| self.path.component(i, whole);
-                let time = self.path.time_model(whole);
-                step.system.gap_along(surface, time, &component)
-            }
-        };
-        let piece = Piece::of(&model, whole, whole);
-        let signs = match is_at_hand {
-            true => piece.signs_from_zero(),
-            false => match piece.signs() {
-                Signs::Unclear => piece.signs_between([first, last]),
-                signs => signs,
-            },
-        };
-        match signs {
-            Signs::Positive | Signs::Negative => Told::Clear,
-            _ => Told::Unclear(Some(model)),
         }
     }
 }
