@@ -37,6 +37,7 @@ pub(crate) fn exit<Sys: System, Step: Stepper<Sys>>(
     }
     let mut path = Path::new(&start);
     path.refine(step)?;
+    path.enclose();
     let is_inside = |part: [f64; 2]| {
         let mut charts = charts();
         charts.all(|Chart { coordinate, ends }| {

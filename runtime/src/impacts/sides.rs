@@ -71,6 +71,7 @@ impl<Sys: Impacting> Watch<Sys> {
         reach: f64,
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<Onset>, Outcome> {
+        self.path.enclose();
         if self.is_free([0.0, reach], (surface, 0.0), step) {
             return Ok(None);
         }
