@@ -44,6 +44,7 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
             _ if name.starts_with("bouncing_ball-zeno") => "zeno at t = 9.8994949366",
             _ if name.starts_with("dimensionless_walker-basin") => "orbit 1 (period 1): ",
             _ if name.starts_with("dimensionless_walker-gaits") => "period 1: ",
+            "bouncing_ball-connections-paths" => "7 motions: 1 with 0 impacts",
             "bouncing_ball-connections-bounds" => "6 motions: 2 with 1 impact",
             "compass_walker-doubling-one" => "flip at gamma = 0.015088438",
             "compass_walker-doubling-two" => "flip at gamma = 0.017669375",
