@@ -1489,7 +1489,7 @@ def check_integrable(model, claim, source):
             axes = [[Decimal(int(k == i)) for k in range(chart.size)] for i in range(1, chart.size)]
             rows.append([model.derivative(lambda at: own(chart.at(at)), z, axis) for axis in axes])
         return len(eliminated(rows, chart.size - 1)[1])
-    if max(states(model, source, rank)) < len(functions):
+    if min(states(model, source, rank)) < len(functions):
         return False, "the differentials are dependent"
     return check_involution(model, claim, source)
 

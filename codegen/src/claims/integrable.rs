@@ -1,11 +1,11 @@
 //! `integrable: f, g, ..`: as many functions as D has dimensions, each conserved by the motion and by all that happens at surfaces, in
 //! involution, and with differentials that are independent at almost all states.
 //!
-//! Without constraints these are the hypotheses of the theorem of Liouville and Arnold. What a surface keeps of each function it keeps of
-//! their common levels (W. Clark, thesis, VIII.6). With constraints the bracket is almost Poisson, and the claim says no more than
-//! what is listed.
+//! Without constraints and forces, where nothing depends on time, these are the hypotheses of the theorem of Liouville and Arnold. What
+//! a surface keeps of each function it keeps of their common levels (W. Clark, thesis, VIII.6). Otherwise the claim says no more than what
+//! is listed: forces have no part in the bracket, and with constraints it is almost Poisson.
 
-use dalembert_expr::ExprId;
+use dalembert_expr::{ExprId, Function, Node, Pool, Sign};
 
 use super::conserved::check_conserved;
 use super::evidence::{Vanishing, Wording, evidence};
@@ -122,6 +122,14 @@ fn are_independent(
     let Some(tangents) = Tangents::of(model, around.dynamics) else {
         return Verdict::Undecided(Undecided::Degenerate.to_string());
     };
+    if let Some((_, written)) = functions
+        .iter()
+        .find(|(value, _)| !is_analytic(&model.pool, *value))
+    {
+        return Verdict::Undecided(format!(
+            "`{written}` has an absolute value, or a root, logarithm or angle that may have a kink: independence at one state says nothing about the states beyond it"
+        ));
+    }
     let degree = functions.len();
     if is_too_large(tangents.dimension(), degree) {
         let text = "the differentials have more minors than are examined";
@@ -152,6 +160,25 @@ fn are_independent(
         }
     }
     Verdict::Undecided(format!("whether they are independent: {open}"))
+}
+
+/// True if a function is one analytic function on all its states: what is different from 0 at one of them is so at almost all.
+///
+/// Roots and logarithms of what is positive everywhere have no branches.
+fn is_analytic(pool: &Pool, function: ExprId) -> bool {
+    let is_positive = |id: ExprId| pool.sign(id) == Sign::Positive;
+    pool.reachable(&[function])
+        .into_iter()
+        .all(|id| match pool.node(id) {
+            Node::Product(factors) => factors
+                .iter()
+                .all(|(base, exponent)| exponent.is_integer() || is_positive(*base)),
+            Node::Call(Function::Ln, argument) => is_positive(*argument),
+            Node::Call(Function::Abs | Function::Asin | Function::Acos, _) | Node::Atan2(..) => {
+                false
+            }
+            _ => true,
+        })
 }
 
 /// The relation of the differentials at a state.

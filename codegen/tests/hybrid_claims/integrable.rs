@@ -1,6 +1,6 @@
 //! `integrable: f, g, ..`.
 
-use crate::Expected::{False, Shown, True};
+use crate::Expected::{False, Open, Shown, True};
 use crate::check;
 use crate::systems::{ball, disk, particle};
 
@@ -87,6 +87,21 @@ fn systems_with_functions_that_change_are_refuted() {
         "integrable: momentum(phi), x - R*sin(phi)*dot(theta)/dot(phi)",
         False("are not in involution"),
     );
+}
+
+#[test]
+fn functions_with_kinks_are_left_open() {
+    // Both are constant on half of the states.
+    for stated in [
+        "abs(energy - 1/2) + energy - 1/2",
+        "sqrt((energy - 1/2)^2) + energy - 1/2",
+    ] {
+        check(
+            QUARTIC,
+            &format!("integrable: {stated}"),
+            Open("may have a kink"),
+        );
+    }
 }
 
 #[test]

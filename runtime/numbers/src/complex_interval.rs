@@ -92,7 +92,7 @@ impl ComplexInterval {
         Self {
             real: value,
             height: 0.0,
-            floor: ROUNDING * value.magnitude(),
+            floor: ROUNDING * value.magnitude() + value.width(),
             rounding: 0.0,
             degree: 0,
         }

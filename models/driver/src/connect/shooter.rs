@@ -374,8 +374,14 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             mut bounces,
             ..
         } = film;
-        bounces.retain(|bounce| bounce.t < time * (1.0 - AT_ENDS));
         let last = ended.map_or_else(|| self.rest, |run| run.state);
+        // An impact at the end is not counted, and the velocity is that of the arrival.
+        let counted = bounces
+            .iter()
+            .take_while(|bounce| bounce.t < time * (1.0 - AT_ENDS))
+            .count();
+        let arrival = bounces.drain(counted..).next();
+        let last = arrival.map_or_else(|| point(system, time, &last), |bounce| bounce.before);
         let shot = self.shoot(w, true);
         let marks = self.marks(w)?;
         let conjugate = self.conjugate(w, &marks);
@@ -386,7 +392,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         let largest = largest.fold(0.0, f64::max);
         Ok(Connection {
             first: point(system, 0.0, &self.state(w)),
-            last: point(system, time, &last),
+            last,
             bounces,
             action: action.value()?,
             residual: shot
