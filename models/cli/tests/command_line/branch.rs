@@ -77,6 +77,17 @@ const STOP: &str = "
         initial { x = 2; v = -5; phi = 2.7; until = 100; }
     }";
 
+/// Fixed points on a spiral whose sheets are `pi/118` apart: `x/r` is the tangent of 237 times the radius.
+const SPIRAL: &str = "
+    Spiral {
+        coordinates { x; tau; }
+        parameters { r = 0; }
+        let turn = 237*sqrt(x^2 + r^2);
+        field { dot(x) = 0; dot(tau) = 1; }
+        impacts { tick: tau <= 1 => reset { x = x - 0.002*(x*cos(turn) - r*sin(turn)); tau = 0; }; }
+        initial { x = 0.6; until = 10; }
+    }";
+
 /// Runs `orbit --continue` over a model.
 fn follow(text: &str, flags: &str) -> Done {
     let line = format!("orbit - {flags}");
@@ -206,6 +217,26 @@ fn a_closed_branch_is_followed_once() {
     assert_eq!(folds.len(), 2);
     assert_near(folds[0].abs(), 1.0, 1e-9);
     assert_near(folds[0] + folds[1], 0.0, 1e-9);
+}
+
+#[test]
+fn sheets_that_lie_close_together_are_not_confused() {
+    let table = rows(SPIRAL, "--surface tick --continue r=-2..2 --points 400");
+    let folds = bifurcations(&table, "r");
+    assert!(folds.len() > 15, "{folds:?}");
+    for pair in folds.windows(2) {
+        let [(first, at), (second, next)] = pair else {
+            panic!("{pair:?}")
+        };
+        assert_eq!([first, second], ["fold", "fold"]);
+        // Half a turn between them.
+        assert!(at * next < 0.0, "{at} and {next}");
+        assert_near(
+            (next.abs() - at.abs()).abs(),
+            core::f64::consts::PI / 237.0,
+            1e-6,
+        );
+    }
 }
 
 #[test]

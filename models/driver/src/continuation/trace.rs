@@ -24,7 +24,11 @@ const TURN: f64 = 0.984_8;
 const STRAIGHT: f64 = 0.998_6;
 
 /// Largest correction, as a share of the step.
-pub(super) const REACH: f64 = 0.3;
+pub(super) const REACH: f64 = 0.1;
+
+/// Largest number of steps to the first member of a branch that may be closed, and the distance at which it is that one.
+const RETURNS: usize = 8;
+const SAME: f64 = 1e-6;
 
 /// Largest number of Newton steps.
 const NEWTON: usize = 12;
@@ -34,6 +38,11 @@ const GRAZING: f64 = 1e-5;
 
 /// Distance along the branch to an end inside of the range, below which points are left out.
 const CROWDED: f64 = 1e-3;
+
+/// Largest departure of a step from an arc of a circle, as a share of the arc's height and of the step. A member of a
+/// neighbouring sheet lies off the arc that its direction asks for.
+const UNEVEN: f64 = 0.25;
+const CROOKED: f64 = 1e-3;
 
 /// Observer of the points of a branch.
 pub(crate) type Watch<'a> = &'a mut dyn FnMut(&Member);
@@ -212,12 +221,30 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// True if a member lies within a step of the first one, in the same direction.
-    fn is_back(&self, node: &Node, start: &Node, length: f64) -> bool {
-        let to = start
-            .local
-            .change_to(self.width, &node.local.state, node.parameter());
-        norm(&to) < length && dot(&node.heading, &start.heading) > TURN
+    /// True if the branch leads from a member, within a step, to the first one: not to a neighbouring sheet.
+    fn is_back(&mut self, node: &Node, start: &Node, length: f64) -> bool {
+        let width = self.width;
+        let from_start = |node: &Node| {
+            start
+                .local
+                .change_to(width, &node.local.state, node.parameter())
+        };
+        let to = from_start(node);
+        if norm(&to) >= length || dot(&node.heading, &start.heading) <= TURN {
+            return false;
+        }
+        let mut near = node.clone();
+        for _ in 0..RETURNS {
+            let to = from_start(&near);
+            if norm(&to) < SAME {
+                return true;
+            }
+            match self.reached(&near, -dot(&to, &near.heading), None) {
+                Ok(nearer) => near = nearer,
+                Err(_) => return false,
+            }
+        }
+        norm(&from_start(&near)) < SAME
     }
 
     /// The next member, at this distance or at a limit of the parameter, and the bifurcations before it.
@@ -293,7 +320,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
             .local
             .change_to(self.width, &next.local.state, next.parameter());
         next.distance = norm(&way);
-        match dot(&node.heading, &next.heading) >= TURN {
+        match dot(&node.heading, &next.heading) >= TURN && bends_evenly(&way, node, &next) {
             true => Ok(next),
             false => Err(Failure::TooLong),
         }
@@ -382,4 +409,14 @@ fn grazed(error: &dalembert::OrbitError) -> Option<usize> {
 fn leaves(node: &Node, [low, high]: [f64; 2]) -> bool {
     let at = node.parameter();
     (at >= high && node.rise() > 0.0) || (at <= low && node.rise() < 0.0)
+}
+
+/// True if a step leads along an arc: the angle between the directions at its ends says how far it is from the tangent.
+fn bends_evenly(way: &[f64], node: &Node, next: &Node) -> bool {
+    let length = norm(way);
+    let along = dot(way, &node.heading);
+    let height = (length * length - along * along).max(0.0).sqrt();
+    let angle = dot(&node.heading, &next.heading).clamp(-1.0, 1.0).acos();
+    let expected = 0.5 * length * angle;
+    (height - expected).abs() <= UNEVEN * expected + CROOKED * length
 }
