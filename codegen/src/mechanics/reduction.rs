@@ -31,7 +31,7 @@ pub enum NoReduction {
     TooLarge,
 }
 
-/// What a group gives.
+/// Quantities of a reduction by a group.
 #[derive(Debug)]
 pub struct Reduction {
     /// `C_ab^c`
