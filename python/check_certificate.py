@@ -1440,10 +1440,10 @@ def on_d(model, state):
     def velocity(z):
         base = [state[0], *z[:n], *state[1 + n:]]
         g, forms = model.metric_at(base), model.forms_at(base)
-        v = solve(g, [p - own(base) for p, own in zip(z[n:], model.linear)])
+        v = solve(g, [p - linear(base) for p, linear in zip(z[n:], model.linear)])
         duals = [solve(g, form) for form in forms]
         mass = [[dot(form, dual) for dual in duals] for form in forms]
-        lost = [dot(form, v) + own for form, own in zip(forms, model.affine_at(base))]
+        lost = [dot(form, v) + affine for form, affine in zip(forms, model.affine_at(base))]
         for factor, dual in zip(solve(mass, lost), duals):
             v = moved(v, dual, -factor)
         return model.with_velocities(base, v)
@@ -1457,19 +1457,19 @@ def bracket(model, f, g, state):
 
     def slope(function, i):
         axis = [Decimal(int(k == i)) for k in range(2 * n)]
-        return model.derivative(lambda own: function(onto(own)), z, axis)
-    slopes = [[slope(own, i) for i in range(2 * n)] for own in (f, g)]
+        return model.derivative(lambda place: function(onto(place)), z, axis)
+    slopes = [[slope(function, i) for i in range(2 * n)] for function in (f, g)]
     return dot(slopes[0][:n], slopes[1][n:]) - dot(slopes[0][n:], slopes[1][:n])
 
 
 def check_involution(model, claim, source):
     if model.is_nonlinear:
         raise NotChecked("brackets belong to systems with linear constraints")
-    functions = [model.claimed(own) for own in claim["values"]]
+    functions = [model.claimed(value) for value in claim["values"]]
     pairs = [(f, g) for j, g in enumerate(functions) for f in functions[:j]]
     found = states(model, source, lambda state: [bracket(model, *pair, state) for pair in pairs])
-    found = [own for row in found for own in row] or [Decimal(0)]
-    return all(is_small(own, 1) for own in found), f"largest bracket {float(max(map(abs, found))):.1e}"
+    found = [value for row in found for value in row] or [Decimal(0)]
+    return all(is_small(value, 1) for value in found), f"largest bracket {float(max(map(abs, found))):.1e}"
 
 
 def check_integrable(model, claim, source):
@@ -1480,14 +1480,14 @@ def check_integrable(model, claim, source):
             holds, text = check_conserved(model, {"value": value, "under": under, "holds": True}, source)
             if not holds:
                 return False, f"{value} {text}"
-    functions = [model.claimed(own) for own in claim["values"]]
+    functions = [model.claimed(value) for value in claim["values"]]
 
     def rank(state):
         chart = Chart(model, state)
         z, rows = chart.coordinates(), []
-        for own in functions:
+        for function in functions:
             axes = [[Decimal(int(k == i)) for k in range(chart.size)] for i in range(1, chart.size)]
-            rows.append([model.derivative(lambda at: own(chart.at(at)), z, axis) for axis in axes])
+            rows.append([model.derivative(lambda at: function(chart.at(at)), z, axis) for axis in axes])
         return len(eliminated(rows, chart.size - 1)[1])
     if min(states(model, source, rank)) < len(functions):
         return False, "the differentials are dependent"

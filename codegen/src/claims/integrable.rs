@@ -18,6 +18,7 @@ use super::invariant::ranked_at_states;
 use super::involution::check_involution;
 use super::lie::Lie;
 use super::sample::ATTEMPTS;
+use super::together::Together;
 use super::undecided::Undecided;
 use crate::model::{ExteriorForm, Model, StatedFunction};
 
@@ -42,10 +43,8 @@ pub(super) fn check_integrable(
         .map(|function| format!("`{}`", function.written))
         .collect();
     let functions = &*written_out(model, declared);
-    let mut together = Together {
-        all: Certificate::without_chance(names.join(", "), around.seed),
-        open: None,
-    };
+    let all = Certificate::without_chance(names.join(", "), around.seed);
+    let mut together = Together::of(all);
     let dynamics = std::slice::from_ref(around.dynamics);
     for function in functions {
         let verdict = check_conserved(model, dynamics, *function, true, around.seed);
@@ -84,33 +83,6 @@ fn of_surface(model: &Model, surface: usize, verdict: Verdict) -> Verdict {
     let name = &model.surfaces[surface].name.display;
     let help = format!("leave it out, or claim it for a scene that does not use `{name}`");
     Verdict::Refuted(Witness { help, ..witness })
-}
-
-/// Several proofs that are needed together.
-struct Together {
-    all: Certificate,
-    open: Option<String>,
-}
-
-impl Together {
-    /// Adds a verdict; a refutation is given back.
-    fn add(&mut self, verdict: Verdict) -> Option<Verdict> {
-        match verdict {
-            Verdict::Proved(part) => self.all.rest_on(&part),
-            Verdict::Undecided(reason) => {
-                self.open.get_or_insert(reason);
-            }
-            refuted @ Verdict::Refuted(_) => return Some(refuted),
-        }
-        None
-    }
-
-    fn verdict(self) -> Verdict {
-        match self.open {
-            Some(reason) => Verdict::Undecided(reason),
-            None => Verdict::Proved(self.all),
-        }
-    }
 }
 
 /// The verdict on `df_1 ^ .. ^ df_k` being different from 0 at almost all states: one component at one state shows it.

@@ -15,6 +15,7 @@ use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::Surroundings;
 use super::lie::Lie;
 use super::passage::{Open, Passage};
+use super::together::Together;
 use super::undecided::Undecided;
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Law, Model};
@@ -45,28 +46,24 @@ pub(super) fn check_invariant(
         return verdict;
     }
     let motion = kept_by_motion(model, around, &tangents, (&explicit, written));
-    let mut all = match motion {
-        Verdict::Proved(certificate) => certificate,
+    let mut together = match motion {
+        Verdict::Proved(certificate) => Together::of(certificate),
         other => return other,
     };
-    let mut open = None;
     for surface in 0..model.surfaces.len() {
         let name = model.surfaces[surface].name.display.clone();
-        match kept_at_surface(model, around, &tangents, (form, written), surface) {
-            Verdict::Proved(part) => {
-                all.rest_on(&part);
-                all.shown += &format!("; `{name}` keeps it");
-            }
+        let verdict = match kept_at_surface(model, around, &tangents, (form, written), surface) {
             Verdict::Undecided(reason) => {
-                open.get_or_insert(format!("what `{name}` does is not known: {reason}"));
+                Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
             }
-            refuted @ Verdict::Refuted(_) => return refuted,
+            decided => decided,
+        };
+        if let Some(refuted) = together.add(verdict) {
+            return refuted;
         }
+        together.all.shown += &format!("; `{name}` keeps it");
     }
-    match open {
-        Some(reason) => Verdict::Undecided(reason),
-        None => Verdict::Proved(all),
-    }
+    together.verdict()
 }
 
 /// The verdict on a form that is 0 at all states, of which nothing is claimed.

@@ -8,6 +8,7 @@ use super::evidence::{Wording, evidence};
 use super::finding::{Certificate, Verdict};
 use super::hybrid::Surroundings;
 use super::symplectic::AtStates;
+use super::together::Together;
 use crate::mechanics::bracket::{FunctionOnD, derive_bracket};
 use crate::model::{Model, StatedFunction};
 
@@ -31,25 +32,23 @@ pub(super) fn check_involution(
     let on_d: Vec<(FunctionOnD, &str)> = on_d.collect();
     let names: Vec<String> = on_d.iter().map(|(_, name)| format!("`{name}`")).collect();
     let shown = format!("{} are in involution", names.join(", "));
-    let mut all = Certificate::without_chance(shown, around.seed);
-    let mut open = None;
+    let mut together = Together::of(Certificate::without_chance(shown, around.seed));
     for (j, (g, second)) in on_d.iter().enumerate() {
         for (f, first) in &on_d[..j] {
             let value = bracket.between(&mut model.pool, f, g);
             let value = bracket.written(&mut model.pool, value);
-            match vanishes(model, around, value, [first, second]) {
-                Verdict::Proved(part) => all.rest_on(&part),
+            let verdict = match vanishes(model, around, value, [first, second]) {
                 Verdict::Undecided(reason) => {
-                    open.get_or_insert(format!("{{{first}, {second}}}: {reason}"));
+                    Verdict::Undecided(format!("{{{first}, {second}}}: {reason}"))
                 }
-                refuted @ Verdict::Refuted(_) => return refuted,
+                decided => decided,
+            };
+            if let Some(refuted) = together.add(verdict) {
+                return refuted;
             }
         }
     }
-    match open {
-        Some(reason) => Verdict::Undecided(reason),
-        None => Verdict::Proved(all),
-    }
+    together.verdict()
 }
 
 /// The verdict on one bracket.

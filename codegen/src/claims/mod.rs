@@ -20,6 +20,7 @@
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
 //! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs` | forms on vectors of one time, along the motion and through surfaces |
 //! | `involution.rs`, `integrable.rs` | brackets of functions; conserved functions that are enough of them |
+//! | `together.rs` | several proofs that are needed together |
 //! | `corollaries.rs` | consequences of a volume that is kept |
 //! | `obstruction.rs`, `sample.rs` | points that a person can follow |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
@@ -87,6 +88,7 @@ mod side;
 mod smoothness;
 mod symmetry;
 mod symplectic;
+mod together;
 mod trace;
 mod undecided;
 mod volume;

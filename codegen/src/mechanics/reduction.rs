@@ -311,7 +311,12 @@ fn forces_on_d(
             .iter()
             .chain(fields.iter().flatten()),
     );
-    parts.extend(model.constraints.iter().flat_map(|own| own.form.iter()));
+    parts.extend(
+        model
+            .constraints
+            .iter()
+            .flat_map(|constraint| constraint.form.iter()),
+    );
     let moves = parts.iter().any(|part| model.pool.depends_on(*part, time));
     let is_affine = (model.constraints.iter())
         .any(|constraint| !model.pool.is_syntactic_zero(constraint.affine));

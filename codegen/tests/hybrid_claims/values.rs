@@ -12,7 +12,9 @@ pub(super) fn value(model: &Model, id: ExprId, state: &[(SymbolId, f64)]) -> f64
         let given = state.iter().find(|(key, _)| *key == symbol);
         let parameter = || {
             let mut parameters = model.parameters.iter();
-            let default = parameters.find(|own| own.symbol == symbol)?.default?;
+            let default = parameters
+                .find(|parameter| parameter.symbol == symbol)?
+                .default?;
             Some(model.pool.eval(&[default], &|_| f64::NAN)[0])
         };
         given
@@ -30,13 +32,13 @@ pub(super) fn values(model: &Model, ids: &[ExprId], state: &[(SymbolId, f64)]) -
 
 /// Positions as a state.
 pub(super) fn at(model: &Model, q: &[f64]) -> Vec<(SymbolId, f64)> {
-    let symbols = model.coordinates.iter().map(|own| own.q);
+    let symbols = model.coordinates.iter().map(|coordinate| coordinate.q);
     symbols.zip(q.iter().copied()).collect()
 }
 
 /// Positions and velocities as a state.
 pub(super) fn moving(model: &Model, q: &[f64], velocity: &[f64]) -> Vec<(SymbolId, f64)> {
-    let symbols = model.coordinates.iter().map(|own| own.qdot);
+    let symbols = model.coordinates.iter().map(|coordinate| coordinate.qdot);
     let mut state = at(model, q);
     state.extend(symbols.zip(velocity.iter().copied()));
     state
@@ -53,10 +55,10 @@ pub(super) fn matrices(model: &Model, q: &[f64]) -> (Vec<Row>, Row, Vec<Row>, Ro
             .collect(),
         values(model, &lagrangian.linear, &at),
         (constraints.iter())
-            .map(|own| values(model, &own.form, &at))
+            .map(|constraint| values(model, &constraint.form, &at))
             .collect(),
         (constraints.iter())
-            .map(|own| value(model, own.affine, &at))
+            .map(|constraint| value(model, constraint.affine, &at))
             .collect(),
     )
 }

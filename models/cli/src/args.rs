@@ -12,6 +12,7 @@ mod help;
 mod map;
 mod orbit;
 mod rows;
+mod series;
 
 use std::path::PathBuf;
 
@@ -31,6 +32,7 @@ pub use gallery::GalleryArgs;
 pub use map::MapArgs;
 pub use orbit::OrbitArgs;
 pub use rows::RowsArgs;
+pub use series::SeriesArgs;
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
 #[derive(Debug, Parser)]

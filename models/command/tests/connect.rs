@@ -472,144 +472,120 @@ fn nothing_found_is_no_error() {
     );
 }
 
+/// Lines that are refused, and a part of the message.
+const REFUSED: &[(&str, &str)] = &[
+    (
+        "bouncing_ball --to y=1 --time 1",
+        "--to: unknown coordinate `y`",
+    ),
+    (
+        "bouncing_ball --to x_dot=1 --time 1",
+        "--to: unknown coordinate `x_dot`",
+    ),
+    (
+        "bouncing_ball --to x=1 --from v=1 --time 1",
+        "--from: unknown coordinate `v`",
+    ),
+    (
+        "bouncing_ball --to x=a --time 1",
+        "--to x: `a` is not accepted",
+    ),
+    ("bouncing_ball --to x --time 1", "--to: `x` is not accepted"),
+    (
+        "bouncing_ball --to x=1,x=2 --time 1",
+        "every coordinate once",
+    ),
+    ("bouncing_ball --to , --time 1", "--to: `,` is not accepted"),
+    (
+        "bouncing_ball --to x=1 --time 0",
+        "expected a positive number",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --impacts 3..1",
+        "--impacts: `3..1`",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --impacts many",
+        "--impacts: `many`",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --impacts 2000",
+        "1000 at most",
+    ),
+    (
+        "double_pendulum --to theta1=1,theta2=1 --time 1 --impacts 1",
+        "no impact surfaces",
+    ),
+    (
+        "bouncing_ball --to x=-1 --time 1",
+        "--to: the configuration lies behind `floor`",
+    ),
+    (
+        "bouncing_ball --from x=-1 --to x=1 --time 1",
+        "--from: the configuration lies behind `floor`",
+    ),
+    (
+        "point_billiard --to x=0 --time 1",
+        "--to: 1 coordinate is given, and the velocity at the start has 2 free components",
+    ),
+    (
+        "rolling_disk --to x=0,y=0,theta=1,phi=1 --time 1",
+        "--to: 4 coordinates are given",
+    ),
+    (
+        "dimensionless_walker --to theta=1 --time 1",
+        "a first-order system has no free velocities",
+    ),
+    (
+        "holonomic_bead_on_ellipses --to x=0,y=1 --time 1",
+        "in its reduced form, and this one has none",
+    ),
+    (
+        "refracted_particle --to x=1,y=1 --time 1",
+        "change between modes",
+    ),
+    (
+        "point_billiard --to x=0,y=0 --time 1 --envelope 5",
+        "--envelope: envelopes are known for one free velocity",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --csv - --json -",
+        "need different files",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --plot a.png",
+        "ends in .svg",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --plot a.svg --axes t,speed",
+        "unknown quantity `speed`",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --law wall=elastic",
+        "--law: unknown surface `wall`",
+    ),
+    (
+        "bouncing_ball --to x=1 --time 1 --energy -1",
+        "expected a positive number",
+    ),
+];
+
+#[track_caller]
+fn assert_refused(input: &str, line: &str, text: &str) {
+    let done = connect_on(input, line);
+    assert_eq!(done.exit, Exit::Refused, "{line}: {}", done.output);
+    assert!(done.errors.contains(text), "{line}: {}", done.errors);
+    assert_eq!(done.output, "", "{line}");
+}
+
 #[test]
 fn what_cannot_be_sought_is_refused() {
-    let cases = [
-        (
-            "",
-            "bouncing_ball --to y=1 --time 1",
-            "--to: unknown coordinate `y`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x_dot=1 --time 1",
-            "--to: unknown coordinate `x_dot`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --from v=1 --time 1",
-            "--from: unknown coordinate `v`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=a --time 1",
-            "--to x: `a` is not accepted",
-        ),
-        (
-            "",
-            "bouncing_ball --to x --time 1",
-            "--to: `x` is not accepted",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1,x=2 --time 1",
-            "every coordinate once",
-        ),
-        (
-            "",
-            "bouncing_ball --to , --time 1",
-            "--to: `,` is not accepted",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 0",
-            "expected a positive number",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --impacts 3..1",
-            "--impacts: `3..1`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --impacts many",
-            "--impacts: `many`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --impacts 2000",
-            "1000 at most",
-        ),
-        (
-            "",
-            "double_pendulum --to theta1=1,theta2=1 --time 1 --impacts 1",
-            "no impact surfaces",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=-1 --time 1",
-            "--to: the configuration lies behind `floor`",
-        ),
-        (
-            "",
-            "bouncing_ball --from x=-1 --to x=1 --time 1",
-            "--from: the configuration lies behind `floor`",
-        ),
-        (
-            "",
-            "point_billiard --to x=0 --time 1",
-            "--to: 1 coordinate is given, and the velocity at the start has 2 free components",
-        ),
-        (
-            "",
-            "rolling_disk --to x=0,y=0,theta=1,phi=1 --time 1",
-            "--to: 4 coordinates are given",
-        ),
-        (
-            "",
-            "dimensionless_walker --to theta=1 --time 1",
-            "a first-order system has no free velocities",
-        ),
-        (
-            "",
-            "holonomic_bead_on_ellipses --to x=0,y=1 --time 1",
-            "in its reduced form, and this one has none",
-        ),
-        (
-            "",
-            "refracted_particle --to x=1,y=1 --time 1",
-            "change between modes",
-        ),
-        (
-            "",
-            "point_billiard --to x=0,y=0 --time 1 --envelope 5",
-            "--envelope: envelopes are known for one free velocity",
-        ),
-        (
-            ROD,
-            "- --to x=1,y=1 --time 1",
-            "--to: the constraint `rod` keeps a value that differs by 1 there",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --csv - --json -",
-            "need different files",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --plot a.png",
-            "ends in .svg",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --plot a.svg --axes t,speed",
-            "unknown quantity `speed`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --law wall=elastic",
-            "--law: unknown surface `wall`",
-        ),
-        (
-            "",
-            "bouncing_ball --to x=1 --time 1 --energy -1",
-            "expected a positive number",
-        ),
-    ];
-    for (input, line, text) in cases {
-        let done = connect_on(input, line);
-        assert_eq!(done.exit, Exit::Refused, "{line}: {}", done.output);
-        assert!(done.errors.contains(text), "{line}: {}", done.errors);
-        assert_eq!(done.output, "", "{line}");
+    for (line, text) in REFUSED {
+        assert_refused("", line, text);
     }
+    assert_refused(
+        ROD,
+        "- --to x=1,y=1 --time 1",
+        "--to: the constraint `rod` keeps a value that differs by 1 there",
+    );
 }

@@ -30,6 +30,7 @@ pub mod course;
 pub mod drift;
 mod grid;
 mod integrator;
+mod linear;
 mod model;
 pub mod names;
 mod orbit;

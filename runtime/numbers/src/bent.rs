@@ -146,21 +146,7 @@ impl Numbers for Bent {
     const LANES: usize = 1;
     const ZERO: Self = Self::steady(Interval::ZERO);
 
-    fn of(number: f64) -> Self {
-        Self::steady(Interval::of(number))
-    }
-
-    fn constant(parts: [f64; 4]) -> Self {
-        Self::steady(<Interval as Numbers>::constant(parts))
-    }
-
-    fn inverse(k: usize) -> Self {
-        Self::steady(<Interval as Numbers>::inverse(k))
-    }
-
-    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
-        Self::steady(Interval::gathered(of_lane))
-    }
+    crate::numbers::constants_of_intervals!();
 
     /// A number inside. It says nothing about the rest of the box.
     fn lane(&self, lane: usize) -> f64 {

@@ -53,8 +53,9 @@ pub struct ComplexInterval {
 struct Analytic {
     real: Interval,
     height: f64,
-    /// Of its first and second derivative.
+    /// Bound of its first derivative.
     slope: f64,
+    /// Bound of its second derivative.
     bend: f64,
     /// Factor by which errors of a coefficient reach later ones.
     growth: f64,
@@ -337,21 +338,7 @@ impl Numbers for ComplexInterval {
         degree: 0,
     };
 
-    fn of(number: f64) -> Self {
-        Self::steady(Interval::of(number))
-    }
-
-    fn constant(parts: [f64; 4]) -> Self {
-        Self::steady(<Interval as Numbers>::constant(parts))
-    }
-
-    fn inverse(k: usize) -> Self {
-        Self::steady(<Interval as Numbers>::inverse(k))
-    }
-
-    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
-        Self::steady(Interval::gathered(of_lane))
-    }
+    crate::numbers::constants_of_intervals!();
 
     /// A real number inside. It says nothing about the rest of the rectangle.
     fn lane(&self, lane: usize) -> f64 {

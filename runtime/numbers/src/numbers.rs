@@ -223,6 +223,32 @@ macro_rules! functions_of_lanes {
 }
 pub(crate) use functions_of_lanes;
 
+/// Functions of [`Numbers`] for kinds whose constants are intervals that do not change: `steady(interval)`.
+macro_rules! constants_of_intervals {
+    () => {
+        #[inline(always)]
+        fn of(number: f64) -> Self {
+            Self::steady($crate::interval::Interval::of(number))
+        }
+
+        #[inline(always)]
+        fn constant(parts: [f64; 4]) -> Self {
+            Self::steady(<$crate::interval::Interval as Numbers>::constant(parts))
+        }
+
+        #[inline(always)]
+        fn inverse(k: usize) -> Self {
+            Self::steady(<$crate::interval::Interval as Numbers>::inverse(k))
+        }
+
+        #[inline(always)]
+        fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
+            Self::steady($crate::interval::Interval::gathered(of_lane))
+        }
+    };
+}
+pub(crate) use constants_of_intervals;
+
 /// True if a number is below 0; `None` for NaN.
 #[inline(always)]
 pub fn sign_of(number: f64) -> Option<bool> {

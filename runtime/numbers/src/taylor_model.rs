@@ -467,25 +467,7 @@ impl Numbers for TaylorModel {
     const LANES: usize = 1;
     const ZERO: Self = Self::exact([0.0; 4]);
 
-    #[inline(always)]
-    fn of(number: f64) -> Self {
-        Self::steady(Interval::of(number))
-    }
-
-    #[inline(always)]
-    fn constant(parts: [f64; 4]) -> Self {
-        Self::steady(<Interval as Numbers>::constant(parts))
-    }
-
-    #[inline(always)]
-    fn inverse(k: usize) -> Self {
-        Self::steady(<Interval as Numbers>::inverse(k))
-    }
-
-    #[inline(always)]
-    fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self {
-        Self::steady(Interval::gathered(of_lane))
-    }
+    crate::numbers::constants_of_intervals!();
 
     /// A number inside. It says nothing about the rest of the stretch.
     #[inline(always)]

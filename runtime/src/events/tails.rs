@@ -71,9 +71,9 @@ pub(crate) type Gap<'a> =
 /// Bounds of the distance between a gap and its truncated series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tail {
-    /// Of the values, if the constant coefficient is right.
+    /// Bound of the distance of the values, if the constant coefficient is right.
     pub(crate) value: f64,
-    /// Of the derivative by the fraction of the step.
+    /// Bound of the distance of the derivatives by the fraction of the step.
     pub(crate) slope: f64,
     /// Rounding of the constant coefficient.
     pub(crate) floor: f64,
@@ -90,7 +90,7 @@ struct Bound {
     takes: Takes,
 }
 
-/// What a gap depends on.
+/// Quantities that a gap depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Takes {
     /// Positions, as a bit mask.
@@ -111,8 +111,8 @@ struct Surface {
     /// The bounds, for each of [`LEVELS`].
     bounds: [Option<Bound>; LEVELS.len()],
     takes: Option<Takes>,
-    /// Number of steps to skip before the next measurement, and the number that the last failure added.
-    wait: u32,
+    /// Number of the step from which bounds are tried again, and the number of steps that the last failure added.
+    resumes: u32,
     patience: u32,
 }
 
@@ -125,7 +125,9 @@ pub(crate) struct Tails<S, G: StateVector> {
     heights: S,
     time_height: f64,
     surfaces: PerSurface<Surface, G>,
-    /// What some gap depends on; the box bounds this.
+    /// Number of the last step.
+    number: u32,
+    /// Quantities that some gap depends on; the box bounds these.
     kept: Takes,
     /// The radii in use: 0 for low orders, 1 for high ones.
     ratio: usize,
@@ -153,7 +155,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         let unknown = Surface {
             bounds: [None; LEVELS.len()],
             takes: None,
-            wait: 0,
+            resumes: 0,
             patience: 0,
         };
         let zeros = state.zeroed();
@@ -162,6 +164,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
             heights: zeros,
             time_height: 0.0,
             surfaces: PerSurface::all(gaps, unknown),
+            number: 0,
             kept: Takes::NOTHING,
             ratio: 0,
             radii: zeros,
@@ -185,19 +188,24 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         }
     }
 
-    /// True if bounds for a surface were useless, and are not tried in this step.
+    /// Counts a step.
     #[inline]
-    pub(crate) fn skips(&mut self, surface: usize) -> bool {
-        let known = &mut self.surfaces[surface];
-        let skips = known.wait > 0;
-        known.wait = known.wait.saturating_sub(1);
-        skips
+    pub(crate) fn count(&mut self) {
+        self.number = self.number.wrapping_add(1);
     }
 
-    /// True unless some bounds were useless of late.
+    /// True if bounds for a surface were useless, and are not tried in this step.
+    #[inline]
+    pub(crate) fn skips(&self, surface: usize) -> bool {
+        let left = self.surfaces[surface].resumes.wrapping_sub(self.number);
+        // Behind that step the difference wraps.
+        left != 0 && left <= MOST_PATIENCE
+    }
+
+    /// True if no surface is skipped.
     #[inline]
     pub(crate) fn is_useful(&self) -> bool {
-        self.surfaces.iter().all(|surface| surface.wait == 0)
+        (0..self.surfaces.count()).all(|surface| !self.skips(surface))
     }
 
     /// Sets the step, and extends the box to contain it.
@@ -288,7 +296,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
     pub(crate) fn postpone(&mut self, surface: usize) {
         let known = &mut self.surfaces[surface];
         known.patience = (4 * known.patience + 3).min(MOST_PATIENCE);
-        known.wait = known.patience;
+        known.resumes = self.number.wrapping_add(known.patience);
     }
 
     /// The estimate with the box as it is.
@@ -461,7 +469,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
     }
 }
 
-/// What a gap depends on.
+/// The quantities that a gap depends on.
 fn taken<S: StateVector>(gap: Gap<'_>, path: &Path<S>) -> Takes {
     let positions = Cell::new(0_u64);
     let component = |i: usize| {

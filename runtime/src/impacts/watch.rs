@@ -381,6 +381,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
         (self.proposed, self.behind) = (None, None);
+        self.tails.count();
         self.steps = self.steps.saturating_add(1);
         self.errors += step.stepper.error();
         self.sizes_at_start = self.sizes;

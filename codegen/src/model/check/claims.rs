@@ -90,27 +90,7 @@ impl Resolver<'_> {
                 value,
                 under,
                 holds,
-            } => {
-                let expr = self.quantity(value)?;
-                self.forbid_inputs(value, &Scope::default(), expr)?;
-                self.check_periodic(&[value], &Scope::default(), expr);
-                let (under, across) = match under {
-                    Some(declared) => {
-                        let surface = self.surface(declared, surfaces)?;
-                        let name = &surfaces[surface].name.display;
-                        self.check_known_behind(value, expr, &surfaces[surface])?;
-                        (Some(surface), format!(" under {name}"))
-                    }
-                    None => (None, String::new()),
-                };
-                let not = if *holds { "" } else { "not " };
-                let statement = Statement::Conserved {
-                    value: expr,
-                    under,
-                    holds: *holds,
-                };
-                (statement, format!("{not}conserved{across}: {value}"))
-            }
+            } => self.conserved(value, under.as_ref(), *holds, surfaces)?,
             spec::Statement::Invariant(written) => {
                 let form = self.invariant_form(written)?;
                 (Statement::Invariant(form), format!("invariant: {written}"))
@@ -120,34 +100,10 @@ impl Resolver<'_> {
                 let text = format!("involution: {}", listed_as_written(&functions));
                 (Statement::Involution(functions), text)
             }
-            spec::Statement::Integrable(written) => {
-                let functions = self.functions(written)?;
-                for (value, function) in written.iter().zip(&functions) {
-                    self.check_periodic(&[value], &Scope::default(), function.value);
-                }
-                self.check_count(written)?;
-                let text = format!("integrable: {}", listed_as_written(&functions));
-                (Statement::Integrable(functions), text)
-            }
+            spec::Statement::Integrable(written) => self.integrable(written)?,
             spec::Statement::VolumeKept => (Statement::VolumeKept, "volume: kept".to_owned()),
             spec::Statement::Symplectic => (Statement::Symplectic, "symplectic".to_owned()),
-            spec::Statement::Factor { under, value } => {
-                let expr = self.quantity(value)?;
-                self.check_periodic(&[value], &Scope::default(), expr);
-                let surface = self.surface(under, surfaces)?;
-                let is_negative =
-                    !self.pool.is_syntactic_zero(expr) && self.pool.sign(expr).is_nonpositive();
-                if is_negative {
-                    let text = format!("`{value}` is not positive anywhere");
-                    return self.refuse(value.at, text, "volumes are counted without a sign");
-                }
-                let name = &surfaces[surface].name.display;
-                let statement = Statement::Factor {
-                    value: expr,
-                    under: surface,
-                };
-                (statement, format!("density under {name}: factor = {value}"))
-            }
+            spec::Statement::Factor { under, value } => self.factor(under, value, surfaces)?,
             spec::Statement::EnergyNotIncreasing(under) => {
                 let surface = self.surface(under, surfaces)?;
                 let name = &surfaces[surface].name.display;
@@ -162,6 +118,67 @@ impl Resolver<'_> {
                 )
             }
         })
+    }
+
+    fn conserved(
+        &mut self,
+        value: &spec::Scalar,
+        under: Option<&spec::Declared>,
+        holds: bool,
+        surfaces: &[Surface],
+    ) -> Option<(Statement, String)> {
+        let expr = self.quantity(value)?;
+        self.forbid_inputs(value, &Scope::default(), expr)?;
+        self.check_periodic(&[value], &Scope::default(), expr);
+        let (under, across) = match under {
+            Some(declared) => {
+                let surface = self.surface(declared, surfaces)?;
+                let name = &surfaces[surface].name.display;
+                self.check_known_behind(value, expr, &surfaces[surface])?;
+                (Some(surface), format!(" under {name}"))
+            }
+            None => (None, String::new()),
+        };
+        let not = if holds { "" } else { "not " };
+        let statement = Statement::Conserved {
+            value: expr,
+            under,
+            holds,
+        };
+        Some((statement, format!("{not}conserved{across}: {value}")))
+    }
+
+    fn integrable(&mut self, written: &[spec::Scalar]) -> Option<(Statement, String)> {
+        let functions = self.functions(written)?;
+        for (value, function) in written.iter().zip(&functions) {
+            self.check_periodic(&[value], &Scope::default(), function.value);
+        }
+        self.check_count(written)?;
+        let text = format!("integrable: {}", listed_as_written(&functions));
+        Some((Statement::Integrable(functions), text))
+    }
+
+    fn factor(
+        &mut self,
+        under: &spec::Declared,
+        value: &spec::Scalar,
+        surfaces: &[Surface],
+    ) -> Option<(Statement, String)> {
+        let expr = self.quantity(value)?;
+        self.check_periodic(&[value], &Scope::default(), expr);
+        let surface = self.surface(under, surfaces)?;
+        let is_negative =
+            !self.pool.is_syntactic_zero(expr) && self.pool.sign(expr).is_nonpositive();
+        if is_negative {
+            let text = format!("`{value}` is not positive anywhere");
+            return self.refuse(value.at, text, "volumes are counted without a sign");
+        }
+        let name = &surfaces[surface].name.display;
+        let statement = Statement::Factor {
+            value: expr,
+            under: surface,
+        };
+        Some((statement, format!("density under {name}: factor = {value}")))
     }
 
     /// Refuses a quantity for which the mode behind a transition has no name.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::ValueParser;
 
-use super::{ModelArgs, PolicyArgs, law_help};
+use super::{ModelArgs, SeriesArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
@@ -71,15 +71,9 @@ pub struct ConnectArgs {
     /// Look for the envelope of the motions too: the conjugate points of N starts in each direction, with one unknown.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub envelope: Option<u32>,
-    /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.
-    #[arg(long, value_name = "X", default_value = "1e-14", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
-    pub tol: f64,
-    /// Laws in place of the declared ones.
-    #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
-    pub law: Vec<String>,
-    /// Treatment of impacts after which the law alone does not determine the motion.
+    /// The motion.
     #[command(flatten)]
-    pub policies: PolicyArgs,
+    pub series: SeriesArgs,
     /// Write a table with a row for each motion. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::ValueParser;
 
-use super::{ModelArgs, PolicyArgs, StateArgs, law_help};
+use super::{ModelArgs, SeriesArgs, StateArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
@@ -50,15 +50,9 @@ pub struct OrbitArgs {
     /// Largest time of the orbit. Default: 3600, or the model's `until` if that is longer.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.
-    #[arg(long, value_name = "X", default_value = "1e-14", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
-    pub tol: f64,
-    /// Laws in place of the declared ones.
-    #[arg(long, value_name = "[SURFACE=]LAW[:E]", help = law_help())]
-    pub law: Vec<String>,
-    /// Treatment of impacts after which the law alone does not determine the motion.
+    /// The motion.
     #[command(flatten)]
-    pub policies: PolicyArgs,
+    pub series: SeriesArgs,
     /// Continuation.
     #[command(flatten)]
     pub branch: BranchArgs,

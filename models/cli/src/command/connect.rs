@@ -5,7 +5,6 @@ mod film;
 mod spreadsheet;
 mod summary;
 
-use dalembert::Tolerance;
 use dalembert::describe::Description;
 use dalembert_driver::{AnyModel, Boundary, Connected, Unjoined};
 
@@ -205,16 +204,15 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
             "a coordinate, NAME=VALUE",
         ));
     }
-    let tolerance = Tolerance::new(args.tol)
-        .map_err(|error| CliError::value("--tol", args.tol.to_string(), error.to_string()))?;
+    let tolerance = args.series.tolerance()?;
     Ok(Boundary {
         from: start(model, args)?,
         to,
         time: args.time,
         impacts,
         tolerance,
-        laws: run_request::laws(model, &args.law)?,
-        policies: args.policies.policies(),
+        laws: run_request::laws(model, &args.series.law)?,
+        policies: args.series.policies.policies(),
         directions: args.starts.map(|count| count as usize),
         seed: args.seed,
         kinetic: args.energy,

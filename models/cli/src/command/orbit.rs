@@ -4,7 +4,7 @@ pub mod branch;
 mod document;
 mod summary;
 
-use dalembert::{OrbitError, Tolerance};
+use dalembert::OrbitError;
 use dalembert_driver::{AnyModel, OffConstraint, Refusal, Search};
 
 use crate::args::OrbitArgs;
@@ -106,14 +106,13 @@ fn search(model: &dyn AnyModel, args: &OrbitArgs) -> Result<Search, CliError> {
     let surface = names::find("--surface", "surface", &args.surface, surfaces)?;
     let until = model.initial().until.unwrap_or(0.0);
     let horizon = args.until.unwrap_or(until.max(HORIZON));
-    let tolerance = Tolerance::new(args.tol)
-        .map_err(|error| CliError::value("--tol", args.tol.to_string(), error.to_string()))?;
+    let tolerance = args.series.tolerance()?;
     Ok(Search {
         surface,
         returns: args.period,
         horizon,
         tolerance,
-        laws: run_request::laws(model, &args.law)?,
-        policies: args.policies.policies(),
+        laws: run_request::laws(model, &args.series.law)?,
+        policies: args.series.policies.policies(),
     })
 }

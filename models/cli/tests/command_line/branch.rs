@@ -425,7 +425,7 @@ fn unusable_flags_are_refused() {
     refused(&with("r=1..inf"), "expected a finite number");
     refused(&with("r=1..2:5"), "expected a finite number");
     refused(
-        &with("r=2..3 --axis z --plot /tmp/none.svg"),
+        &with("r=2..3 --axis z --plot none.svg"),
         "--axis: unknown quantity `z`",
     );
     refused(&with("r=2..3 --plot none.png"), "ends in .svg");

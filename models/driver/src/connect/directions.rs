@@ -54,7 +54,7 @@ fn at_random(dimension: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
     while directions.len() < count {
         let normal = |_| (-2.0 * (1.0 - next()).ln()).sqrt() * (TAU * next()).cos();
         let vector: Vec<f64> = (0..dimension).map(normal).collect();
-        let length = super::least_squares::norm(&vector);
+        let length = crate::linear::norm(&vector);
         if length > 0.0 {
             let unit: Vec<f64> = vector.iter().map(|value| value / length).collect();
             directions.push(unit.iter().map(|value| -value).collect());

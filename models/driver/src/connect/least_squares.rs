@@ -1,5 +1,7 @@
 //! Linear equations, square or overdetermined, by Householder reflections.
 
+use crate::linear::norm;
+
 /// Smallest pivot, as a fraction of the largest, that is not taken for 0.
 const SINGULAR: f64 = 1e-13;
 
@@ -41,45 +43,6 @@ pub(super) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
     x.iter().all(|value| value.is_finite()).then_some(x)
 }
 
-/// The determinant of a square matrix, by its columns.
-pub(super) fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
-    let n = columns.len();
-    let mut value = 1.0;
-    for k in 0..n {
-        let largest = (k..n).max_by(|&i, &j| columns[k][i].abs().total_cmp(&columns[k][j].abs()));
-        let row = largest.unwrap_or(k);
-        if row != k {
-            value = -value;
-            columns.iter_mut().for_each(|column| column.swap(k, row));
-        }
-        let pivot = columns[k][k];
-        value *= pivot;
-        if pivot == 0.0 {
-            return 0.0;
-        }
-        for j in k + 1..n {
-            let factor = columns[j][k] / pivot;
-            for i in k + 1..n {
-                let change = factor * columns[k][i];
-                columns[j][i] -= change;
-            }
-        }
-    }
-    value
-}
-
-/// The Euclidean length.
-pub(super) fn norm(values: &[f64]) -> f64 {
-    let largest = values
-        .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
-    if largest == 0.0 || !largest.is_finite() {
-        return largest;
-    }
-    let squares = values.iter().map(|value| (value / largest).powi(2));
-    largest * squares.sum::<f64>().sqrt()
-}
-
 /// Reflects a vector at the plane at right angles to `reflector`.
 fn reflect(reflector: &[f64], vector: &mut [f64]) {
     let square: f64 = reflector.iter().map(|value| value * value).sum();
@@ -101,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn solutions_and_determinants_of_small_systems() {
+    fn solutions_of_small_systems() {
         let columns = vec![vec![2.0, 1.0, 0.0], vec![-1.0, 3.0, 0.0]];
         let x = solve(&columns, &[0.0, 7.0, 5.0]).expect("a solution");
         assert!(
@@ -110,12 +73,5 @@ mod tests {
         );
         assert_eq!(solve(&[vec![1.0, 1.0], vec![2.0, 2.0]], &[1.0, 0.0]), None);
         assert_eq!(solve(&columns, &[1.0]), None);
-        let square = vec![
-            vec![0.0, 3.0, 1.0],
-            vec![2.0, 1.0, 0.0],
-            vec![1.0, 0.0, 4.0],
-        ];
-        assert!((determinant(square) + 25.0).abs() < 1e-14);
-        assert_eq!(determinant(vec![vec![1.0, 2.0], vec![2.0, 4.0]]), 0.0);
     }
 }

@@ -1,7 +1,7 @@
 //! Starts along a ray of the space of unknowns, from rest on, with every change of their sequence of impacts.
 
-use super::least_squares::norm;
 use super::shooter::{Aim, Course, Shot};
+use crate::linear::norm;
 
 /// A start on a ray.
 #[derive(Debug, Clone)]
@@ -97,7 +97,7 @@ pub(super) fn ray(
 /// Number of quiet doublings after which faster starts lead away from the end.
 const QUIET: u32 = 5;
 
-/// What the last doublings of the speed of a ray have shown.
+/// Record of the last doublings of the speed of a ray.
 #[derive(Debug, Default)]
 struct Doublings {
     /// Number of the last of them along which the sequence of impacts stayed and the miss grew.

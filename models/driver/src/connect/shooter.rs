@@ -11,10 +11,10 @@ use dalembert::{
 };
 
 use super::conjugate::{self, Mark};
-use super::least_squares::determinant;
 use super::observers::{Determinants, Film, Marksman, Stand};
 use super::units::{Units, unit, units};
 use super::{Boundary, Conjugate, Connection, Unjoined};
+use crate::linear::determinant;
 use crate::model::Point;
 use crate::refusal::Refusal;
 use crate::typed::{point, vector};
@@ -53,7 +53,7 @@ pub(super) struct Shot {
     pub slopes: Vec<Vec<f64>>,
 }
 
-/// What a search asks about a model, for any type of system.
+/// Questions of a search about a model, for any type of system.
 pub(super) trait Aim {
     /// The motion from these unknowns, with derivatives if `with_slopes`.
     fn shoot(&mut self, w: &[f64], with_slopes: bool) -> Shot;

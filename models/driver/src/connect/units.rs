@@ -5,7 +5,7 @@ use dalembert::describe::Topology;
 use dalembert::{Instance, Scene, StateVector};
 
 use super::Boundary;
-use super::least_squares::norm;
+use crate::linear::norm;
 use crate::typed::vector;
 
 /// Units of the unknowns and of their size.

@@ -3,7 +3,8 @@
 use dalembert::{OrbitError, ParameterError};
 
 use super::Member;
-use super::linear::{Rotated, add, dot, norm};
+use super::rotated::Rotated;
+use crate::linear::{add, dot, norm};
 
 /// Members of a family over a parameter: the zeros of a map along a section.
 pub(crate) trait Family {

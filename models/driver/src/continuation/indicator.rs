@@ -1,8 +1,8 @@
 //! Test functions: numbers along a branch that change their sign at bifurcations.
 
 use super::family::Node;
-use super::linear::determinant;
 use super::{Bifurcation, Stability};
+use crate::linear::determinant;
 
 /// Distance from the unit circle at which multipliers count as lying on it.
 const ON_CIRCLE: f64 = 1e-6;

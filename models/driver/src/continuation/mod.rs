@@ -7,13 +7,13 @@
 //! | `trace` | pseudo-arclength continuation with steps adapted to the branch |
 //! | `indicator` | test functions of bifurcations |
 //! | `locate` | the places where they are 0 |
-//! | `linear` | linear equations with more unknowns than equations |
+//! | `rotated` | linear equations with more unknowns than equations |
 
 pub(crate) mod family;
 mod indicator;
-mod linear;
 mod locate;
 pub(crate) mod orbits;
+mod rotated;
 pub(crate) mod trace;
 
 use dalembert::{OrbitError, ParameterError};

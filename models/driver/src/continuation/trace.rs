@@ -6,9 +6,9 @@
 
 use super::family::{Failure, Family, Local, Node, Unknowns};
 use super::indicator::is_degenerate;
-use super::linear::{dot, norm};
 use super::locate::{Located, arc};
 use super::{Branch, BranchEnd, Continuation, Member};
+use crate::linear::{dot, norm};
 
 /// First, largest and smallest length of a step.
 const FIRST: f64 = 0.01;

@@ -114,6 +114,7 @@ fn missing_terms_are_within_their_bounds() {
             let mut terms = [One::zeros(); LENGTH];
             (terms[0], terms[1]) = (One::new(x), One::new(way));
             let path = Path::of(&terms[..=order], 1.0);
+            tails.count();
             tails.follow(&path);
             let (missed, size) = truncated(known, [x, way], order);
             if tails.skips(0) {

@@ -54,7 +54,7 @@ fn path(
     let settings = Settings {
         form: form.unwrap_or(Form::Global),
         integrator: Integrator::Taylor,
-        tol: args.tol,
+        tol: args.series.tol,
         step: None,
         max_step: None,
         steps: None,

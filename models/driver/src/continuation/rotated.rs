@@ -1,6 +1,8 @@
 //! Linear equations with more unknowns than equations: least solutions and kernels, by one-sided Jacobi rotations
 //! (Hestenes). A matrix is a list of columns.
 
+use crate::linear::{add, dot};
+
 /// Singular values below this share of the largest, or of 1, count as 0.
 const RANK: f64 = 1e-7;
 
@@ -75,33 +77,6 @@ impl Rotated {
     }
 }
 
-/// The determinant of a square matrix, by elimination.
-pub(super) fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
-    let size = columns.len();
-    let mut product = 1.0;
-    for step in 0..size {
-        let largest = |a: &usize, b: &usize| {
-            let entry = |column: usize| f64::abs(columns[column][step]);
-            entry(*a).total_cmp(&entry(*b))
-        };
-        let pivot = (step..size).max_by(largest).unwrap_or(step);
-        if columns[pivot][step] == 0.0 {
-            return 0.0;
-        }
-        if pivot != step {
-            columns.swap(pivot, step);
-            product = -product;
-        }
-        let leading = columns[step].clone();
-        product *= leading[step];
-        for column in &mut columns[step + 1..] {
-            let factor = column[step] / leading[step];
-            add(column, -factor, &leading);
-        }
-    }
-    product
-}
-
 /// Rotates two columns by the angle with this cosine and sine.
 fn turn(columns: &mut [Vec<f64>], [i, j]: [usize; 2], [cosine, sine]: [f64; 2]) {
     for k in 0..columns[i].len() {
@@ -117,29 +92,14 @@ fn unit(size: usize, index: usize) -> Vec<f64> {
     vector
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
 fn square(a: &[f64]) -> f64 {
     dot(a, a)
-}
-
-/// The length of a vector.
-pub(super) fn norm(a: &[f64]) -> f64 {
-    square(a).sqrt()
-}
-
-/// Adds `factor * direction`.
-pub(super) fn add(sum: &mut [f64], factor: f64, direction: &[f64]) {
-    for (entry, component) in sum.iter_mut().zip(direction) {
-        *entry += factor * component;
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::norm;
 
     #[test]
     fn the_shortest_solution_lies_at_right_angles_to_the_kernel() {
@@ -153,18 +113,5 @@ mod tests {
         assert_eq!(kernel.len(), 1);
         assert!(dot(kernel[0], &solution).abs() < 1e-14);
         assert!((norm(kernel[0]) - 1.0).abs() < 1e-14);
-    }
-
-    #[test]
-    fn determinants_of_products_and_of_swapped_columns() {
-        let matrix = vec![
-            vec![0.0, 2.0, 1.0],
-            vec![3.0, 1.0, 0.0],
-            vec![1.0, 1.0, 4.0],
-        ];
-        assert!((determinant(matrix.clone()) + 22.0).abs() < 1e-13);
-        let swapped = vec![matrix[1].clone(), matrix[0].clone(), matrix[2].clone()];
-        assert!((determinant(swapped) - 22.0).abs() < 1e-13);
-        assert_eq!(determinant(vec![vec![1.0, 2.0], vec![2.0, 4.0]]), 0.0);
     }
 }
