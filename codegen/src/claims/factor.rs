@@ -4,6 +4,7 @@ use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
 
 use super::passage::{Passage, Velocities};
 use super::potential::factor_text;
+use crate::mechanics::inverse::determinant;
 use crate::model::Model;
 
 /// Rows of determinants that are expanded.
@@ -87,29 +88,4 @@ fn quotient(pool: &mut Pool, left: ExprId, right: ExprId, symbols: &[SymbolId]) 
         let is_it = !pool.depends_on_any(ratio, symbols) && pool.zero_test(rest) == Zero::Proved;
         is_it.then_some(ratio)
     })
-}
-
-/// The determinant of the first rows in these columns, by its first row; that of no rows is 1.
-fn determinant(pool: &mut Pool, rows: &[Vec<ExprId>], columns: &[usize]) -> ExprId {
-    let Some((first, others)) = rows.split_first() else {
-        return pool.one();
-    };
-    let mut total = pool.zero();
-    for (place, &column) in columns.iter().enumerate() {
-        if pool.is_syntactic_zero(first[column]) {
-            continue;
-        }
-        let rest: Vec<usize> = columns
-            .iter()
-            .copied()
-            .filter(|&other| other != column)
-            .collect();
-        let minor = determinant(pool, others, &rest);
-        let term = pool.mul(first[column], minor);
-        total = match place % 2 {
-            0 => pool.add(total, term),
-            _ => pool.sub(total, term),
-        };
-    }
-    total
 }

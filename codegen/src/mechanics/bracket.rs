@@ -18,7 +18,7 @@
 use dalembert_expr::{Assumption, ExprId, Pool, Rational, SymbolId, Verdict};
 
 use super::energy::total_energy;
-use super::inverse::{Matrix, dot, independent_minor, inverse, tidy};
+use super::inverse::{Matrix, NoMinor, dot, independent_minor, inverse, tidy};
 use super::{Derivation, Frame};
 use crate::model::Model;
 
@@ -31,6 +31,10 @@ pub enum NoBracket {
     Nonlinear,
     /// A matrix that is not inverted by minors.
     TooLarge,
+    /// Constraints that depend on each other.
+    Dependent,
+    /// Constraints that are not known to be independent, nor to depend on each other.
+    Undecided,
 }
 
 impl NoBracket {
@@ -44,6 +48,19 @@ impl NoBracket {
             Self::TooLarge => {
                 "the metric or the constraints couple more than four velocities: the bracket is not written out"
             }
+            Self::Dependent => "constraints that depend on each other have no bracket here",
+            Self::Undecided => {
+                "the constraints are not known to be independent: the bracket is not written out"
+            }
+        }
+    }
+}
+
+impl From<NoMinor> for NoBracket {
+    fn from(reason: NoMinor) -> Self {
+        match reason {
+            NoMinor::TooLarge => Self::TooLarge,
+            NoMinor::Undecided => Self::Undecided,
         }
     }
 }
@@ -313,7 +330,7 @@ pub(crate) fn frame_of_d(
     if let Some(frame) = known {
         return Ok(frame);
     }
-    let velocities = of_velocities(model).ok_or(NoBracket::TooLarge)?;
+    let velocities = of_velocities(model)?;
     let turned = match (&derivation.frame, model.constraints.is_empty()) {
         (Ok(frame), false) => turned(model, &velocities, frame),
         _ => None,
@@ -409,8 +426,8 @@ fn of_motion(model: &mut Model, frame: &Frame) -> Option<FrameOfD> {
     })
 }
 
-/// A frame of as many velocities as are independent; `None` if the constraints couple too many.
-fn of_velocities(model: &mut Model) -> Option<FrameOfD> {
+/// A frame of as many velocities as are independent.
+fn of_velocities(model: &mut Model) -> Result<FrameOfD, NoBracket> {
     let n = model.coordinates.len();
     let forms: Matrix = (model.constraints.iter())
         .map(|constraint| constraint.form.clone())
@@ -424,11 +441,11 @@ fn of_velocities(model: &mut Model) -> Option<FrameOfD> {
     let pool = &mut model.pool;
     let (rows, dependent) = independent_minor(pool, &forms)?;
     if rows.len() < forms.len() {
-        return None;
+        return Err(NoBracket::Dependent);
     }
     let select = |row: &Vec<ExprId>| dependent.iter().map(|j| row[*j]).collect();
     let minor: Matrix = forms.iter().map(select).collect();
-    let solved = inverse(pool, &minor)?;
+    let solved = inverse(pool, &minor).ok_or(NoBracket::TooLarge)?;
     let independent: Vec<usize> = (0..n).filter(|i| !dependent.contains(i)).collect();
     let mut fields = vec![vec![pool.zero(); n]; independent.len()];
     let mut drift = vec![pool.zero(); n];
@@ -451,7 +468,7 @@ fn of_velocities(model: &mut Model) -> Option<FrameOfD> {
         let sum = dot(pool, &column, &free);
         (velocities[k], pool.add(drift[k], sum))
     });
-    Some(FrameOfD {
+    Ok(FrameOfD {
         velocity: velocity.collect(),
         fields,
         u,

@@ -94,50 +94,76 @@ fn blocks(pool: &Pool, matrix: &[Vec<ExprId>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// The determinant of some rows and columns, by the first row.
+/// The determinant of some rows and columns, every step of it tidied.
 pub(crate) fn minor(
     pool: &mut Pool,
     matrix: &[Vec<ExprId>],
     rows: &[usize],
     columns: &[usize],
 ) -> ExprId {
+    by_first_row(pool, matrix, rows, columns, tidy)
+}
+
+/// The determinant of the first rows in these columns, as it comes; that of no columns is 1.
+pub(crate) fn determinant(pool: &mut Pool, matrix: &[Vec<ExprId>], columns: &[usize]) -> ExprId {
+    let rows: Vec<usize> = (0..columns.len()).collect();
+    by_first_row(pool, matrix, &rows, columns, |_, sum| sum)
+}
+
+/// The determinant of some rows and columns, expanded by the first row; `finish` is applied to every sum.
+fn by_first_row(
+    pool: &mut Pool,
+    matrix: &[Vec<ExprId>],
+    rows: &[usize],
+    columns: &[usize],
+    finish: fn(&mut Pool, ExprId) -> ExprId,
+) -> ExprId {
     let Some((row, rest)) = rows.split_first() else {
         return pool.one();
     };
     let mut terms = Vec::new();
-    for (position, column) in columns.iter().enumerate() {
-        if pool.is_syntactic_zero(matrix[*row][*column]) {
+    for (place, &column) in columns.iter().enumerate() {
+        let entry = matrix[*row][column];
+        if pool.is_syntactic_zero(entry) {
             continue;
         }
-        let others: Vec<usize> = columns
-            .iter()
-            .copied()
-            .filter(|other| other != column)
-            .collect();
-        let below = minor(pool, matrix, rest, &others);
-        let product = pool.mul(matrix[*row][*column], below);
-        terms.push(match position % 2 {
+        let others: Vec<usize> = columns.iter().copied().filter(|j| *j != column).collect();
+        let below = by_first_row(pool, matrix, rest, &others, finish);
+        let product = pool.mul(entry, below);
+        terms.push(match place % 2 {
             0 => product,
             _ => pool.neg(product),
         });
     }
     let sum = pool.sum(&terms);
-    tidy(pool, sum)
+    finish(pool, sum)
+}
+
+/// Reason for which rows are not told to be independent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NoMinor {
+    /// Determinants that are too large to be written out.
+    TooLarge,
+    /// A determinant that is not known to be 0, nor to be another.
+    Undecided,
 }
 
 /// As many rows as are independent, and columns in which they have a determinant that is not 0 identically, as far as possible one that is
-/// 0 nowhere. `None` if determinants are too large to be written out.
+/// 0 nowhere.
+///
+/// # Errors
+/// [`NoMinor`].
 pub(crate) fn independent_minor(
     pool: &mut Pool,
     rows: &[Vec<ExprId>],
-) -> Option<(Vec<usize>, Vec<usize>)> {
+) -> Result<(Vec<usize>, Vec<usize>), NoMinor> {
     /// Rows beyond which no determinant is written out.
     const LARGEST: usize = 6;
     let (mut chosen, mut columns) = (Vec::new(), Vec::new());
     let width = rows.first().map_or(0, Vec::len);
     for row in 0..rows.len() {
         let above = [&*chosen, &[row]].concat();
-        let mut found = None;
+        let (mut found, mut is_decided) = (None, true);
         for column in (0..width).rev().filter(|j| !columns.contains(j)) {
             let together = [&*columns, &[column]].concat();
             let determinant = minor(pool, rows, &above, &together);
@@ -145,16 +171,21 @@ pub(crate) fn independent_minor(
                 found = Some(column);
                 break;
             }
-            if found.is_none() && pool.zero_test(determinant) == Verdict::Refuted {
-                found = Some(column);
+            match pool.zero_test(determinant) {
+                Verdict::Proved => {}
+                Verdict::Refuted => found = found.or(Some(column)),
+                Verdict::Undecided => is_decided = false,
             }
+        }
+        if found.is_none() && !is_decided {
+            return Err(NoMinor::Undecided);
         }
         if let Some(column) = found {
             (chosen, columns) = (above, [&*columns, &[column]].concat());
         }
         if chosen.len() > LARGEST {
-            return None;
+            return Err(NoMinor::TooLarge);
         }
     }
-    Some((chosen, columns))
+    Ok((chosen, columns))
 }

@@ -10,6 +10,7 @@ use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
 
 use super::ConstraintForm;
 use super::constraint::{never_zero, regular_minor};
+use super::inverse::{Matrix, determinant};
 
 /// Largest number of forms whose minors are all tested.
 const MINORS: usize = 3;
@@ -156,16 +157,17 @@ fn eliminate(pool: &mut Pool, rows: &mut Vec<Row>, (a, column): (usize, usize)) 
 
 /// True if the minors of the forms never vanish together.
 fn has_a_minor(pool: &mut Pool, rows: &[Row]) -> bool {
-    let columns = rows.first().map_or(0, |row| row.entries.len());
+    let rows: Matrix = rows.iter().map(|row| row.entries.clone()).collect();
+    let columns = rows.first().map_or(0, Vec::len);
     let mut minors = Vec::new();
     let mut chosen = Vec::new();
-    collect_minors(pool, rows, columns, &mut chosen, &mut minors);
+    collect_minors(pool, &rows, columns, &mut chosen, &mut minors);
     never_vanish_together(pool, &minors)
 }
 
 fn collect_minors(
     pool: &mut Pool,
-    rows: &[Row],
+    rows: &[Vec<ExprId>],
     columns: usize,
     chosen: &mut Vec<usize>,
     minors: &mut Vec<ExprId>,
@@ -180,24 +182,6 @@ fn collect_minors(
         collect_minors(pool, rows, columns, chosen, minors);
         chosen.pop();
     }
-}
-
-/// The determinant of these columns, by its first row.
-fn determinant(pool: &mut Pool, rows: &[Row], columns: &[usize]) -> ExprId {
-    let Some((first, below)) = rows.split_first() else {
-        return pool.one();
-    };
-    let mut terms = Vec::with_capacity(columns.len());
-    for (place, &column) in columns.iter().enumerate() {
-        if pool.is_syntactic_zero(first.entries[column]) {
-            continue;
-        }
-        let others: Vec<usize> = columns.iter().copied().filter(|j| *j != column).collect();
-        let minor = determinant(pool, below, &others);
-        let term = pool.mul(first.entries[column], minor);
-        terms.push(if place % 2 == 0 { term } else { pool.neg(term) });
-    }
-    pool.sum(&terms)
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@
 use dalembert_expr::{ExprId, Pool, Rational, SymbolId, Verdict};
 
 use super::bracket::{Bracket, NoBracket, commutator, derive_bracket, exterior, settled};
-use super::inverse::{Matrix, dot, independent_minor, inverse, tidy};
+use super::inverse::{Matrix, NoMinor, dot, independent_minor, inverse, tidy};
 use super::{Derivation, SurfaceForm};
 use crate::model::{Law, Model, Topology};
 
@@ -27,8 +27,21 @@ pub enum NoReduction {
     Dependent,
     /// The bracket of these two is no combination of the fields with constant factors.
     NotClosed(usize, usize),
+    /// The bracket of these two is not known to be such a combination, nor to be none.
+    Undecided(usize, usize),
+    /// The fields, or the constraints on them, are not known to be independent, nor to depend on each other.
+    UndecidedRank,
     /// A matrix that is not inverted by minors.
     TooLarge,
+}
+
+impl From<NoMinor> for NoReduction {
+    fn from(reason: NoMinor) -> Self {
+        match reason {
+            NoMinor::TooLarge => Self::TooLarge,
+            NoMinor::Undecided => Self::UndecidedRank,
+        }
+    }
 }
 
 /// Quantities of a reduction by a group.
@@ -140,7 +153,7 @@ fn structure(
     q: &[SymbolId],
     fields: &[Vec<ExprId>],
 ) -> Result<Vec<Matrix>, NoReduction> {
-    let (rows, columns) = independent_minor(pool, fields).ok_or(NoReduction::TooLarge)?;
+    let (rows, columns) = independent_minor(pool, fields)?;
     if rows.len() < fields.len() {
         return Err(NoReduction::Dependent);
     }
@@ -159,8 +172,10 @@ fn structure(
                 settled(pool, factor)
             });
             let factors: Vec<ExprId> = factors.collect();
-            if !is_combination(pool, q, &bracket, (&factors, fields)) {
-                return Err(NoReduction::NotClosed(b, a));
+            match combination(pool, q, &bracket, (&factors, fields)) {
+                Verdict::Proved => {}
+                Verdict::Refuted => return Err(NoReduction::NotClosed(b, a)),
+                Verdict::Undecided => return Err(NoReduction::Undecided(b, a)),
             }
             constants[b][a] = factors.iter().map(|factor| pool.neg(*factor)).collect();
             constants[a][b] = factors;
@@ -169,13 +184,13 @@ fn structure(
     Ok(constants)
 }
 
-/// True if a field is the combination of others with these factors, which are constant.
-fn is_combination(
+/// The claim that a field is the combination of others with these factors, and that the factors are constant.
+fn combination(
     pool: &mut Pool,
     q: &[SymbolId],
     field: &[ExprId],
     (factors, fields): (&[ExprId], &[Vec<ExprId>]),
-) -> bool {
+) -> Verdict {
     let mut rests = Vec::new();
     for factor in factors {
         rests.extend(q.iter().map(|symbol| pool.diff(*factor, *symbol)));
@@ -185,9 +200,13 @@ fn is_combination(
         let sum = dot(pool, factors, &column);
         rests.push(pool.sub(*entry, sum));
     }
-    rests
-        .into_iter()
-        .all(|rest| pool.zero_test(rest) == Verdict::Proved)
+    let verdicts: Vec<Verdict> = rests.into_iter().map(|rest| pool.zero_test(rest)).collect();
+    let any = |verdict| verdicts.contains(&verdict);
+    match (any(Verdict::Refuted), any(Verdict::Undecided)) {
+        (true, _) => Verdict::Refuted,
+        (false, true) => Verdict::Undecided,
+        (false, false) => Verdict::Proved,
+    }
 }
 
 /// Combinations of fields that forms annihilate, and true if the forms are independent on the fields.
@@ -199,7 +218,7 @@ fn kernel(
     let values: Matrix = (forms.iter())
         .map(|form| fields.iter().map(|field| dot(pool, form, field)).collect())
         .collect();
-    let (rows, columns) = independent_minor(pool, &values).ok_or(NoReduction::TooLarge)?;
+    let (rows, columns) = independent_minor(pool, &values)?;
     let minor: Matrix = (rows.iter())
         .map(|a| columns.iter().map(|b| values[*a][*b]).collect())
         .collect();

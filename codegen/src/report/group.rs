@@ -112,6 +112,17 @@ fn refusal(reason: &NoReduction, written: &[String]) -> ReportError {
             ),
             "add it to the list",
         ),
+        NoReduction::Undecided(a, b) => Asked::refusal(
+            format!(
+                "[{}, {}] is not known to be a combination of the fields with constant factors, nor to be none",
+                written[*a], written[*b]
+            ),
+            "write the fields without functions that have kinks or cancel",
+        ),
+        NoReduction::UndecidedRank => Asked::refusal(
+            "the fields, or the constraints on them, are not known to be independent, nor to depend on each other",
+            "write them without functions that have kinks or cancel",
+        ),
         NoReduction::TooLarge => Asked::refusal(
             "the inertia of the group couples more than four fields: it is not written out",
             "leave some of them out",
@@ -410,7 +421,7 @@ impl Group<'_> {
             let law = self.writer.model.law_text(s);
             let Some(jump) = jump else {
                 items.push(Item::Words(format!(
-                    "surface {surface}: {law}, no impulse along dh alone"
+                    "surface {surface}: {law}, not shown to give an impulse along dh alone"
                 )));
                 continue;
             };

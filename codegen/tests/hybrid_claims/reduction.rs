@@ -463,6 +463,12 @@ fn groups_are_printed_and_refused_with_the_reason() {
         let error = group(&source, None, fields).expect_err(fields).to_string();
         assert!(error.contains(expected), "{fields}: {error}");
     }
+    let plane = "pub Plane { coordinates { x; y; } parameters { m > 0 = 1; l > 0 = 1; } lagrangian = (dot(x)^2 + dot(y)^2)/2; }";
+    let fields = "partial(x), (ln(m*l) - ln(m) - ln(l))*partial(y)";
+    let error = group(plane, None, fields)
+        .expect_err("a zero that is not seen")
+        .to_string();
+    assert!(error.contains("are not known to be independent"), "{error}");
     let charged =
         "pub Charged { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 + x*dot(y); }";
     let error = group(charged, None, "partial(x)")
