@@ -63,6 +63,12 @@ OUTPUTS = {
         ["connect", "point_billiard", "--to", "x=0.5,y=0", "--time", "1", "--impacts", "1"],
         ["connect", "rolling_disk", "--to", "x=0.05,y=0.02", "--time", "1", "--energy", "1e-5"],
     ],
+    "linearise": [
+        ["linearise", "dimensionless_walker", "--trim"],
+        ["linearise", "rolling_disk", "--trim=turn", "--moving", "x,y,theta"],
+        ["linearise", "bouncing_ball", "--trim"],
+        ["linearise", "bouncing_ball", "--every", "0.5", "--samples", "2"],
+    ],
     "accuracy": [
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--wanted", "1e-6"],
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--integrator", "dopri5", "--wanted", "1e-30"],

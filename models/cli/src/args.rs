@@ -9,6 +9,7 @@ mod errata;
 mod file;
 mod gallery;
 mod help;
+mod linearise;
 mod map;
 mod orbit;
 mod rows;
@@ -29,6 +30,7 @@ pub use ensemble::EnsembleArgs;
 pub use errata::ErrataArgs;
 pub use file::{BuildArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
+pub use linearise::LineariseArgs;
 pub use map::MapArgs;
 pub use orbit::OrbitArgs;
 pub use rows::RowsArgs;
@@ -106,6 +108,13 @@ pub enum Command {
         after_help = connect::EXAMPLES
     )]
     Connect(Box<ConnectArgs>),
+    /// Linearise the equations of motion at a state, or at an equilibrium that is found first.
+    #[command(
+        help_template = help::TEMPLATE,
+        before_help = "Example: dalembert linearise double_pendulum --initial theta1=0.1,theta2=0.1 --trim",
+        after_help = linearise::EXAMPLES
+    )]
+    Linearise(Box<LineariseArgs>),
     /// Evaluate all derived quantities at given states.
     #[command(
         help_template = help::TEMPLATE,
@@ -168,6 +177,7 @@ impl Command {
             Self::Accuracy(args) => Some(&mut args.run.model),
             Self::Orbit(args) => Some(&mut args.model),
             Self::Connect(args) => Some(&mut args.model),
+            Self::Linearise(args) => Some(&mut args.model),
             Self::Eval(args) => Some(&mut args.model),
             _ => None,
         }

@@ -161,6 +161,7 @@ fn dispatch(
         Command::Accuracy(args) => command::accuracy::run(models, args, streams),
         Command::Orbit(args) => command::orbit::run(models, args, streams),
         Command::Connect(args) => command::connect::run(models, args, streams),
+        Command::Linearise(args) => command::linearise::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
         Command::Watch(args) => command::watch::run(catalogue, args, streams),
         Command::New(args) => command::new::run(args, streams),

@@ -78,7 +78,10 @@ fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
 }
 
 /// Holds an input at a value through a run.
-fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
+///
+/// # Errors
+/// An unknown input, or a value that is not a number.
+pub fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     const HELD: &str = "a constant number, such as 0.5 or -pi/2; inputs that depend on time or state are given in Rust, by                         `with_inputs`";
     let (name, value) = names::assignment("--input", text, "NAME=VALUE")?;
     let index = names::find("--input", "input", name, model.inputs().iter().copied())?;

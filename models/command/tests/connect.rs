@@ -3,8 +3,11 @@
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
 
-use dalembert_cli::{Exit, Streams};
+mod support;
+
+use dalembert_cli::Exit;
 use serde_json::Value;
+use support::{Done, run_on};
 
 /// A point in a rectangle whose walls take a part of the normal speed.
 const BOX: &str = "
@@ -53,34 +56,9 @@ const SHELF: &str = "
         impacts { floor: z >= 0; wall: 1 - x >= 0; }
     }";
 
-struct Done {
-    exit: Exit,
-    output: String,
-    errors: String,
-}
-
 /// Runs `connect` with this standard input.
 fn connect_on(input: &str, line: &str) -> Done {
     run_on(input, &format!("connect {line}"))
-}
-
-/// Runs a command with this standard input.
-fn run_on(input: &str, line: &str) -> Done {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut input.as_bytes(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = ["dalembert"].into_iter().chain(line.split_whitespace());
-    let exit = dalembert_command::catalogue().run_with(words, &mut streams);
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Done {
-        exit,
-        output: text(output),
-        errors: text(errors),
-    }
 }
 
 /// The motions of a document.

@@ -1,23 +1,18 @@
 //! The command `errata`: every computed value differs from the printed one, and is the value of the formula by hand.
 
+mod support;
+
 use std::f64::consts::PI;
 
-use dalembert_cli::{Exit, Streams};
+use dalembert_cli::Exit;
 use serde_json::Value;
+use support::run_words;
 
 fn run(words: &[&str]) -> (Exit, String) {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let exit = dalembert_command::catalogue().run_with(
-        ["dalembert", "errata"].iter().chain(words),
-        &mut Streams {
-            input: &mut &b""[..],
-            output: &mut output,
-            errors: &mut errors,
-            terminal: false,
-        },
-    );
-    assert!(errors.is_empty(), "{}", String::from_utf8_lossy(&errors));
-    (exit, String::from_utf8(output).expect("text"))
+    let words = ["errata"].into_iter().chain(words.iter().copied());
+    let done = run_words("", words);
+    assert!(done.errors.is_empty(), "{}", done.errors);
+    (done.exit, done.output)
 }
 
 /// Printed and right values by hand, in the order of the list; the right formulas are those of the page Errata.

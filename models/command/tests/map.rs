@@ -3,25 +3,17 @@
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
 
-use std::io;
+mod support;
 
-use dalembert_cli::{Exit, Streams};
+use dalembert_cli::Exit;
+use support::run_words;
 
 /// The rows of a map of the walker.
 fn rows(flags: &[&str]) -> Vec<Vec<String>> {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut io::empty(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let walk = "dalembert map dimensionless_walker --returns 50 --fail theta>pi/2 --csv -";
-    let line = walk.split(' ').chain(flags.iter().copied());
-    let exit = dalembert_command::catalogue().run_with(line, &mut streams);
-    assert_eq!(exit, Exit::Reached, "{}", String::from_utf8_lossy(&errors));
-    let lines = String::from_utf8(output).unwrap();
-    lines
+    let walk = "map dimensionless_walker --returns 50 --fail theta>pi/2 --csv -";
+    let done = run_words("", walk.split(' ').chain(flags.iter().copied()));
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    done.output
         .lines()
         .map(|line| line.split(',').map(str::to_owned).collect())
         .collect()

@@ -10,6 +10,7 @@
 //! | `continuation/` | branches of periodic orbits over a parameter, with their bifurcations |
 //! | `variation.rs` | derivatives of runs |
 //! | `connect/` | motions between two configurations |
+//! | `linearisation/` | equilibria, and linearised equations with inputs and outputs |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
 //! | `course.rs` | defaults of a run for values that its request leaves open |
@@ -31,6 +32,7 @@ pub mod drift;
 mod grid;
 mod integrator;
 mod linear;
+mod linearisation;
 mod model;
 pub mod names;
 mod orbit;
@@ -47,6 +49,9 @@ pub use connect::{Bounce, Boundary, Conjugate, Connected, Connection, Stage, Unj
 pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};
+pub use linearisation::{
+    Linearisation, Place, Sampling, Stride, Tendency, Trim, Unlinear, components,
+};
 pub use model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };

@@ -8,6 +8,7 @@ use crate::accuracy::{Plan, Study, Verified};
 use crate::certify::{Certification, Certified, Strike};
 use crate::connect::{Boundary, Connected, Stage, Unjoined};
 use crate::continuation::{Branch, Continuation, Member};
+use crate::linearisation::{Linearisation, Place, Unlinear};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{Ending, Settings, Watch};
@@ -232,6 +233,15 @@ pub trait Runs {
         boundary: &Boundary,
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Connected, Unjoined>>, Refusal>;
+    /// Linearises the equations of motion at this state, or at an equilibrium near it; `None` for a scene without variations.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a state that the system refuses. The inner error explains why there is no linearisation.
+    fn linearise(
+        &self,
+        origin: &Origin,
+        place: &Place,
+    ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

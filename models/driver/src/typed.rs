@@ -18,6 +18,7 @@ use crate::connect::{Boundary, Connected, Joiner, Stage, Unjoined};
 use crate::continuation::trace::Watch as BranchWatch;
 use crate::continuation::{Branch, Continuation};
 use crate::integrator::Form;
+use crate::linearisation::{Linearisation, Lineariser, Place, Unlinear};
 use crate::model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
@@ -470,6 +471,20 @@ impl<O: Owner> Runs for Typed<O> {
         let model = self.owner.system();
         let joiner = Joiner { boundary, tell };
         model.visit_variational(joiner).transpose()
+    }
+
+    fn linearise(
+        &self,
+        origin: &Origin,
+        place: &Place,
+    ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal> {
+        let model = self.owner.system();
+        let state = prepare(&model, &model, place.t, origin)?;
+        let q = model.position(&state);
+        let qdot = model.velocity(place.t, &state).map_err(StateError::from)?;
+        let given = [StateVector::as_slice(&q), StateVector::as_slice(&qdot)];
+        let lineariser = Lineariser { given, place };
+        model.visit_variational(lineariser).transpose()
     }
 
     fn certify(

@@ -178,6 +178,23 @@ pub trait Variational: TaylorField + System + Sized {
         }
     }
 
+    /// Writes the declared outputs, in order; `values` has their number of entries. An output that the mode does not have
+    /// stays as it is.
+    ///
+    /// # Errors
+    /// A [`Fault`] where an output does not exist. The default is that of a system without outputs:
+    /// [`Fault::NotDerived`].
+    fn declared_outputs<L: Numbers>(
+        &self,
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+        values: &mut [L],
+    ) -> Result<(), Fault> {
+        let _ = (parameters, t, state, values);
+        Err(Fault::NotDerived)
+    }
+
     /// The declared law of a surface, and its coefficient as a function of the parameters; 0 for a law without one.
     fn declared_law<L: Numbers>(
         &self,

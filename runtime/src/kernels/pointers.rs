@@ -34,7 +34,8 @@ impl KernelSet {
         .coefficient()
         .focus()
         .trace()
-        .reset();
+        .reset()
+        .outputs();
 
     /// Kernels needed for variations of a mode.
     pub const OF_TRANSITIONS: Self = Self::OF_VARIATIONS.nearest().energy().entry();

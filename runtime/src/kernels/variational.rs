@@ -453,6 +453,29 @@ impl<S: HasVariations> Variational for S {
         part.row_by(S::Kernels::motion, arguments, places).map(Some)
     }
 
+    fn declared_outputs<L: Numbers>(
+        &self,
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        state: &RowOf<S, L>,
+        values: &mut [L],
+    ) -> Result<(), Fault> {
+        let part = Part::of(self, state.as_slice());
+        let arguments = (parameters.as_slice(), t);
+        let places = [state.as_slice(), &[][..]];
+        let Some(mode) = part.mode() else {
+            return part.write_over(S::Kernels::outputs, arguments, places, values);
+        };
+        let counts = [mode.outputs.len(); 2];
+        let computed: S::Room<L> = part.row((S::Kernels::outputs, counts), arguments, places)?;
+        for (&place, output) in mode.outputs.iter().zip(computed.as_slice()) {
+            if let Some(value) = values.get_mut(place) {
+                *value = *output;
+            }
+        }
+        Ok(())
+    }
+
     fn declared_law<L: Numbers>(
         &self,
         parameters: &<S as TaylorField>::Parameters<L>,

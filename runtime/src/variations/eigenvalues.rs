@@ -171,12 +171,9 @@ impl<S: StateVector> Square<'_, S> {
     }
 }
 
-/// The eigenvalues of the leading square of this size, which is overwritten; `None` if they are not found, for
-/// example for an entry that is not finite.
-pub(super) fn eigenvalues<S: StateVector>(
-    columns: &mut [S],
-    size: usize,
-) -> Option<Multipliers<S>> {
+/// The eigenvalues of the leading square of this size of a matrix, by its columns, which are overwritten; `None` if they
+/// are not found, for example for an entry that is not finite.
+pub fn eigenvalues<S: StateVector>(columns: &mut [S], size: usize) -> Option<Multipliers<S>> {
     let mut found = Multipliers::<S>::none();
     let mut matrix = Square { columns, size };
     matrix.reduce();

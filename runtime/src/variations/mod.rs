@@ -30,6 +30,7 @@ mod growth;
 mod held;
 mod observer;
 pub mod orbit;
+mod rates;
 pub mod section;
 pub(crate) mod transition;
 
@@ -37,10 +38,11 @@ use core::fmt;
 
 pub use crate::contract::Tangent;
 pub use dual::{DIRECTIONS, Dual};
-pub use eigenvalues::Multipliers;
+pub use eigenvalues::{Multipliers, eigenvalues};
 pub use family::{Anchor, Image};
 pub use observer::Variations;
 pub use orbit::{Orbit, OrbitError};
+pub use rates::rates;
 pub use section::{Arrival, Itinerary, Section, SectionError};
 
 use crate::error::Fault;

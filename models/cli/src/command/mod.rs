@@ -9,6 +9,7 @@ pub mod ensemble;
 pub mod errata;
 pub mod eval;
 pub mod gallery;
+pub mod linearise;
 pub mod list;
 pub mod map;
 pub mod new;

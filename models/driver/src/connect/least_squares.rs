@@ -6,7 +6,7 @@ use crate::linear::norm;
 const SINGULAR: f64 = 1e-13;
 
 /// The vector with the least `|A x - b|`; `columns` are those of A. `None` if A is singular.
-pub(super) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
     let (rows, unknowns) = (b.len(), columns.len());
     if rows < unknowns {
         return None;

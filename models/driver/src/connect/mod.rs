@@ -20,7 +20,7 @@
 
 mod conjugate;
 mod directions;
-mod least_squares;
+pub(crate) mod least_squares;
 mod line;
 mod newton;
 mod observers;

@@ -1,0 +1,333 @@
+//! Linearised equations, equilibria and sampled motion against closed forms and differences, and flags that are refused.
+
+// A test may fail by panicking.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use dalembert_cli::Exit;
+use serde_json::Value;
+use support::{Done, run_on};
+
+/// A pole on a cart that a force pushes.
+const CART: &str = "
+    Cart {
+        coordinates { x; theta: angle; }
+        parameters { M > 0 = 2; m > 0 = 0.5; l > 0 = 0.8; g > 0 = 9.81; }
+        inputs { u; }
+        lagrangian = M*dot(x)^2/2
+            + m*((dot(x) + l*cos(theta)*dot(theta))^2 + (l*sin(theta)*dot(theta))^2)/2 - m*g*l*cos(theta);
+        forces { push: u*d(x); }
+        outputs { tip: x + l*sin(theta); speed: dot(x)^2; }
+    }";
+
+/// A charge on a turning table, with friction, a force that depends on time, and inputs.
+const CHARGE: &str = "
+    Charge {
+        coordinates { x; y; }
+        parameters { B = 0.7; k = 0.3; }
+        inputs { u; v; }
+        lagrangian = (1 + x^2)*(dot(x)^2 + dot(y)^2)/2 + B*x*y*dot(y) - x^2*y;
+        forces { drag: -k*dot(x)^3*d(x); wind: (u*x + v^2)*d(y) + sin(t)*d(x); }
+        outputs { spin: x*dot(y) - y*dot(x); }
+    }";
+
+/// A sleigh whose mass lies ahead of its knife edge.
+const SLEIGH: &str = "
+    Sleigh {
+        coordinates { x; y; theta: angle; }
+        parameters { m > 0 = 1.5; I > 0 = 0.4; a = 0.6; }
+        inputs { thrust; }
+        lagrangian = m*((dot(x) - a*sin(theta)*dot(theta))^2 + (dot(y) + a*cos(theta)*dot(theta))^2)/2 + I*dot(theta)^2/2;
+        constraints { edge: -sin(theta)*d(x) + cos(theta)*d(y) = 0; }
+        forces { push: thrust*(cos(theta)*d(x) + sin(theta)*d(y)); }
+        frame { v: cos(theta)*d(x) + sin(theta)*d(y); w: d(theta); }
+        initial { dot(x) = 2; }
+    }";
+
+/// A mass on a spring that a force pushes.
+const SPRING: &str = "
+    Spring {
+        coordinates { x; }
+        parameters { w > 0 = 1.3; }
+        inputs { u; }
+        lagrangian = dot(x)^2/2 - w^2*x^2/2;
+        forces { push: u*d(x); }
+        initial { x = 0.4; }
+    }";
+
+/// A ball above a floor that takes a part of its speed.
+const BALL: &str = "
+    Ball {
+        coordinates { x; }
+        parameters { g > 0 = 1; e in [0, 1] = 0.8; }
+        lagrangian = dot(x)^2/2 - g*x;
+        impacts { floor: x >= 0 => newton(e); }
+        initial { x = 2; }
+    }";
+
+fn linearise(input: &str, line: &str) -> Done {
+    run_on(input, &format!("linearise {line}"))
+}
+
+fn document(input: &str, line: &str) -> Value {
+    let done = linearise(input, &format!("{line} --json -"));
+    assert_eq!(done.exit, Exit::Reached, "{} {}", done.output, done.errors);
+    serde_json::from_str(&done.output).unwrap()
+}
+
+fn matrix(value: &Value) -> Vec<Vec<f64>> {
+    serde_json::from_value(value.clone()).unwrap()
+}
+
+fn assert_close(found: &Value, expected: &[&[f64]], bound: f64) {
+    let found = matrix(found);
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (row, expected) in found.iter().zip(expected) {
+        assert_eq!(row.len(), expected.len(), "{row:?}");
+        for (value, expected) in row.iter().zip(*expected) {
+            assert!((value - expected).abs() <= bound, "{found:?} {expected:?}");
+        }
+    }
+}
+
+/// By hand `x'' = (u - m g theta)/M`, `theta'' = ((M + m) g theta - u)/(M l)` near the upright pole.
+#[test]
+fn a_pole_on_a_cart_has_its_textbook_matrices() {
+    let found = document(CART, "- --trim");
+    let (m, l, g, big) = (0.5, 0.8, 9.81, 2.0);
+    let a: [&[f64]; 4] = [
+        &[0.0, 0.0, 1.0, 0.0],
+        &[0.0, 0.0, 0.0, 1.0],
+        &[0.0, -m * g / big, 0.0, 0.0],
+        &[0.0, (big + m) * g / (big * l), 0.0, 0.0],
+    ];
+    assert_close(&found["A"], &a, 1e-12);
+    assert_close(
+        &found["B"],
+        &[&[0.0], &[0.0], &[1.0 / big], &[-1.0 / (big * l)]],
+        1e-14,
+    );
+    assert_close(&found["C"], &[&[1.0, l, 0.0, 0.0], &[0.0; 4]], 1e-14);
+    assert_close(&found["D"], &[&[0.0], &[0.0]], 0.0);
+    assert_eq!(found["equilibrium"], true);
+    assert_eq!(found["stability"], "unstable");
+    let root = ((big + m) * g / (big * l)).sqrt();
+    let eigenvalues = matrix(&found["eigenvalues"]);
+    assert!(
+        eigenvalues.iter().any(|it| (it[0] - root).abs() < 1e-12),
+        "{eigenvalues:?}"
+    );
+}
+
+/// A force holds the pole aside while the cart accelerates: `a = g tan(theta)`, `u = (M + m) a`.
+#[test]
+fn only_what_is_free_changes_and_what_moves_may_move() {
+    let found = document(CART, "- --initial theta=3 --trim=u --moving x_dot,x");
+    let u = found["inputs"]["u"].as_f64().unwrap();
+    let acceleration = found["rates"]["x_dot"].as_f64().unwrap();
+    let theta = 3.0_f64;
+    assert_eq!(found["state"]["theta"], 3.0);
+    assert!(
+        (acceleration - 9.81 * theta.tan()).abs() < 1e-9,
+        "{acceleration}"
+    );
+    assert!((u - 2.5 * acceleration).abs() < 1e-9, "{u}");
+    let refused = linearise(CART, "- --initial theta=3 --trim=u --json -");
+    assert_eq!(refused.exit, Exit::Other);
+    let refused: Value = serde_json::from_str(&refused.output).unwrap();
+    assert_eq!(refused["outcome"]["kind"], "no_equilibrium");
+    let reason = refused["outcome"]["reason"].as_str().unwrap();
+    assert!(
+        reason.contains("no equilibrium was found: the rate of "),
+        "{reason}"
+    );
+}
+
+/// Central differences of the rates that `linearise` prints at states and inputs nearby.
+#[test]
+fn derivatives_are_those_of_the_rates() {
+    let line = |values: [f64; 6]| {
+        let [x, y, p, q, u, v] = values;
+        format!("- --at 0.4 --initial x={x},y={y},x_dot={p},y_dot={q} --input u={u} --input v={v}")
+    };
+    let at = [0.7, -0.4, 1.1, 0.3, 0.2, -0.5];
+    let found = document(CHARGE, &line(at));
+    let names = ["x", "y", "x_dot", "y_dot"];
+    let step = 1e-5;
+    for (variable, place) in (0..6).map(|k| (k, if k < 4 { k } else { k - 4 })) {
+        let [low, high] = [-step, step].map(|change| {
+            let mut values = at;
+            values[variable] += change;
+            document(CHARGE, &line(values))
+        });
+        let [state, outputs] = if variable < 4 { ["A", "C"] } else { ["B", "D"] };
+        let check = |matrix_name: &str, row: usize, quantity: &str, name: &str| {
+            let value = |it: &Value| it[quantity][name].as_f64().unwrap();
+            let difference = (value(&high) - value(&low)) / (2.0 * step);
+            let derivative = matrix(&found[matrix_name])[row][place];
+            assert!(
+                (derivative - difference).abs() < 1e-8,
+                "{matrix_name} {name}: {derivative} {difference}"
+            );
+        };
+        for (row, name) in names.iter().enumerate() {
+            check(state, row, "rates", name);
+        }
+        check(outputs, 0, "outputs", "spin");
+    }
+    // The rates are those of `eval`, which goes another way.
+    let state = r#"[{"t": 0.4, "q": [0.7, -0.4], "qdot": [1.1, 0.3], "inputs": [0.2, -0.5]}]"#;
+    let folder = std::env::temp_dir().join(format!("dalembert-linearise-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("charge.dal");
+    std::fs::write(&file, CHARGE).unwrap();
+    let evaluated = run_on(state, &format!("eval {}", file.display()));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let evaluated: Value = serde_json::from_str(&evaluated.output).unwrap();
+    for (index, name) in ["x_dot", "y_dot"].into_iter().enumerate() {
+        let acceleration = evaluated[0]["acceleration"][index].as_f64().unwrap();
+        let rate = found["rates"][name].as_f64().unwrap();
+        assert!(
+            (acceleration - rate).abs() < 1e-13,
+            "{name}: {acceleration} {rate}"
+        );
+    }
+}
+
+/// Steady sliding at speed `v`: `w' = -m a v w/(I + m a^2)`.
+#[test]
+fn a_steady_motion_of_a_sleigh_is_linearised_in_its_frame() {
+    let found = document(SLEIGH, "- --trim=w,thrust --moving x,y,theta");
+    let (m, inertia, a, v) = (1.5, 0.4, 0.6, 2.0);
+    let rate = -m * a * v / (inertia + m * a * a);
+    let rows = matrix(&found["A"]);
+    assert_eq!(rows.len(), 5);
+    assert!((rows[4][4] - rate).abs() < 1e-13, "{rows:?}");
+    assert!(rows[3].iter().all(|entry| entry.abs() < 1e-13), "{rows:?}");
+    assert_close(
+        &found["B"],
+        &[&[0.0], &[0.0], &[0.0], &[1.0 / m], &[0.0]],
+        1e-14,
+    );
+    assert_eq!(found["equilibrium"], true);
+}
+
+/// The equilibrium of a pendulum that a constraint holds on its circle lies on the circle.
+#[test]
+fn an_equilibrium_keeps_the_levels_of_constraints() {
+    let rod = "
+        Rod {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2 - 9*y;
+            constraints { rod: d(x^2 + y^2) = 0; }
+            frame { turn: x*d(y) - y*d(x); }
+            initial { x = 2.4; y = -0.7; }
+        }";
+    let found = document(rod, "- --trim");
+    let value = |name: &str| found["state"][name].as_f64().unwrap();
+    assert!(
+        value("x").abs() < 1e-9 && (value("y") + 2.5).abs() < 1e-9,
+        "{found}"
+    );
+    let frequency = (9.0_f64 / 2.5).sqrt();
+    let eigenvalues = matrix(&found["eigenvalues"]);
+    assert!(
+        eigenvalues
+            .iter()
+            .any(|it| (it[1] - frequency).abs() < 1e-9),
+        "{eigenvalues:?}"
+    );
+    assert_eq!(found["stability"], "undecided");
+}
+
+/// `Phi` and `Gamma` of an oscillator by its sine and cosine.
+#[test]
+fn a_sampled_oscillator_has_its_exact_matrices() {
+    let found = document(SPRING, "- --input u=0.3 --every 0.9 --samples 3");
+    let (w, h) = (1.3_f64, 0.9_f64);
+    let (sin, cos) = (w * h).sin_cos();
+    let samples = found["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 3);
+    for sample in samples {
+        assert_close(&sample["Phi"], &[&[cos, sin / w], &[-w * sin, cos]], 1e-13);
+        assert_close(
+            &sample["Gamma"],
+            &[&[(1.0 - cos) / (w * w)], &[sin / w]],
+            1e-13,
+        );
+    }
+    assert_eq!(samples[0]["next"], samples[1]["state"]);
+    assert_eq!(found["equilibrium"], false);
+    assert!(found["stability"].is_null());
+}
+
+/// A ball that falls from rest hits the floor at `sqrt(2 x/g)`; the derivatives of its motion afterwards by hand.
+#[test]
+fn samples_go_across_impacts() {
+    let found = document(BALL, "- --every 2.5 --samples 1");
+    let sample = &found["samples"][0];
+    assert_eq!(sample["impacts"], 1);
+    let (x, e, t) = (2.0_f64, 0.8, 2.5_f64);
+    // x(t) = s (t - T) - (t - T)^2/2 with s = e sqrt(v^2 + 2 x), T = v + sqrt(v^2 + 2 x), at v = 0.
+    let root = (2.0 * x).sqrt();
+    let (time, speed) = (root, e * root);
+    let (by_x, by_v) = ([1.0 / root, e / root], [1.0, 0.0]);
+    let left = t - time;
+    let position = |by: [f64; 2]| by[1] * left - speed * by[0] + left * by[0];
+    let velocity = |by: [f64; 2]| by[1] + by[0];
+    assert_close(
+        &sample["Phi"],
+        &[
+            &[position(by_x), position(by_v)],
+            &[velocity(by_x), velocity(by_v)],
+        ],
+        1e-12,
+    );
+    let next = matrix(&Value::Array(vec![sample["next"].clone()]));
+    assert!((next[0][0] - (speed * left - left * left / 2.0)).abs() < 1e-12);
+    // A motion that accumulates before the sample has no derivative.
+    let ended = linearise(BALL, "- --every 25 --samples 1");
+    assert_eq!(ended.exit, Exit::Other);
+    assert!(
+        ended.output.contains("the sampled motion ends at t = "),
+        "{}",
+        ended.output
+    );
+}
+
+#[test]
+fn the_summary_names_rows_and_columns() {
+    let done = linearise(CART, "- --trim --every 0.1 --samples 1");
+    for line in [
+        ", linearised at t = 0\n",
+        "  equilibrium yes\n",
+        "    d/dt theta_dot  0  15.328125000 ",
+        "  stability   unstable: 1 eigenvalue has a positive real part\n",
+        "  sample at t = 0.0, 0 impacts\n",
+        "  Gamma",
+    ] {
+        assert!(done.output.contains(line), "{line}: {}", done.output);
+    }
+}
+
+#[test]
+fn flags_that_make_no_sense_are_refused() {
+    let modes = "refracted_particle";
+    for (input, line, reason) in [
+        (CART, "- --trim=w", "unknown component or input `w`"),
+        (CART, "- --trim --moving u", "unknown component `u`"),
+        (CART, "- --moving x", "--trim"),
+        (CART, "- --every 1", "--samples"),
+        (CART, "- --input w=1", "unknown input `w`"),
+        ("", modes, "a model with modes has no linearisation here"),
+    ] {
+        let refused = linearise(input, line);
+        assert_eq!(refused.exit, Exit::Refused, "{line}: {}", refused.output);
+        assert!(
+            refused.errors.contains(reason),
+            "{line}: {}",
+            refused.errors
+        );
+    }
+}

@@ -1,0 +1,306 @@
+//! Linearisation of the equations of motion at a state, which may be an equilibrium that is found first.
+//!
+//! ```text
+//! d/dt y = A y + B u,   z = C y + D u       small deviations y of the state, u of the inputs, z of the outputs
+//! ```
+//!
+//! The state is `(q, qdot)` without constraints, positions and quasi-velocities with them, and the coordinates of a
+//! system of first order. All derivatives are exact to rounding.
+//!
+//! | file | job |
+//! |---|---|
+//! | `sample.rs` | the rates and the outputs at a state, with their derivatives |
+//! | `trim.rs` | an equilibrium near a state |
+//! | `sampled.rs` | the motion from one sample to the next, across impacts |
+
+mod sample;
+mod sampled;
+mod trim;
+
+use dalembert::contract::Variational;
+use dalembert::describe::{Description, VariationalVisitor};
+use dalembert::state::StateVector;
+use dalembert::variations::eigenvalues;
+use dalembert::{Fault, Instance, Outcome, Scene, Undefined};
+use thiserror::Error;
+
+use crate::names;
+use crate::refusal::Refusal;
+use sample::{Plant, Sample};
+pub use sampled::{Sampling, Stride};
+pub use trim::Trim;
+
+/// Largest rate of an equilibrium, as a fraction of the rates of its terms.
+const AT_REST: f64 = 1e-9;
+
+/// Largest real part that counts as 0, as a fraction of the largest entry of A.
+const NEUTRAL: f64 = 1e-9;
+
+/// Linearisation of a model at a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearisation {
+    /// The time.
+    pub t: f64,
+    /// The names of the components of the state, see [`components`].
+    pub components: Vec<String>,
+    /// The state.
+    pub state: Vec<f64>,
+    /// The values of the inputs.
+    pub inputs: Vec<f64>,
+    /// The rates of the state there.
+    pub rates: Vec<f64>,
+    /// The values of the outputs there.
+    pub outputs: Vec<f64>,
+    /// `A`, row by row: derivatives of the rates by the state.
+    pub a: Vec<Vec<f64>>,
+    /// `B`: derivatives of the rates by the inputs.
+    pub b: Vec<Vec<f64>>,
+    /// `C`: derivatives of the outputs by the state.
+    pub c: Vec<Vec<f64>>,
+    /// `D`: derivatives of the outputs by the inputs.
+    pub d: Vec<Vec<f64>>,
+    /// The eigenvalues of A, real and imaginary parts; `None` if they are not found.
+    pub eigenvalues: Option<Vec<[f64; 2]>>,
+    /// Indices of the components whose rates are not 0 up to rounding, without those of [`Trim::moving`].
+    pub unsteady: Vec<usize>,
+    /// Number of equations that keep the positions on the constraints: as many eigenvalues 0 belong to directions off them.
+    pub levels: usize,
+    /// Number of steps to the equilibrium; `None` if none was asked for.
+    pub steps: Option<u32>,
+    /// The sampled motion from this state on.
+    pub strides: Vec<Stride>,
+}
+
+/// Stability of an equilibrium, as far as its linearisation tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tendency {
+    /// All eigenvalues have negative real parts: small deviations decay.
+    Stable,
+    /// As many eigenvalues have positive real parts: some deviations grow.
+    Unstable(usize),
+    /// None has a positive real part, as many have the real part 0 up to rounding: the linearisation does not tell.
+    Neutral(usize),
+}
+
+impl Linearisation {
+    /// The stability that the eigenvalues show; `None` if the state is no equilibrium, or if they are not known.
+    pub fn tendency(&self) -> Option<Tendency> {
+        let eigenvalues = self
+            .eigenvalues
+            .as_ref()
+            .filter(|_| self.unsteady.is_empty())?;
+        let largest = largest(self.a.iter().flatten());
+        let count = |is_counted: &dyn Fn(f64) -> bool| {
+            let real = eigenvalues.iter().map(|[re, _]| *re);
+            real.filter(|re| is_counted(*re)).count()
+        };
+        let growing = count(&|re| re > NEUTRAL * largest);
+        // Eigenvalues of directions off the constraints are 0, and belong to no motion.
+        let neutral = count(&|re| re.abs() <= NEUTRAL * largest).saturating_sub(self.levels);
+        Some(match (growing, neutral) {
+            (0, 0) => Tendency::Stable,
+            (0, neutral) => Tendency::Neutral(neutral),
+            (growing, _) => Tendency::Unstable(growing),
+        })
+    }
+}
+
+/// Request for a linearisation.
+#[derive(Debug, Clone, Default)]
+pub struct Place {
+    /// The time, for equations that depend on it.
+    pub t: f64,
+    /// Search for an equilibrium, from the given state.
+    pub trim: Option<Trim>,
+    /// The sampled motion from there on.
+    pub sampling: Option<Sampling>,
+}
+
+/// Reasons for which there is no linearisation.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Unlinear {
+    /// The model has modes.
+    #[error("a model with modes has no linearisation here")]
+    Modes,
+    /// The motion is not reduced to the constraints.
+    #[error("the motion is not reduced to its constraints, so there are no independent velocities")]
+    Unreduced,
+    /// A rate, an output or a derivative does not exist.
+    #[error("the equations have no derivative at this state")]
+    Fault(Fault),
+    /// A rate, an output or a derivative is not a finite number.
+    #[error("the equations are not finite at this state")]
+    NotFinite,
+    /// The sampled motion ends early.
+    #[error("the motion ends at t = {t}: {outcome}")]
+    Ended {
+        /// The time.
+        t: f64,
+        /// The outcome.
+        outcome: Outcome,
+    },
+    /// The sampled motion has no derivative.
+    #[error(transparent)]
+    Undefined(#[from] Undefined),
+    /// No equilibrium was found.
+    #[error("no equilibrium was found: the rate of component {component} stays at {rate:.3e}")]
+    NoEquilibrium {
+        /// The component with the largest rate.
+        component: usize,
+        /// Its rate, at the best state.
+        rate: f64,
+    },
+    /// No equilibrium on the constraints was found.
+    #[error("no equilibrium was found on the constraints: a level is off by {excess:.3e}")]
+    OffLevel {
+        /// The difference of a level from its value, at the best state.
+        excess: f64,
+    },
+}
+
+impl Unlinear {
+    /// The class in snake case, as documents write it.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Modes => "modes",
+            Self::Unreduced => "unreduced",
+            Self::Fault(_) => "fault",
+            Self::NotFinite => "not_finite",
+            Self::Ended { .. } => "ended",
+            Self::Undefined(undefined) => undefined.kind(),
+            Self::NoEquilibrium { .. } | Self::OffLevel { .. } => "no_equilibrium",
+        }
+    }
+}
+
+impl From<Fault> for Unlinear {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+/// The names of the components of a linearised state: coordinates, then velocities, or quasi-velocities with constraints.
+pub fn components(description: &Description) -> Vec<String> {
+    let coordinates = names::coordinates(description);
+    let motion: Vec<String> = match description.is_first_order {
+        true => Vec::new(),
+        false if description.constraints.is_empty() => {
+            coordinates.clone().map(names::velocity).collect()
+        }
+        false => {
+            let quasi = description.quasi_velocities.iter();
+            quasi.map(|name| (*name).to_owned()).collect()
+        }
+    };
+    coordinates.map(str::to_owned).chain(motion).collect()
+}
+
+/// Linearises a system.
+pub(crate) struct Lineariser<'a> {
+    /// Positions and velocities.
+    pub given: [&'a [f64]; 2],
+    pub place: &'a Place,
+}
+
+impl VariationalVisitor for Lineariser<'_> {
+    /// The inner error explains why there is no linearisation, the outer one why the state is refused.
+    type Output = Result<Result<Linearisation, Unlinear>, Refusal>;
+
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
+        let description = system.description();
+        if !description.modes.is_empty() {
+            return Ok(Err(Unlinear::Modes));
+        }
+        let is_free = description.constraints.is_empty();
+        if !is_free && description.quasi_velocities.is_empty() {
+            return Ok(Err(Unlinear::Unreduced));
+        }
+        let state = sample::start(system, self.place.t, self.given)?;
+        Ok(linearise(system, self.place, state))
+    }
+}
+
+/// The linearisation at the equilibrium that is asked for, or at the state itself.
+fn linearise<S: Instance + Scene + Variational>(
+    system: &S,
+    place: &Place,
+    mut state: Vec<f64>,
+) -> Result<Linearisation, Unlinear> {
+    let plant = Plant::new(system, place.t);
+    let mut inputs = plant.inputs();
+    let mut steps = None;
+    if let Some(trim) = &place.trim {
+        steps = Some(trim::settle(&plant, trim, &mut state, &mut inputs)?);
+    }
+    let sample = plant.at(&state, &inputs)?;
+    let moving = place.trim.as_ref().map_or(&[][..], |trim| &trim.moving);
+    let unsteady = unsteady(&sample, &state, &inputs, moving);
+    let description = system.description();
+    let n = state.len();
+    let [a, b] = split(&sample.by_rates, n);
+    let [c, d] = split(&sample.by_outputs, n);
+    let strides = match &place.sampling {
+        Some(sampling) => sampled::strides(&plant, sampling, &state, &inputs)?,
+        None => Vec::new(),
+    };
+    Ok(Linearisation {
+        t: place.t,
+        components: components(description),
+        eigenvalues: spectrum::<S>(&a),
+        a,
+        b,
+        c,
+        d,
+        unsteady,
+        levels: sample.levels.len(),
+        rates: sample.rates,
+        outputs: sample.outputs,
+        state,
+        inputs,
+        steps,
+        strides,
+    })
+}
+
+/// The first columns of a matrix, and the others; by rows.
+fn split(rows: &[Vec<f64>], columns: usize) -> [Vec<Vec<f64>>; 2] {
+    let pairs = rows.iter().map(|row| row.split_at(columns));
+    let (left, right) = pairs
+        .map(|(left, right)| (left.to_vec(), right.to_vec()))
+        .unzip();
+    [left, right]
+}
+
+/// Components whose rates are not 0 up to the rounding of their terms.
+fn unsteady(sample: &Sample, state: &[f64], inputs: &[f64], moving: &[usize]) -> Vec<usize> {
+    let values: Vec<f64> = state.iter().chain(inputs).copied().collect();
+    let rates = sample.rates.iter().zip(&sample.by_rates).enumerate();
+    rates
+        .filter(|(index, (rate, slopes))| {
+            let terms = slopes
+                .iter()
+                .zip(&values)
+                .map(|(slope, value)| slope * value.abs().max(1.0));
+            let size = terms.fold(1.0_f64, |most, term| most.max(term.abs()));
+            !moving.contains(index) && rate.abs() > AT_REST * size
+        })
+        .map(|(index, _)| index)
+        .collect()
+}
+
+/// The eigenvalues of a square matrix, by rows.
+fn spectrum<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
+    let mut columns = S::columns();
+    for (j, column) in columns.as_mut().iter_mut().enumerate().take(rows.len()) {
+        let entries = column.as_mut_slice().iter_mut();
+        entries.zip(rows).for_each(|(entry, row)| *entry = row[j]);
+    }
+    let found = eigenvalues(columns.as_mut(), rows.len())?;
+    Some(found.iter().collect())
+}
+
+/// The largest absolute value.
+fn largest<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    values.fold(0.0, |most, value| most.max(value.abs()))
+}

@@ -1,0 +1,192 @@
+//! An equilibrium near a state: the Levenberg-Marquardt method with exact derivatives.
+
+use dalembert::Instance;
+use dalembert::contract::Variational;
+
+use super::sample::{Plant, Sample};
+use super::{Unlinear, largest};
+use crate::connect::least_squares::solve;
+use crate::linear::norm;
+
+/// Largest number of steps.
+const STEPS: u32 = 200;
+
+/// Largest residual at an equilibrium, as a fraction of the largest derivative and value.
+const SETTLED: f64 = 1e-12;
+
+/// Largest residual that an equilibrium may be left with, in the same unit.
+const SOLVED: f64 = 1e-9;
+
+/// Largest damping, as a multiple of the residual, with which a step is tried.
+const DAMPED: f64 = 1e8;
+
+/// Smallest damping, as a multiple of the residual.
+const LEAST: f64 = 1e-6;
+
+/// Search for an equilibrium from a state.
+#[derive(Debug, Clone, Default)]
+pub struct Trim {
+    /// Indices of what the search changes: components of the state, then inputs; everything if it is empty.
+    pub free: Vec<usize>,
+    /// Indices of components whose rates need not vanish: coordinates that move steadily.
+    pub moving: Vec<usize>,
+}
+
+/// The equations of an equilibrium.
+struct Equations<'a> {
+    trim: &'a Trim,
+    /// The values of the levels at the start.
+    levels: Vec<f64>,
+}
+
+impl Equations<'_> {
+    /// Residuals, with the indices of their components; levels have none.
+    fn residuals(&self, sample: &Sample) -> Vec<(Option<usize>, f64)> {
+        let rates = sample.rates.iter().enumerate();
+        let rates = rates.filter(|(index, _)| !self.trim.moving.contains(index));
+        let levels = sample.levels.iter().zip(&self.levels);
+        rates
+            .map(|(index, rate)| (Some(index), *rate))
+            .chain(levels.map(|(level, start)| (None, level - start)))
+            .collect()
+    }
+
+    /// Derivatives of the residuals by what is free, a column for each.
+    fn columns(&self, sample: &Sample, free: &[usize]) -> Vec<Vec<f64>> {
+        let rates = sample.by_rates.iter().enumerate();
+        let rates = rates.filter(|(index, _)| !self.trim.moving.contains(index));
+        let rows: Vec<&Vec<f64>> = rates.map(|(_, row)| row).chain(&sample.by_levels).collect();
+        free.iter()
+            .map(|&j| rows.iter().map(|row| row[j]).collect())
+            .collect()
+    }
+}
+
+/// A state with inputs, on the way to an equilibrium.
+struct Walk<'a, S: Instance + Variational> {
+    plant: &'a Plant<'a, S>,
+    equations: Equations<'a>,
+    free: Vec<usize>,
+    /// Number of components of the state.
+    count: usize,
+    /// The state, then the inputs.
+    values: Vec<f64>,
+    sample: Sample,
+    /// Damping of the next step, as a multiple of the residual.
+    factor: f64,
+}
+
+/// Changes state and inputs to an equilibrium near them, and returns the number of steps.
+///
+/// # Errors
+/// [`Unlinear::NoEquilibrium`], [`Unlinear::OffLevel`], or a reason for which the equations have no derivative.
+pub(super) fn settle<S: Instance + Variational>(
+    plant: &Plant<'_, S>,
+    trim: &Trim,
+    state: &mut [f64],
+    inputs: &mut [f64],
+) -> Result<u32, Unlinear> {
+    let values: Vec<f64> = [&*state, &*inputs].concat();
+    let sample = plant.at(state, inputs)?;
+    let mut walk = Walk {
+        plant,
+        equations: Equations {
+            trim,
+            levels: sample.levels.clone(),
+        },
+        free: match trim.free.is_empty() {
+            true => (0..values.len()).collect(),
+            false => trim.free.clone(),
+        },
+        count: state.len(),
+        values,
+        sample,
+        factor: 1.0,
+    };
+    let mut steps = 0;
+    while steps < STEPS && walk.size(&walk.sample) > SETTLED * walk.unit() && walk.step() {
+        steps += 1;
+    }
+    walk.check()?;
+    state.copy_from_slice(&walk.values[..walk.count]);
+    inputs.copy_from_slice(&walk.values[walk.count..]);
+    Ok(steps)
+}
+
+impl<S: Instance + Variational> Walk<'_, S> {
+    /// The norm of the residuals of a sample.
+    fn size(&self, sample: &Sample) -> f64 {
+        let residuals = self.equations.residuals(sample);
+        norm(&residuals.iter().map(|it| it.1).collect::<Vec<_>>())
+    }
+
+    /// The unit of the residuals: the largest derivative times the largest value.
+    fn unit(&self) -> f64 {
+        let columns = self.equations.columns(&self.sample, &self.free);
+        largest(columns.iter().flatten()).max(1.0) * largest(self.values.iter()).max(1.0)
+    }
+
+    /// Makes a step to smaller residuals; false if there is none.
+    fn step(&mut self) -> bool {
+        let residuals = self.equations.residuals(&self.sample);
+        let residuals: Vec<f64> = residuals.iter().map(|it| it.1).collect();
+        let columns = self.equations.columns(&self.sample, &self.free);
+        let slope = largest(columns.iter().flatten());
+        let size = norm(&residuals);
+        while self.factor <= DAMPED {
+            let change = damped(&columns, &residuals, self.factor * size.min(slope));
+            if change.is_some_and(|change| self.improve(&change, size)) {
+                self.factor = (self.factor / 4.0).max(LEAST);
+                return true;
+            }
+            self.factor *= 8.0;
+        }
+        false
+    }
+
+    /// Subtracts a change, if the residuals become smaller by it.
+    fn improve(&mut self, change: &[f64], size: f64) -> bool {
+        let mut next = self.values.clone();
+        for (&place, change) in self.free.iter().zip(change) {
+            next[place] -= change;
+        }
+        let (state, inputs) = next.split_at(self.count);
+        match self.plant.at(state, inputs) {
+            Ok(sample) if self.size(&sample) < size => {
+                (self.values, self.sample) = (next, sample);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Refuses residuals that are not 0 up to rounding.
+    fn check(&self) -> Result<(), Unlinear> {
+        let residuals = self.equations.residuals(&self.sample);
+        let worst = residuals
+            .iter()
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        match worst {
+            Some(&(component, rate)) if rate.abs() > SOLVED * self.unit() => Err(match component {
+                Some(component) => Unlinear::NoEquilibrium { component, rate },
+                None => Unlinear::OffLevel { excess: rate },
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The vector with the least `|J x - r|^2 + damping^2 |x|^2`.
+fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let count = columns.len();
+    let rows: Vec<Vec<f64>> = (columns.iter().enumerate())
+        .map(|(j, column)| {
+            let mut column = column.clone();
+            column.extend((0..count).map(|k| if j == k { damping } else { 0.0 }));
+            column
+        })
+        .collect();
+    let mut right = residuals.to_vec();
+    right.resize(residuals.len() + count, 0.0);
+    solve(&rows, &right)
+}
