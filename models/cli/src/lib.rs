@@ -48,6 +48,7 @@ mod sink;
 mod spool;
 mod state_input;
 pub mod suite;
+mod symbols;
 mod table;
 
 use std::ffi::OsString;

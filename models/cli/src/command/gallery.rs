@@ -65,20 +65,17 @@ pub fn run(
     })
 }
 
-/// The figures of the models with these names, or of all models. Figures that every model has come first for each
-/// model.
+/// The figures of the models with these names, or of all models. Figures that every model has come last.
 fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliError> {
     let models = catalogue.models().iter();
     for name in wanted {
         names::find("MODEL", "model", name, models.clone().map(Entry::name))?;
     }
     let asked_for = |name: &str| wanted.is_empty() || wanted.iter().any(|it| it == name);
-    let mut figures = Vec::new();
-    for entry in models.filter(|entry| asked_for(entry.name())) {
-        figures.push(gallery::standard_figure(entry.description()));
-        let added = catalogue.figures().iter();
-        figures.extend(added.filter(|it| it.model == entry.name()).cloned());
-    }
+    let added = catalogue.figures().iter();
+    let mut figures: Vec<Figure> = added.filter(|it| asked_for(it.model)).cloned().collect();
+    let wanted = models.filter(|entry| asked_for(entry.name()));
+    figures.extend(wanted.map(|entry| gallery::standard_figure(entry.description())));
     Ok(figures)
 }
 

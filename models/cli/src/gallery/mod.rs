@@ -6,6 +6,7 @@
 
 mod density;
 mod manifest;
+mod mathematics;
 mod page;
 mod plate;
 mod standard;
@@ -25,7 +26,11 @@ pub struct Figure {
     pub name: &'static str,
     /// Its title, one line.
     pub title: &'static str,
-    /// Its content, with values chosen here because the source does not state them.
+    /// The heading of the page that it stands under. Headings come in the order of their first figures.
+    pub chapter: &'static str,
+    /// The panel that is shown in the first row of the page, if one is.
+    pub highlight: Option<usize>,
+    /// Its content, with values chosen here because the source does not state them. Formulas stand between dollar signs.
     pub caption: String,
     /// The reproduced figure.
     pub source: Option<&'static str>,

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::mathematics::typeset;
+use super::standard::MOTIONS;
 use super::{Effort, Figure, Plate, Print};
 use crate::entry::Entry;
 use crate::error::CliError;
@@ -15,11 +17,17 @@ h1{font-size:1.7em;margin:.2em 0}h2{font-size:1.35em;margin:2.4em 0 0;padding-to
 h3{font-size:1.05em;margin:0}p{margin:.3em 0;max-width:75em}a{color:var(--link)}
 nav ul{columns:21em;padding-left:1.2em}nav ul ul{columns:auto}nav li{break-inside:avoid}
 figure{margin:1.6em 0 2.2em}figcaption{margin-bottom:.7em}.source{color:var(--faint)}
-.panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1.4em 1.2em}
+.panels{display:grid;align-items:stretch;grid-template-columns:repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1.4em 1.2em}
 .one{grid-template-columns:minmax(0,760px)}.fours{grid-template-columns:repeat(auto-fill,minmax(min(100%,340px),1fr))}
-.panel{min-width:0}.panel svg{display:block;width:100%;max-width:900px;height:auto}
+.panel{min-width:0;display:grid;grid-row:span 3;grid-template-rows:subgrid;align-items:end;gap:.3em}
+.small .panels{grid-template-columns:repeat(auto-fill,minmax(min(100%,260px),1fr))}.small figure{margin:1em 0}
+.highlights{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,400px),1fr));gap:1em;margin:1.2em 0 1.6em}
+.highlights a{display:flex;flex-direction:column;justify-content:flex-end;color:var(--ink);text-decoration:none;text-align:center;
+border:1px solid var(--line);border-radius:6px;padding:.5em}.highlights a:hover{border-color:var(--link)}
+.highlights svg{display:block;width:100%;height:auto;max-height:420px;margin:auto}
+.panel svg{display:block;width:100%;max-width:900px;height:auto}
 .panel p{font-size:.9em}.error{color:#d55e00}
-code{font:.88em monospace}.panel code{display:block;line-height:1.45;background:var(--code);border-radius:4px;padding:.4em .7em}
+code{font:.88em monospace}.panel code{display:block;align-self:start;line-height:1.45;background:var(--code);border-radius:4px;padding:.4em .7em}
 .panel code span{display:inline-block}
 ";
 
@@ -32,7 +40,7 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
         dark()
     );
     let drawn: Vec<_> = plates.iter().zip(prints).collect();
-    let sections = sections(&drawn);
+    let chapters = chapters(&drawn);
     page += "<h1>Gallery</h1>\n<p>Mechanical systems with constraints and impacts, declared with <b>dalembert</b>. \
              Each picture is followed by the command that draws it alone.";
     if plates.iter().any(|plate| plate.effort == Effort::Quick) {
@@ -40,17 +48,20 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
             " A quick gallery: densities from a fiftieth of the positions, nothing that is timed.";
     }
     page += "</p>\n";
-    page += &contents(&sections);
-    for (model, figures) in &sections {
-        let entry = models.iter().find(|entry| entry.name() == *model);
-        let summary = entry.map_or("", |entry| names::summary(entry.description()));
+    page += &highlights(&chapters);
+    page += &contents(&chapters);
+    for (number, (chapter, figures)) in chapters.iter().enumerate() {
         let _ = write!(
             page,
-            "<section id=\"{model}\">\n<h2>{model}</h2>\n<p>{}</p>\n",
-            documented(summary)
+            "<section id=\"chapter-{number}\"{}>\n<h2>{}</h2>\n",
+            match *chapter {
+                MOTIONS => " class=\"small\"",
+                _ => "",
+            },
+            escaped(chapter)
         );
         for drawn in figures {
-            page += &figure(drawn);
+            page += &figure(models, drawn);
         }
         page += "</section>\n";
     }
@@ -61,28 +72,67 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
 /// A picture of a figure, made or not.
 type Drawn<'a> = (&'a Plate<'a>, &'a Result<Print, CliError>);
 
-/// Models in order, each with its figures in order, each with its pictures.
-type Sections<'a> = Vec<(&'a str, Vec<&'a [Drawn<'a>]>)>;
+/// Chapters in the order of their first figures, each with its figures in order, each with its pictures.
+type Chapters<'a> = Vec<(&'a str, Vec<&'a [Drawn<'a>]>)>;
 
-fn sections<'a>(drawn: &'a [Drawn<'a>]) -> Sections<'a> {
+fn chapters<'a>(drawn: &'a [Drawn<'a>]) -> Chapters<'a> {
     let same = |a: &Drawn<'_>, b: &Drawn<'_>| std::ptr::eq(a.0.figure, b.0.figure);
-    let mut sections = Sections::new();
+    let mut chapters = Chapters::new();
     for figure in drawn.chunk_by(same) {
-        let model = figure[0].0.figure.model;
-        match sections.last_mut().filter(|(last, _)| *last == model) {
+        let chapter = figure[0].0.figure.chapter;
+        match chapters.iter_mut().find(|(name, _)| *name == chapter) {
             Some((_, figures)) => figures.push(figure),
-            None => sections.push((model, vec![figure])),
+            None => chapters.push((chapter, vec![figure])),
         }
     }
-    sections
+    chapters
 }
 
-fn contents(sections: &Sections<'_>) -> String {
+/// The first row: one picture of each figure that has a highlight, with a link to the figure.
+fn highlights(chapters: &Chapters<'_>) -> String {
+    let mut row = String::new();
+    for drawn in chapters.iter().flat_map(|(_, figures)| figures) {
+        let figure = drawn[0].0.figure;
+        let chosen = figure.highlight.and_then(|panel| figure.panels.get(panel));
+        let print = chosen.and_then(|panel| {
+            let mut drawn = drawn.iter();
+            drawn.find(|(plate, _)| std::ptr::eq(plate.panel, panel))
+        });
+        if let Some((_, Ok(print))) = print {
+            let _ = write!(
+                row,
+                "<a href=\"#{}\">{}<span>{}</span></a>\n",
+                anchor(drawn),
+                labelled(&print.svg, figure.title),
+                escaped(figure.title)
+            );
+        }
+    }
+    match row.is_empty() {
+        true => row,
+        false => format!("<div class=\"highlights\">\n{row}</div>\n"),
+    }
+}
+
+fn contents(chapters: &Chapters<'_>) -> String {
     let mut list = "<nav><ul>\n".to_owned();
-    for (model, figures) in sections {
-        let _ = write!(list, "<li><a href=\"#{model}\">{model}</a><ul>");
+    for (number, (chapter, figures)) in chapters.iter().enumerate() {
+        let _ = write!(
+            list,
+            "<li><a href=\"#chapter-{number}\">{}</a><ul>",
+            escaped(chapter)
+        );
         for drawn in figures {
-            let Figure { title, source, .. } = drawn[0].0.figure;
+            let Figure {
+                model,
+                title,
+                source,
+                ..
+            } = drawn[0].0.figure;
+            let title = match *chapter {
+                MOTIONS => model,
+                _ => title,
+            };
             let source = source.map_or(String::new(), |source| format!(" ({})", escaped(source)));
             let _ = write!(
                 list,
@@ -101,7 +151,7 @@ fn anchor(drawn: &[Drawn<'_>]) -> String {
     format!("{model}-{name}")
 }
 
-fn figure(drawn: &[Drawn<'_>]) -> String {
+fn figure(models: &[Entry], drawn: &[Drawn<'_>]) -> String {
     let figure = drawn[0].0.figure;
     let source = figure.source.map_or(String::new(), |source| {
         format!(
@@ -109,11 +159,18 @@ fn figure(drawn: &[Drawn<'_>]) -> String {
             escaped(source)
         )
     });
+    let (title, caption) = match figure.chapter {
+        MOTIONS => {
+            let entry = models.iter().find(|entry| entry.name() == figure.model);
+            let summary = entry.map_or("", |entry| names::summary(entry.description()));
+            (figure.model, documented(summary))
+        }
+        _ => (figure.title, typeset(&figure.caption)),
+    };
     let mut text = format!(
-        "<figure id=\"{}\"><figcaption><h3>{}</h3><p>{}{source}</p></figcaption>\n<div class=\"panels{}\">\n",
+        "<figure id=\"{}\"><figcaption><h3>{}</h3><p>{caption}{source}</p></figcaption>\n<div class=\"panels{}\">\n",
         anchor(drawn),
-        escaped(figure.title),
-        escaped(&figure.caption),
+        escaped(title),
         match drawn.len() {
             1 => " one",
             count if count % 4 == 0 => " fours",
@@ -128,7 +185,7 @@ fn figure(drawn: &[Drawn<'_>]) -> String {
 
 fn panel(plate: &Plate<'_>, print: &Result<Print, CliError>) -> String {
     let picture = match print {
-        Ok(print) => print.svg.clone(),
+        Ok(print) => labelled(&print.svg, &plate.panel.title),
         Err(error) => format!("<p class=\"error\">{}</p>\n", escaped(&error.to_string())),
     };
     format!(
@@ -136,6 +193,15 @@ fn panel(plate: &Plate<'_>, print: &Result<Print, CliError>) -> String {
         escaped(&plate.panel.title),
         words(&plate.command())
     )
+}
+
+/// A picture with a text in its place.
+fn labelled(svg: &str, text: &str) -> String {
+    let label = format!(
+        "<svg role=\"img\" aria-label=\"{}\" ",
+        escaped(text).replace('"', "&quot;")
+    );
+    svg.replacen("<svg ", &label, 1)
 }
 
 /// Style rules for dark mode: colours of the page and of the pictures.
@@ -183,7 +249,7 @@ fn documented(text: &str) -> String {
     page
 }
 
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

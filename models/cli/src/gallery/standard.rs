@@ -5,6 +5,9 @@ use dalembert::describe::Description;
 use super::{Figure, Panel, Picture};
 use crate::names;
 
+/// The heading of these figures.
+pub const MOTIONS: &str = "Motions of the models";
+
 /// The motion of a model from its declared start: the declared view, or coordinates and velocities against time; the first
 /// coordinate with its velocity; the error of the energy.
 pub fn figure(description: &Description) -> Figure {
@@ -25,8 +28,8 @@ pub fn figure(description: &Description) -> Figure {
         add("energy", title, "--axes t,energy_error ".to_owned());
     }
 
-    // Three pictures fit side by side on a page, or four smaller ones.
-    let width = if flags.len() > 3 { 400 } else { 480 };
+    // Small pictures, four side by side on a page.
+    let width = 400;
     let panels = flags.into_iter().map(|(name, title, axes)| Panel {
         name: name.to_owned(),
         title,
@@ -36,6 +39,8 @@ pub fn figure(description: &Description) -> Figure {
         model: description.name,
         name: "motion",
         title: "Motion from the declared start",
+        chapter: MOTIONS,
+        highlight: None,
         caption: "Parameters and state are those that the model declares. Where the energy is kept, its change is \
                   the error of the run."
             .to_owned(),

@@ -68,7 +68,7 @@ impl Ordinate {
     fn name(self, description: &Description) -> String {
         match self {
             Self::Period => "period".to_owned(),
-            Self::Before(quantity) => quantity.name(description),
+            Self::Before(quantity) => quantity.label(description),
         }
     }
 }

@@ -41,6 +41,13 @@ pub const TITLE_HEIGHT: f64 = 54.0;
 /// Left edge of titles and legends, in pixels.
 pub const INDENT: f64 = 20.0;
 
+/// Width of dashed lines, in pixels; no other line has it. The drawing library writes every dash as a line of its own, so
+/// such lines are drawn whole, and [`sheet`] adds the dashes.
+pub const DASHED: f64 = 0.9;
+
+/// Length of a dash and of the gap after it, in pixels.
+const DASH: f64 = 4.0;
+
 /// Draws a sheet of this size in pixels, with a title, and returns it as SVG.
 ///
 /// # Errors
@@ -68,7 +75,9 @@ pub fn sheet(
     }
     let drawn = format!("width=\"{}\" height=\"{}\"", units.0, units.1);
     let shown = format!("width=\"{}\" height=\"{}\"", size.0.round(), size.1.round());
-    Ok(svg.replacen(&drawn, &shown, 1))
+    let width = format!("stroke-width=\"{}\"", stroke(DASHED));
+    let dashed = format!("{width} stroke-dasharray=\"{}\"", px(DASH));
+    Ok(svg.replacen(&drawn, &shown, 1).replace(&width, &dashed))
 }
 
 /// The text, shortened with an ellipsis if it is wider than `room` pixels.

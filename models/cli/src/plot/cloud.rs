@@ -38,10 +38,11 @@ pub fn draw(cloud: &Cloud<'_>) -> Result<String, String> {
         ),
         Item::new(Symbol::Ring, style::INK, "the start itself"),
     ];
+    let labels = cloud.table.labels();
     let words = Words {
         title: cloud.title,
         subtitle: cloud.subtitle,
-        axes: cloud.table.labels(),
+        axes: labels.each_ref().map(String::as_str),
         head: &items,
     };
     plane.sheet(

@@ -9,6 +9,7 @@ use super::colours;
 use super::plane::{self, Chart};
 use super::style::{self, Axis};
 use crate::ensemble::density::Density;
+use crate::symbols;
 
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 900.0;
@@ -125,7 +126,8 @@ fn axes<'a, 'b>(
         .y_label_area_size(px(LEFT))
         .build_cartesian_2d(Axis::new(x.range, 8), Axis::new(y.range, 8))
         .map_err(message)?;
-    plane::draw_axes(&mut chart, [&x.name, &y.name])?;
+    let names = [x, y].map(|axis| symbols::text(&axis.name));
+    plane::draw_axes(&mut chart, names.each_ref().map(String::as_str))?;
     Ok(chart)
 }
 

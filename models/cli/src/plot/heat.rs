@@ -38,10 +38,11 @@ pub fn draw(map: &Map<'_>) -> Result<String, String> {
         name: "density",
         range: [0.0, map.most()],
     };
+    let labels = map.table.labels();
     let words = Words {
         title: map.title,
         subtitle: map.subtitle,
-        axes: map.table.labels(),
+        axes: labels.each_ref().map(String::as_str),
         head: &bar,
     };
     let svg = plane.sheet(

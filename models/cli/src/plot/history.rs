@@ -3,17 +3,17 @@
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;
-use plotters::style::Color;
+use plotters::style::{Color, RGBColor};
 
 use super::Picture;
 use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke};
 use super::legend::{self, Item, Symbol};
-use super::plane;
+use super::plane::{self, Chart};
 use super::quantity::Quantity;
 use super::style::{self, Axis};
 use super::thin::thinned;
-use super::trace::Source;
-use crate::names;
+use super::trace::{Source, Trace};
+use crate::{names, symbols};
 
 /// Height of a panel's plot as a fraction of the picture's width, and least height in pixels.
 const HEIGHT: f64 = 0.32;
@@ -86,15 +86,15 @@ fn panels(picture: &Picture<'_>) -> Vec<Panel> {
     let description = picture.model.description();
     let impacts = impact_items(picture);
     if let Source::Quantities(quantities) = picture.trace.source() {
-        let name = |quantity: &Quantity| quantity.name(description);
+        let name = |quantity: &Quantity| quantity.label(description);
         let names = quantities.iter().skip(1).map(name).collect();
         return vec![Panel::new(names, 1, &impacts)];
     }
-    let coordinates: Vec<String> = names::coordinates(description).map(str::to_owned).collect();
+    let coordinates: Vec<String> = names::coordinates(description).map(symbols::text).collect();
     let outputs: Vec<String> = description
         .outputs
         .iter()
-        .map(|&name| name.to_owned())
+        .map(|&name| name.replace('_', " "))
         .collect();
     let n = coordinates.len();
     let mut panels = vec![Panel::new(coordinates, 0, &impacts)];
@@ -148,28 +148,44 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
         .draw_series(impact_lines(picture, y.range))
         .map_err(message)?;
     for (index, curve) in curves.enumerate() {
-        let pixels: Vec<[f64; 2]> = marks
-            .iter()
-            .map(|mark| {
-                let value = mark.values[curve] - y.range[0];
-                [mark.t * scale[0], value * scale[1]]
-            })
-            .collect();
-        let points: Vec<(f64, f64)> = thinned(&pixels, NEAR)
-            .into_iter()
-            .map(|kept| (marks[kept].t, marks[kept].values[curve]))
-            .collect();
-        // A mode may lack the quantity.
-        let pieces = points.split(|(_, value)| !value.is_finite());
-        let lines = pieces.map(|piece| {
-            PathElement::new(
-                piece.to_vec(),
-                style::curve(index).stroke_width(stroke(1.4)),
-            )
-        });
-        chart.draw_series(lines).map_err(message)?;
+        draw_jumps(&mut chart, picture.trace, curve, style::curve(index))?;
+        for marks in picture.trace.stretches() {
+            let pixels: Vec<[f64; 2]> = marks
+                .iter()
+                .map(|mark| {
+                    let value = mark.values[curve] - y.range[0];
+                    [mark.t * scale[0], value * scale[1]]
+                })
+                .collect();
+            let points: Vec<(f64, f64)> = thinned(&pixels, NEAR)
+                .into_iter()
+                .map(|kept| (marks[kept].t, marks[kept].values[curve]))
+                .collect();
+            // A mode may lack the quantity.
+            let pieces = points.split(|(_, value)| !value.is_finite());
+            let lines = pieces.map(|piece| {
+                PathElement::new(
+                    piece.to_vec(),
+                    style::curve(index).stroke_width(stroke(1.4)),
+                )
+            });
+            chart.draw_series(lines).map_err(message)?;
+        }
     }
     Ok(())
+}
+
+/// Draws the jumps of a curve, dashed.
+fn draw_jumps(
+    chart: &mut Chart<'_, '_>,
+    trace: &Trace,
+    curve: usize,
+    colour: RGBColor,
+) -> Result<(), String> {
+    let jumps = trace
+        .jumps()
+        .map(|ends| ends.map(|mark| [mark.t, mark.values[curve]]));
+    plane::dashes(chart, jumps, colour)
 }
 
 /// Draws impacts as lines behind the curves; many impacts as marks along the lower edge.

@@ -13,6 +13,7 @@ use super::style::{self, PALETTE};
 use crate::ensemble::Quantity;
 use crate::map::request::{Colours, Request};
 use crate::map::{Cells, Sums};
+use crate::symbols;
 
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 720.0;
@@ -105,10 +106,11 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
         None => Plane::strip(window, WIDTH),
     };
     let marks = chart.marks();
+    let ordinate = y.map_or_else(String::new, |y| symbols::text(&y.name));
     let words = Words {
         title: chart.title,
         subtitle: chart.subtitle,
-        axes: [&x.name, y.map_or("", |y| &y.name)],
+        axes: [&symbols::text(&x.name), &ordinate],
         head: &chart.head(&painted, !marks.is_empty()),
     };
     let svg = plane.sheet(

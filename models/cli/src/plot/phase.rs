@@ -15,7 +15,7 @@ pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, St
     let description = picture.model.description();
     let names: Vec<String> = quantities
         .iter()
-        .map(|quantity| quantity.name(description))
+        .map(|quantity| quantity.label(description))
         .collect();
     let marks = picture.trace.points();
     let values = |index: usize| marks.iter().map(move |mark| mark.values[index]);
@@ -43,8 +43,14 @@ pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, St
         |chart| {
             for index in ordinates {
                 let point = |values: &[f64]| [values[0], values[index]];
-                let path = marks.iter().map(|mark| point(&mark.values));
-                plane.path(chart, path, style::curve(index - 1))?;
+                let colour = style::curve(index - 1);
+                for stretch in picture.trace.stretches() {
+                    let path = stretch.iter().map(|mark| point(&mark.values));
+                    plane.path(chart, path, colour)?;
+                }
+                let jumps = picture.trace.jumps();
+                let jumps = jumps.map(|ends| ends.map(|mark| point(&mark.values)));
+                plane::dashes(chart, jumps, colour)?;
                 let impacts = picture.impacts.iter().map(|impact| {
                     let value =
                         |quantity: Quantity| quantity.value(impact.t, &impact.after, energy);

@@ -4,7 +4,7 @@ use plotters::element::{Circle, EmptyElement, PathElement, Rectangle};
 use plotters::prelude::{Cartesian2d, ChartBuilder, ChartContext, SVGBackend};
 use plotters::style::{Color, RGBColor};
 
-use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
+use super::canvas::{self, Area, DASHED, TITLE_HEIGHT, message, px, stroke, text};
 use super::contour::Window;
 use super::legend::{self, Item};
 use super::style::{self, Axis};
@@ -213,6 +213,25 @@ fn draw_some_axes(
         .axis_desc_style(text(13.0, style::INK))
         .draw()
         .map_err(message)
+}
+
+/// Draws dashed lines between pairs of points, where they are apart.
+///
+/// # Errors
+/// An error of the drawing library.
+pub fn dashes(
+    chart: &mut Chart<'_, '_>,
+    jumps: impl Iterator<Item = [[f64; 2]; 2]>,
+    colour: RGBColor,
+) -> Result<(), String> {
+    let is_drawn = |ends: &[[f64; 2]; 2]| {
+        ends[0] != ends[1] && ends.as_flattened().iter().all(|value| value.is_finite())
+    };
+    let style = colour.stroke_width(stroke(DASHED));
+    let lines = jumps
+        .filter(is_drawn)
+        .map(|ends| PathElement::new(ends.map(|[x, y]| (x, y)), style));
+    chart.draw_series(lines).map_err(message).map(drop)
 }
 
 /// Draws a dot at each point with finite coordinates.

@@ -11,6 +11,8 @@ use super::contour::{Contour, Window};
 use super::plane::{self, Chart, Plane, Words, around};
 use super::region::{FINE, Region};
 use super::style;
+use super::trace::Mark;
+use crate::symbols;
 
 /// Draws the view.
 ///
@@ -30,10 +32,11 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
         .map_or(path.grown(0.06), |region| region.window(path));
     let plane = Plane::equal_scales(window, picture.width);
     let boundary = region.map_or_else(Vec::new, |region| region.contours(plane.window, FINE));
+    let labels = view.labels.each_ref().map(|label| symbols::text(label));
     let words = Words {
         title: &picture.title,
         subtitle: &picture.subtitle,
-        axes: view.labels.each_ref().map(|label| &**label),
+        axes: labels.each_ref().map(String::as_str),
         head: &picture.legend("path", style::PATH),
     };
     plane.sheet(
@@ -41,7 +44,12 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
         |chart| fill_region(chart, &boundary),
         |chart| {
             draw_boundary(chart, &boundary)?;
-            plane.path(chart, points.iter().copied(), style::PATH)?;
+            let at = |mark: &Mark| [mark.values[0], mark.values[1]];
+            for stretch in picture.trace.stretches() {
+                plane.path(chart, stretch.iter().map(at), style::PATH)?;
+            }
+            let jumps = picture.trace.jumps();
+            plane::dashes(chart, jumps.map(|ends| ends.map(at)), style::PATH)?;
             let impacts = picture.impacts.iter().filter_map(|impact| {
                 let colour = style::surface(impact.surface);
                 impact.after.view.map(|at| (at, colour))

@@ -4,7 +4,7 @@ use dalembert::describe::Description;
 use dalembert_driver::Point;
 
 use crate::error::CliError;
-use crate::names;
+use crate::{names, symbols};
 
 /// One number of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +57,15 @@ impl Quantity {
             Self::Energy => "energy".to_owned(),
             Self::EnergyError => "energy_error".to_owned(),
             Self::Output(index) => description.outputs[index].to_owned(),
+        }
+    }
+
+    /// Its symbol, for pictures.
+    pub fn label(self, description: &Description) -> String {
+        match self {
+            Self::EnergyError => "relative change of the energy".to_owned(),
+            Self::Output(index) => description.outputs[index].replace('_', " "),
+            _ => symbols::text(&self.name(description)),
         }
     }
 

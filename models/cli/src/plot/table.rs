@@ -5,6 +5,7 @@ use dalembert_driver::AnyModel;
 use super::contour::{Contour, Window};
 use super::plane::Plane;
 use super::region::{COARSE, FINE, Region};
+use crate::symbols;
 
 /// Half the side of the first square of the search for the rim, and the largest number of doublings.
 const LEAST: f64 = 1e-6;
@@ -23,10 +24,11 @@ pub struct Table<'a> {
 
 impl Table<'_> {
     /// The names of its axes.
-    pub fn labels(&self) -> [&str; 2] {
+    pub fn labels(&self) -> [String; 2] {
         let view = &self.model.description().view;
-        view.as_ref()
-            .map_or([""; 2], |view| view.labels.each_ref().map(|label| &**label))
+        view.as_ref().map_or_else(Default::default, |view| {
+            view.labels.each_ref().map(|label| symbols::text(label))
+        })
     }
 
     /// The bounding rectangle of the region.

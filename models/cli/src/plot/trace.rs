@@ -81,6 +81,13 @@ pub struct Mark {
     pub corner: bool,
 }
 
+impl Mark {
+    /// True if an impact or a transition changes the values from this point to the next.
+    fn jumps_to(&self, next: &Self) -> bool {
+        self.corner && next.corner && self.t == next.t && self.values != next.values
+    }
+}
+
 impl Trace {
     /// An empty curve.
     pub fn of(source: Source) -> Self {
@@ -100,6 +107,19 @@ impl Trace {
     /// The points in order of time; none has an infinite or undefined value.
     pub fn points(&self) -> &[Mark] {
         &self.points
+    }
+
+    /// The points between jumps.
+    pub fn stretches(&self) -> impl Iterator<Item = &[Mark]> {
+        self.points.chunk_by(|left, right| !left.jumps_to(right))
+    }
+
+    /// Both sides of every jump.
+    pub fn jumps(&self) -> impl Iterator<Item = [&Mark; 2]> {
+        let pairs = self.points.windows(2);
+        pairs
+            .filter(|pair| pair[0].jumps_to(&pair[1]))
+            .map(|pair| [&pair[0], &pair[1]])
     }
 
     /// Adds a step without impacts inside.

@@ -48,7 +48,7 @@ fn a_phase_portrait_of_an_oscillator_is_an_ellipse() {
         let [x, y] = [0, 1].map(|axis| (point[axis] - axes[axis].0) / axes[axis].1);
         assert!((x.hypot(y) - 1.0).abs() < 2e-3, "{x} {y}");
     }
-    assert!(svg.contains("\nx.1\n") && svg.contains("\nx_dot.1\n"));
+    assert!(svg.contains("\nx₁\n") && svg.contains("\nx\u{307}₁\n"));
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use dalembert_cli::gallery::{Density, Figure, Panel, Picture};
 
+use super::chapters;
+
 /// The paper takes a million positions, one per unit of time, after discarding a thousand.
 const EVERY: f64 = 1.0;
 const POSITIONS: u64 = 1_000_000;
@@ -38,7 +40,9 @@ pub fn of_the_sleigh() -> Figure {
         model: "chaplygin_sleigh",
         name: "density",
         title: "Where the sleigh is in the long run",
-        caption: "The share of 10^6 positions, one in a unit of time, in each of 100 by 100 boxes, per unit of area; \
+        chapter: chapters::DENSITIES,
+        highlight: Some(0),
+        caption: "The share of $10^6$ positions, one in a unit of time, in each of 100 by 100 boxes, per unit of area; \
                   the first 1000 positions are left out. Rows differ in the half axis of the table along y, columns \
                   in the length of the sleigh. The total variation between the first and the second half tells how \
                   far a picture has settled: 0.07 is what chance leaves. The paper does not state its parameters; \
@@ -62,7 +66,9 @@ pub fn of_the_disk() -> Figure {
         model: "rolling_disk",
         name: "density",
         title: "Where the disk is in the long run",
-        caption: "The share of 10^6 positions, one in a unit of time, in each of 200 by 200 boxes, per unit of area, \
+        chapter: chapters::DENSITIES,
+        highlight: None,
+        caption: "The share of $10^6$ positions, one in a unit of time, in each of 200 by 200 boxes, per unit of area, \
                   for several half axes of the table along x; the first 1000 positions are left out. The total \
                   variation between the first and the second half tells how far a picture has settled: 0.14 is what \
                   chance leaves. The paper does not state its half axes; on the circle of the last picture the \

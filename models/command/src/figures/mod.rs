@@ -3,8 +3,10 @@
 //!
 //! The papers do not state every parameter; captions name the values chosen here.
 
+mod chapters;
 mod connections;
 mod density;
+mod pendulum;
 mod rolling_disk;
 mod walker;
 mod work;
@@ -16,15 +18,16 @@ use dalembert_cli::gallery::{Figure, Panel, Picture};
 const THIRD: &str = "--plot-width 480";
 const QUARTER: &str = "--plot-width 400";
 
-/// All figures, in the order of the models.
+/// All figures, chapter by chapter.
 pub fn all() -> Vec<Figure> {
     let mut figures = walker::figures();
     figures.extend(rolling_disk::figures());
     figures.extend([
-        density::of_the_sleigh(),
-        density::of_the_disk(),
         connections::bouncing_ball(),
         zeno::bouncing_ball(),
+        density::of_the_sleigh(),
+        density::of_the_disk(),
+        pendulum::flips(),
     ]);
     figures.extend(work::figures());
     figures

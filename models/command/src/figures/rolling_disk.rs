@@ -2,7 +2,7 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture, Starts};
 
-use super::{QUARTER, THIRD, simulated};
+use super::{QUARTER, THIRD, chapters, simulated};
 
 /// Half axes of the table along x, from the circle to the ellipse of the thesis.
 const CIRCLE: &str = "--set ta=0.2";
@@ -19,6 +19,8 @@ fn paths() -> Figure {
         model: "rolling_disk",
         name: "impacts",
         title: "The first 20 impacts, elastic and plastic",
+        chapter: chapters::BILLIARDS,
+        highlight: None,
         caption: "The path of the point of contact on a circular (half axis 0.2) and an elliptical table (0.15). \
                   Elastic impacts on the circle keep an order that they lose on the ellipse. Plastic is the \
                   nonholonomic plastic law, the one that the thesis derives for the disk. On the circle its impacts \
@@ -69,8 +71,9 @@ fn starts() -> Figure {
         model: "rolling_disk",
         name: "starts",
         title: "100 starts near each other at various times",
-        caption: "Where the points of contact of 100 disks are that start as in Fig. 6.2 but for dot(theta) and \
-                  dot(phi), which are scattered evenly by at most 0.005 rad/s; elastic impacts. On the ellipse \
+        chapter: chapters::BILLIARDS,
+        highlight: Some(7),
+        caption: "Where the points of contact of 100 disks are that start as in Fig. 6.2 but for $theta_dot$ and $phi_dot$, which are scattered evenly by at most 0.005 rad/s; elastic impacts. On the ellipse \
                   nearby motions are soon all over the table. The thesis does not state its times."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.3"),
@@ -108,10 +111,12 @@ fn momenta() -> Figure {
         model: "rolling_disk",
         name: "momentum",
         title: "The nonholonomic momentum from impact to impact",
+        chapter: chapters::BILLIARDS,
+        highlight: None,
         caption: "The momenta are constant between impacts, and energy keeps them on an ellipse, here with a chord \
                   for every impact. On the circular table they have period 2, on a slightly elliptical one nearly \
                   so, and on the elliptical one their order is lost. The momenta are those of the declared \
-                  coordinates on the constraints, p_theta = I dot(theta) and p_phi = J dot(phi). The thesis does not \
+                  coordinates on the constraints, $p_theta = I*theta_dot$ and $p_phi = J*phi_dot$. The thesis does not \
                   state its slightly elliptical table."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.4"),

@@ -2,6 +2,8 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
+use super::chapters;
+
 /// The thesis calls a walk periodic after fifty steps, and a fall what passes the horizontal.
 const WALK: &str = "--returns 50 --fail 'theta > pi/2' --tol 1e-7";
 
@@ -22,7 +24,7 @@ fn gaits() -> Figure {
     let start = "--start 'xi = -cos(2*delta)/sin(2*delta)*sqrt(4*mu/(eps*(1 + mu))*sin(delta)*sin(alpha))' \
                  --start 'eta = cos(delta)*cos(2*delta)/sin(2*delta)*sqrt(4*mu/(eps*(1 + mu))*sin(delta)*sin(alpha))'";
     let panel = |name: &str, eps: &str| {
-        let title = format!("eps = {eps}");
+        let title = format!("ε = {eps}");
         let axes = "--vary alpha=0.01..0.8:96 --vary delta=0.02..0.76:96";
         let flags = format!("{axes} --set eps={eps} {start} {WALK} --lyapunov 2 --class lyapunov");
         mapped(name, &title, flags)
@@ -31,11 +33,13 @@ fn gaits() -> Figure {
         model: "dimensionless_walker",
         name: "gaits",
         title: "Slopes and steps for which a walker finds a gait",
+        chapter: chapters::WALKERS,
+        highlight: None,
         caption: "Colours show the mean growth of a small deviation per step in powers of e, the logarithm of the largest \
                   multiplier of the gait; white are walkers that fall within 50 steps. Each begins with the gait of a foot \
-                  that does not slip, as in Appendix A of the thesis, with mu = 5/2. Longer steps lead faster to the gait. \
+                  that does not slip, as in Appendix A of the thesis, with $mu = 5/2$. Longer steps lead faster to the gait. \
                   The thesis does not state its axes, and its equations have a wrong sign in the centripetal term: that \
-                  short steps lead to falls where friction is large (small eps) is not so with the right one."
+                  short steps lead to falls where friction is large (small $eps$) is not so with the right one."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 4.4"),
         panels: vec![panel("friction", "0.1"), panel("slip", "2")],
@@ -47,8 +51,10 @@ fn basin() -> Figure {
         model: "dimensionless_walker",
         name: "basin",
         title: "Starts from which a walker walks on, and from which it falls",
+        chapter: chapters::WALKERS,
+        highlight: Some(0),
         caption: "The blue starts lead to the gait, whose return is the dot; from the others the walker falls before its \
-                  first step. mu = 5/2, eps = 1/2, alpha = delta = 0.4. The line is where the stable plane of the upright \
+                  first step. $mu = 5/2$, $eps = 1/2$, $alpha = delta = 0.4$. The line is where the stable plane of the upright \
                   equilibrium, with eigenvalues 0.688755, -0.478938 and -2.747673, meets the starts: the thesis takes it \
                   for the boundary, and it is one near the equilibrium. With the right sign of the centripetal term no \
                   walker falls after its first step, and the tongues of the thesis do not appear."
@@ -56,7 +62,7 @@ fn basin() -> Figure {
         source: Some("W. Clark, thesis, Fig. 4.5"),
         panels: vec![mapped(
             "",
-            "Starts (eta, xi) after a step",
+            "Starts (η, ξ) after a step",
             format!(
                 "--vary eta=-2..2:400 --vary xi=-3..1:400 {WALK} --contour 'xi = -0.988692*(sin(alpha) - eta)'"
             ),
@@ -74,8 +80,10 @@ fn doubling() -> Figure {
         model: "compass_walker",
         name: "doubling",
         title: "Gaits of the simplest walker over the slope",
+        chapter: chapters::WALKERS,
+        highlight: None,
         caption: "Every point is a gait: the angle of the stance leg before the heel strikes. The long gait loses its stability at a \
-                  slope of 0.015088, where a multiplier passes -1, to a gait of two unlike steps; that doubles its period at \
+                  slope of $0.015088$, where a multiplier passes $-1$, to a gait of two unlike steps; that doubles its period at \
                   0.017669."
             .to_owned(),
         source: Some("M. Garcia et al., J. Biomech. Eng. 120 (1998)"),

@@ -2,6 +2,8 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
+use super::chapters;
+
 /// Runs that are neither trivial nor chaotic within their time, with and without constraints and impacts.
 const RUNS: [(&str, &str); 3] = [
     ("chaplygin_sleigh", "--until 5"),
@@ -15,6 +17,8 @@ pub fn figures() -> Vec<Figure> {
         model,
         name: "work",
         title: "Work and precision of the integrators",
+        chapter: chapters::COST,
+        highlight: (model == "double_pendulum").then_some(0),
         caption: "Time on this machine against the measured error of the positions, for every integrator over \
                   tolerances or steps; rings mark the fastest of a decade. Times are measured: of all pictures only \
                   this kind differs from one gallery to the next."

@@ -2,7 +2,7 @@
 
 use dalembert_cli::gallery::Figure;
 
-use super::{THIRD, simulated};
+use super::{THIRD, chapters, simulated};
 
 pub fn bouncing_ball() -> Figure {
     let panel = |name: &str, title: &str, axes: &str| {
@@ -13,7 +13,9 @@ pub fn bouncing_ball() -> Figure {
         model: "bouncing_ball",
         name: "zeno",
         title: "Impacts that accumulate",
-        caption: "A ball with m = g = 1 and restitution 3/4. From height 1 its impacts accumulate at t = 7 sqrt(2) = \
+        chapter: chapters::DENSITIES,
+        highlight: None,
+        caption: "A ball with $m = g = 1$ and restitution $3/4$. From height 1 its impacts accumulate at t = 7 sqrt(2) = \
                   9.899.., which ends the run; position and energy go to 0. The paper's fourth picture, the \
                   infinitesimal volume over time, is a step of 9/16 at each impact, as that of the energy."
             .to_owned(),
