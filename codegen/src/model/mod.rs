@@ -71,6 +71,8 @@ pub struct Model {
     pub field: Option<Vec<ExprId>>,
     /// Constraints, families expanded.
     pub constraints: Vec<Constraint>,
+    /// The cost that an optimal input makes least.
+    pub cost: Option<Cost>,
     /// Named forces.
     pub forces: Vec<Force>,
     /// The declared quasi-velocities, N - M or none.
@@ -240,6 +242,17 @@ impl Constraint {
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.form.iter().copied().chain([self.affine])
     }
+}
+
+/// `J = integral of running + terminal at the end`, which an optimal input makes least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cost {
+    /// A function of time, state and inputs, quadratic in the inputs.
+    pub running: ExprId,
+    /// A function of time and state.
+    pub terminal: ExprId,
+    /// Place of the declaration.
+    pub item: ItemId,
 }
 
 /// A force as a one-form; coefficients may depend on coordinates, velocities and time.

@@ -39,6 +39,8 @@ pub struct Spec {
     pub constraints: Vec<Equation>,
     /// `inputs { .. }`
     pub inputs: Vec<Supplied>,
+    /// `cost { .. }`
+    pub cost: Option<Cost>,
     /// `forces { .. }`
     pub forces: Vec<Quantity>,
     /// `frame { .. }`
@@ -75,6 +77,7 @@ impl Spec {
             field: None,
             constraints: Vec::new(),
             inputs: Vec::new(),
+            cost: None,
             forces: Vec::new(),
             frame: Vec::new(),
             surfaces: Vec::new(),
@@ -264,6 +267,17 @@ pub struct Supplied {
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
+    /// The declaration.
+    pub item: ItemId,
+}
+
+/// `cost { running = e; terminal = e; }`
+#[derive(Debug)]
+pub struct Cost {
+    /// Cost of each moment of the motion.
+    pub running: Option<Scalar>,
+    /// Cost of the end.
+    pub terminal: Option<Scalar>,
     /// The declaration.
     pub item: ItemId,
 }

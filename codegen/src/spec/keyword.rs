@@ -3,7 +3,7 @@
 use dalembert_expr::Function;
 
 /// The section keywords of this version, as they may begin a declaration of a model.
-pub const SECTIONS: [&str; 18] = [
+pub const SECTIONS: [&str; 19] = [
     "const",
     "coordinates",
     "parameters",
@@ -12,6 +12,7 @@ pub const SECTIONS: [&str; 18] = [
     "field",
     "constraints",
     "inputs",
+    "cost",
     "forces",
     "frame",
     "impacts",
@@ -37,7 +38,7 @@ pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
 };
 
 /// Declarations as other languages call them, with what is written here.
-const FOREIGN_SECTIONS: [(&str, &str); 16] = [
+const FOREIGN_SECTIONS: [(&str, &str); 17] = [
     ("L", "write `lagrangian = ..;`"),
     ("coords", "write `coordinates { .. }`"),
     ("variables", "write `coordinates { .. }`"),
@@ -64,6 +65,7 @@ const FOREIGN_SECTIONS: [(&str, &str); 16] = [
         "declare the Lagrangian it belongs to: `lagrangian = ..;`",
     ),
     ("observables", "write `outputs { .. }`"),
+    ("objective", "write `cost { running = ..; }`"),
     ("fn", "a function is written `let f(u) = ..;`"),
     ("def", "a function is written `let f(u) = ..;`"),
 ];

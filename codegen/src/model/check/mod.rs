@@ -9,6 +9,7 @@ mod cancellation;
 mod claims;
 mod constraints;
 mod coordinates;
+mod cost;
 mod exterior;
 mod field;
 mod frame;
@@ -38,7 +39,7 @@ use super::natural;
 use super::resolve::{Resolver, Scope};
 use super::transition::Peer;
 use super::{
-    Claim, Constraint, Extras, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Scene,
+    Claim, Constraint, Cost, Extras, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Scene,
     Surface, Transition, View,
 };
 use crate::diagnostics::{self, Diagnostics};
@@ -53,6 +54,7 @@ struct Parts {
     lagrangian: Option<Lagrangian>,
     field: Option<Vec<ExprId>>,
     constraints: Vec<Constraint>,
+    cost: Option<Cost>,
     forces: Vec<Force>,
     frame: Vec<QuasiForm>,
     surfaces: Vec<Surface>,
@@ -93,6 +95,7 @@ pub(in crate::model) fn check_mode(
         lagrangian: lagrangian(&mut resolver),
         field: field::resolve(&mut resolver),
         constraints: constraints::resolve(&mut resolver),
+        cost: cost::resolve(&mut resolver),
         forces: forces(&mut resolver),
         frame: frame::resolve(&mut resolver),
         surfaces: surfaces::resolve(&mut resolver),
@@ -200,6 +203,7 @@ fn model(resolver: Resolver<'_>, lagrangian: Lagrangian, parts: Parts) -> Model 
         lagrangian,
         field: parts.field,
         constraints: parts.constraints,
+        cost: parts.cost,
         forces: parts.forces,
         frame: parts.frame,
         surfaces: parts.surfaces,
@@ -241,6 +245,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
         lagrangian: _,
         field,
         constraints,
+        cost,
         forces,
         frame,
         surfaces,
@@ -255,6 +260,7 @@ fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet
     for constraint in constraints {
         used.extend(constraint.expressions());
     }
+    used.extend(cost.iter().flat_map(|cost| [cost.running, cost.terminal]));
     used.extend(forces.iter().flat_map(|force| &force.form));
     used.extend(frame.iter().flat_map(|entry| &entry.form));
     for surface in surfaces {

@@ -9,7 +9,10 @@ pub(super) fn input(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let documentation = documentation(cursor)?;
     let declared = declared(cursor, "the name of an input")?;
     if !cursor.is_at_end() {
-        let help = "an input has a name alone: `u;`, `thrust[2];`; its values come from the caller";
+        let help = match cursor.is_word("in") {
+            true => "bounds on inputs are not supported; an input has a name alone: `u;`",
+            false => "an input has a name alone: `u;`, `thrust[2];`; its values come from the caller",
+        };
         return Err(cursor.unexpected("expected `;`", help));
     }
     let item = spec.item(declared.name.at);

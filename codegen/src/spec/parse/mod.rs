@@ -3,6 +3,7 @@
 mod claims;
 mod constraints;
 mod coordinates;
+mod cost;
 mod definitions;
 mod families;
 mod field;
@@ -228,6 +229,10 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
         }
         "constraints" => section(&word, cursor, spec, constraints::constraint),
         "inputs" => section(&word, cursor, spec, inputs::input),
+        "cost" => {
+            cost::begin(&word, spec);
+            section(&word, cursor, spec, cost::entry)
+        }
         "forces" => section(&word, cursor, spec, constraints::force),
         "frame" => section(&word, cursor, spec, constraints::quasi_velocity),
         "outputs" => section(&word, cursor, spec, constraints::output),

@@ -16,7 +16,7 @@ use crate::diagnostics::{Diagnostics, Location};
 const MODE: &str = "modes { slow { .. } fast { .. } }";
 
 /// Declarations that stand outside of `modes`, each with the reason.
-const SHARED: [(&str, &str); 4] = [
+const SHARED: [(&str, &str); 5] = [
     (
         "const",
         "declare it outside of `modes`: all modes share constants",
@@ -29,6 +29,7 @@ const SHARED: [(&str, &str); 4] = [
         "inputs",
         "declare a parameter in its place, and set it between runs",
     ),
+    ("cost", "declare the model of one mode by itself"),
     (
         "scenes",
         "leave them out: what a scene would leave out, a mode need not declare",
@@ -127,7 +128,7 @@ fn take_apart(tokens: &[TokenTree], body: &Group, diagnostics: &mut Diagnostics)
             let _ = part(&mut cursor, &mut parts);
         } else {
             parts.shared.extend(declaration.iter().cloned());
-            if matches!(word.as_deref(), Some("inputs" | "scenes")) {
+            if matches!(word.as_deref(), Some("inputs" | "cost" | "scenes")) {
                 refuse_shared(declaration, diagnostics);
             }
         }
@@ -189,7 +190,7 @@ fn refuse_shared(tokens: &[TokenTree], diagnostics: &mut Diagnostics) {
         if let Some((_, help)) = SHARED.iter().find(|(shared, _)| *shared == word) {
             let at = Location::of(&declaration[documentation_length(declaration)]);
             let text = match word.as_str() {
-                "inputs" | "scenes" => format!("a model with modes has no `{word}`"),
+                "inputs" | "cost" | "scenes" => format!("a model with modes has no `{word}`"),
                 word => format!("`{word}` stands outside of `modes`"),
             };
             diagnostics.error(at, text).help(help);

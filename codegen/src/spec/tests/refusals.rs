@@ -168,6 +168,10 @@ fn modes_and_transitions_keep_their_forms() {
         "a model with modes has no `scenes`",
     );
     refused_in(
+        "modes { a { } } «cost» { running = x; }",
+        "a model with modes has no `cost`",
+    );
+    refused_in(
         "modes { a { } } «inputs» { u; }",
         "a model with modes has no `inputs`",
     );
