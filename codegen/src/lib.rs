@@ -134,6 +134,45 @@ pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnosti
     mistakes.finish(compiled)
 }
 
+/// The extremals of a model with a cost, in one of its scenes, as a first-order model after all stages: see
+/// [`mechanics::control`]. The scene `None` is the model itself.
+///
+/// # Errors
+/// Same as [`compile`]; a declaration for which no maximum principle is derived.
+pub fn compile_control(
+    spec: &spec::Spec,
+    scene: Option<&str>,
+) -> Result<Compiled, diagnostics::Diagnostics> {
+    let (model, extremals) = derive_control(spec, scene)?;
+    let model = mechanics::control::extremal_model(model, &extremals);
+    compile_checked(spec, model, claims::examine)
+}
+
+/// A model in one of its scenes, with its maximum principle.
+fn derive_control(
+    spec: &spec::Spec,
+    scene: Option<&str>,
+) -> Result<(model::Model, mechanics::control::Extremals), diagnostics::Diagnostics> {
+    let model = model::check_within(spec, spec::STEPS)?;
+    let named = model.scenes.iter().position(|it| Some(&*it.name) == scene);
+    let mut model = match named {
+        Some(scene) => model.in_scene(scene),
+        None => model,
+    };
+    let derived = mechanics::control::derive_extremals(&mut model);
+    refuse_exhausted(spec, &model)?;
+    derived
+        .map(|extremals| (model, extremals))
+        .map_err(|refused| {
+            let mut mistakes = diagnostics::Diagnostics::new();
+            let at = refused
+                .item
+                .map_or(spec.name.at, |item| spec.location(item));
+            mistakes.error(at, refused.text).help(refused.help);
+            mistakes
+        })
+}
+
 /// The stages after the first two, of a model or of one of its scenes.
 fn compile_checked(
     spec: &spec::Spec,

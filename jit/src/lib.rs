@@ -48,6 +48,7 @@ use std::sync::Arc;
 use std::thread;
 
 use dalembert::erased::Form;
+use dalembert_codegen::diagnostics::Diagnostics;
 use dalembert_codegen::spec::Declaration;
 use dalembert_codegen::{self as codegen, Compiled};
 
@@ -70,7 +71,7 @@ pub struct Loaded {
 /// # Errors
 /// Every mistake of the first stage that found any, in whatever model.
 pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
-    load_from(name, text, |declaration| declaration)
+    load_by(name, text, build)
 }
 
 /// Same as [`load`], without the claims of the models. Nothing that follows from a claim is known then, such as an
@@ -79,7 +80,24 @@ pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
 /// # Errors
 /// Same as [`load`].
 pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
-    load_from(name, text, Declaration::without_claims)
+    load_by(name, text, |declaration| {
+        build(declaration.without_claims())
+    })
+}
+
+/// The extremals of a model with a cost, in a scene or, with `None`, of the model itself, as a first-order model:
+/// [`compile_control`](codegen::compile_control).
+///
+/// # Errors
+/// Every mistake of the first stage that found any, in the model or in what is derived of it.
+pub fn load_control(name: &str, text: &str, scene: Option<&str>) -> Result<Vec<Loaded>, Refused> {
+    load_by(name, text, |declaration| match declaration {
+        Declaration::Model(spec) => {
+            let compiled = codegen::compile_control(&spec, scene)?;
+            Ok(loaded(spec.name.text.clone(), &compiled))
+        }
+        modes @ Declaration::Modes(_) => build(modes),
+    })
 }
 
 /// Stack size of the thread that loads, in bytes.
@@ -87,18 +105,18 @@ const STACK: usize = 64 << 20;
 
 /// Loads in a thread of its own: with it goes the copy of the text that `proc_macro2` keeps for places, and its stack has
 /// room for the deepest nesting that is accepted.
-fn load_from(
+fn load_by(
     name: &str,
     text: &str,
-    prepare: fn(Declaration) -> Declaration,
+    build: impl Fn(Declaration) -> Result<Loaded, Diagnostics> + Send + Sync,
 ) -> Result<Vec<Loaded>, Refused> {
     thread::scope(|scope| {
-        let work = || load_here(name, text, prepare);
+        let work = || load_here(name, text, &build);
         let thread = thread::Builder::new().stack_size(STACK);
         match thread.spawn_scoped(scope, work) {
             Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
             // No other thread can be had.
-            Err(_) => load_here(name, text, prepare),
+            Err(_) => load_here(name, text, &build),
         }
     })
 }
@@ -106,12 +124,12 @@ fn load_from(
 fn load_here(
     name: &str,
     text: &str,
-    prepare: fn(Declaration) -> Declaration,
+    build: &dyn Fn(Declaration) -> Result<Loaded, Diagnostics>,
 ) -> Result<Vec<Loaded>, Refused> {
     let mut refused = Refused::new(name, text);
     let mut loaded = Vec::new();
     for tokens in source::models(&mut refused)? {
-        match codegen::read(tokens).map(prepare).and_then(build) {
+        match codegen::read(tokens).and_then(build) {
             Ok(model) => loaded.push(model),
             Err(diagnostics) => refused.add(&diagnostics),
         }
@@ -119,7 +137,7 @@ fn load_here(
     refused.or(loaded)
 }
 
-fn build(declaration: Declaration) -> Result<Loaded, codegen::diagnostics::Diagnostics> {
+fn build(declaration: Declaration) -> Result<Loaded, Diagnostics> {
     match declaration {
         Declaration::Model(spec) => {
             let compiled = codegen::compile_spec(&spec, codegen::spec::STEPS)?;

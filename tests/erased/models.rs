@@ -88,7 +88,7 @@ pub fn every_model() -> &'static [Compiled] {
         let mut models = compiled! {
             dalembert_models:
             AppellHamel BallOnRotatingTable BallOnSwitchingTable BouncingBall Chain2 Chain3 Chain4 Chain8 Chain16 ChaplyginSleigh
-            CompassWalker ConstantSpeed DimensionlessWalker DoublePendulum FilippovField HarmonicOscillator HolonomicBeadOnEllipses MovingWallDisk
+            CompassWalker ConstantSpeed ControlledBall DimensionlessWalker DoublePendulum FilippovField HarmonicOscillator HolonomicBeadOnEllipses MovingWallDisk
             PointBilliard RefractedParticle RimlessWheelFive RimlessWheelTen RollingBallEuler RollingBallWall RollingDisk
             SmoothAndRoughPlane SpasmodicHamiltonian SphereInPlane SpringMassWalker SuperElasticStrip TentMap TwoWheelsArrested
             TwoWheelsRod WalkerFootSlip

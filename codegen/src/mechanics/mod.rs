@@ -16,6 +16,7 @@
 pub mod bracket;
 mod common_factor;
 pub mod constraint;
+pub mod control;
 pub mod density;
 pub(crate) mod energy;
 pub mod factors;

@@ -9,12 +9,14 @@
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
 //! | `request.rs`, `bracket.rs`, `group.rs` | what is asked for in the words of a claim: brackets of functions, reduction by a group |
+//! | `control.rs` | the maximum principle of a model with a cost |
 //! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
 //! | `print.rs` | a report as text and as a document of LaTeX |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
 
 mod bracket;
 pub mod certificate;
+mod control;
 mod density_form;
 mod equations;
 mod frame;
@@ -28,6 +30,7 @@ use std::fmt;
 use proc_macro2::{LexError, TokenStream};
 
 pub use bracket::{BracketKind, bracket};
+pub use control::control;
 pub use density_form::density_form;
 pub use group::group;
 

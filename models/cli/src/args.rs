@@ -240,6 +240,9 @@ pub struct DeriveArgs {
     /// written as in claims: `partial(x),partial(y)`.
     #[arg(long, value_name = "XI,..", conflicts_with_all = ["bracket", "jacobiator"], allow_hyphen_values = true)]
     pub group: Option<String>,
+    /// Print the maximum principle instead, of a model with a `cost`: H*, optimal inputs, the field of the costate, its jumps at impacts.
+    #[arg(long, conflicts_with_all = ["bracket", "jacobiator", "group"])]
+    pub control: bool,
     /// Output format.
     #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
     pub format: DeriveFormat,

@@ -19,6 +19,7 @@ macro_rules! shipped {
             chaplygin_sleigh: ChaplyginSleigh,
             compass_walker: CompassWalker,
             constant_speed: ConstantSpeed,
+            controlled_ball: ControlledBall,
             dimensionless_walker: DimensionlessWalker,
             double_pendulum: DoublePendulum,
             filippov_field: FilippovField,

@@ -18,7 +18,8 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Option<Cost> {
         return resolver.refuse(at, "a `cost` needs `inputs`", help);
     }
     let Some(written) = &cost.running else {
-        let help = "write `running = u^2/2;`: a cost that does not grow with the inputs has no best input";
+        let help =
+            "write `running = u^2/2;`: a cost that does not grow with the inputs has no best input";
         return resolver.refuse(at, "a `cost` needs `running = ..;`", help);
     };
     let running = resolver.cost_expression(written);
@@ -88,7 +89,9 @@ impl Resolver<'_> {
             (false, false) if rank.rank == rows.len() || !rank.decided => {
                 return Some(());
             }
-            (false, _) => format!("the running cost does not grow with every combination of {names}"),
+            (false, _) => {
+                format!("the running cost does not grow with every combination of {names}")
+            }
         };
         let help = "add a positive multiple of the square of each input, such as `u^2/2`";
         self.refuse(written.at, text, help)

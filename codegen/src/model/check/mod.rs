@@ -39,8 +39,8 @@ use super::natural;
 use super::resolve::{Resolver, Scope};
 use super::transition::Peer;
 use super::{
-    Claim, Constraint, Cost, Extras, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset, Scene,
-    Surface, Transition, View,
+    Claim, Constraint, Cost, Extras, Force, Initial, Lagrangian, Model, Output, QuasiForm, Reset,
+    Scene, Surface, Transition, View,
 };
 use crate::diagnostics::{self, Diagnostics};
 use crate::spec::{PIECEWISE, STEPS, Scalar, Spec};

@@ -11,7 +11,9 @@ pub(super) fn input(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     if !cursor.is_at_end() {
         let help = match cursor.is_word("in") {
             true => "bounds on inputs are not supported; an input has a name alone: `u;`",
-            false => "an input has a name alone: `u;`, `thrust[2];`; its values come from the caller",
+            false => {
+                "an input has a name alone: `u;`, `thrust[2];`; its values come from the caller"
+            }
         };
         return Err(cursor.unexpected("expected `;`", help));
     }

@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use dalembert_codegen::report::{BracketKind, Item, Report, ReportError, bracket, group, report};
+use dalembert_codegen::report::{
+    BracketKind, Item, Report, ReportError, bracket, control, group, report,
+};
 use serde_json::{Value, json};
 
 use crate::args::{DeriveArgs, DeriveFormat};
@@ -35,6 +37,9 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
 
 /// The flag that asks for something else than the equations.
 fn flag(args: &DeriveArgs) -> Option<&'static str> {
+    if args.control {
+        return Some("--control");
+    }
     let flags = [
         (&args.bracket, "--bracket"),
         (&args.jacobiator, "--jacobiator"),
@@ -57,6 +62,9 @@ fn derived(entry: &Entry, args: &DeriveArgs, scene: usize) -> Result<Report, Rep
     }
     if let Some(fields) = &args.group {
         return group(source, part, fields);
+    }
+    if args.control {
+        return control(source, part);
     }
     let mut whole = report(source)?;
     Ok(match scene.checked_sub(1) {

@@ -1,0 +1,204 @@
+//! Extremals as a first-order model with resets, for the ordinary stages.
+
+use dalembert_expr::{Assumption as Known, ExprId, SymbolId};
+
+use super::{Extremals, Jump};
+use crate::model::{
+    Coordinate, DerivedSymbols, Extras, Initial, Lagrangian, Law, Model, Name, Output, Reset,
+    Surface, Topology,
+};
+use crate::spec::ItemId;
+
+/// Name of the output with `H*`.
+pub const ENERGY: &str = "hamiltonian";
+
+/// Name of the output with the terminal cost.
+pub const TERMINAL: &str = "terminal";
+
+/// Name of the component with the cost so far.
+const COST: &str = "cost";
+
+/// The model of the extremals of a model, in whose pool their expressions are. Its coordinates are the state, the costate and
+/// the cost so far; its surfaces are those of the model. Its outputs are the optimal inputs, `H*`, the terminal cost, the
+/// gradient of that by the state, and the rows of its second derivative.
+pub fn extremal_model(mut model: Model, extremals: &Extremals) -> Model {
+    let item = model.cost.map_or(model.lagrangian.item, |cost| cost.item);
+    let coordinates = coordinates(&mut model, extremals, item);
+    let count = coordinates.len();
+    let components = extremals.components.iter();
+    let mut rates: Vec<ExprId> = components.clone().map(|it| it.rate).collect();
+    rates.extend(components.map(|it| it.costate_rate));
+    rates.push(extremals.running);
+    let surfaces = surfaces(&mut model, extremals, count, item);
+    let outputs = outputs(&mut model, extremals, item);
+    let lagrangian = euclidean(&model, count, item);
+    let initial = initial(&model, count);
+    let derived = DerivedSymbols {
+        momenta: momenta(&mut model, &coordinates),
+        multipliers: Vec::new(),
+        ..model.derived
+    };
+    let parameters = model.parameters.iter().filter(|it| !it.is_input);
+    Model {
+        parameters: parameters.cloned().collect(),
+        extras: Extras {
+            variations: true,
+            ..Extras::default()
+        },
+        coordinates,
+        derived,
+        lagrangian,
+        field: Some(rates),
+        constraints: Vec::new(),
+        cost: None,
+        forces: Vec::new(),
+        frame: Vec::new(),
+        surfaces,
+        initial,
+        outputs,
+        scenes: Vec::new(),
+        claims: Vec::new(),
+        notes: Vec::new(),
+        ..model
+    }
+}
+
+fn coordinates(model: &mut Model, extremals: &Extremals, item: ItemId) -> Vec<Coordinate> {
+    let components = extremals.components.iter();
+    let declared = model.coordinates.iter().map(|it| it.topology);
+    let topologies = declared.chain(core::iter::repeat(Topology::Line));
+    let states = components.clone().zip(topologies);
+    let states = states.map(|(it, topology)| (it.name.clone(), it.state, topology));
+    let costates =
+        components.map(|it| (format!("costate_{}", it.name), it.costate, Topology::Line));
+    let mut entries: Vec<(String, SymbolId, Topology)> = states.chain(costates).collect();
+    let cost = model.pool.symbol(COST, "J", Known::None);
+    entries.push((COST.to_owned(), cost, Topology::Line));
+    let coordinate = |(display, q, topology): (String, SymbolId, Topology)| {
+        let rate = format!("dot({display})");
+        let latex = format!("\\dot{{{}}}", model.pool.symbol_latex(q));
+        Coordinate {
+            qdot: model.pool.symbol(&rate, &latex, Known::None),
+            name: plain(display),
+            documentation: Vec::new(),
+            topology,
+            q,
+            item,
+        }
+    };
+    entries.into_iter().map(coordinate).collect()
+}
+
+/// Symbols of momenta, which a first-order model has no use for but in their number.
+fn momenta(model: &mut Model, coordinates: &[Coordinate]) -> Vec<SymbolId> {
+    let names = coordinates
+        .iter()
+        .map(|it| format!("momentum({})", it.name.display));
+    let names: Vec<String> = names.collect();
+    let symbol = |name: &String| model.pool.symbol(name, name, Known::None);
+    names.iter().map(symbol).collect()
+}
+
+/// The name of a coordinate or an output by itself.
+fn plain(display: String) -> Name {
+    Name {
+        field: display.replace('.', "_"),
+        display,
+        member: None,
+    }
+}
+
+/// The surfaces of the model, each with a reset of state and costate.
+fn surfaces(model: &mut Model, extremals: &Extremals, count: usize, item: ItemId) -> Vec<Surface> {
+    let declared = model.surfaces.clone();
+    let pairs = declared.into_iter().zip(&extremals.jumps);
+    let reset = |(surface, jump): (Surface, &Jump)| {
+        let multiplier = [(jump.multiplier, jump.epsilon)];
+        let costate = model.pool.substitute_all(&jump.costate, &multiplier);
+        let mut after: Vec<Option<ExprId>> = Vec::new();
+        for (component, value) in extremals.components.iter().zip(&jump.state) {
+            let is_kept = *value == model.pool.variable(component.state);
+            after.push((!is_kept).then_some(*value));
+        }
+        after.extend(costate.into_iter().map(Some));
+        after.push(None);
+        Surface {
+            law: Law::Reset,
+            reset: Some(Reset {
+                q: after,
+                qdot: vec![None; count],
+                item,
+            }),
+            instantaneous: Vec::new(),
+            ..surface
+        }
+    };
+    pairs.map(reset).collect()
+}
+
+fn outputs(model: &mut Model, extremals: &Extremals, item: ItemId) -> Vec<Output> {
+    let inputs = model.inputs().map(|(_, input)| input.name.display.clone());
+    let inputs: Vec<String> = inputs.collect();
+    let mut values: Vec<(String, ExprId)> = inputs
+        .into_iter()
+        .zip(extremals.optimal.iter().copied())
+        .collect();
+    values.push((ENERGY.to_owned(), extremals.hamiltonian));
+    values.push((TERMINAL.to_owned(), extremals.terminal));
+    let states = extremals.components.iter();
+    let pool = &mut model.pool;
+    let gradient = states
+        .clone()
+        .map(|it| (&it.name, pool.diff(extremals.terminal, it.state)));
+    let gradient: Vec<(&String, ExprId)> = gradient.collect();
+    values.extend(
+        gradient
+            .iter()
+            .map(|(name, value)| (format!("{TERMINAL}_{name}"), *value)),
+    );
+    for (row, first) in &gradient {
+        for column in states.clone() {
+            let name = format!("{TERMINAL}_{row}_{}", column.name);
+            values.push((name, pool.diff(*first, column.state)));
+        }
+    }
+    let output = |(display, value)| Output {
+        name: plain(display),
+        documentation: Vec::new(),
+        value,
+        item,
+    };
+    values.into_iter().map(output).collect()
+}
+
+/// The initial state of the model; costate and cost are 0.
+fn initial(model: &Model, count: usize) -> Initial {
+    let Initial { q, qdot, until } = model.initial.clone();
+    let mut values = q;
+    if !model.is_first_order() {
+        values.extend(qdot);
+    }
+    values.resize(count, None);
+    Initial {
+        q: values,
+        qdot: vec![None; count],
+        until,
+    }
+}
+
+/// The placeholder of a Lagrangian that first-order models have.
+fn euclidean(model: &Model, count: usize, item: ItemId) -> Lagrangian {
+    let [zero, one] = [model.pool.zero(), model.pool.one()];
+    let row = |i: usize| {
+        (0..count)
+            .map(|j| if i == j { one } else { zero })
+            .collect()
+    };
+    Lagrangian {
+        whole: zero,
+        metric: (0..count).map(row).collect(),
+        linear: vec![zero; count],
+        potential: zero,
+        item,
+    }
+}
