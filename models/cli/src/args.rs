@@ -4,6 +4,7 @@
 mod certify;
 mod choice;
 mod connect;
+mod control;
 mod ensemble;
 mod errata;
 mod file;
@@ -26,6 +27,7 @@ use dalembert_driver::{Form, Integrator, OffConstraint};
 use crate::scalar;
 pub use certify::CertifyArgs;
 pub use connect::ConnectArgs;
+pub use control::ControlArgs;
 pub use ensemble::EnsembleArgs;
 pub use errata::ErrataArgs;
 pub use file::{BuildArgs, NewArgs, WatchArgs};
@@ -115,6 +117,13 @@ pub enum Command {
         after_help = linearise::EXAMPLES
     )]
     Linearise(Box<LineariseArgs>),
+    /// Find inputs that make the cost of a model least, across impacts.
+    #[command(
+        help_template = help::TEMPLATE,
+        before_help = "Example: dalembert control controlled_ball --impacts 0..2",
+        after_help = control::EXAMPLES
+    )]
+    Control(Box<ControlArgs>),
     /// Evaluate all derived quantities at given states.
     #[command(
         help_template = help::TEMPLATE,
@@ -178,6 +187,7 @@ impl Command {
             Self::Orbit(args) => Some(&mut args.model),
             Self::Connect(args) => Some(&mut args.model),
             Self::Linearise(args) => Some(&mut args.model),
+            Self::Control(args) => Some(&mut args.model),
             Self::Eval(args) => Some(&mut args.model),
             _ => None,
         }

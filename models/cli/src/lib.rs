@@ -27,6 +27,7 @@
 mod args;
 mod catalogue;
 mod command;
+mod ends;
 mod ensemble;
 mod entry;
 pub mod errata;
@@ -163,6 +164,7 @@ fn dispatch(
         Command::Orbit(args) => command::orbit::run(models, args, streams),
         Command::Connect(args) => command::connect::run(models, args, streams),
         Command::Linearise(args) => command::linearise::run(models, args, streams),
+        Command::Control(args) => command::control::run(models, args, streams),
         Command::Eval(args) => command::eval::run(models, args, streams),
         Command::Watch(args) => command::watch::run(catalogue, args, streams),
         Command::New(args) => command::new::run(args, streams),

@@ -28,21 +28,21 @@ pub fn check_plot(path: Option<&Path>) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses outputs that exclude each other: the paths of `--csv`, `--json` and `--plot`.
-pub fn check_outputs(paths: [&Option<PathBuf>; 3]) -> Result<(), CliError> {
-    check_plot(paths[2].as_deref())?;
-    let clash =
-        |first: usize, second: usize| paths[first].is_some() && paths[first] == paths[second];
-    if clash(0, 1) || clash(0, 2) || clash(1, 2) {
-        return Err(CliError::Usage(
+/// Refuses outputs that exclude each other: the paths of `--csv`, `--json` and others, and of `--plot`, which is last.
+pub fn check_outputs<const N: usize>(paths: [&Option<PathBuf>; N]) -> Result<(), CliError> {
+    check_plot(paths.last().and_then(|path| path.as_deref()))?;
+    let mut given: Vec<&PathBuf> = paths.into_iter().flatten().collect();
+    given.sort_unstable();
+    match given.windows(2).any(|pair| pair[0] == pair[1]) {
+        true => Err(CliError::Usage(
             "--csv, --json and --plot need different files (`-` can be used once)",
-        ));
+        )),
+        false => Ok(()),
     }
-    Ok(())
 }
 
 /// True if a table or a document is written to the standard output, which then has no other content.
-pub fn uses_stdout(paths: [&Option<PathBuf>; 2]) -> bool {
+pub fn uses_stdout<const N: usize>(paths: [&Option<PathBuf>; N]) -> bool {
     paths.into_iter().flatten().any(|path| is_stdout(path))
 }
 

@@ -11,6 +11,7 @@
 //! | `variation.rs` | derivatives of runs |
 //! | `connect/` | motions between two configurations |
 //! | `linearisation/` | equilibria, and linearised equations with inputs and outputs |
+//! | `control/` | extremals of models with a cost |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
 //! | `course.rs` | defaults of a run for values that its request leaves open |
@@ -27,6 +28,7 @@ mod beginning;
 mod certify;
 mod connect;
 mod continuation;
+mod control;
 pub mod course;
 pub mod drift;
 mod grid;
@@ -47,6 +49,7 @@ pub use beginning::{Beginning, Component};
 pub use certify::{Certification, Certified, Ranges, Strike};
 pub use connect::{Bounce, Boundary, Conjugate, Connected, Connection, Stage, Unjoined};
 pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
+pub use control::{Controlled, Extremal, Kick, Moment, SecondOrder, Task, Unsought};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};
 pub use linearisation::{

@@ -9,6 +9,7 @@ use crate::certify::{Certification, Certified, Strike};
 use crate::connect::{Boundary, Connected, Stage, Unjoined};
 use crate::continuation::{Branch, Continuation, Member};
 use crate::linearisation::{Linearisation, Place, Unlinear};
+use crate::control::{Controlled, Task, Unsought};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
 use crate::run::{Ending, Settings, Watch};
@@ -242,6 +243,15 @@ pub trait Runs {
         origin: &Origin,
         place: &Place,
     ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal>;
+    /// Searches all extremals of a model of extremals; `None` for a scene without variations. Calls `tell` with the progress.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a start that the system refuses. The inner error explains why nothing can be sought.
+    fn control(
+        &self,
+        task: &Task,
+        tell: &mut dyn FnMut(Stage),
+    ) -> Result<Option<Result<Controlled, Unsought>>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

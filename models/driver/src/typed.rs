@@ -17,6 +17,7 @@ use crate::certify::{Certification, Certified, Strike, Subject};
 use crate::connect::{Boundary, Connected, Joiner, Stage, Unjoined};
 use crate::continuation::trace::Watch as BranchWatch;
 use crate::continuation::{Branch, Continuation};
+use crate::control::{Controlled, Controller, Task, Unsought};
 use crate::integrator::Form;
 use crate::linearisation::{Linearisation, Lineariser, Place, Unlinear};
 use crate::model::{
@@ -485,6 +486,16 @@ impl<O: Owner> Runs for Typed<O> {
         let given = [StateVector::as_slice(&q), StateVector::as_slice(&qdot)];
         let lineariser = Lineariser { given, place };
         model.visit_variational(lineariser).transpose()
+    }
+
+    fn control(
+        &self,
+        task: &Task,
+        tell: &mut dyn FnMut(Stage),
+    ) -> Result<Option<Result<Controlled, Unsought>>, Refusal> {
+        let model = self.owner.system();
+        let controller = Controller { task, tell };
+        model.visit_variational(controller).transpose()
     }
 
     fn certify(

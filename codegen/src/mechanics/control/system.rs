@@ -110,7 +110,10 @@ fn of_lagrangian(model: &mut Model) -> Result<System, Uncontrolled> {
     }
     let names = model.coordinates.iter().map(|it| it.name.display.clone());
     let rates_of = model.coordinates.iter();
-    let rates_of = rates_of.map(|it| format!("{}_dot", it.name.display));
+    let rates_of = rates_of.map(|it| match it.name.display.split_once('.') {
+        Some((family, member)) => format!("{family}_dot.{member}"),
+        None => format!("{}_dot", it.name.display),
+    });
     Ok(System {
         names: names.chain(rates_of).collect(),
         inputs: inputs(model),

@@ -16,10 +16,7 @@ use crate::plot::{Drawn, quantity};
 use crate::progress::Stages;
 use crate::sink::Sink;
 use crate::state_input::build_model;
-use crate::{Streams, names, run_request, scalar};
-
-/// Largest number of impacts.
-const MOST_IMPACTS: usize = 1000;
+use crate::{Streams, ends, names, run_request};
 
 /// A finished search: the request and its result.
 struct Finished<'a> {
@@ -190,13 +187,14 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
             "connect: runs that change between modes have no derivatives; choose one mode with --scene",
         ));
     }
-    let impacts = impacts(&args.impacts)?;
+    let impacts = ends::impacts(&args.impacts)?;
     if description.surfaces.is_empty() && impacts[1] > 0 {
         return Err(CliError::Usage(
             "--impacts: the model has no impact surfaces",
         ));
     }
-    let to = positions(description, "--to", &args.to)?;
+    let coordinates = || names::coordinates(description);
+    let to = ends::components("--to", "coordinate", coordinates(), &args.to)?;
     if to.iter().all(Option::is_none) {
         return Err(CliError::value(
             "--to",
@@ -224,7 +222,8 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
 fn start(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Vec<f64>, CliError> {
     let description = model.description();
     let mut start = model.initial();
-    let given = positions(description, "--from", &args.from)?;
+    let coordinates = names::coordinates(description);
+    let given = ends::components("--from", "coordinate", coordinates, &args.from)?;
     for (index, value) in given.into_iter().enumerate() {
         if let Some(value) = value {
             start.q[index] = value;
@@ -233,45 +232,4 @@ fn start(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Vec<f64>, CliError>
     }
     let completed = model.complete_position(&start.q, &start.placed);
     completed.map_err(|error| CliError::state("--from", description, error))
-}
-
-/// The positions of a flag; `None` for those that it does not name.
-fn positions(
-    description: &Description,
-    flag: &str,
-    texts: &[String],
-) -> Result<Vec<Option<f64>>, CliError> {
-    let mut positions = vec![None; description.coordinates.len()];
-    let changes = texts.iter().flat_map(|list| list.split(','));
-    for text in changes.filter(|text| !text.trim().is_empty()) {
-        let (name, value) = names::assignment(flag, text, "NAME=VALUE,..")?;
-        let coordinates = names::coordinates(description);
-        let index = names::find(flag, "coordinate", name, coordinates)?;
-        let number = scalar::parse(value)
-            .map_err(|expected| CliError::value(format!("{flag} {name}"), value, expected))?;
-        if positions[index].replace(number).is_some() {
-            return Err(CliError::value(flag, text, "every coordinate once"));
-        }
-    }
-    Ok(positions)
-}
-
-/// Least and largest number of impacts.
-fn impacts(text: &str) -> Result<[usize; 2], CliError> {
-    let refuse = || {
-        CliError::value(
-            "--impacts",
-            text,
-            "a number such as 2, or A..B with A not above B, such as 0..3; 1000 at most",
-        )
-    };
-    let number = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
-    let range = match text.split_once("..") {
-        Some((least, most)) => [number(least)?, number(most.trim_start_matches('='))?],
-        None => [number(text)?; 2],
-    };
-    match range[0] <= range[1] && range[1] <= MOST_IMPACTS {
-        true => Ok(range),
-        false => Err(refuse()),
-    }
 }

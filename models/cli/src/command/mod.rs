@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod build;
 pub mod check;
 pub mod connect;
+pub mod control;
 pub mod derive;
 pub mod ensemble;
 pub mod errata;

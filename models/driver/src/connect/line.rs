@@ -1,8 +1,8 @@
 //! Starts along a line, for one unknown: every change of sign of the miss is a bracket, and so is every turn of its
 //! derivative that leads it to 0.
 
+use super::aim::{Aim, Course};
 use super::scan::Sample;
-use super::shooter::{Aim, Course};
 
 /// Least number of intervals of a stretch.
 const INTERVALS: f64 = 16.0;
@@ -192,7 +192,7 @@ fn nearer(left: Place, right: Place) -> Place {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shooter::Shot;
+    use super::super::aim::Shot;
     use super::*;
 
     /// A miss as a function of one unknown, with its derivative.

@@ -8,6 +8,7 @@
 //! | file | job |
 //! |---|---|
 //! | `shooter.rs` | one motion from given unknowns, and what is asked of a motion that was found |
+//! | `aim.rs` | questions of a search about a problem |
 //! | `observers.rs` | observers of a motion: impacts, action, derivatives |
 //! | `units.rs` | units of the unknowns, and the energies that a problem suggests |
 //! | `scan.rs` | motions along rays of the space of unknowns, with every change of their sequence of impacts |
@@ -18,16 +19,17 @@
 //! | `conjugate.rs` | conjugate points of a motion |
 //! | `least_squares.rs` | linear equations |
 
+pub(crate) mod aim;
 mod conjugate;
 mod directions;
 pub(crate) mod least_squares;
 mod line;
 mod newton;
-mod observers;
+pub(crate) mod observers;
 mod scan;
-mod search;
+pub(crate) mod search;
 mod shooter;
-mod units;
+pub(crate) mod units;
 
 use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
@@ -37,7 +39,7 @@ use thiserror::Error;
 
 use crate::model::Point;
 use crate::refusal::Refusal;
-use search::Search;
+use search::{Plan, Search};
 use shooter::Shooter;
 
 /// Relative difference of two actions that are one up to rounding.
@@ -141,6 +143,18 @@ pub struct Connected {
     pub unresolved: usize,
 }
 
+impl Plan {
+    fn of(boundary: &Boundary) -> Self {
+        Self {
+            least: boundary.impacts[0],
+            directions: boundary.directions,
+            seed: boundary.seed,
+            kinetic: boundary.kinetic,
+            envelope: boundary.envelope,
+        }
+    }
+}
+
 /// Stage of a search, for its progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
@@ -224,7 +238,9 @@ impl VariationalVisitor for Joiner<'_, '_> {
             Ok(shooter) => shooter,
             Err(unjoined) => return Ok(Err(unjoined)),
         };
-        let found = Search::of(&mut shooter, self.boundary, self.tell).found();
+        let plan = Plan::of(self.boundary);
+        let units = shooter.units();
+        let found = Search::of(&mut shooter, &plan, units, self.tell).found();
         let connections = found.roots.iter().map(|root| shooter.connection(&root.w));
         let connections: Result<Vec<Connection>, Unjoined> = connections.collect();
         let mut envelope = Vec::new();

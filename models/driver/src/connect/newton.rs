@@ -3,8 +3,8 @@
 //! Roots that are known are divided out (deflation): the miss is multiplied by `M = prod(1 + 1/|y - y_i|^2)`, which
 //! multiplies the step by `1/(1 - dM(step)/M)`.
 
+use super::aim::{Aim, Course, Shot};
 use super::least_squares::solve;
-use super::shooter::{Aim, Course, Shot};
 use crate::linear::norm;
 
 /// Largest number of steps.

@@ -10,7 +10,7 @@ use super::Bounce;
 use crate::typed::point;
 
 /// Notes the impacts of a run, and varies it.
-pub(super) struct Marksman<'a, S: Variational> {
+pub(crate) struct Marksman<'a, S: Variational> {
     pub variations: Option<Variations<'a, S>>,
     pub hits: Vec<(f64, usize)>,
 }
@@ -63,7 +63,7 @@ impl<S: Instance> Observer<S> for Film<'_, S> {
 }
 
 /// The end of a step: time, state, and the derivatives of the state by the unknowns.
-pub(super) struct Stand<S> {
+pub(crate) struct Stand<S> {
     pub t: f64,
     pub state: S,
     pub columns: Vec<Vec<f64>>,
@@ -72,7 +72,7 @@ pub(super) struct Stand<S> {
 }
 
 /// Keeps the derivatives of the configuration at the end of every step.
-pub(super) struct Determinants<'a, S: Variational> {
+pub(crate) struct Determinants<'a, S: Variational> {
     pub variations: Variations<'a, S>,
     pub states: Vec<Stand<S::State>>,
 }

@@ -1,6 +1,6 @@
 //! Starts along a ray of the space of unknowns, from rest on, with every change of their sequence of impacts.
 
-use super::shooter::{Aim, Course, Shot};
+use super::aim::{Aim, Course, Shot};
 use crate::linear::norm;
 
 /// A start on a ray.

@@ -5,15 +5,13 @@
 //! comes nearest, and Newton's method goes on from there. Directions between which the sequences of impacts differ are
 //! halved. At last known roots are divided out, and the nearest starts are tried again.
 
+use super::Stage;
+use super::aim::{Aim, Course};
 use super::directions;
 use super::line;
 use super::newton::{Arrival, Newton, is_same};
 use super::scan::{self, Density, Ray, Sample, Speeds, windows};
-use super::shooter::{Aim, Course, Shooter};
 use super::units::Units;
-use super::{Boundary, Stage};
-use dalembert::contract::Variational;
-use dalembert::{Instance, Scene};
 
 /// First speeds of a scan, in multiples of the speed that the problem suggests.
 const FIRST: f64 = 4.0;
@@ -33,9 +31,24 @@ const AGAIN: usize = 6;
 /// Number of starts of each sequence of impacts from which Newton's method goes on.
 const TRIED: usize = 240;
 
+/// Extent of a search.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan {
+    /// Least number of impacts.
+    pub least: usize,
+    /// Number of directions, for two unknowns or more; by default by their number.
+    pub directions: Option<usize>,
+    /// Seed that turns the directions.
+    pub seed: u64,
+    /// Half the square of the largest speed; by default as the scan suggests.
+    pub kinetic: Option<f64>,
+    /// Number of starts of an envelope in each direction.
+    pub envelope: usize,
+}
+
 /// A start that agrees.
 #[derive(Debug, Clone)]
-pub(super) struct Root {
+pub(crate) struct Root {
     /// The unknowns.
     pub w: Vec<f64>,
     /// The same in units.
@@ -44,7 +57,7 @@ pub(super) struct Root {
 
 /// Result of a search.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
+pub(crate) struct Found {
     pub roots: Vec<Root>,
     /// Unknowns of the starts of an envelope.
     pub fan: Vec<Vec<f64>>,
@@ -63,9 +76,9 @@ struct Candidate {
 }
 
 /// A search.
-pub(super) struct Search<'a> {
+pub(crate) struct Search<'a> {
     aim: &'a mut dyn Aim,
-    boundary: &'a Boundary,
+    plan: &'a Plan,
     units: Units,
     unknowns: usize,
     tell: &'a mut dyn FnMut(Stage),
@@ -73,17 +86,18 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// The search among the motions of a shooter.
-    pub fn of<S: Instance + Scene + Variational>(
-        shooter: &'a mut Shooter<'_, S>,
-        boundary: &'a Boundary,
+    /// The search among the motions of a problem, with units of its unknowns.
+    pub fn of(
+        aim: &'a mut dyn Aim,
+        plan: &'a Plan,
+        units: Units,
         tell: &'a mut dyn FnMut(Stage),
     ) -> Self {
         Self {
-            units: shooter.units(),
-            unknowns: shooter.unknowns(),
-            aim: shooter,
-            boundary,
+            unknowns: units.unknowns.len(),
+            units,
+            aim,
+            plan,
             tell,
             found: Found {
                 is_bounded: true,
@@ -105,7 +119,7 @@ impl<'a> Search<'a> {
 
     fn speeds(&self) -> Speeds {
         let first = FIRST * self.units.speed;
-        match self.boundary.kinetic {
+        match self.plan.kinetic {
             Some(kinetic) => {
                 let most = (2.0 * kinetic).sqrt();
                 Speeds {
@@ -130,7 +144,7 @@ impl<'a> Search<'a> {
     fn fixed(&mut self) {
         let shot = self.aim.shoot(&[], false);
         let is_near = shot.misses.iter().all(|miss| miss.abs() <= self.near());
-        let counts = |surfaces: &Vec<usize>| surfaces.len() >= self.boundary.impacts[0];
+        let counts = |surfaces: &Vec<usize>| surfaces.len() >= self.plan.least;
         if let Course::Reached(surfaces) = &shot.course
             && is_near
             && counts(surfaces)
@@ -160,7 +174,7 @@ impl<'a> Search<'a> {
         for (done, side) in [1.0, -1.0].into_iter().enumerate() {
             let ray = self.scan(&[side], density);
             let unit = side * self.units.unknowns[0];
-            for window in windows(&ray.samples, self.boundary.impacts[0]) {
+            for window in windows(&ray.samples, self.plan.least) {
                 for equation in 0..window[0].shot.misses.len() {
                     self.solve(window, unit, equation);
                 }
@@ -192,7 +206,7 @@ impl<'a> Search<'a> {
         };
         let fastest = ray.samples.iter().rev().find(meets);
         let fastest = fastest.map_or(self.speeds().first, |it| it.speed);
-        let count = self.boundary.envelope;
+        let count = self.plan.envelope;
         let at = |index: usize| fastest * (index as f64 + 0.5) / count as f64;
         let fan = (0..count).map(|index| vec![at(index) * unit]);
         self.found.fan.extend(fan);
@@ -217,11 +231,8 @@ impl<'a> Search<'a> {
     }
 
     fn in_the_plane(&mut self) {
-        let count = self
-            .boundary
-            .directions
-            .unwrap_or(directions::default_count(2));
-        let turn = directions::turn(self.boundary.seed);
+        let count = self.plan.directions.unwrap_or(directions::default_count(2));
+        let turn = directions::turn(self.plan.seed);
         let angle = |index: usize| turn + std::f64::consts::TAU * index as f64 / count as f64;
         let mut candidates = Vec::new();
         let mut last = self.fan(angle(0), &mut candidates);
@@ -263,9 +274,9 @@ impl<'a> Search<'a> {
 
     fn in_space(&mut self) {
         let count = directions::default_count(self.unknowns);
-        let count = self.boundary.directions.unwrap_or(count);
+        let count = self.plan.directions.unwrap_or(count);
         let mut candidates = Vec::new();
-        let all = directions::on_sphere(self.unknowns, count, self.boundary.seed);
+        let all = directions::on_sphere(self.unknowns, count, self.plan.seed);
         for (index, direction) in all.iter().enumerate() {
             self.gather(direction, &mut candidates);
             self.note(index + 1, 2 * count);
@@ -283,7 +294,7 @@ impl<'a> Search<'a> {
         };
         let ray = self.scan(direction, density);
         let mut courses = Vec::new();
-        for window in windows(&ray.samples, self.boundary.impacts[0]) {
+        for window in windows(&ray.samples, self.plan.least) {
             courses.push(window[0].shot.course.clone());
             let misses: Vec<f64> = window.iter().map(Sample::miss).collect();
             for (index, sample) in window.iter().enumerate() {

@@ -10,6 +10,7 @@ use dalembert::{
     StateVector, Undefined, Variations,
 };
 
+use super::aim::{Aim, Course, Shot};
 use super::conjugate::{self, Mark};
 use super::observers::{Determinants, Film, Marksman, Stand};
 use super::units::{Units, unit, units};
@@ -31,36 +32,6 @@ const STEPS: [u64; 2] = [4000, 50];
 
 /// Largest gap behind a surface that is rounding, as a fraction of the largest coordinate.
 const ROUNDING: f64 = 1e-9;
-
-/// Course of a motion.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Course {
-    /// It reaches the time of the end, with impacts on these surfaces.
-    Reached(Vec<usize>),
-    /// It has more impacts than allowed.
-    Beyond,
-    /// It ends early for another reason, or begins with an impact.
-    Lost,
-}
-
-/// A motion from given unknowns.
-#[derive(Debug, Clone)]
-pub(super) struct Shot {
-    pub course: Course,
-    /// Differences between the given coordinates of the end and those of the motion.
-    pub misses: Vec<f64>,
-    /// Derivatives of these differences, a column for each unknown; empty if they were not asked for or do not exist.
-    pub slopes: Vec<Vec<f64>>,
-}
-
-/// Questions of a search about a model, for any type of system.
-pub(super) trait Aim {
-    /// The motion from these unknowns, with derivatives if `with_slopes`.
-    fn shoot(&mut self, w: &[f64], with_slopes: bool) -> Shot;
-
-    /// Number of steps of the integrator that were made.
-    fn steps(&self) -> u64;
-}
 
 /// The motions of a system between two configurations.
 pub(super) struct Shooter<'a, S: Instance + Scene + Variational> {

@@ -10,7 +10,7 @@ use crate::typed::vector;
 
 /// Units of the unknowns and of their size.
 #[derive(Debug, Clone)]
-pub(super) struct Units {
+pub(crate) struct Units {
     /// The value of each unknown whose kinetic energy is 1/2.
     pub unknowns: Vec<f64>,
     /// Root of twice the kinetic energy that the problem suggests.

@@ -1,16 +1,13 @@
 //! Pictures of motions between two configurations.
 
-use dalembert_driver::{
-    Connection, Contact, Form, Impact, Integrator, OffConstraint, Origin, Piece, Rates, Settings,
-    Watch,
-};
+use dalembert_driver::{Connection, Form, Integrator, OffConstraint, Origin, Rates, Settings};
 
 use super::{Finished, summary};
 use crate::args::ConnectArgs;
 use crate::error::CliError;
+use crate::plot::film;
 use crate::plot::paths::{self, Path, Sheet};
 use crate::plot::quantity::{self, Quantity};
-use crate::plot::trace::{Source, Trace};
 
 /// The picture of all motions.
 ///
@@ -69,49 +66,11 @@ fn path(
         rates: Rates::Velocities(connection.first.qdot.clone()),
         policy: OffConstraint::Keep,
     };
-    let mut camera = Camera {
-        trace: Trace::of(Source::Quantities(quantities.to_vec())),
-        corners: Vec::new(),
-        quantities,
-        start: connection.first.energy,
-    };
-    let ending = model.simulate(&origin, &settings, &mut camera);
-    ending.map_err(|refusal| CliError::refused(model, &refusal))?;
+    let start = connection.first.energy;
+    let [points, corners] = film::curve(model, &origin, &settings, quantities, start)?;
     Ok(Path {
         impacts: connection.bounces.len(),
-        points: camera
-            .trace
-            .points()
-            .iter()
-            .map(|mark| mark.values.clone())
-            .collect(),
-        corners: camera.corners,
+        points,
+        corners,
     })
-}
-
-/// Keeps the curve of a run and the places of its impacts.
-struct Camera<'a> {
-    trace: Trace,
-    corners: Vec<Vec<f64>>,
-    quantities: &'a [Quantity],
-    /// The energy at the start.
-    start: f64,
-}
-
-impl Watch for Camera<'_> {
-    fn step(&mut self, piece: &dyn Piece) {
-        self.trace.follow(piece);
-    }
-
-    fn impact(&mut self, impact: Impact) {
-        self.trace.corner(impact.t, &impact.before);
-        self.trace.corner(impact.t, &impact.after);
-        let quantities = self.quantities.iter();
-        let values = quantities.map(|it| it.value(impact.t, &impact.before, self.start));
-        self.corners.push(values.collect());
-    }
-
-    fn contact(&mut self, contact: Contact) {
-        self.trace.corner(contact.t, &contact.at);
-    }
 }

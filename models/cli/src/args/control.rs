@@ -1,0 +1,89 @@
+//! The flags of `control`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::ValueParser;
+
+use super::ModelArgs;
+use crate::scalar;
+
+pub(super) const EXAMPLES: &str =
+    "The model declares `inputs` and a `cost { running = ..; terminal = ..; }`. Extremals satisfy the maximum principle: state and
+costate follow H*, and jump together at impacts. `derive MODEL --control` prints the equations. The state of a first-order
+model has its coordinates, that of a Lagrangian model positions and velocities: x, x_dot.
+
+The costate at the start is unknown. At the end, components of the state that --end gives have their values, and the costate
+of the others is the derivative of the terminal cost. Costates are scanned in --starts directions, and Newton's method goes
+on from those that come nearest, within one sequence of impacts, with exact derivatives across impacts. No search is
+exhaustive: extremals may be missed. They are listed by their cost; each is one for its number of impacts.
+
+The second-order test says whether the cost of neighbouring motions with the same sequence of impacts is larger: `minimum`; `fails`
+near a focal point; `open` where inputs do not control all directions of the state.
+
+Bounds on inputs and states, constraints, and laws that forget the state before, such as plastic ones, are refused.
+
+Exit status: 0 extremals were found, 1 none was found, 2 bad flags or input.
+
+More examples:
+  dalembert control controlled_ball --initial x=2 --impacts 0..2 --plot balls.svg
+  dalembert control controlled_ball --initial x=1 --end x=1,y=0 --impacts 0..1 --set e=0.8
+  dalembert control controlled_ball --impacts 2 --inputs best.csv --json -";
+
+/// `control`
+#[derive(Debug, Args)]
+pub struct ControlArgs {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Change the model's initial state by name: `x=..`, `x_dot=..`. May be repeated.
+    #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true)]
+    pub initial: Vec<String>,
+    /// Components of the state at the end; the others are free. May be repeated.
+    #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true)]
+    pub end: Vec<String>,
+    /// Time of the end. Default: the model's `until`.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    pub until: Option<f64>,
+    /// Number of impacts, or its least and largest value, both included: `2`, `0..3`.
+    #[arg(
+        long,
+        value_name = "N|A..B",
+        allow_hyphen_values = true,
+        default_value = "0"
+    )]
+    pub impacts: String,
+    /// Number of directions in which costates are scanned, for two unknowns or more. Default: 96 for two, 240 for three,
+    /// 480 for more.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    pub starts: Option<u32>,
+    /// Seed that turns these directions.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.
+    #[arg(long, value_name = "X", default_value = "1e-14", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
+    pub tol: f64,
+    /// Write a table with a row for each extremal. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write the results as one JSON document. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the first extremal, that of least cost, as a table: time, state, costate, cost so far, inputs, H*. An impact has a row
+    /// before it and a row after it. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub inputs: Option<PathBuf>,
+    /// Number of rows of that table, evenly in time, besides those at impacts.
+    #[arg(long, value_name = "N", requires = "inputs", value_parser = clap::value_parser!(u32).range(2..=10_000_000), default_value_t = 501)]
+    pub samples: u32,
+    /// Draw all extremals: state and inputs over the time, or the axes of --axes.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Quantities of the picture: one along x, one or more along y. Those of the state, `costate_x` and so on, `cost`, the inputs,
+    /// `hamiltonian`. Default: t, the state, the inputs
+    #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
+    pub axes: Option<String>,
+    /// Width of the picture, in pixels.
+    #[arg(long, value_name = "PIXELS", requires = "plot", value_parser = clap::value_parser!(u32).range(300..=4000), default_value_t = 900)]
+    pub plot_width: u32,
+}

@@ -1,0 +1,248 @@
+//! `control`: extremals of a model with a cost, as a summary, tables, a document and a picture.
+
+mod document;
+mod film;
+mod spreadsheet;
+mod summary;
+
+use dalembert::Tolerance;
+use dalembert::describe::Description;
+use dalembert_driver::{AnyModel, Controlled, Form, Integrator, Settings, Task, Unsought};
+
+use crate::args::{ControlArgs, ModelArgs};
+use crate::entry::Entry;
+use crate::error::{self, CliError};
+use crate::exit::Exit;
+use crate::plot::{Drawn, quantity};
+use crate::progress::Stages;
+use crate::sink::Sink;
+use crate::state_input::{build_model, find_model};
+use crate::{Streams, ends, names, run_request};
+
+/// A finished search: the request and its result.
+struct Finished<'a> {
+    /// The first-order model of the extremals.
+    model: &'a dyn AnyModel,
+    scene: &'a str,
+    tol: f64,
+    task: Task,
+    controlled: Controlled,
+}
+
+impl Finished<'_> {
+    fn description(&self) -> &Description {
+        self.model.description()
+    }
+
+    /// The names of the state's components.
+    fn states(&self) -> impl Iterator<Item = &'static str> + Clone {
+        names::coordinates(self.description()).take(self.task.from.len())
+    }
+
+    /// The names of the inputs: the first outputs, before H*.
+    fn inputs(&self) -> impl Iterator<Item = &'static str> + Clone {
+        let states = self.task.from.len();
+        let outputs = &self.description().outputs;
+        let inputs = outputs.len() - 2 - states - states * states;
+        outputs.iter().copied().take(inputs)
+    }
+
+    /// The settings that repeat a run.
+    fn settings(&self) -> Settings {
+        let form = Form::choose(self.description(), None, false);
+        Settings {
+            form: form.unwrap_or(Form::Global),
+            integrator: Integrator::Taylor,
+            tol: self.tol,
+            step: None,
+            max_step: None,
+            steps: None,
+            until: self.task.time,
+            impacts: None,
+            laws: Vec::new(),
+            policies: dalembert::Policies::default(),
+            projection: None,
+        }
+    }
+}
+
+/// Carries out `control`.
+///
+/// # Errors
+/// Invalid flags, a model without a maximum principle, a state that is refused, a file that cannot be written. If no extremal
+/// is found, the result is not an error but [`Exit::Other`].
+pub fn run(
+    models: &[Entry],
+    args: &ControlArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    run_request::check_outputs([&args.csv, &args.json, &args.inputs, &args.plot])?;
+    let model = model_of_extremals(models, args)?;
+    let task = task(model.as_ref(), args)?;
+    check_axes(model.description(), args)?;
+    // Opened before the search, so that a path that cannot be written is reported at once.
+    let csv = Sink::open_given("--csv", args.csv.as_deref())?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let inputs = Sink::open_given("--inputs", args.inputs.as_deref())?;
+    let plot = Sink::open_given("--plot", args.plot.as_deref())?;
+    let finished = find(model.as_ref(), args, task, streams.terminal)?;
+    if let Some(sink) = csv {
+        sink.write(streams, |output| spreadsheet::write(output, &finished))?;
+    }
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &finished))?;
+    }
+    if let Some(sink) = inputs {
+        let rows = film::rows(&finished, args.samples)?;
+        sink.write(streams, |output| {
+            spreadsheet::write_motion(output, &finished, &rows)
+        })?;
+    }
+    if let Some(sink) = plot {
+        let svg = film::picture(&finished, args)?;
+        sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
+    }
+    if !run_request::uses_stdout([&args.csv, &args.json, &args.inputs]) {
+        summary::write(streams.output, &finished)?;
+    }
+    Ok(match finished.controlled.extremals.is_empty() {
+        false => Exit::Reached,
+        true => Exit::Other,
+    })
+}
+
+/// The picture that `control` writes with these flags.
+///
+/// # Errors
+/// The errors of [`run`] except those of files.
+pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
+    let model = model_of_extremals(models, args)?;
+    let task = task(model.as_ref(), args)?;
+    check_axes(model.description(), args)?;
+    let finished = find(model.as_ref(), args, task, false)?;
+    Ok(Drawn {
+        svg: film::picture(&finished, args)?,
+        outcome: summary::counted(&finished),
+    })
+}
+
+/// The first-order model of the extremals, with the parameters of the flags.
+fn model_of_extremals(models: &[Entry], args: &ControlArgs) -> Result<Box<dyn AnyModel>, CliError> {
+    let entry = find_model(models, &args.model.model)?;
+    let description = entry.description();
+    if !description.modes.is_empty() || args.model.mode.is_some() {
+        return Err(CliError::Usage("control: a model with modes has no `cost`"));
+    }
+    let scene = names::find("--scene", "scene", &args.model.scene, entry.scenes())?;
+    let part = (scene > 0).then_some(args.model.scene.as_str());
+    let loaded = dalembert_jit::load_control(description.name, &description.source, part);
+    let loaded = loaded.map_err(CliError::Declaration)?;
+    let extremals: Vec<Entry> = loaded.iter().map(Entry::loaded).collect();
+    extremals.iter().try_for_each(Entry::check_size)?;
+    let args = ModelArgs {
+        model: description.name.to_owned(),
+        scene: "all".to_owned(),
+        set: args.model.set.clone(),
+        no_claims: false,
+        mode: None,
+    };
+    build_model(&extremals, &args)
+}
+
+fn check_axes(description: &Description, args: &ControlArgs) -> Result<(), CliError> {
+    let axes = args.axes.as_deref();
+    axes.map_or(Ok(()), |axes| {
+        quantity::parse("--axes", axes, description).map(drop)
+    })
+}
+
+/// The request of the flags.
+fn task(model: &dyn AnyModel, args: &ControlArgs) -> Result<Task, CliError> {
+    let description = model.description();
+    let count = (description.coordinates.len() - 1) / 2;
+    let states = names::coordinates(description).take(count);
+    let impacts = ends::impacts(&args.impacts)?;
+    if description.surfaces.is_empty() && impacts[1] > 0 {
+        return Err(CliError::Usage(
+            "--impacts: the model has no impact surfaces",
+        ));
+    }
+    let declared = model.initial();
+    let given = ends::components("--initial", "component", states.clone(), &args.initial)?;
+    let from = given.into_iter().zip(&declared.q);
+    let until = args.until.or(declared.until).filter(|time| *time > 0.0);
+    let tolerance = Tolerance::new(args.tol)
+        .map_err(|error| CliError::value("--tol", args.tol.to_string(), error.to_string()))?;
+    Ok(Task {
+        from: from
+            .map(|(given, declared)| given.unwrap_or(*declared))
+            .collect(),
+        to: ends::components("--end", "component", states, &args.end)?,
+        time: until.ok_or(CliError::Usage(
+            "--until is needed: the model declares no `until`",
+        ))?,
+        impacts,
+        tolerance,
+        directions: args.starts.map(|count| count as usize),
+        seed: args.seed,
+    })
+}
+
+/// Makes the search.
+fn find<'a>(
+    model: &'a dyn AnyModel,
+    args: &'a ControlArgs,
+    task: Task,
+    terminal: bool,
+) -> Result<Finished<'a>, CliError> {
+    let mut stages = Stages::new(terminal);
+    let result = model.control(&task, &mut |stage| {
+        stages.at(stage.done, stage.all, &format!("{} found", stage.found));
+    });
+    stages.finish();
+    let description = model.description();
+    let result = result.map_err(|refusal| CliError::Input {
+        place: "--initial".to_owned(),
+        reason: error::refusal_text(description, &refusal),
+    })?;
+    let controlled = match result {
+        Some(Ok(controlled)) => controlled,
+        Some(Err(unsought)) => return Err(refused(description, &unsought)),
+        None => {
+            return Err(CliError::Invariable {
+                scene: args.model.scene.clone(),
+            });
+        }
+    };
+    Ok(Finished {
+        model,
+        scene: &args.model.scene,
+        tol: args.tol,
+        task,
+        controlled,
+    })
+}
+
+/// The error for a problem without extremals, in the model's names.
+fn refused(description: &Description, unsought: &Unsought) -> CliError {
+    let (place, reason) = match unsought {
+        Unsought::Behind {
+            is_end,
+            surface,
+            gap,
+        } => {
+            let place = if *is_end { "--end" } else { "--initial" };
+            let name = names::surfaces(description).nth(*surface);
+            let name = name.unwrap_or_default();
+            (
+                place,
+                format!("the state lies behind `{name}`: its gap is {gap}"),
+            )
+        }
+        other => ("control", other.to_string()),
+    };
+    CliError::Input {
+        place: place.to_owned(),
+        reason,
+    }
+}

@@ -1,0 +1,134 @@
+//! Extremals in a few lines of text.
+
+use std::io::{self, Write};
+
+use dalembert_driver::{Extremal, SecondOrder};
+
+use super::Finished;
+use crate::{error, names};
+
+/// Writes the summary.
+pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    let controlled = &finished.controlled;
+    writeln!(output, "{}", title(finished))?;
+    writeln!(output, "  from        {}", start(finished))?;
+    writeln!(output, "  to          {}", end(finished))?;
+    let directions = error::counted(controlled.directions, "direction");
+    let runs = error::counted(controlled.runs as usize, "run");
+    writeln!(output, "  search      {directions}, {runs}")?;
+    writeln!(output, "  coverage    {}", doubt(finished))?;
+    writeln!(output, "  found       {}", counted(finished))?;
+    for (index, extremal) in controlled.extremals.iter().enumerate() {
+        writeln!(output)?;
+        write_extremal(output, finished, index + 1, extremal)?;
+    }
+    Ok(())
+}
+
+/// The model and its scene.
+pub(super) fn title(finished: &Finished<'_>) -> String {
+    let name = finished.description().name;
+    match finished.scene {
+        "all" => name.to_owned(),
+        scene => format!("{name}, scene {scene}"),
+    }
+}
+
+/// Both ends.
+pub(super) fn subtitle(finished: &Finished<'_>) -> String {
+    format!("from {} to {}", start(finished), end(finished))
+}
+
+fn start(finished: &Finished<'_>) -> String {
+    assignments(finished.states(), &finished.task.from)
+}
+
+fn end(finished: &Finished<'_>) -> String {
+    let task = &finished.task;
+    let given = finished.states().zip(&task.to);
+    let given = given.filter_map(|(name, to)| to.map(|to| format!("{name} = {to:?}")));
+    let given: Vec<String> = given.collect();
+    let state = match given.is_empty() {
+        true => "a free end".to_owned(),
+        false => given.join(", "),
+    };
+    format!("{state} at t = {}", task.time)
+}
+
+/// The numbers of extremals by their number of impacts.
+pub(super) fn counted(finished: &Finished<'_>) -> String {
+    let extremals = finished.controlled.extremals.iter();
+    let mut counts: Vec<usize> = extremals.map(|it| it.kicks.len()).collect();
+    counts.sort_unstable();
+    let groups = counts.chunk_by(|left, right| left == right);
+    let groups = groups.map(|group| {
+        let impacts = error::counted(group[0], "impact");
+        format!("{} with {impacts}", group.len())
+    });
+    match counts.len() {
+        0 => "no extremal".to_owned(),
+        count => {
+            let groups: Vec<String> = groups.collect();
+            let all = error::counted(count, "extremal");
+            format!("{all}: {}", groups.join(", "))
+        }
+    }
+}
+
+/// Reasons for which the search is not exhaustive.
+fn doubt(finished: &Finished<'_>) -> String {
+    let unresolved = match finished.controlled.unresolved {
+        0 => String::new(),
+        count => format!(
+            "; {} of the scan not resolved",
+            error::counted(count, "interval")
+        ),
+    };
+    format!("a scan samples costates, so extremals may be missed{unresolved}")
+}
+
+/// The second-order test: its word, and what it says.
+pub(super) fn verdict(extremal: &Extremal) -> (&'static str, String) {
+    match extremal.second_order {
+        SecondOrder::Minimum => (
+            "minimum",
+            "minimum: neighbouring motions with these impacts cost more".to_owned(),
+        ),
+        SecondOrder::Fails { t } => (
+            "fails",
+            format!("fails near t = {t:.4}: some neighbouring motions cost less"),
+        ),
+        SecondOrder::Open => ("open", "open".to_owned()),
+    }
+}
+
+fn write_extremal(
+    output: &mut dyn Write,
+    finished: &Finished<'_>,
+    number: usize,
+    extremal: &Extremal,
+) -> io::Result<()> {
+    let impacts = error::counted(extremal.kicks.len(), "impact");
+    let cost = extremal.cost;
+    writeln!(output, "  extremal {number}  {impacts}, cost {cost:?}")?;
+    let costate = assignments(finished.states(), &extremal.first.costate);
+    writeln!(output, "    costate   {costate}")?;
+    let state = assignments(finished.states(), &extremal.last.state);
+    writeln!(output, "    end       {state}")?;
+    for kick in &extremal.kicks {
+        let surface = names::surfaces(finished.description()).nth(kick.surface);
+        let surface = surface.unwrap_or_default();
+        writeln!(output, "    impact    t = {:?}, {surface}", kick.before.t)?;
+    }
+    writeln!(output, "    residual  {:.1e}", extremal.residual)?;
+    writeln!(output, "    second    {}", verdict(extremal).1)
+}
+
+/// Values by name.
+fn assignments(names: impl Iterator<Item = &'static str>, values: &[f64]) -> String {
+    let pairs = names.zip(values);
+    let parts: Vec<String> = pairs
+        .map(|(name, value)| format!("{name} = {value:?}"))
+        .collect();
+    parts.join(", ")
+}

@@ -1,0 +1,54 @@
+//! Flags of boundary-value problems: components of an end by name, and numbers of impacts.
+
+use crate::error::CliError;
+use crate::{names, scalar};
+
+/// Largest number of impacts.
+const MOST_IMPACTS: usize = 1000;
+
+/// The components that a flag gives by name; `None` for those that it does not name. `what` is what they are.
+///
+/// # Errors
+/// An unknown name, a value that is not a number, a component that is given again.
+pub fn components<'a>(
+    flag: &'static str,
+    what: &'static str,
+    accepted: impl Iterator<Item = &'a str> + Clone,
+    texts: &[String],
+) -> Result<Vec<Option<f64>>, CliError> {
+    let mut components = vec![None; accepted.clone().count()];
+    let changes = texts.iter().flat_map(|list| list.split(','));
+    for text in changes.filter(|text| !text.trim().is_empty()) {
+        let (name, value) = names::assignment(flag, text, "NAME=VALUE,..")?;
+        let index = names::find(flag, what, name, accepted.clone())?;
+        let number = scalar::parse(value)
+            .map_err(|expected| CliError::value(format!("{flag} {name}"), value, expected))?;
+        if components[index].replace(number).is_some() {
+            return Err(CliError::value(flag, text, format!("every {what} once")));
+        }
+    }
+    Ok(components)
+}
+
+/// Least and largest number of impacts.
+///
+/// # Errors
+/// A text that is neither a number nor a range of numbers.
+pub fn impacts(text: &str) -> Result<[usize; 2], CliError> {
+    let refuse = || {
+        CliError::value(
+            "--impacts",
+            text,
+            "a number such as 2, or A..B with A not above B, such as 0..3; 1000 at most",
+        )
+    };
+    let number = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
+    let range = match text.split_once("..") {
+        Some((least, most)) => [number(least)?, number(most.trim_start_matches('='))?],
+        None => [number(text)?; 2],
+    };
+    match range[0] <= range[1] && range[1] <= MOST_IMPACTS {
+        true => Ok(range),
+        false => Err(refuse()),
+    }
+}

@@ -1,0 +1,171 @@
+//! Optimal control: all extremals found of a model with a cost, with given numbers of impacts.
+//!
+//! The system is the first-order model of the extremals that the generator makes: state `x`, costate `p` and the cost so far.
+//! The unknowns are the costate at the start. The equations are the given components of the state at the end, and
+//! `p = dg` for the others, with `g` the terminal cost. A motion and its derivatives across impacts are those of
+//! [`Variations`](dalembert::Variations), and the search is that of [`connect`](crate::connect).
+//!
+//! | file | job |
+//! |---|---|
+//! | `shooter.rs` | one extremal from a costate at the start |
+//! | `second_order.rs` | the second-order test of an extremal that was found |
+
+mod second_order;
+mod shooter;
+
+use dalembert::contract::Variational;
+use dalembert::describe::VariationalVisitor;
+use dalembert::{Fault, Instance, Scene, Tolerance};
+use thiserror::Error;
+
+use crate::connect::Stage;
+use crate::connect::search::{Plan, Search};
+use crate::refusal::Refusal;
+use shooter::Shooter;
+
+pub use second_order::SecondOrder;
+
+/// Request for all extremals from a state.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The state at `t = 0`.
+    pub from: Vec<f64>,
+    /// Components of the state at the end; one without a value is free.
+    pub to: Vec<Option<f64>>,
+    /// The time of the end.
+    pub time: f64,
+    /// Least and largest number of impacts.
+    pub impacts: [usize; 2],
+    /// The tolerance of the integrator, a Taylor series.
+    pub tolerance: Tolerance,
+    /// Number of directions in which starts are scanned, for two unknowns or more; by default by their number.
+    pub directions: Option<usize>,
+    /// Seed that turns the directions.
+    pub seed: u64,
+}
+
+/// State and costate at a time of an extremal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moment {
+    /// The time.
+    pub t: f64,
+    /// The state.
+    pub state: Vec<f64>,
+    /// The costate.
+    pub costate: Vec<f64>,
+    /// The optimal inputs.
+    pub inputs: Vec<f64>,
+    /// `H*`
+    pub hamiltonian: f64,
+}
+
+/// An impact of an extremal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kick {
+    /// The index of the surface.
+    pub surface: usize,
+    /// Before.
+    pub before: Moment,
+    /// After.
+    pub after: Moment,
+}
+
+/// An extremal that was found.
+#[derive(Debug, Clone)]
+pub struct Extremal {
+    /// The start.
+    pub first: Moment,
+    /// The end.
+    pub last: Moment,
+    /// The impacts, in order of time.
+    pub kicks: Vec<Kick>,
+    /// The whole cost.
+    pub cost: f64,
+    /// The part of it that is due to the end.
+    pub terminal: f64,
+    /// Largest difference in an equation of the end.
+    pub residual: f64,
+    /// The second-order test.
+    pub second_order: SecondOrder,
+}
+
+/// The result of a search.
+#[derive(Debug, Clone)]
+pub struct Controlled {
+    /// The extremals, by cost.
+    pub extremals: Vec<Extremal>,
+    /// Number of directions that were scanned.
+    pub directions: usize,
+    /// Number of motions that were computed.
+    pub runs: u64,
+    /// True if the scan of every direction ended where larger costates have too many impacts or no motion to the end.
+    pub is_bounded: bool,
+    /// Intervals of a scan with a change that was not resolved.
+    pub unresolved: usize,
+}
+
+/// Reasons for which no extremals are sought.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Unsought {
+    /// The model is not one of extremals.
+    #[error("the model is not that of the extremals of a model with a cost")]
+    Other,
+    /// The second derivative of the running cost by the inputs is not positive.
+    #[error(
+        "the optimal input or H* is not finite at the start: the running cost has no least value there"
+    )]
+    Input,
+    /// A state lies behind a surface.
+    #[error("the gap of surface {surface} is {gap:e} there, which is behind it")]
+    Behind {
+        /// True for the state at the end.
+        is_end: bool,
+        /// The surface.
+        surface: usize,
+        /// Its gap.
+        gap: f64,
+    },
+    /// A quantity of an extremal that was found does not exist.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
+
+/// Searches the extremals of a model of any type.
+pub(crate) struct Controller<'a, 'b> {
+    pub task: &'a Task,
+    pub tell: &'b mut dyn FnMut(Stage),
+}
+
+impl VariationalVisitor for Controller<'_, '_> {
+    /// The inner error explains why nothing can be sought, the outer one why no run starts.
+    type Output = Result<Result<Controlled, Unsought>, Refusal>;
+
+    fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
+        let mut shooter = match Shooter::aimed(system, self.task)? {
+            Ok(shooter) => shooter,
+            Err(unsought) => return Ok(Err(unsought)),
+        };
+        let plan = Plan {
+            least: self.task.impacts[0],
+            directions: self.task.directions,
+            seed: self.task.seed,
+            kinetic: None,
+            envelope: 0,
+        };
+        let units = shooter.units();
+        let found = Search::of(&mut shooter, &plan, units, self.tell).found();
+        let extremals = found.roots.iter().map(|root| shooter.extremal(&root.w));
+        let extremals: Result<Vec<Extremal>, Unsought> = extremals.collect();
+        Ok(extremals.map(|mut extremals| {
+            extremals.sort_by(|left, right| left.cost.total_cmp(&right.cost));
+            Controlled {
+                extremals,
+                directions: found.directions,
+                runs: shooter.runs(),
+                is_bounded: found.is_bounded,
+                unresolved: found.unresolved,
+            }
+        }))
+    }
+}

@@ -1,0 +1,478 @@
+//! One extremal from a costate at the start: its sequence of impacts, its end, its derivatives.
+
+use std::ops::ControlFlow;
+
+use dalembert::contract::{TaylorField, Variational};
+use dalembert::integrate::{Chosen, Taylor};
+use dalembert::numbers::{Numbers, Row};
+use dalembert::simulation::STEP_BUDGET;
+use dalembert::variations::{Dual, Tangent};
+use dalembert::{
+    Event, Fault, Instance, Observer, Outcome, Run, Scene, SceneEffects, Simulation, StateError,
+    StateVector, Variations,
+};
+
+use super::second_order::{self, Node, SecondOrder};
+use super::{Extremal, Kick, Moment, Task, Unsought};
+use crate::connect::aim::{Aim, Course, Shot};
+use crate::connect::observers::{Determinants, Marksman};
+use crate::connect::units::Units;
+use crate::linear::norm;
+use crate::refusal::Refusal;
+use crate::typed::vector;
+use crate::variation::constant;
+
+/// Impacts within this fraction of the time from an end belong to no sequence.
+const AT_ENDS: f64 = 1e-9;
+
+/// Number of steps after which a motion is given up: at least, and in multiples of those with costate 0 at the start.
+const STEPS: [u64; 2] = [4000, 50];
+
+/// Largest gap behind a surface that is rounding, as a fraction of the largest component of the state.
+const ROUNDING: f64 = 1e-9;
+
+/// Number of stretches of the second-order test.
+const STRETCHES: f64 = 128.0;
+
+/// Places of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative.
+#[derive(Debug, Clone, Copy)]
+struct Layout {
+    inputs: usize,
+    states: usize,
+}
+
+impl Layout {
+    fn of(components: usize, outputs: usize) -> Option<Self> {
+        let states = components.checked_sub(1)? / 2;
+        let inputs = outputs.checked_sub(2 + states + states * states)?;
+        (components == 2 * states + 1 && states > 0).then_some(Self { inputs, states })
+    }
+
+    fn terminal(self) -> usize {
+        self.inputs + 1
+    }
+
+    fn slope(self, index: usize) -> usize {
+        self.inputs + 2 + index
+    }
+
+    fn curvature(self, row: usize, column: usize) -> usize {
+        self.inputs + 2 + self.states * (1 + row) + column
+    }
+}
+
+/// The extremals of a system from one state.
+pub(super) struct Shooter<'a, S: Instance + Scene + Variational> {
+    system: &'a S,
+    task: &'a Task,
+    layout: Layout,
+    /// The start with costate 0.
+    rest: S::State,
+    /// Sizes of the components of state and costate.
+    sizes: Vec<f64>,
+    runs: u64,
+    steps: u64,
+    budget: u64,
+}
+
+impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
+    /// The extremals of a system, after all checks of the task.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a start that the system refuses; the inner error for a problem without extremals.
+    pub fn aimed(system: &'a S, task: &'a Task) -> Result<Result<Self, Unsought>, Refusal> {
+        let outputs = system.description().outputs.len();
+        let Some(layout) = Layout::of(system.coordinate_count(), outputs) else {
+            return Ok(Err(Unsought::Other));
+        };
+        let zero = system.zero_vector();
+        let mut components = vec![0.0; system.coordinate_count()];
+        components[..layout.states].copy_from_slice(&task.from);
+        let start = vector(&zero, &components);
+        system.checked(0.0, &start, &zero)?;
+        let rest = system
+            .state_unchecked(0.0, &start, &zero)
+            .map_err(StateError::from)?;
+        let mut shooter = Self {
+            sizes: vec![1.0; 2 * layout.states],
+            system,
+            task,
+            layout,
+            rest,
+            runs: 0,
+            steps: 0,
+            budget: STEP_BUDGET,
+        };
+        Ok(shooter.check().map(|()| {
+            shooter.measure();
+            shooter
+        }))
+    }
+
+    /// Refuses ends that no motion joins, and a start without a best input.
+    fn check(&self) -> Result<(), Unsought> {
+        let values = self.outputs(0.0, &self.rest)?;
+        let chosen = &values[..=self.layout.inputs];
+        if !chosen.iter().all(|value| value.is_finite()) {
+            return Err(Unsought::Input);
+        }
+        self.check_gaps(false, 0.0, &self.rest)?;
+        let to: Option<Vec<f64>> = self.task.to.iter().copied().collect();
+        match to {
+            Some(to) => {
+                let mut end = self.rest;
+                end.as_mut_slice()[..self.layout.states].copy_from_slice(&to);
+                self.check_gaps(true, self.task.time, &end)
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn check_gaps(&self, is_end: bool, t: f64, state: &S::State) -> Result<(), Unsought> {
+        match self.behind(t, state) {
+            Some((surface, gap)) => Err(Unsought::Behind {
+                is_end,
+                surface,
+                gap,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// A surface that a state lies behind, with its gap.
+    fn behind(&self, t: f64, state: &S::State) -> Option<(usize, f64)> {
+        let parameters = TaylorField::parameters(self.system);
+        let parameters = constant::<S::Parameters<Dual>>(parameters.as_slice());
+        let row = constant::<S::Row<Dual>>(StateVector::as_slice(state));
+        let gaps = self
+            .system
+            .clearances(&parameters, Dual::of(t), &row)
+            .ok()?;
+        let state_size = state.as_slice()[..self.layout.states].iter();
+        let size = state_size.fold(1.0_f64, |most, it| most.max(it.abs()));
+        let mut numbered = gaps.as_slice().iter().map(|gap| gap.value).enumerate();
+        numbered.find(|(surface, gap)| {
+            *gap < -ROUNDING * size && self.system.counts(*surface, t, state)
+        })
+    }
+
+    /// Finds the sizes of state and costate, and the number of steps of a usual motion. A costate of size 1 moves the end by
+    /// about the size of the state.
+    fn measure(&mut self) {
+        let n = self.layout.states;
+        let still = vec![0.0; n];
+        let (shot, run) = self.flight(&still, true);
+        let steps = run.as_ref().map_or(0, |run| run.counters.accepted);
+        self.budget = STEPS[0].max(STEPS[1].saturating_mul(steps));
+        let end = run.map(|run| run.state);
+        for index in 0..n {
+            let values = [
+                Some(self.task.from[index]),
+                self.task.to[index],
+                end.as_ref().map(|end| end.as_slice()[index]),
+            ];
+            let size = values.into_iter().flatten().filter(|it| it.is_finite());
+            let size = size.fold(0.0_f64, |most, it| most.max(it.abs()));
+            self.sizes[index] = if size > 0.0 { size } else { 1.0 };
+        }
+        for (index, column) in shot.columns.iter().enumerate() {
+            let moved: Vec<f64> = column[..n]
+                .iter()
+                .zip(&self.sizes)
+                .map(|(dx, size)| dx / size)
+                .collect();
+            let size = 1.0 / norm(&moved);
+            if size.is_finite() && size > 0.0 {
+                self.sizes[n + index] = size;
+            }
+        }
+    }
+
+    /// The units of the search: sizes of the costate, and how much of it the problem suggests.
+    pub fn units(&mut self) -> Units {
+        let n = self.layout.states;
+        let still = vec![0.0; n];
+        let shot = self.shoot(&still, false);
+        let suggested = norm(&shot.misses);
+        Units {
+            unknowns: self.sizes[n..].to_vec(),
+            speed: match suggested > 0.0 && suggested.is_finite() {
+                true => suggested,
+                false => 1.0,
+            },
+            size: 1.0,
+            has_surfaces: !self.system.description().surfaces.is_empty(),
+        }
+    }
+
+    /// Number of motions that were computed.
+    pub fn runs(&self) -> u64 {
+        self.runs
+    }
+
+    fn outputs(&self, t: f64, state: &S::State) -> Result<Vec<f64>, Fault> {
+        let mut values = vec![f64::NAN; self.system.description().outputs.len()];
+        self.system.outputs(t, state, &mut values)?;
+        Ok(values)
+    }
+
+    fn state(&self, w: &[f64]) -> S::State {
+        let n = self.layout.states;
+        let mut state = self.rest;
+        state.as_mut_slice()[n..2 * n].copy_from_slice(w);
+        state
+    }
+
+    /// Runs from a costate at the start, observed.
+    fn run(
+        &mut self,
+        w: &[f64],
+        longest: f64,
+        mut observer: &mut dyn Observer<S>,
+    ) -> Option<Run<S::State>> {
+        self.runs += 1;
+        let stepper = Taylor::new(self.task.tolerance).with_max_step(longest);
+        let mut stepper = stepper.ok()?;
+        let mut effects = self.system.effects();
+        effects.set_impact_budget(Some(self.task.impacts[1] as u64 + 2));
+        let mut simulation = Simulation::new(self.system, Chosen::new(&mut stepper), effects)
+            .with_step_budget(self.budget);
+        let run = simulation.run(0.0, self.state(w), self.task.time, &mut observer);
+        let run = run.ok()?;
+        self.steps += run.counters.accepted;
+        Some(run)
+    }
+
+    /// The sequence of impacts of a motion.
+    fn course(&self, ended: Option<&Run<S::State>>, hits: &[(f64, usize)]) -> Course {
+        let time = self.task.time;
+        let is_at_end = |t: f64| t <= time * AT_ENDS || t >= time * (1.0 - AT_ENDS);
+        let is_beyond = hits.len() > self.task.impacts[1];
+        match ended.map(|run| run.outcome) {
+            _ if hits.iter().any(|(t, _)| is_at_end(*t)) => Course::Lost,
+            Some(Outcome::Done | Outcome::ImpactBudget) if is_beyond => Course::Beyond,
+            Some(Outcome::Zeno { .. }) => Course::Beyond,
+            Some(Outcome::Done)
+                if ended.is_some_and(|run| self.behind(time, &run.state).is_none()) =>
+            {
+                Course::Reached(hits.iter().map(|hit| hit.1).collect())
+            }
+            _ => Course::Lost,
+        }
+    }
+
+    /// A motion with its derivatives by the costate at the start, if they are asked for.
+    fn flight(&mut self, w: &[f64], with_slopes: bool) -> (Flight, Option<Run<S::State>>) {
+        let (system, n) = (self.system, self.layout.states);
+        let mut tangents: Vec<Tangent<S>> = match with_slopes {
+            true => (n..2 * n).map(Tangent::of_component).collect(),
+            false => Vec::new(),
+        };
+        let mut observer = Marksman {
+            variations: with_slopes.then(|| Variations::new(system, &mut tangents)),
+            hits: Vec::new(),
+        };
+        let run = self.run(w, f64::INFINITY, &mut observer);
+        let Marksman { variations, hits } = observer;
+        let is_varied = variations.is_some_and(|mut it| it.tangents().is_ok());
+        let columns = match is_varied {
+            true => tangents
+                .iter()
+                .map(|it| it.state.as_slice()[..2 * n].to_vec())
+                .collect(),
+            false => Vec::new(),
+        };
+        let course = self.course(run.as_ref(), &hits);
+        (Flight { course, columns }, run)
+    }
+
+    /// The differences in the equations of the end, and a function that gives their derivatives of a column.
+    fn misses(&self, end: &S::State, values: &[f64]) -> Vec<f64> {
+        let n = self.layout.states;
+        let state = end.as_slice();
+        let miss = |(index, to): (usize, &Option<f64>)| match to {
+            Some(to) => state[index] - to,
+            None => state[n + index] - values[self.layout.slope(index)],
+        };
+        self.task.to.iter().enumerate().map(miss).collect()
+    }
+
+    fn slopes(&self, column: &[f64], values: &[f64]) -> Vec<f64> {
+        let n = self.layout.states;
+        let slope = |(index, to): (usize, &Option<f64>)| match to {
+            Some(_) => column[index],
+            None => {
+                let curvature = |j: usize| values[self.layout.curvature(index, j)];
+                let moved: f64 = (0..n).map(|j| curvature(j) * column[j]).sum();
+                column[n + index] - moved
+            }
+        };
+        self.task.to.iter().enumerate().map(slope).collect()
+    }
+
+    /// Differences in units: those of the state, or of the costate.
+    fn scaled(&self, rows: &[f64]) -> Vec<f64> {
+        let n = self.layout.states;
+        let to = self.task.to.iter().enumerate();
+        let sizes = to.map(|(index, to)| match to {
+            Some(_) => self.sizes[index],
+            None => self.sizes[n + index],
+        });
+        rows.iter()
+            .zip(sizes)
+            .map(|(row, size)| row / size)
+            .collect()
+    }
+
+    /// State, costate and inputs.
+    fn moment(&self, t: f64, state: &S::State) -> Result<Moment, Fault> {
+        let n = self.layout.states;
+        let values = self.outputs(t, state)?;
+        let components = state.as_slice();
+        Ok(Moment {
+            t,
+            state: components[..n].to_vec(),
+            costate: components[n..2 * n].to_vec(),
+            inputs: values[..self.layout.inputs].to_vec(),
+            hamiltonian: values[self.layout.inputs],
+        })
+    }
+
+    /// Everything about an extremal that was found.
+    pub fn extremal(&mut self, w: &[f64]) -> Result<Extremal, Unsought> {
+        let time = self.task.time;
+        let mut film = Film { events: Vec::new() };
+        let run = self.run(w, f64::INFINITY, &mut film);
+        let end = run.map_or(self.rest, |run| run.state);
+        let values = self.outputs(time, &end)?;
+        let terminal = values[self.layout.terminal()];
+        let residual = self.misses(&end, &values);
+        let kick = |event: &Event<S::State>| -> Result<Kick, Fault> {
+            Ok(Kick {
+                surface: event.surface,
+                before: self.moment(event.t, &event.before)?,
+                after: self.moment(event.t, &event.after)?,
+            })
+        };
+        let kicks: Result<Vec<Kick>, Fault> = film.events.iter().map(kick).collect();
+        let running = end.as_slice()[2 * self.layout.states];
+        Ok(Extremal {
+            first: self.moment(0.0, &self.state(w))?,
+            last: self.moment(time, &end)?,
+            kicks: kicks?,
+            cost: running + terminal,
+            terminal,
+            residual: residual
+                .iter()
+                .fold(0.0, |most, it| f64::max(most, it.abs())),
+            second_order: self.second_order(w, &values),
+        })
+    }
+
+    fn second_order(&mut self, w: &[f64], values: &[f64]) -> SecondOrder {
+        let (system, n) = (self.system, self.layout.states);
+        let mut tangents: Vec<Tangent<S>> = (0..2 * n).map(Tangent::of_component).collect();
+        let mut observer = Determinants {
+            variations: Variations::new(system, &mut tangents),
+            states: Vec::new(),
+        };
+        self.run(w, self.task.time / STRETCHES, &mut observer);
+        let stands = observer.states.into_iter().map(|stand| Node {
+            t: stand.t,
+            columns: stand
+                .columns
+                .iter()
+                .map(|it| it[..2 * n].to_vec())
+                .collect(),
+        });
+        let nodes = nodes(stands.collect(), self.task.time, n);
+        let row = |i| {
+            (0..n)
+                .map(|j| values[self.layout.curvature(i, j)])
+                .collect()
+        };
+        let terminal: Vec<Vec<f64>> = (0..n).map(row).collect();
+        let free = self
+            .task
+            .to
+            .iter()
+            .enumerate()
+            .filter(|(_, to)| to.is_none());
+        let free: Vec<usize> = free.map(|(index, _)| index).collect();
+        match nodes.last().is_some_and(|node| node.t == self.task.time) {
+            true => second_order::test(&nodes, &terminal, &free),
+            false => SecondOrder::Open,
+        }
+    }
+}
+
+/// The start and the ends of steps, without those that follow closely.
+fn nodes(stands: Vec<Node>, time: f64, n: usize) -> Vec<Node> {
+    let unit = |index: usize| {
+        let mut column = vec![0.0; 2 * n];
+        column[index] = 1.0;
+        column
+    };
+    let least = 0.5 * time / STRETCHES;
+    let mut nodes = vec![Node {
+        t: 0.0,
+        columns: (0..2 * n).map(unit).collect(),
+    }];
+    for stand in stands {
+        let is_last = stand.t == time;
+        let before = nodes.last().map_or(0.0, |node| node.t);
+        if is_last && stand.t - before < least && nodes.len() > 1 {
+            nodes.pop();
+        }
+        if is_last || stand.t - before >= least {
+            nodes.push(stand);
+        }
+    }
+    nodes
+}
+
+/// A motion, shot without its misses.
+struct Flight {
+    course: Course,
+    columns: Vec<Vec<f64>>,
+}
+
+impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn shoot(&mut self, w: &[f64], with_slopes: bool) -> Shot {
+        let (flight, run) = self.flight(w, with_slopes);
+        let end = run.and_then(|run| {
+            let values = self.outputs(self.task.time, &run.state).ok()?;
+            Some((run.state, values))
+        });
+        let Some((end, values)) = end else {
+            return Shot {
+                course: flight.course,
+                misses: vec![f64::NAN; self.layout.states],
+                slopes: Vec::new(),
+            };
+        };
+        let columns = flight.columns.iter();
+        let columns = columns.map(|column| self.scaled(&self.slopes(column, &values)));
+        Shot {
+            slopes: columns.collect(),
+            misses: self.scaled(&self.misses(&end, &values)),
+            course: flight.course,
+        }
+    }
+}
+
+/// Keeps the impacts of a run.
+struct Film<S> {
+    events: Vec<Event<S>>,
+}
+
+impl<S: Instance> Observer<S> for Film<S::State> {
+    fn event(&mut self, event: &Event<S::State>) -> ControlFlow<()> {
+        self.events.push(*event);
+        ControlFlow::Continue(())
+    }
+}
