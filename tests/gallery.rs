@@ -46,6 +46,8 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
             _ if name.starts_with("dimensionless_walker-gaits") => "period 1: ",
             "bouncing_ball-connections-paths" => "7 motions: 1 with 0 impacts",
             "bouncing_ball-connections-bounds" => "6 motions: 2 with 1 impact",
+            "controlled_ball-optimal-fixed" => "4 extremals: 1 with 0 impacts, 3 with 1 impact",
+            _ if name.starts_with("controlled_ball-optimal") => "3 extremals: 1 with 0 impacts",
             "compass_walker-doubling-one" => "flip at gamma = 0.015088438",
             "compass_walker-doubling-two" => "flip at gamma = 0.017669375",
             _ if name.contains("-starts-") => "100 of 100 runs at",

@@ -4,7 +4,7 @@
     hljs.registerLanguage("dal", () => ({
         keywords: {
             keyword:
-                "coordinates parameters lagrangian field constraints frame forces inputs impacts modes transitions initial view outputs " +
+                "coordinates parameters lagrangian field constraints frame forces inputs cost impacts modes transitions initial view outputs " +
                 "scenes claims let const until when otherwise for under in assume not reset",
             literal: "energy momentum multiplier exact locally_exact none conserved density symmetry angle",
             built_in: "d dot sum partial sin cos tan sqrt exp ln abs atan2",

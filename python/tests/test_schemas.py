@@ -69,6 +69,10 @@ OUTPUTS = {
         ["linearise", "bouncing_ball", "--trim"],
         ["linearise", "bouncing_ball", "--every", "0.5", "--samples", "2"],
     ],
+    "control": [
+        ["control", "controlled_ball", "--impacts", "0..1", "--starts", "24"],
+        ["control", "controlled_ball", "--initial", "x=1", "--end", "x=1,y=0", "--impacts", "1", "--starts", "48"],
+    ],
     "accuracy": [
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--wanted", "1e-6"],
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--integrator", "dopri5", "--wanted", "1e-30"],

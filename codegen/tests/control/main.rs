@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use dalembert_codegen::claims::{self, Verdict};
 use dalembert_codegen::mechanics::control::{Extremals, derive_extremals, extremal_model};
 use dalembert_codegen::mechanics::derive;
-use dalembert_codegen::model::{Claim, Model, Statement, check};
+use dalembert_codegen::model::{Claim, Model, Statement, Topology, check};
 use dalembert_codegen::{compile_control, spec};
 use dalembert_expr::{ExprId, SymbolId};
 
@@ -51,6 +51,19 @@ const HOP: &str = "Hop {
     cost { running = u^2*(1 + x^2)/2 + x*u + z^2; terminal = z; }
     field { dot(x) = v; dot(v) = -sin(x) - v/4 + u; dot(z) = x*v; }
     impacts { jump: 1 - x + t/7 >= 0 => reset { x = x - 2 + t/3; v = v*(1 + z^2)/2; z = z + v^2; }; }
+}";
+
+/// Families, angles, a condition and scenes.
+const CHAIN: &str = "Chain {
+    const N = 2;
+    coordinates { q[N]: angle; }
+    parameters { m[N] > 0 = [1, 2]; }
+    inputs { u[N]; }
+    cost { running = sum(i in 1..=N: m[i]*u[i]^2)/2; terminal = sum(i in 1..=N: (q[i] - 3)^2 + dot(q[i])^2); }
+    lagrangian = sum(i in 1..=N: m[i]*dot(q[i])^2)/2 + cos(q[1] - q[2])*dot(q[1])*dot(q[2])/2 + cos(q[1]);
+    forces { motor[i in 1..=N]: u[i]*d(q[i]); }
+    impacts { stop: 2 - sin(q[1]) - sin(q[2]) >= 0 when cos(q[1]) > 0; }
+    scenes { free: motor[1]; }
 }";
 
 /// A model with its maximum principle, and values of its symbols by name.
@@ -327,6 +340,37 @@ fn the_model_of_extremals_passes_every_stage() {
         assert_eq!(*names.last().unwrap(), "cost");
         assert_eq!(model.inputs().count(), 0);
     }
+}
+
+#[test]
+fn families_angles_and_scenes_are_kept() {
+    let spec = spec::parse(CHAIN.parse().unwrap()).unwrap();
+    let model = compile_control(&spec, None)
+        .unwrap_or_else(|errors| panic!("{errors:?}"))
+        .model;
+    let names: Vec<&str> = model
+        .coordinates
+        .iter()
+        .map(|it| &*it.name.display)
+        .collect();
+    let states = ["q.1", "q.2", "q_dot.1", "q_dot.2"];
+    assert_eq!(names[..4], states);
+    assert_eq!(names[4], "costate_q.1");
+    assert_eq!(model.coordinates[0].topology, Topology::Angle);
+    assert_eq!(model.coordinates[2].topology, Topology::Line);
+    assert_eq!(model.surfaces[0].conditions.len(), 1);
+    assert_eq!(model.outputs[0].name.display, "u.1");
+    let free = compile_control(&spec, Some("free")).unwrap().model;
+    assert!(free.surfaces.is_empty());
+    let chain = Derived::of(
+        CHAIN,
+        &[("m.2", 2.0), ("m.1", 1.0)],
+        &[0.4, 0.9, -0.3, 0.8],
+        &[0.2, -0.7, 1.1, 0.4],
+        0.0,
+    );
+    assert_small(&chain.canonical(), "chain");
+    assert_small(&chain.residuals(0), "chain");
 }
 
 #[test]

@@ -469,9 +469,8 @@ impl<O: Owner> Runs for Typed<O> {
         boundary: &Boundary,
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Connected, Unjoined>>, Refusal> {
-        let model = self.owner.system();
         let joiner = Joiner { boundary, tell };
-        model.visit_variational(joiner).transpose()
+        self.owner.system().visit_variational(joiner).transpose()
     }
 
     fn linearise(
@@ -493,9 +492,8 @@ impl<O: Owner> Runs for Typed<O> {
         task: &Task,
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal> {
-        let model = self.owner.system();
         let controller = Controller { task, tell };
-        model.visit_variational(controller).transpose()
+        self.owner.system().visit_variational(controller).transpose()
     }
 
     fn certify(

@@ -65,6 +65,9 @@ pub struct Extremals {
     pub optimal: Vec<ExprId>,
     /// `H*`
     pub hamiltonian: ExprId,
+    /// Leading minors of the second derivative of the running cost by the inputs: all of them are positive where the optimal input
+    /// is one.
+    pub minors: Vec<ExprId>,
     /// The running cost with the optimal inputs.
     pub running: ExprId,
     /// The terminal cost.

@@ -20,7 +20,8 @@ const COST: &str = "cost";
 
 /// The model of the extremals of a model, in whose pool their expressions are. Its coordinates are the state, the costate and
 /// the cost so far; its surfaces are those of the model. Its outputs are the optimal inputs, `H*`, the terminal cost, the
-/// gradient of that by the state, and the rows of its second derivative.
+/// gradient of that by the state, the rows of its second derivative, and the minors that are positive where the optimal inputs are a
+/// minimum.
 pub fn extremal_model(mut model: Model, extremals: &Extremals) -> Model {
     let item = model.cost.map_or(model.lagrangian.item, |cost| cost.item);
     let coordinates = coordinates(&mut model, extremals, item);
@@ -162,6 +163,8 @@ fn outputs(model: &mut Model, extremals: &Extremals, item: ItemId) -> Vec<Output
             values.push((name, pool.diff(*first, column.state)));
         }
     }
+    let minors = extremals.minors.iter().enumerate();
+    values.extend(minors.map(|(index, minor)| (format!("convexity_{}", index + 1), *minor)));
     let output = |(display, value)| Output {
         name: plain(display),
         documentation: Vec::new(),

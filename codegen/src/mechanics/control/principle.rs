@@ -4,7 +4,7 @@ use dalembert_expr::{Assumption, ExprId, Pool, SymbolId, Verdict};
 
 use super::system::{System, dot};
 use super::{Component, Extremals, Jump, Uncontrolled};
-use crate::mechanics::inverse;
+use crate::mechanics::inverse::{self, Matrix};
 use crate::model::{Cost, Model};
 
 /// The maximum principle between impacts.
@@ -18,6 +18,7 @@ pub(super) struct Principle {
     /// `H*`
     pub hamiltonian: ExprId,
     optimal: Vec<ExprId>,
+    minors: Vec<ExprId>,
     running: ExprId,
     rates: Vec<ExprId>,
     costate_rates: Vec<ExprId>,
@@ -42,7 +43,8 @@ pub(super) fn derive(
         let of_work = dot(pool, &covector, column);
         slopes.push(pool.sum(&[of_cost, of_work]));
     }
-    let optimal = optimal(pool, system, cost, &slopes)?;
+    let curvature = curvature(pool, system, cost);
+    let optimal = optimal(pool, cost, &curvature, &slopes)?;
     let chosen = system.inputs.iter().copied().zip(optimal.iter().copied());
     let chosen: Vec<(SymbolId, ExprId)> = chosen.collect();
     let work = dot(pool, &covector, &system.rates);
@@ -62,6 +64,7 @@ pub(super) fn derive(
         running: pool.substitute(cost.running, &chosen),
         rates: pool.substitute_all(&system.rates, &chosen),
         costate_rates: pool.substitute_all(&costate_rates, &chosen),
+        minors: minors(pool, &curvature),
         costates,
         actuation,
         optimal,
@@ -107,26 +110,25 @@ fn actuation(
     Ok(columns)
 }
 
+/// `R = d_u^2 l`
+fn curvature(pool: &mut Pool, system: &System, cost: Cost) -> Matrix {
+    let mut rows = Vec::new();
+    for left in &system.inputs {
+        let first = pool.diff(cost.running, *left);
+        let row = system.inputs.iter().map(|right| pool.diff(first, *right));
+        rows.push(row.collect());
+    }
+    rows
+}
+
 /// `-R^{-1} slopes`
 fn optimal(
     pool: &mut Pool,
-    system: &System,
     cost: Cost,
+    curvature: &Matrix,
     slopes: &[ExprId],
 ) -> Result<Vec<ExprId>, Uncontrolled> {
-    let rows: Vec<Vec<ExprId>> = system
-        .inputs
-        .iter()
-        .map(|left| {
-            let first = pool.diff(cost.running, *left);
-            system
-                .inputs
-                .iter()
-                .map(|right| pool.diff(first, *right))
-                .collect()
-        })
-        .collect();
-    let Some(inverse) = inverse::inverse(pool, &rows) else {
+    let Some(inverse) = inverse::inverse(pool, curvature) else {
         let text = "the second derivative of the running cost is too large to be inverted";
         let help = "let at most 4 inputs be multiplied with each other";
         return Err(Uncontrolled::at(cost.item, text, help));
@@ -136,6 +138,14 @@ fn optimal(
         pool.neg(step)
     });
     Ok(optimal.collect())
+}
+
+/// Determinants of the first rows and columns.
+fn minors(pool: &mut Pool, matrix: &Matrix) -> Vec<ExprId> {
+    let indices: Vec<usize> = (0..matrix.len()).collect();
+    (1..=matrix.len())
+        .map(|size| inverse::minor(pool, matrix, &indices[..size], &indices[..size]))
+        .collect()
 }
 
 impl Principle {
@@ -151,6 +161,7 @@ impl Principle {
         Extremals {
             components: components.collect(),
             optimal: self.optimal,
+            minors: self.minors,
             hamiltonian: self.hamiltonian,
             running: self.running,
             terminal,

@@ -43,8 +43,8 @@ impl Finished<'_> {
     fn inputs(&self) -> impl Iterator<Item = &'static str> + Clone {
         let states = self.task.from.len();
         let outputs = &self.description().outputs;
-        let inputs = outputs.len() - 2 - states - states * states;
-        outputs.iter().copied().take(inputs)
+        let twice = outputs.len() - 2 - states - states * states;
+        outputs.iter().copied().take(twice / 2)
     }
 
     /// The settings that repeat a run.

@@ -2,7 +2,7 @@
 //!
 //! Every model has figures of its motion. A [`Catalogue`](crate::Catalogue) may add others, such as those of the papers
 //! its models come from: [`Catalogue::with_figures`](crate::Catalogue::with_figures). A picture is specified by flags
-//! of `simulate`, `map`, `orbit`, `connect` or `accuracy`, so that its caption can give the command that draws it.
+//! of `simulate`, `map`, `orbit`, `connect`, `control` or `accuracy`, so that its caption can give the command that draws it.
 
 mod density;
 mod manifest;
@@ -58,6 +58,8 @@ pub enum Picture {
     Map(String),
     /// The picture that `connect` draws with these flags.
     Connect(String),
+    /// The picture that `control` draws with these flags.
+    Control(String),
     /// The picture that `orbit --continue` draws with these flags.
     Branch(String),
     /// The picture that `accuracy` draws with these flags; it contains measured times.

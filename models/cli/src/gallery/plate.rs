@@ -7,7 +7,7 @@ use clap::Parser;
 use super::{Figure, Panel, Picture, density, starts};
 use crate::args::{Command, CommandLine, SimulateArgs};
 use crate::command::orbit::branch;
-use crate::command::{accuracy, connect, map, simulate};
+use crate::command::{accuracy, connect, control, map, simulate};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::Drawn;
@@ -82,6 +82,7 @@ impl<'a> Plate<'a> {
             Picture::Simulate(flags) => self.drawing("simulate", flags),
             Picture::Accuracy(flags) => self.drawing("accuracy", flags),
             Picture::Connect(flags) => self.drawing("connect", flags),
+            Picture::Control(flags) => self.drawing("control", flags),
             Picture::Branch(flags) => self.drawing("orbit", flags),
             Picture::Map(flags) if self.effort == Effort::Full => self.drawing("map", flags),
             Picture::Starts(_) | Picture::Density(_) | Picture::Map(_) => {
@@ -131,6 +132,10 @@ impl<'a> Plate<'a> {
             Picture::Connect(_) => match self.parse(&self.command())? {
                 Command::Connect(args) => connect::draw(models, &args),
                 _ => Err(self.refusal("no `connect`")),
+            },
+            Picture::Control(_) => match self.parse(&self.command())? {
+                Command::Control(args) => control::draw(models, &args),
+                _ => Err(self.refusal("no `control`")),
             },
             Picture::Map(flags) => match self.parse(&self.drawing("map", flags))? {
                 Command::Map(mut args) => {

@@ -5,6 +5,7 @@
 
 mod chapters;
 mod connections;
+mod control;
 mod density;
 mod pendulum;
 mod rolling_disk;
@@ -24,6 +25,7 @@ pub fn all() -> Vec<Figure> {
     figures.extend(rolling_disk::figures());
     figures.extend([
         connections::bouncing_ball(),
+        control::controlled_ball(),
         zeno::bouncing_ball(),
         density::of_the_sleigh(),
         density::of_the_disk(),

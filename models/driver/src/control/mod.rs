@@ -113,7 +113,7 @@ pub enum Unsought {
     Other,
     /// The second derivative of the running cost by the inputs is not positive.
     #[error(
-        "the optimal input or H* is not finite at the start: the running cost has no least value there"
+        "the running cost has no least value at the start: its second derivative by the inputs is not positive there"
     )]
     Input,
     /// A state lies behind a surface.

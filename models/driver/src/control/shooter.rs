@@ -34,7 +34,8 @@ const ROUNDING: f64 = 1e-9;
 /// Number of stretches of the second-order test.
 const STRETCHES: f64 = 128.0;
 
-/// Places of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative.
+/// Places of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative, and for each
+/// input a minor that is positive where the optimal input is a minimum.
 #[derive(Debug, Clone, Copy)]
 struct Layout {
     inputs: usize,
@@ -44,8 +45,10 @@ struct Layout {
 impl Layout {
     fn of(components: usize, outputs: usize) -> Option<Self> {
         let states = components.checked_sub(1)? / 2;
-        let inputs = outputs.checked_sub(2 + states + states * states)?;
-        (components == 2 * states + 1 && states > 0).then_some(Self { inputs, states })
+        let twice = outputs.checked_sub(2 + states + states * states)?;
+        let fits = components == 2 * states + 1 && states > 0 && twice % 2 == 0;
+        let inputs = twice / 2;
+        fits.then_some(Self { inputs, states })
     }
 
     fn terminal(self) -> usize {
@@ -54,6 +57,13 @@ impl Layout {
 
     fn slope(self, index: usize) -> usize {
         self.inputs + 2 + index
+    }
+
+    /// True if the optimal inputs are a minimum, and finite.
+    fn is_best(self, values: &[f64]) -> bool {
+        let minors = &values[values.len() - self.inputs..];
+        let chosen = &values[..=self.inputs];
+        minors.iter().all(|minor| *minor > 0.0) && chosen.iter().all(|it| it.is_finite())
     }
 
     fn curvature(self, row: usize, column: usize) -> usize {
@@ -112,8 +122,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     /// Refuses ends that no motion joins, and a start without a best input.
     fn check(&self) -> Result<(), Unsought> {
         let values = self.outputs(0.0, &self.rest)?;
-        let chosen = &values[..=self.layout.inputs];
-        if !chosen.iter().all(|value| value.is_finite()) {
+        if !self.layout.is_best(&values) {
             return Err(Unsought::Input);
         }
         self.check_gaps(false, 0.0, &self.rest)?;
@@ -154,6 +163,12 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         numbered.find(|(surface, gap)| {
             *gap < -ROUNDING * size && self.system.counts(*surface, t, state)
         })
+    }
+
+    /// True for a state behind no surface, with a best input.
+    fn is_valid(&self, t: f64, state: &S::State) -> bool {
+        let values = self.outputs(t, state);
+        self.behind(t, state).is_none() && values.is_ok_and(|values| self.layout.is_best(&values))
     }
 
     /// Finds the sizes of state and costate, and the number of steps of a usual motion. A costate of size 1 moves the end by
@@ -252,9 +267,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             _ if hits.iter().any(|(t, _)| is_at_end(*t)) => Course::Lost,
             Some(Outcome::Done | Outcome::ImpactBudget) if is_beyond => Course::Beyond,
             Some(Outcome::Zeno { .. }) => Course::Beyond,
-            Some(Outcome::Done)
-                if ended.is_some_and(|run| self.behind(time, &run.state).is_none()) =>
-            {
+            Some(Outcome::Done) if ended.is_some_and(|run| self.is_valid(time, &run.state)) => {
                 Course::Reached(hits.iter().map(|hit| hit.1).collect())
             }
             _ => Course::Lost,
