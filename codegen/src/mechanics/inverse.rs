@@ -2,6 +2,8 @@
 
 use dalembert_expr::{ExprId, Pool, Verdict};
 
+use super::common_factor::factored;
+
 /// Rows of expressions.
 pub(crate) type Matrix = Vec<Vec<ExprId>>;
 
@@ -39,6 +41,19 @@ pub(crate) fn dot(pool: &mut Pool, a: &[ExprId], b: &[ExprId]) -> ExprId {
 
 /// The inverse of a matrix, block by block; `None` if a block is too large.
 pub(crate) fn inverse(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix> {
+    inverse_by(pool, matrix, |_, determinant| determinant)
+}
+
+/// The same with determinants as products of common factors, which cancel where they are never zero.
+pub(crate) fn inverse_in_factors(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix> {
+    inverse_by(pool, matrix, factored)
+}
+
+fn inverse_by(
+    pool: &mut Pool,
+    matrix: &[Vec<ExprId>],
+    arranged: fn(&mut Pool, ExprId) -> ExprId,
+) -> Option<Matrix> {
     let zero = pool.zero();
     let mut inverse = vec![vec![zero; matrix.len()]; matrix.len()];
     for block in blocks(pool, matrix) {
@@ -46,6 +61,7 @@ pub(crate) fn inverse(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix>
             return None;
         }
         let determinant = minor(pool, matrix, &block, &block);
+        let determinant = arranged(pool, determinant);
         for (i, row) in block.iter().enumerate() {
             for (j, column) in block.iter().enumerate() {
                 let without = |omitted: usize| -> Vec<usize> {

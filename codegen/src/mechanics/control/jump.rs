@@ -111,6 +111,9 @@ impl<'a> Landing<'a> {
             .iter()
             .zip(&self.direction)
             .map(|(base, direction)| {
+                if pool.is_syntactic_zero(*direction) {
+                    return *base;
+                }
                 let change = pool.mul(strength, *direction);
                 pool.sum(&[*base, change])
             });
@@ -142,11 +145,15 @@ fn back(pool: &mut Pool, back: &Back, form: &[ExprId], covector: &[ExprId]) -> V
     };
     let (positions, velocities) = covector.split_at(direction.len());
     let along = dot(pool, velocities, direction);
-    let strength = pool.mul(factor, along);
-    let mut after = Vec::new();
-    for (velocity, form) in velocities.iter().zip(form) {
-        let change = pool.mul(strength, *form);
-        after.push(pool.sub(*velocity, change));
+    let mut after = velocities.to_vec();
+    if !pool.is_syntactic_zero(along) {
+        let strength = pool.mul(factor, along);
+        for (velocity, form) in after.iter_mut().zip(form) {
+            if !pool.is_syntactic_zero(*form) {
+                let change = pool.mul(strength, *form);
+                *velocity = pool.sub(*velocity, change);
+            }
+        }
     }
     let mut whole = Vec::new();
     for (index, position) in positions.iter().enumerate() {

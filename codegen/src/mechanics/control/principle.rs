@@ -128,7 +128,7 @@ fn optimal(
     curvature: &Matrix,
     slopes: &[ExprId],
 ) -> Result<Vec<ExprId>, Uncontrolled> {
-    let Some(inverse) = inverse::inverse(pool, curvature) else {
+    let Some(inverse) = inverse::inverse_in_factors(pool, curvature) else {
         let text = "the second derivative of the running cost is too large to be inverted";
         let help = "let at most 4 inputs be multiplied with each other";
         return Err(Uncontrolled::at(cost.item, text, help));

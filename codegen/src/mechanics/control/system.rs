@@ -89,7 +89,7 @@ fn of_field(model: &mut Model, rates: Vec<ExprId>) -> Result<System, Uncontrolle
 fn of_lagrangian(model: &mut Model) -> Result<System, Uncontrolled> {
     let derivation = derive(model);
     let metric = model.lagrangian.metric.clone();
-    let Some(cometric) = inverse::inverse(&mut model.pool, &metric) else {
+    let Some(cometric) = inverse::inverse_in_factors(&mut model.pool, &metric) else {
         let text = "the inverse of the metric is too large to be written out";
         let help = "the maximum principle needs a metric of blocks of at most 4 coordinates";
         return Err(Uncontrolled::at(model.lagrangian.item, text, help));
@@ -163,6 +163,7 @@ fn of_impulse(
         .collect();
     let direction: Vec<ExprId> = cometric.iter().map(|row| dot(pool, row, &form)).collect();
     let compliance = dot(pool, &form, &direction);
+    let compliance = pool.simplify(compliance);
     let standing = dot(pool, &form, &velocity);
     let gap_rate = pool.sum(&[standing, form_rate]);
     let one = pool.one();
@@ -221,7 +222,7 @@ fn of_reset(
     if report.decided && report.rank < states.len() {
         return Err(refused(surface));
     }
-    let Some(inverse) = inverse::inverse(pool, &derivative) else {
+    let Some(inverse) = inverse::inverse_in_factors(pool, &derivative) else {
         let name = &surface.name.display;
         let text =
             format!("the inverse of the derivative of `{name}` is too large to be written out");
