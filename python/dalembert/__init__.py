@@ -12,11 +12,12 @@ shipped ones (:mod:`dalembert.models`).
 
 from . import models
 from ._errors import DalembertError, Mistake, ModelError, RequestError
+from ._events import Event, Occurrence
 from ._model import Model, Parameter
 from ._report import Derivation, Expression, Section, Verdict
 from ._run import Outcome, Run
 
 __all__ = [
-    "DalembertError", "Derivation", "Expression", "Mistake", "Model", "ModelError", "Outcome", "Parameter", "RequestError", "Run",
-    "Section", "Verdict", "models",
+    "DalembertError", "Derivation", "Event", "Expression", "Mistake", "Model", "ModelError", "Occurrence", "Outcome", "Parameter",
+    "RequestError", "Run", "Section", "Verdict", "models",
 ]

@@ -8,10 +8,11 @@ from functools import cached_property
 from html import escape
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
 
-from . import _native
+from . import _events, _native
 from ._errors import RequestError
+from ._events import Event, Occurrence, StateFunction
 from ._report import Derivation, Expression, Verdict, derivations
 from ._run import Run
 
@@ -316,6 +317,10 @@ class Model:
         split: str = "first",
         inputs: Mapping[str, float] | None = None,
         mode: str | None = None,
+        events: Sequence[str | StateFunction | tuple[Any, ...] | Event] = (),
+        on_step: Callable[[float, np.ndarray, np.ndarray], Any] | None = None,
+        on_event: Callable[[Occurrence], Any] | None = None,
+        progress: bool = False,
     ) -> Run:
         """Run the model from a state at ``t = 0``.
 
@@ -366,6 +371,18 @@ class Model:
             Values of inputs that are held through the run; 0 without.
         mode : str, optional
             The mode to begin in, of a model with modes.
+        events : sequence, optional
+            Places where a function of the state changes its sign: an expression such as ``"x - 2*dot(theta)"``, a function of
+            ``t``, ``q`` and ``qdot``, one of both with a direction, ``("x", 1)``, or an :class:`Event`. They are
+            :attr:`Run.crossings`; the motion is that without them, to the bit.
+        on_step : callable, optional
+            Called with ``t``, ``q`` and ``qdot`` after each step. If it returns True or ``"stop"``, the run ends there with the
+            outcome ``stopped``.
+        on_event : callable, optional
+            Called with an :class:`Occurrence` at each impact, each beginning and end of a contact, and each event; it may end the
+            run too.
+        progress : bool, default False
+            Show how far the run is, by tqdm where it is installed.
 
         Returns
         -------
@@ -389,7 +406,14 @@ class Model:
             "laws": _laws(law), "form": form, "projection": projection, "rest": rest, "penetration": penetration,
             "corner": corner, "split": split,
         }
-        return Run(self, native.simulate(request))
+        wanted = _events.taken(events)
+        request |= {
+            "events": [(None if isinstance(own.function, str) else own.function, own.direction, own.terminal) for own in wanted],
+            "watched": _events.watched(self, wanted), "on_step": on_step,
+            "on_event": _events.listener(self, wanted, on_event),
+        }
+        with _events.progress(progress, until or self.initial.get("until"), self.name) as shown:
+            return Run(self, native.simulate(request | {"on_progress": shown}), wanted)
 
     def evaluate(
         self,

@@ -45,10 +45,17 @@ class ContactTable:
     begins: NDArray[np.bool_]
     accumulation: NDArray[np.float64]
 
+class CrossingTable:
+    at: Table
+    events: NDArray[np.int64]
+    rising: NDArray[np.bool_]
+
 class NativeRun:
     samples: Table
     impacts: ImpactTable
     contacts: ContactTable
+    crossings: CrossingTable
+    stop: tuple[int | None, str | None]
     kind: str
     t_end: float
     reached: bool
@@ -59,5 +66,5 @@ class NativeRun:
     settings: tuple[str, str, float, float | None]
     laws: list[tuple[str, str | None]]
     last: tuple[list[float], list[float], float]
-    def at(self, times: NDArray[np.float64]) -> Table: ...
+    def at(self, times: NDArray[np.float64], before: bool) -> Table: ...
     def jacobian(self, wrt: list[str]) -> NDArray[np.float64]: ...

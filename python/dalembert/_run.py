@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
+    from ._events import Event
     from ._model import Model
 
 
@@ -26,11 +27,12 @@ class Outcome:
     Attributes
     ----------
     kind : str
-        ``"done"`` at the requested end; ``"zeno"``, ``"contact"``, ``"ambiguous"``, ``"left_chart"`` and others elsewhere.
+        ``"done"`` at the requested end; ``"event"`` at a terminal event; ``"stopped"`` by a callback; ``"zeno"``, ``"contact"``,
+        ``"ambiguous"``, ``"left_chart"`` and others elsewhere.
     t : float
         When.
     reached : bool
-        True if the requested time or number of impacts was reached.
+        True if the requested time, number of impacts or event was reached.
     details : mapping of str to object
         Facts that go with the kind, in the names of the model: ``surface``, ``accumulates_at``.
     words : str
@@ -61,9 +63,10 @@ class Run:
     (1000, 1)
     """
 
-    def __init__(self, model: Model, native: _native.NativeRun) -> None:
+    def __init__(self, model: Model, native: _native.NativeRun, events: Sequence[Event] = ()) -> None:
         self.model = model
         self._native = native
+        self._events = events
 
     # Samples ---------------------------------------------------------------------------------------------------------------
 
@@ -111,29 +114,38 @@ class Run:
         """A quantity of all samples by name: ``"t"``, a coordinate, ``"x_dot"``, ``"p_x"``, ``"energy"``, an output."""
         return _column(self.model, self._native.samples, name)
 
-    def __call__(self, t: float | Sequence[float] | np.ndarray) -> Samples:
+    def __call__(self, t: float | Sequence[float] | np.ndarray, side: str = "right") -> Samples:
         """States at any times of the run.
 
-        The run is made once more, up to the last of the times: the states are those of a run with these ``times``, to the bit.
-        Ask for many times at once.
+        The run is made once more, up to the last of the times: the states are those of a run with these ``times``, to the bit,
+        from the polynomials that the integrator itself has of its steps. Ask for many times at once.
 
         Parameters
         ----------
         t : float or array of float
             Times from 0 to the end, in any order.
+        side : {"right", "left"}
+            At the time of an impact the state after it, or the one before it.
 
         Returns
         -------
         Samples
             With arrays in the shape of `t`.
+
+        Raises
+        ------
+        ValueError
+            A time outside of the run.
         """
         import numpy as np
 
+        if side not in ("left", "right"):
+            raise ValueError(f"side: `{side}` is not accepted; expected \"left\" or \"right\"")
         times = np.asarray(t, dtype=np.float64)
         if times.size and not (0 <= times.min() and times.max() <= self.outcome.t):
             raise ValueError(f"the run knows the times from 0 to {self.outcome.t}")
         order = np.argsort(times, axis=None, kind="stable")
-        table = self._native.at(np.ascontiguousarray(times.ravel()[order]))
+        table = self._native.at(np.ascontiguousarray(times.ravel()[order]), side == "left")
         back = np.argsort(order, kind="stable")
         return Samples(self.model, times, table, back)
 
@@ -162,21 +174,37 @@ class Run:
         flags = {"begins": own.begins, "accumulates_at": own.accumulation}
         return self._table(own.surfaces, flags, {"at": own.at})
 
+    @cached_property
+    def crossings(self) -> np.ndarray:
+        """Changes of sign of the events that the run was given, as a structured array.
+
+        Fields are ``t``, ``event`` (its name), ``rising``, and ``at``, the state. A sign is that of values beyond rounding: an event
+        that begins at 0 or only touches it is none, and neither is a jump at an impact. Between the integrator's steps nothing
+        is missed that a polynomial of degree 8 resolves on some part of a step.
+        """
+        own, names = self._native.crossings, [event.label for event in self._events]
+        return self._table(own.events, {"rising": own.rising}, {"at": own.at}, "event", names)
+
     def _table(
-        self, surfaces: np.ndarray, flags: Mapping[str, np.ndarray], states: Mapping[str, _native.Table],
+        self,
+        places: np.ndarray,
+        flags: Mapping[str, np.ndarray],
+        states: Mapping[str, _native.Table],
+        title: str = "surface",
+        names: Sequence[str] | None = None,
     ) -> np.ndarray:
         import numpy as np
 
-        names = np.array(list(self.model.surfaces) or [""])
+        names = np.array(list(self.model.surfaces if names is None else names) or [""])
         columns = [*self.model.coordinates, *self.model.velocities, "energy"]
         state = [(name, "f8") for name in columns]
         if self.model.modes:
             state.append(("mode", np.array(self.model.modes).dtype))
         first = next(iter(states.values()))
-        kinds = [("t", "f8"), ("surface", names.dtype), *((name, flag.dtype) for name, flag in flags.items())]
+        kinds = [("t", "f8"), (title, names.dtype), *((name, flag.dtype) for name, flag in flags.items())]
         table = np.empty(len(first.t), [*kinds, *((name, state) for name in states)])
         table["t"] = first.t
-        table["surface"] = names[surfaces]
+        table[title] = names[places]
         for name, flag in flags.items():
             table[name] = flag
         for place, own in states.items():
@@ -192,6 +220,12 @@ class Run:
     def outcome(self) -> Outcome:
         """How the run ended."""
         own = self._native
+        event, callback = own.stop
+        if event is not None:
+            name = self._events[event].label
+            return Outcome(own.kind, own.t_end, True, {"event": name}, f"stopped at the event `{name}`")
+        if callback is not None:
+            return Outcome(own.kind, own.t_end, own.reached, {"callback": callback}, f"stopped by {callback}")
         return Outcome(own.kind, own.t_end, own.reached, own.details, own.words)
 
     @property

@@ -6,14 +6,17 @@
 //! | `model.rs` | models: texts to forms, values of parameters, descriptions |
 //! | `request.rs` | the arguments of a run, as settings and state of the driver |
 //! | `recorder.rs` | samples, impacts and contacts of a run as columns of numbers; signals |
+//! | `events.rs`, `cells.rs` | events and callbacks of the user; changes of the sign of a function |
 //! | `run.rs` | runs that have ended, as arrays |
 //! | `evaluate.rs` | everything that is derived at a state |
 //! | `report.rs` | derivations and verdicts |
 //!
 //! Names, defaults and documentation that users see are those of the Python files beside it.
 
+mod cells;
 mod error;
 mod evaluate;
+mod events;
 mod model;
 mod recorder;
 mod report;
@@ -28,5 +31,5 @@ mod _native {
     #[pymodule_export]
     use crate::report::{derive, documentation};
     #[pymodule_export]
-    use crate::run::{ContactTable, ImpactTable, NativeRun, Table};
+    use crate::run::{ContactTable, CrossingTable, ImpactTable, NativeRun, Table};
 }

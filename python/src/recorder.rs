@@ -7,6 +7,7 @@ use dalembert_driver::{Contact, Ending, Grid, Impact, Piece, Point, Watch};
 use pyo3::prelude::*;
 
 use crate::error;
+use crate::events::{Calls, Events, Watched};
 use crate::model::NativeModel;
 use crate::request::{Course, Request};
 use crate::run::NativeRun;
@@ -53,12 +54,31 @@ pub(crate) struct Contacts {
     pub accumulation: Vec<f64>,
 }
 
-/// Samples, impacts and contacts of a run.
+/// Events of the user.
+#[derive(Debug, Default)]
+pub(crate) struct Crossings {
+    pub at: Columns,
+    pub events: Vec<i64>,
+    pub rising: Vec<bool>,
+}
+
+/// Samples, impacts, contacts and events of a run.
 #[derive(Debug, Default)]
 pub(crate) struct Record {
     pub samples: Columns,
     pub impacts: Impacts,
     pub contacts: Contacts,
+    pub crossings: Crossings,
+    pub stop: Option<Stop>,
+}
+
+/// The end of a run that the user asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stop {
+    /// A terminal event.
+    Event(usize),
+    /// A callback, by its name.
+    Call(&'static str),
 }
 
 impl Columns {
@@ -101,8 +121,20 @@ struct Recorder<'a> {
     taken: usize,
     /// True if only samples are wanted: the run ends after the last.
     only_samples: bool,
+    side: Side,
+    events: Events,
+    calls: Calls,
+    /// The state at which an event ended the run inside a step.
+    cut: Option<(f64, Point)>,
     record: Record,
     signals: Signals,
+}
+
+/// The side from which a state at the time of an impact is approached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Before,
+    After,
 }
 
 /// Looks at the signals of the process from time to time.
@@ -121,14 +153,23 @@ impl Signals {
         }
     }
 
-    /// Looks after a step.
-    pub(crate) fn look(&mut self) {
+    /// Looks after a step; true if it was time to.
+    pub(crate) fn look(&mut self) -> bool {
         self.steps = (self.steps + 1) % STEPS;
         if self.steps != 0 || self.last.elapsed() < PATIENCE {
-            return;
+            return false;
         }
         self.last = Instant::now();
-        self.interrupt = Python::attach(|py| py.check_signals()).err();
+        self.take(Python::attach(|py| py.check_signals()));
+        true
+    }
+
+    /// Keeps the first error, and gives the value.
+    fn take<T: Default>(&mut self, result: PyResult<T>) -> T {
+        result.unwrap_or_else(|error| {
+            self.interrupt.get_or_insert(error);
+            T::default()
+        })
     }
 }
 
@@ -143,25 +184,78 @@ impl Recorder<'_> {
     }
 
     /// Takes the samples at the last instant of the run.
-    fn finish(mut self, ending: &Ending) -> Record {
+    fn finish(mut self, ending: &mut Ending) -> Record {
+        if let Some((t, point)) = self.cut.take() {
+            (ending.t, ending.last) = (t, point);
+        }
         while let Some(time) = self.next_time().filter(|&time| time <= ending.t) {
             self.sample(time, &ending.last);
         }
         self.record
     }
+
+    /// Takes the samples of a stretch up to a time. Its last instant is left to the next one, unless states before impacts
+    /// are wanted.
+    fn take_samples(&mut self, piece: &dyn Piece, end: f64) {
+        while let Some(time) = self.next_time() {
+            if time > end || (time == end && self.side == Side::After) {
+                break;
+            }
+            self.sample(time, &piece.at(time));
+        }
+    }
+
+    /// Takes the events of a stretch. One that ends the run is the last.
+    fn take_events(&mut self, piece: &dyn Piece) {
+        let found = self.events.follow(piece);
+        for crossing in self.signals.take(found) {
+            let point = piece.at(crossing.t);
+            let crossings = &mut self.record.crossings;
+            crossings.at.push(self.modes, crossing.t, &point);
+            crossings.events.push(crossing.event as i64);
+            crossings.rising.push(crossing.rising);
+            let called = self.calls.crossing(&crossing, &point);
+            let stops = self.signals.take(called);
+            self.record.stop = match self.events.is_terminal(crossing.event) {
+                true => Some(Stop::Event(crossing.event)),
+                false => stops.then_some(Stop::Call("on_event")),
+            };
+            if self.record.stop.is_some() {
+                self.cut = Some((crossing.t, point));
+                return;
+            }
+        }
+    }
+
+    /// Ends the run if a callback asks for it.
+    fn heed(&mut self, name: &'static str, called: PyResult<bool>) {
+        if self.signals.take(called) {
+            self.record.stop.get_or_insert(Stop::Call(name));
+        }
+    }
 }
 
 impl Watch for Recorder<'_> {
-    /// The step's last instant is left to the next step: at an impact, a sample shows the state after it.
     fn step(&mut self, piece: &dyn Piece) {
-        let (_, end) = piece.span();
-        while let Some(time) = self.next_time().filter(|&time| time < end) {
-            self.sample(time, &piece.at(time));
+        self.take_events(piece);
+        let end = self.cut.as_ref().map_or(piece.span().1, |(t, _)| *t);
+        self.take_samples(piece, end);
+        if self.cut.is_none() {
+            let called = self.calls.step(piece);
+            self.heed("on_step", called);
         }
-        self.signals.look();
+        if self.signals.look()
+            && let Some(progress) = &self.calls.progress
+        {
+            let shown = Python::attach(|py| progress.call1(py, (end,)).map(drop));
+            self.signals.take(shown);
+        }
     }
 
     fn impact(&mut self, impact: Impact) {
+        self.events.jump();
+        let called = self.calls.impact(&impact);
+        self.heed("on_event", called);
         let impacts = &mut self.record.impacts;
         impacts.before.push(self.modes, impact.t, &impact.before);
         impacts.after.push(self.modes, impact.t, &impact.after);
@@ -171,6 +265,8 @@ impl Watch for Recorder<'_> {
     }
 
     fn contact(&mut self, contact: Contact) {
+        let called = self.calls.contact(&contact);
+        self.heed("on_event", called);
         let contacts = &mut self.record.contacts;
         contacts.at.push(self.modes, contact.t, &contact.at);
         contacts.surfaces.push(contact.surface as i64);
@@ -184,7 +280,8 @@ impl Watch for Recorder<'_> {
     }
 
     fn is_over(&self) -> bool {
-        self.signals.interrupt.is_some() || (self.only_samples && self.next_time().is_none())
+        let is_sampled = self.only_samples && self.next_time().is_none();
+        self.signals.interrupt.is_some() || self.record.stop.is_some() || is_sampled
     }
 }
 
@@ -192,8 +289,9 @@ impl Watch for Recorder<'_> {
 pub(crate) fn simulate(
     py: Python<'_>,
     model: &NativeModel,
-    request: Request<'_>,
+    mut request: Request<'_>,
 ) -> PyResult<NativeRun> {
+    let calls = request.calls();
     let built = model.build();
     let checked = built.check_parameters();
     checked.map_err(|reason| error::state(model.describe(), &reason.into()))?;
@@ -214,7 +312,7 @@ pub(crate) fn simulate(
     if listed.is_none() && grid.count > 0 && ends_by_impacts {
         // The end is not known beforehand: runs are deterministic, and the same one is made twice.
         let nothing = Times::Grid(Grid { count: 0, ..grid });
-        grid.end = record(py, model, &course, nothing, false)?.1.t;
+        grid.end = record(py, model, &course, Samples::of(nothing))?.1.t;
     }
     if grid.end == 0.0 {
         grid.count = grid.count.min(1);
@@ -223,7 +321,10 @@ pub(crate) fn simulate(
         Some(times) => Times::Listed(times),
         None => Times::Grid(grid),
     };
-    let (record, ending) = record(py, model, &course, times, false)?;
+    let watched = request.watched.as_ref().map(Py::get);
+    let watched = Watched::of(py, &request.events, watched);
+    let samples = Samples::of(times);
+    let (record, ending) = record_watched(py, model, &course, samples, watched, calls)?;
     Ok(NativeRun::new(model.clone(), course, record, ending))
 }
 
@@ -233,10 +334,15 @@ pub(crate) fn states_at(
     model: &NativeModel,
     course: &Course,
     times: &[f64],
+    side: Side,
 ) -> PyResult<Columns> {
     check_times(times, course.settings.until)?;
-    let (record, _) = record(py, model, course, Times::Listed(times), true)?;
-    Ok(record.samples)
+    let samples = Samples {
+        times: Times::Listed(times),
+        only: true,
+        side,
+    };
+    Ok(record(py, model, course, samples)?.0.samples)
 }
 
 fn check_times(times: &[f64], until: f64) -> PyResult<()> {
@@ -252,29 +358,63 @@ fn check_times(times: &[f64], until: f64) -> PyResult<()> {
     }
 }
 
-/// Makes a run, detached from Python.
+/// The samples that are wanted.
+struct Samples<'a> {
+    times: Times<'a>,
+    /// True if nothing else is.
+    only: bool,
+    side: Side,
+}
+
+impl<'a> Samples<'a> {
+    fn of(times: Times<'a>) -> Self {
+        Self {
+            times,
+            only: false,
+            side: Side::After,
+        }
+    }
+}
+
+/// Makes a run without events and callbacks, detached from Python.
 fn record(
     py: Python<'_>,
     model: &NativeModel,
     course: &Course,
-    times: Times<'_>,
-    only_samples: bool,
+    samples: Samples<'_>,
+) -> PyResult<(Record, Ending)> {
+    let (watched, calls) = (Watched::default(), Calls::default());
+    record_watched(py, model, course, samples, watched, calls)
+}
+
+/// Makes a run, detached from Python.
+fn record_watched(
+    py: Python<'_>,
+    model: &NativeModel,
+    course: &Course,
+    samples: Samples<'_>,
+    watched: Watched<'_>,
+    calls: Calls,
 ) -> PyResult<(Record, Ending)> {
     py.detach(|| {
         let built = model.build();
         let mut recorder = Recorder {
             modes: &model.describe().modes,
-            times,
+            times: samples.times,
             taken: 0,
-            only_samples,
+            only_samples: samples.only,
+            side: samples.side,
+            events: Events::new(watched),
+            calls,
+            cut: None,
             record: Record::default(),
             signals: Signals::new(),
         };
         let ending = built.simulate(&course.origin, &course.settings, &mut recorder);
-        let ending = ending.map_err(|refusal| error::run(built.as_ref(), &refusal))?;
+        let mut ending = ending.map_err(|refusal| error::run(built.as_ref(), &refusal))?;
         match recorder.signals.interrupt.take() {
             Some(interrupt) => Err(interrupt),
-            None => Ok((recorder.finish(&ending), ending)),
+            None => Ok((recorder.finish(&mut ending), ending)),
         }
     })
 }

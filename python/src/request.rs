@@ -10,6 +10,8 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 use crate::error::{self, refused};
+use crate::events::{Calls, Wanted};
+use crate::model::NativeModel;
 
 /// The arguments of `Model.simulate`, as `dalembert/_model.py` hands them on.
 #[derive(FromPyObject)]
@@ -36,6 +38,12 @@ pub struct Request<'py> {
     penetration: String,
     corner: String,
     split: String,
+    pub(crate) events: Vec<Wanted>,
+    /// The model whose last outputs are the expressions of events.
+    pub(crate) watched: Option<Py<NativeModel>>,
+    on_step: Option<Py<PyAny>>,
+    on_event: Option<Py<PyAny>>,
+    on_progress: Option<Py<PyAny>>,
 }
 
 /// A run that can be made, again and again with the same result.
@@ -48,6 +56,15 @@ pub(crate) struct Course {
 }
 
 impl Request<'_> {
+    /// The functions to call during the run.
+    pub(crate) fn calls(&mut self) -> Calls {
+        Calls {
+            step: self.on_step.take(),
+            event: self.on_event.take(),
+            progress: self.on_progress.take(),
+        }
+    }
+
     /// The run that is meant, of a model.
     pub(crate) fn course(&self, model: &dyn AnyModel) -> PyResult<Course> {
         let policy = choice("off_constraint", &self.off_constraint, &policies())?;

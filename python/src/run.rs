@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 
 use crate::error;
 use crate::model::NativeModel;
-use crate::recorder::{self, Columns, Contacts, Impacts, Record, Signals};
+use crate::recorder::{self, Columns, Contacts, Crossings, Impacts, Record, Side, Signals, Stop};
 use crate::request::Course;
 
 /// States, one per row.
@@ -47,6 +47,14 @@ pub struct ContactTable {
     accumulation: Py<PyArray1<f64>>,
 }
 
+/// Events of the user, one per row.
+#[pyclass(frozen, get_all, module = "dalembert._native")]
+pub struct CrossingTable {
+    at: Py<Table>,
+    events: Py<PyArray1<i64>>,
+    rising: Py<PyArray1<bool>>,
+}
+
 /// A run that has ended.
 #[pyclass(frozen, module = "dalembert._native")]
 pub struct NativeRun {
@@ -56,6 +64,8 @@ pub struct NativeRun {
     samples: Lazy<Columns, Table>,
     impacts: Lazy<Impacts, ImpactTable>,
     contacts: Lazy<Contacts, ContactTable>,
+    crossings: Lazy<Crossings, CrossingTable>,
+    stop: Option<Stop>,
 }
 
 /// Columns that become arrays where they are first asked for.
@@ -126,6 +136,8 @@ impl NativeRun {
             samples: Lazy::new(record.samples),
             impacts: Lazy::new(record.impacts),
             contacts: Lazy::new(record.contacts),
+            crossings: Lazy::new(record.crossings),
+            stop: record.stop,
         }
     }
 }
@@ -168,10 +180,37 @@ impl NativeRun {
         })
     }
 
+    /// The events of the user.
+    #[getter]
+    fn crossings(&self, py: Python<'_>) -> PyResult<Py<CrossingTable>> {
+        self.crossings.get(py, |crossings| {
+            let table = CrossingTable {
+                at: Table::of(py, &self.model, crossings.at)?,
+                events: array(py, crossings.events),
+                rising: array(py, crossings.rising),
+            };
+            Py::new(py, table)
+        })
+    }
+
     /// The kind of the outcome.
     #[getter]
     fn kind(&self) -> &'static str {
-        self.ending.outcome.kind()
+        match self.stop {
+            Some(Stop::Event(_)) => "event",
+            Some(Stop::Call(_)) => "stopped",
+            None => self.ending.outcome.kind(),
+        }
+    }
+
+    /// The event or the callback that ended the run.
+    #[getter]
+    fn stop(&self) -> (Option<usize>, Option<&'static str>) {
+        match self.stop {
+            Some(Stop::Event(event)) => (Some(event), None),
+            Some(Stop::Call(name)) => (None, Some(name)),
+            None => (None, None),
+        }
     }
 
     /// The last time.
@@ -180,10 +219,10 @@ impl NativeRun {
         self.ending.t
     }
 
-    /// True if the requested time or number of impacts was reached.
+    /// True if the requested time, number of impacts or event was reached.
     #[getter]
     fn reached(&self) -> bool {
-        self.ending.reached
+        self.ending.reached || matches!(self.stop, Some(Stop::Event(_)))
     }
 
     /// The outcome in words.
@@ -252,10 +291,15 @@ impl NativeRun {
             let built = self.model.build();
             let mut signals = Signals::new();
             let mut is_over = || {
-                signals.look();
+                let _ = signals.look();
                 signals.interrupt.is_some()
             };
-            let (origin, settings) = (&self.course.origin, &self.course.settings);
+            let origin = &self.course.origin;
+            let mut settings = self.course.settings.clone();
+            if self.stop.is_some() {
+                settings.until = self.ending.t;
+            }
+            let settings = &settings;
             let (form, values) = (&self.model.form, &self.model.values);
             let varied = differentiate(form, values, origin, settings, &variables, &mut is_over);
             match signals.interrupt {
@@ -274,10 +318,16 @@ impl NativeRun {
         Ok(matrix.transpose()?.unbind())
     }
 
-    /// States at these times, in order, by the same run once more.
-    fn at(&self, py: Python<'_>, times: PyReadonlyArray1<'_, f64>) -> PyResult<Py<Table>> {
+    /// States at these times, in order, by the same run once more; with `before`, those before impacts.
+    fn at(
+        &self,
+        py: Python<'_>,
+        times: PyReadonlyArray1<'_, f64>,
+        before: bool,
+    ) -> PyResult<Py<Table>> {
         let times = times.as_array().to_vec();
-        let columns = recorder::states_at(py, &self.model, &self.course, &times)?;
+        let side = if before { Side::Before } else { Side::After };
+        let columns = recorder::states_at(py, &self.model, &self.course, &times, side)?;
         Table::of(py, &self.model, columns)
     }
 }

@@ -151,6 +151,8 @@ pub trait AnyModel: Runs {
     /// # Errors
     /// [`StateError`] under the same conditions as for the start of a run.
     fn point(&self, origin: &Origin) -> Result<Point, StateError>;
+    /// The declared outputs at a time, positions and velocities; `None` where they do not exist.
+    fn outputs(&self, t: f64, q: &[f64], qdot: &[f64]) -> Option<Vec<f64>>;
     /// The declared region's function, positive where motion is allowed; `None` without a region.
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
     /// Reports every derived quantity at a state of the global form.

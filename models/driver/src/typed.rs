@@ -341,6 +341,15 @@ impl<O: Owner> AnyModel for Typed<O> {
         Ok(point(&global, 0.0, &state))
     }
 
+    fn outputs(&self, t: f64, q: &[f64], qdot: &[f64]) -> Option<Vec<f64>> {
+        let model = self.owner.system();
+        let [q, qdot] = [q, qdot].map(|values| vector(&model.zero_vector(), values));
+        let state = model.state_unchecked(t, &q, &qdot).ok()?;
+        let mut outputs = vec![f64::NAN; model.description().outputs.len()];
+        model.outputs(t, &state, &mut outputs).ok()?;
+        Some(outputs)
+    }
+
     fn region(&self, t: f64, q: &[f64]) -> Option<f64> {
         let model = self.owner.system();
         model.view_region(t, &vector(&model.zero_vector(), q))
