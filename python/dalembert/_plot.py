@@ -32,7 +32,7 @@ def plot(run: Run, quantities: Sequence[str], ax: Axes | None) -> Axes:
 
 def _view(run: Run, ax: Axes) -> None:
     labels, plane, has_region = run.model.view
-    times, path = _with_corners(run, "view")
+    times, path = with_corners(run, "view")
     ax.plot(*path.T, linewidth=0.8)
     ax.plot(*path[0], "o", markersize=4, color="C2")
     at = run._native.impacts.before.view
@@ -46,21 +46,49 @@ def _view(run: Run, ax: Axes) -> None:
 
 def _region(run: Run, ax: Axes, plane: Sequence[int]) -> None:
     """The border of the region, in the coordinates that the view shows, at the end of the run."""
-    shown = run._native.samples.view
-    low, high = shown.min(axis=0), shown.max(axis=0)
-    margin = 0.25 * (high - low).max()
-    x, y = (np.linspace(low[k] - margin, high[k] + margin, GRID) for k in range(2))
-    q = np.tile(run.q[-1], (GRID * GRID, 1))
-    q[:, plane[0]], q[:, plane[1]] = (grid.ravel() for grid in np.meshgrid(x, y))
-    values = run.model._native.region(run.outcome.t, q).reshape(GRID, GRID)
+    x, y, values = _region_values(run, run.outcome.t, plane, GRID)
     if np.nanmin(values) < 0 < np.nanmax(values):
         ax.contour(x, y, values, levels=[0], colors="0.4", linewidths=1)
 
 
+def _region_values(run: Run, t: float, plane: Sequence[int], count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The function of the region at a time, on a grid around the path."""
+    shown = run._native.samples.view
+    low, high = shown.min(axis=0), shown.max(axis=0)
+    margin = 0.25 * (high - low).max()
+    x, y = (np.linspace(low[k] - margin, high[k] + margin, count) for k in range(2))
+    q = np.tile(run.q[-1], (count * count, 1))
+    q[:, plane[0]], q[:, plane[1]] = (grid.ravel() for grid in np.meshgrid(x, y))
+    return x, y, run.model._native.region(t, q).reshape(count, count)
+
+
+def border(run: Run, t: float, count: int = GRID) -> np.ndarray:
+    """The border of the region at a time, as segments: an array with a start and an end in each."""
+    x, y, values = _region_values(run, t, run.model.view[1], count)
+    # Each square of the grid in two triangles, in each of which the border is one segment.
+    index = np.arange(count * count).reshape(count, count)
+    corners = [index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]]
+    triangles = np.concatenate([np.stack([corners[k] for k in own], -1).reshape(-1, 3) for own in [(0, 1, 2), (0, 2, 3)]])
+    places = np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
+    level = values.ravel()
+    inside = level[triangles] > 0
+    triangles = triangles[np.isfinite(level[triangles]).all(1) & (inside.any(1) & ~inside.all(1))]
+    # The corner that lies alone on its side of the border comes first.
+    inside = level[triangles] > 0
+    alone = np.argmax(inside == (inside.sum(1) == 1)[:, None], axis=1)
+    first, second, third = (triangles[np.arange(len(triangles)), (alone + k) % 3] for k in range(3))
+
+    def crossing(other: np.ndarray) -> np.ndarray:
+        part = level[first] / (level[first] - level[other])
+        return places[first] + part[:, None] * (places[other] - places[first])
+
+    return np.stack([crossing(second), crossing(third)], axis=1)
+
+
 def _curves(run: Run, ax: Axes, across: str, names: Sequence[str]) -> None:
-    _, x = _with_corners(run, across)
+    _, x = with_corners(run, across)
     for name in names:
-        _, y = _with_corners(run, name)
+        _, y = with_corners(run, name)
         ax.plot(x, y, label=name, linewidth=1)
     ax.set_xlabel(across)
     ax.set_ylabel(names[0] if len(names) == 1 else "")
@@ -68,7 +96,7 @@ def _curves(run: Run, ax: Axes, across: str, names: Sequence[str]) -> None:
         ax.legend()
 
 
-def _with_corners(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
+def with_corners(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
     """A quantity at the times of the samples and at both sides of every impact, so that corners and jumps are drawn."""
     from ._run import _column
 

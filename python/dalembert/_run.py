@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
+    from ._animation import Animation
     from ._events import Event
     from ._model import Model
 
@@ -338,6 +339,25 @@ class Run:
 
         return _plot.plot(self, quantities, ax)
 
+    def animate(self, *, duration: float = 10.0, fps: float = 25.0) -> Animation:
+        """A moving picture of the run: the declared view with its region and the impacts, or each coordinate over time.
+
+        Parameters
+        ----------
+        duration : float, default 10
+            Seconds that it plays.
+        fps : float, default 25
+            Frames in a second.
+
+        Returns
+        -------
+        Animation
+            It plays in a notebook; :meth:`Animation.to_matplotlib` is a ``FuncAnimation``, :meth:`Animation.save` writes a file.
+        """
+        from ._animation import Animation
+
+        return Animation(self, duration, fps)
+
     def __repr__(self) -> str:
         form, integrator, tol, step = self._native.settings
         kept = f"tol {tol:g}" if step is None else f"step {step:g}"
@@ -383,6 +403,11 @@ class Samples:
     def outputs(self) -> np.ndarray:
         """Declared outputs."""
         return self._rows(self._table.outputs)
+
+    @property
+    def view(self) -> np.ndarray | None:
+        """Points of the declared view; None without one."""
+        return None if self._table.view is None else self._rows(self._table.view)
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self._rows(_column(self._model, self._table, name))
