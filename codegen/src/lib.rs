@@ -13,6 +13,7 @@
 
 pub mod claims;
 pub mod diagnostics;
+pub mod export;
 pub mod mechanics;
 pub mod model;
 pub mod program;

@@ -10,13 +10,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
 
-from . import _events, _native
+from . import _events, _export, _native
 from ._errors import RequestError
 from ._events import Event, Occurrence, StateFunction
 from ._report import Derivation, Expression, Verdict, derivations
 from ._run import Run
 
 if TYPE_CHECKING:
+    import casadi
     import numpy as np
 
     from ._sympy import Symbolic
@@ -499,6 +500,39 @@ class Model:
         if declaration is None:
             raise RequestError(f"`{self.name}` has modes; say which one by scene=: {', '.join(self.modes)}")
         return Symbolic.of(declaration)
+
+    def to_c(self, path: str | os.PathLike[str] | None = None) -> str:
+        """The model as a header of C99, which allocates nothing and needs ``math.h`` alone.
+
+        Parameters
+        ----------
+        path : path, optional
+            A file to write.
+
+        Returns
+        -------
+        str
+            Rate, velocity, energy, gaps, impacts and what else the state has, of this scene; of a model with modes those of each.
+        """
+        return _export.to_c(self, path)
+
+    def to_casadi(self, function: str = "rate", scene: str | None = None) -> casadi.Function:
+        """A function of the model in CasADi.
+
+        Parameters
+        ----------
+        function : str, default "rate"
+            A function of :meth:`to_c` by its name: ``"energy"``, ``"gaps"``, ``"impact_floor"``.
+        scene : str, optional
+            As for :meth:`derive`.
+
+        Returns
+        -------
+        casadi.Function
+            Of the time ``t``, the state ``s`` (positions, then momenta or quasi-velocities) and the parameters ``k`` in their order,
+            inputs last; ``"motion"`` of ``t``, ``q``, ``v`` and ``k``. Where a result does not exist it is no number.
+        """
+        return _export.to_casadi(self, function, scene)
 
     # Shown -----------------------------------------------------------------------------------------------------------------
 

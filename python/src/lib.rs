@@ -7,6 +7,7 @@
 //! | `request.rs` | the arguments of a run, as settings and state of the driver |
 //! | `recorder.rs` | samples, impacts and contacts of a run as columns of numbers; signals |
 //! | `events.rs`, `cells.rs` | events and callbacks of the user; changes of the sign of a function |
+//! | `export.rs` | models for other languages |
 //! | `run.rs` | runs that have ended, as arrays |
 //! | `evaluate.rs` | everything that is derived at a state |
 //! | `report.rs` | derivations and verdicts |
@@ -17,6 +18,7 @@ mod cells;
 mod error;
 mod evaluate;
 mod events;
+mod export;
 mod model;
 mod recorder;
 mod report;
@@ -26,6 +28,8 @@ mod run;
 /// The functions and classes of the module.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    use crate::export::{lines, to_c};
     #[pymodule_export]
     use crate::model::{NativeModel, load, shipped};
     #[pymodule_export]

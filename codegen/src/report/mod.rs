@@ -151,7 +151,8 @@ pub fn report_without_claims(source: &str) -> Result<Report, ReportError> {
     report_of_declaration(declaration(source)?.without_claims())
 }
 
-fn declaration(source: &str) -> Result<Declaration, ReportError> {
+/// The declaration of a text.
+pub(crate) fn declaration(source: &str) -> Result<Declaration, ReportError> {
     read(tokens(source)?).map_err(ReportError::Declaration)
 }
 

@@ -30,7 +30,7 @@ pub use connect::ConnectArgs;
 pub use control::ControlArgs;
 pub use ensemble::EnsembleArgs;
 pub use errata::ErrataArgs;
-pub use file::{BuildArgs, NewArgs, WatchArgs};
+pub use file::{BuildArgs, ExportArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
 pub use linearise::LineariseArgs;
 pub use map::MapArgs;
@@ -148,6 +148,13 @@ pub enum Command {
         after_help = file::BUILD_EXAMPLES
     )]
     Build(BuildArgs),
+    /// Write the functions of a model as a header of C.
+    #[command(
+        help_template = help::TEMPLATE,
+        before_help = "Example: dalembert export rolling_disk --c disk.h",
+        after_help = file::EXPORT_EXAMPLES
+    )]
+    Export(ExportArgs),
     /// Draw figures of the models on one page.
     #[command(
         help_template = help::TEMPLATE,
@@ -173,6 +180,7 @@ impl Command {
         match self {
             Self::Derive(args) => Some(&mut args.model),
             Self::Check(args) => Some(&mut args.model),
+            Self::Export(args) => Some(&mut args.model),
             _ => self.model_to_run().map(|args| &mut args.model),
         }
     }

@@ -169,6 +169,7 @@ fn dispatch(
         Command::Watch(args) => command::watch::run(catalogue, args, streams),
         Command::New(args) => command::new::run(args, streams),
         Command::Build(args) => command::build::run(args, streams),
+        Command::Export(args) => command::export::run(models, args, streams),
         Command::Gallery(args) => command::gallery::run(catalogue, args, streams),
         Command::Errata(args) => command::errata::run(catalogue, args, streams),
         Command::Stability(args) => command::stability::run(catalogue.suite(), args, streams),

@@ -1,4 +1,4 @@
-//! Flags of `new`, `watch` and `build`, the commands for files with declarations.
+//! Flags of `new`, `watch`, `build` and `export`, the commands for files with declarations and with code.
 
 use std::path::PathBuf;
 
@@ -25,6 +25,14 @@ pub const BUILD_EXAMPLES: &str =
 More examples:
   dalembert build pendulum.dal --to fast
   cargo run --release --manifest-path fast/Cargo.toml -- list";
+
+pub const EXPORT_EXAMPLES: &str =
+    "The header is C99, allocates nothing and calls nothing but math.h. It has the rate, velocity, energy, gaps and impacts of the
+model as functions of time, state and parameters; of a model with modes those of each.
+
+More examples:
+  dalembert export bouncing_ball --c -
+  dalembert export rolling_disk --scene free --c free.h";
 
 /// `new`
 #[derive(Debug, Args)]
@@ -61,4 +69,17 @@ pub struct BuildArgs {
     /// Folder of the library that the crate depends on. Default: the one from which this command was built.
     #[arg(long, value_name = "FOLDER")]
     pub library: Option<PathBuf>,
+}
+
+/// `export`
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
+    pub model: String,
+    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
+    #[arg(long, value_name = "SCENE", default_value = "all")]
+    pub scene: String,
+    /// Write a header of C. `-` is the standard output.
+    #[arg(long, value_name = "FILE")]
+    pub c: PathBuf,
 }

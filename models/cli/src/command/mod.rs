@@ -9,6 +9,7 @@ pub mod derive;
 pub mod ensemble;
 pub mod errata;
 pub mod eval;
+pub mod export;
 pub mod gallery;
 pub mod linearise;
 pub mod list;

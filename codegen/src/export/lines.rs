@@ -1,0 +1,182 @@
+//! A function as lines: the one walk over its operations from which every other language is written.
+
+use dalembert_expr::Function as Elementary;
+
+use crate::program::{Function, Guard, Input, Op, Value};
+
+/// What a line reads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Operand {
+    /// The value of an earlier line.
+    Value(usize),
+    /// A number.
+    Number(f64),
+    /// The time.
+    Time,
+    /// A component of the state; of a function of positions and velocities, a position.
+    State(usize),
+    /// A velocity.
+    Velocity(usize),
+    /// A parameter, or behind all of them an input.
+    Parameter(usize),
+}
+
+/// A fault of a function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// The metric is not positive definite.
+    Metric,
+    /// Constraints depend on each other.
+    Constraint,
+    /// Quasi-velocities depend on each other.
+    Frame,
+    /// A surface is singular, or tangent to the constraints.
+    Surface,
+}
+
+/// A line.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Line {
+    /// A value by its number: a sign between two operands (`+`, `-`, `*`, `/`), or a function by its name in C. `neg` is the
+    /// opposite of its operand.
+    Let {
+        /// Number of the value.
+        value: usize,
+        /// Sign or name.
+        operation: &'static str,
+        /// What it is applied to.
+        operands: Vec<Operand>,
+    },
+    /// `value > factor*reference`, or else the function ends with a fault.
+    Demand {
+        /// What must be greater.
+        value: Operand,
+        /// A factor of the reference.
+        factor: f64,
+        /// What it is compared with; 0 without.
+        reference: Option<Operand>,
+        /// The fault.
+        fault: Fault,
+    },
+}
+
+/// A function as lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lines {
+    /// The lines, in order.
+    pub lines: Vec<Line>,
+    /// The results.
+    pub outputs: Vec<Operand>,
+    /// The number of the next value.
+    next: usize,
+}
+
+impl Lines {
+    /// The lines of a function of a model with `n` coordinates; `None` if it reads what no state has.
+    pub fn of(function: &Function, n: usize) -> Option<Self> {
+        let mut known: Vec<Operand> = Vec::with_capacity(function.ops.len());
+        let mut lines = Vec::new();
+        for (value, op) in function.ops.iter().enumerate() {
+            let at = |value: &Value| known[value.index()];
+            let operand = match op {
+                Op::Input(input) => place(*input, n)?,
+                Op::Number(number) => Operand::Number(number.to_f64()),
+                Op::Pi => Operand::Number(core::f64::consts::PI),
+                Op::Guard(guard) => {
+                    lines.push(demand(guard, &at));
+                    Operand::Value(value)
+                }
+                _ => {
+                    let (operation, mut operands) = operation(op, &at);
+                    if let Op::Power(_, exponent) = op {
+                        operands.push(Operand::Number(exponent.to_f64()));
+                    }
+                    lines.push(Line::Let {
+                        value,
+                        operation,
+                        operands,
+                    });
+                    Operand::Value(value)
+                }
+            };
+            known.push(operand);
+        }
+        let outputs = function.outputs.iter();
+        Some(Self {
+            lines,
+            outputs: outputs.map(|output| known[output.index()]).collect(),
+            next: function.ops.len(),
+        })
+    }
+
+    /// Adds a line, and gives its value.
+    pub(super) fn add(&mut self, operation: &'static str, operands: Vec<Operand>) -> Operand {
+        let value = self.next;
+        self.next += 1;
+        self.lines.push(Line::Let {
+            value,
+            operation,
+            operands,
+        });
+        Operand::Value(value)
+    }
+
+    /// True if the function reads velocities.
+    pub fn reads_velocity(&self) -> bool {
+        let is_velocity = |operand: &Operand| matches!(operand, Operand::Velocity(_));
+        let in_line = |line: &Line| match line {
+            Line::Let { operands, .. } => operands.iter().any(is_velocity),
+            Line::Demand { .. } => false,
+        };
+        self.lines.iter().any(in_line) || self.outputs.iter().any(is_velocity)
+    }
+}
+
+/// The place of an argument; `None` for rates, excesses and multipliers.
+fn place(input: Input, n: usize) -> Option<Operand> {
+    match input {
+        Input::Time => Some(Operand::Time),
+        Input::Coordinate(_) | Input::Momentum(_) | Input::Quasi(_) => {
+            input.component(n).map(Operand::State)
+        }
+        Input::Velocity(i) => Some(Operand::Velocity(i)),
+        Input::Parameter(k) => Some(Operand::Parameter(k)),
+        Input::Excess(_) | Input::MotionRate(_) | Input::Multiplier(_) => None,
+    }
+}
+
+/// The sign or the name of an operation, and what it reads.
+fn operation(op: &Op, at: &dyn Fn(&Value) -> Operand) -> (&'static str, Vec<Operand>) {
+    let name = match op {
+        Op::Neg(_) => "neg",
+        Op::Add(..) => "+",
+        Op::Sub(..) => "-",
+        Op::Mul(..) => "*",
+        Op::Div(..) => "/",
+        Op::Sqrt(_) => "sqrt",
+        Op::Power(..) => "pow",
+        Op::Atan2(..) => "atan2",
+        Op::Call(Elementary::Ln, _) => "log",
+        Op::Call(Elementary::Abs, _) => "fabs",
+        Op::Call(function, _) => function.name(),
+        Op::Input(_) | Op::Number(_) | Op::Pi | Op::Guard(_) => "",
+    };
+    (name, op.operands().iter().map(at).collect())
+}
+
+fn demand(guard: &Guard, at: &dyn Fn(&Value) -> Operand) -> Line {
+    let (fault, factor) = match guard {
+        Guard::Pivot { .. } => (Fault::Metric, 0.0),
+        Guard::Constraint { .. } => (Fault::Constraint, Guard::LEAST_SQUARED_RATIO),
+        Guard::Mass { .. } => (Fault::Constraint, Guard::LEAST_PIVOT_RATIO),
+        Guard::Frame { .. } => (Fault::Frame, Guard::LEAST_SQUARED_RATIO),
+        Guard::Surface { .. } => (Fault::Surface, Guard::LEAST_SQUARED_RATIO),
+    };
+    let mut operands = guard.operands().map(|value| at(&value));
+    Line::Demand {
+        value: operands.next().unwrap_or(Operand::Number(f64::NAN)),
+        factor,
+        reference: operands.next(),
+        fault,
+    }
+}
