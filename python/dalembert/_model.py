@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
 from . import _events, _export, _native
 from ._errors import RequestError
 from ._events import Event, Occurrence, StateFunction
+from ._request import array, floats, inputs as input_functions, laws, pairs
 from ._report import Derivation, Expression, Verdict, derivations
 from ._run import Run
 
@@ -161,7 +162,7 @@ class Model:
         RequestError
             No such parameter, or a value that the declaration rules out.
         """
-        return self._changed(self._native.with_parameters(_pairs(values)))
+        return self._changed(self._native.with_parameters(pairs(values)))
 
     def scene(self, name: str) -> Model:
         """A declared scene of this model, with the values of this one.
@@ -316,7 +317,8 @@ class Model:
         penetration: str = "stop",
         corner: str = "stop",
         split: str = "first",
-        inputs: Mapping[str, float] | None = None,
+        inputs: Mapping[str, float | StateFunction] | None = None,
+        period: float | None = None,
         mode: str | None = None,
         events: Sequence[str | StateFunction | tuple[Any, ...] | Event] = (),
         on_step: Callable[[float, np.ndarray, np.ndarray], Any] | None = None,
@@ -368,8 +370,11 @@ class Model:
             At several surfaces at one time whose order matters.
         split : {"first", "stop"}
             At a transition that the motion can go on from in more than one way.
-        inputs : mapping of str to float, optional
-            Values of inputs that are held through the run; 0 without.
+        inputs : mapping of str to float or callable, optional
+            Values of inputs that are held through the run, or functions of ``t``, ``q`` and ``qdot``; 0 without.
+        period : float, optional
+            Call these functions at multiples of this time and hold their values. Without it they are called wherever the motion is
+            evaluated, and should be smooth.
         mode : str, optional
             The mode to begin in, of a model with modes.
         events : sequence, optional
@@ -396,16 +401,17 @@ class Model:
             Unknown names, values out of range, a state that is refused.
         """
         native = self._native
-        if inputs:
-            native = native.with_inputs(_pairs(inputs))
+        numbers, control = input_functions(self.inputs, inputs or {})
+        if numbers:
+            native = native.with_inputs(numbers)
         if mode is not None:
             native = native.with_mode(mode)
         request = {
-            "until": until, "impacts": impacts, "state": _pairs(state or {}), "q": _floats(q), "qdot": _floats(qdot),
-            "p": _floats(p), "off_constraint": off_constraint, "times": None if times is None else _array(times),
+            "until": until, "impacts": impacts, "state": pairs(state or {}), "q": floats(q), "qdot": floats(qdot),
+            "p": floats(p), "off_constraint": off_constraint, "times": None if times is None else array(times),
             "samples": samples, "tol": tol, "integrator": integrator, "step": step, "max_step": max_step, "steps": steps,
-            "laws": _laws(law), "form": form, "projection": projection, "rest": rest, "penetration": penetration,
-            "corner": corner, "split": split,
+            "laws": laws(law), "form": form, "projection": projection, "rest": rest, "penetration": penetration,
+            "corner": corner, "split": split, "control": control, "period": period,
         }
         wanted = _events.taken(events)
         request |= {
@@ -440,7 +446,7 @@ class Model:
             Numbers, vectors and matrices by name: ``qdot``, ``p``, ``pdot``, ``acceleration``, ``multipliers``, ``metric``,
             ``energy`` and others. Names are those of the command ``eval``.
         """
-        return self._native.evaluate({"t": t, "q": _floats(q), "qdot": _floats(qdot), "p": _floats(p)})
+        return self._native.evaluate({"t": t, "q": floats(q), "qdot": floats(qdot), "p": floats(p)})
 
     # Equations -------------------------------------------------------------------------------------------------------------
 
@@ -568,32 +574,3 @@ class Model:
 def _restored(source: str, claims: bool, scene: str, parameters: dict[str, float]) -> Model:
     model = Model.from_text(source, claims=claims).with_parameters(**parameters)
     return model if scene == "all" else model.scene(scene)
-
-
-def _pairs(values: Mapping[str, float]) -> list[tuple[str, float]]:
-    return [(name, float(value)) for name, value in values.items()]
-
-
-def _floats(values: Sequence[float] | None) -> list[float] | None:
-    return None if values is None else [float(value) for value in values]
-
-
-def _array(values: Sequence[float] | np.ndarray) -> np.ndarray:
-    import numpy as np
-
-    return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _laws(law: Law | Mapping[str, Law] | None) -> list[tuple[str | None, str, float | None]]:
-    if law is None:
-        return []
-    given = {None: law} if isinstance(law, str) else law
-    return [(surface, *_law(text)) for surface, text in given.items()]
-
-
-def _law(text: Law) -> tuple[str, float | None]:
-    name, _, coefficient = text.partition(":")
-    try:
-        return name.strip(), float(coefficient) if coefficient else None
-    except ValueError:
-        raise RequestError(f"law: `{text}` is not accepted; expected a law such as \"elastic\" or \"newton:0.5\"") from None

@@ -99,6 +99,11 @@ pub(crate) fn variation(description: &Description, error: &VariationError) -> Py
             let free = description.quasi_velocities.join(", ");
             format!("`{velocity}` follows from other velocities by the constraints; vary {free}")
         }
+        VariationError::Absent { coordinate } => {
+            let name = names::coordinates(description).nth(coordinate);
+            let name = name.unwrap_or_default();
+            format!("the mode in which the run begins has no coordinate `{name}`")
+        }
         VariationError::Undefined(undefined) => match undefined {
             Undefined::Graze { t, surface: index }
             | Undefined::Corner { t, surface: index }

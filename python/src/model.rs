@@ -25,7 +25,7 @@ pub struct NativeModel {
     place: usize,
     pub(crate) form: Arc<Form>,
     pub(crate) values: Vec<f64>,
-    mode: usize,
+    pub(crate) mode: usize,
 }
 
 /// Positions, velocities, which of them were declared, and the end.

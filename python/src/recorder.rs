@@ -1,15 +1,19 @@
 //! Samples, impacts and contacts of a run as columns of numbers, and the signals that come meanwhile.
 
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use dalembert::describe::ModeInfo;
-use dalembert_driver::{Contact, Ending, Grid, Impact, Piece, Point, Watch};
+use dalembert_driver::{
+    Contact, Control, Ending, Grid, Impact, Piece, Point, Refusal, Watch, steer,
+};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::events::{Calls, Events, Watched};
 use crate::model::NativeModel;
-use crate::request::{Course, Request};
+use crate::request::{Course, Request, Steering};
 use crate::run::NativeRun;
 
 /// The time between two looks at the signals of the process.
@@ -410,11 +414,58 @@ fn record_watched(
             record: Record::default(),
             signals: Signals::new(),
         };
-        let ending = built.simulate(&course.origin, &course.settings, &mut recorder);
+        let ending = match &course.steering {
+            None => built.simulate(&course.origin, &course.settings, &mut recorder),
+            Some(steering) => steered(model, course, steering, &mut recorder)?,
+        };
         let mut ending = ending.map_err(|refusal| error::run(built.as_ref(), &refusal))?;
         match recorder.signals.interrupt.take() {
             Some(interrupt) => Err(interrupt),
             None => Ok((recorder.finish(&mut ending), ending)),
         }
     })
+}
+
+/// Makes a run whose inputs are a function of the user.
+fn steered(
+    model: &NativeModel,
+    course: &Course,
+    steering: &Steering,
+    recorder: &mut Recorder<'_>,
+) -> PyResult<Result<Ending, Refusal>> {
+    let count = model.form.documentation.inputs.len();
+    let failure = RefCell::new(None);
+    let inputs = |t: f64, q: &[f64], qdot: &[f64]| -> Vec<f64> {
+        let values = Python::attach(|py| {
+            let state = (
+                t,
+                PyArray1::from_slice(py, q),
+                PyArray1::from_slice(py, qdot),
+            );
+            steering.function.call1(py, state)?.extract(py)
+        });
+        values.unwrap_or_else(|error| {
+            failure.borrow_mut().get_or_insert(error);
+            vec![f64::NAN; count]
+        })
+    };
+    let control = Control {
+        inputs: &inputs,
+        period: steering.period,
+    };
+    let (origin, settings) = (&course.origin, &course.settings);
+    let ended = steer(
+        &model.form,
+        &model.values,
+        origin,
+        settings,
+        &control,
+        recorder,
+    );
+    match failure.into_inner() {
+        Some(failure) => Err(failure),
+        None => ended.ok_or_else(|| {
+            error::refused("inputs: the model is too large for inputs that are functions")
+        }),
+    }
 }

@@ -1,5 +1,7 @@
 //! The arguments of a run, as settings and state of the driver.
 
+use std::sync::Arc;
+
 use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert_driver::{
@@ -44,6 +46,9 @@ pub struct Request<'py> {
     on_step: Option<Py<PyAny>>,
     on_event: Option<Py<PyAny>>,
     on_progress: Option<Py<PyAny>>,
+    /// All inputs as a function of `t`, `q` and `qdot`, and the time for which its values are held.
+    control: Option<Py<PyAny>>,
+    period: Option<f64>,
 }
 
 /// A run that can be made, again and again with the same result.
@@ -53,6 +58,14 @@ pub(crate) struct Course {
     pub settings: Settings,
     /// True if an end time was given.
     pub has_end: bool,
+    /// Inputs that are functions.
+    pub steering: Option<Arc<Steering>>,
+}
+
+/// All inputs as a function of the user, and the time for which its values are held.
+pub(crate) struct Steering {
+    pub function: Py<PyAny>,
+    pub period: Option<f64>,
 }
 
 impl Request<'_> {
@@ -66,7 +79,7 @@ impl Request<'_> {
     }
 
     /// The run that is meant, of a model.
-    pub(crate) fn course(&self, model: &dyn AnyModel) -> PyResult<Course> {
+    pub(crate) fn course(&mut self, model: &dyn AnyModel) -> PyResult<Course> {
         let policy = choice("off_constraint", &self.off_constraint, &policies())?;
         let origin = self.beginning(model)?.settle(model, policy);
         let origin = origin.map_err(|reason| error::state(model.description(), &reason))?;
@@ -74,7 +87,31 @@ impl Request<'_> {
             origin,
             settings: self.settings(model, policy)?,
             has_end: self.until.is_some(),
+            steering: self.steering()?,
         })
+    }
+
+    fn steering(&mut self) -> PyResult<Option<Arc<Steering>>> {
+        let (function, period) = (self.control.take(), self.period);
+        let Some(function) = function else {
+            return match period {
+                None => Ok(None),
+                Some(_) => Err(refused(
+                    "period: it is that of inputs which are functions, and there are none",
+                )),
+            };
+        };
+        if let Some(period) = period.filter(|period| !(period.is_finite() && *period > 0.0)) {
+            return Err(refused(format!(
+                "period: {period} is not accepted; expected a positive number"
+            )));
+        }
+        if matches!(self.integrator.as_str(), "taylor" | "dla2" | "dla4") {
+            return Err(refused(
+                "integrator: inputs that are functions need dop853, dopri5, rk4, gauss4 or gauss6",
+            ));
+        }
+        Ok(Some(Arc::new(Steering { function, period })))
     }
 
     fn settings(&self, model: &dyn AnyModel, policy: OffConstraint) -> PyResult<Settings> {

@@ -283,6 +283,11 @@ impl NativeRun {
     /// Derivatives of the last positions and velocities, one column for each variable.
     fn jacobian(&self, py: Python<'_>, wrt: Vec<String>) -> PyResult<Py<PyArray2<f64>>> {
         let description = self.model.describe();
+        if self.course.steering.is_some() {
+            return Err(error::refused(
+                "jacobian: nothing is known of the derivatives of inputs that are functions",
+            ));
+        }
         let variables = wrt.iter().map(|name| Variable::find(description, name));
         let variables: Vec<Variable> = variables
             .collect::<Result<_, _>>()
@@ -300,8 +305,9 @@ impl NativeRun {
                 settings.until = self.ending.t;
             }
             let settings = &settings;
-            let (form, values) = (&self.model.form, &self.model.values);
-            let varied = differentiate(form, values, origin, settings, &variables, &mut is_over);
+            let form = &self.model.form;
+            let start = (&*self.model.values, self.model.mode);
+            let varied = differentiate(form, start, origin, settings, &variables, &mut is_over);
             match signals.interrupt {
                 Some(interrupt) => Err(interrupt),
                 None => varied.map_err(|refusal| error::run(built.as_ref(), &refusal)),

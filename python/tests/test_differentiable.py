@@ -30,7 +30,7 @@ SLOPE = """
     }
 """
 
-#: Models, what varies, and arguments: a bounce, many bounces on constraints, sliding.
+#: Models, what varies, and arguments: a bounce, many bounces on constraints, sliding, a change of mode.
 CASES = {
     "bounce": (lambda: Model.from_text(BALL), {"x": 1.0, "x_dot": 0.2, "g": 9.81}, {"until": 0.7, "tol": 1e-13}),
     "disk": (
@@ -41,6 +41,7 @@ CASES = {
         lambda: Model.from_text(SLOPE), {"x": 0.0, "y": 1.0, "x_dot": 0.5, "g": 9.81, "slope": 0.3},
         {"rest": "contact", "tol": 1e-13},
     ),
+    "modes": (lambda: dalembert.models.filippov_field, {"x": 1.0, "y": 0.2, "fx": -2.0, "gy": -1.0}, {"tol": 1e-13}),
 }
 
 

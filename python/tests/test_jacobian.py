@@ -8,6 +8,7 @@ from conftest import BALL
 
 import dalembert
 from dalembert import Model, RequestError
+from dalembert._final import Final
 
 
 def test_derivatives_across_a_bounce_are_those_of_the_closed_form():
@@ -57,7 +58,7 @@ def test_quasi_velocities_are_the_velocities_of_their_forms():
     ("bouncing_ball", {"integrator": "rk4", "step": 0.01}, "x", "dop853, dopri5 or taylor"),
     ("bouncing_ball", {}, "y", "unknown coordinate, velocity or parameter `y`"),
     ("bouncing_ball", {"law": "newton:0.5", "until": 50}, "x", "the run ends before its time"),
-    ("tent_map", {}, "x", ""),
+    ("smooth_and_rough_plane", {}, "x", "derivatives of a model with constraints need its reduced form"),
 ])
 def test_derivatives_that_are_refused(name, arguments, wrt, words):
     run = getattr(dalembert.models, name).simulate(**arguments)
@@ -77,3 +78,53 @@ def test_a_graze_has_no_derivative():
     """).simulate()
     with pytest.raises(RequestError, match="graze at surface `disk`"):
         run.jacobian(["y"])
+
+
+#: Modes of different lengths, with a declared state between them.
+MIXED = """
+    Mixed {
+        parameters { e in [0, 1] = 4/5; c = 1/3; }
+        modes {
+            pair {
+                coordinates { x; y; }
+                lagrangian = (dot(x)^2 + (2 + sin(x))*dot(y)^2)/2 - (x - y)^2/4 - y/3;
+                impacts { floor: y >= -1/2 => newton(e); }
+                initial { x = 0.3; y = 0.1; dot(x) = -1; dot(y) = -0.4; until = 3; }
+            }
+            single { coordinates { y; } lagrangian = dot(y)^2/2 - y; impacts { ground: y >= -1 => restitution(e); } }
+        }
+        transitions { lose: pair -> single when x + c <= 0 => reset { y = y; dot(y) = dot(y) + dot(x); }; }
+    }
+"""
+
+
+@pytest.mark.parametrize(("text", "names", "arguments"), [
+    (MIXED, ["x", "y", "x_dot", "y_dot", "e", "c"], {"until": 3}),
+    (dalembert.models.text("filippov_field"), ["x", "y", "fx", "gx"], {}),
+    (dalembert.models.text("tent_map"), ["y"], {}),
+    (dalembert.models.text("rimless_wheel_five"), ["x", "x_dot", "alpha", "g"], {}),
+    (dalembert.models.text("refracted_particle"), ["x", "y", "x_dot", "y_dot", "m1", "m2"], {}),
+])
+def test_derivatives_across_changes_of_mode_are_differences(text, names, arguments):
+    end = Final(Model.from_text(text), names, {"tol": 1e-13, **arguments})
+    model = end.model
+    values = [model.initial.get(name, model.parameters.get(name, 0.0)) for name in names]
+    run = end._run(tuple(values))
+    modes = set(run.events["before"]["mode"]) | set(run.events["after"]["mode"])
+    assert len(modes) > 1
+    jacobian, lacks = end.jacobian(values), np.isnan(end.end(values))
+    for place, value in enumerate(values):
+        h = 1e-5 * max(0.1, abs(value))
+        moved = [np.array(values), np.array(values)]
+        moved[0][place] += h
+        moved[1][place] -= h
+        difference = (end.end(moved[0]) - end.end(moved[1])) / (2 * h)
+        scale = max(1.0, np.abs(difference[~lacks]).max())
+        np.testing.assert_allclose(jacobian[~lacks, place], difference[~lacks], rtol=0, atol=1e-6 * scale, err_msg=names[place])
+
+
+def test_a_coordinate_that_the_first_mode_lacks_is_refused():
+    run = Model.from_text(MIXED).simulate(mode="single", q=[0, 0], qdot=[0, 0], until=1)
+    with pytest.raises(RequestError, match="the mode in which the run begins has no coordinate `x`"):
+        run.jacobian(["x"])
+    assert run.jacobian(["y"])[1, 0] != 0

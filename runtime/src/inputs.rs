@@ -58,6 +58,10 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> Steered<Sys, F> {
 impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> VectorField for Steered<Sys, F> {
     type State = Sys::State;
 
+    fn state_len(&self) -> usize {
+        self.system.state_len()
+    }
+
     #[inline]
     fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault> {
         self.at(t, state).rate(t, state, rate)
@@ -71,6 +75,18 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> VectorField for Stee
 impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<Sys, F> {
     type Vector = Sys::Vector;
     type Impulse = Sys::Impulse;
+
+    fn coordinate_count(&self) -> usize {
+        self.system.coordinate_count()
+    }
+
+    fn impulse_len(&self) -> usize {
+        self.system.impulse_len()
+    }
+
+    fn motion_start(&self, state: &Self::State) -> usize {
+        self.system.motion_start(state)
+    }
 
     fn position(&self, state: &Self::State) -> Self::Vector {
         self.system.position(state)
@@ -179,6 +195,14 @@ where
     type Multipliers = Sys::Multipliers;
     type Levels = Sys::Levels;
 
+    fn constraint_count(&self) -> usize {
+        self.system.constraint_count()
+    }
+
+    fn level_count(&self) -> usize {
+        self.system.level_count()
+    }
+
     fn is_reduced(&self) -> bool {
         self.system.is_reduced()
     }
@@ -253,6 +277,10 @@ where
     F: Fn(f64, &Sys::State) -> Sys::Inputs,
 {
     type Gaps = Sys::Gaps;
+
+    fn surface_count(&self) -> usize {
+        self.system.surface_count()
+    }
 
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps {
         self.system.gaps(t, state)

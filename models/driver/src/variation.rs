@@ -66,9 +66,15 @@ pub enum VariationError {
     /// The integrator has a fixed step.
     #[error("derivatives need the integrator dop853, dopri5 or taylor")]
     FixedStep,
-    /// The model has modes.
-    #[error("derivatives by name are not available for models with modes")]
+    /// The model has modes with constraints or frames.
+    #[error("derivatives of a model with modes need modes without constraints and frames")]
     Modes,
+    /// The mode in which the run begins does not have this coordinate.
+    #[error("the mode in which the run begins does not have this coordinate")]
+    Absent {
+        /// The coordinate.
+        coordinate: usize,
+    },
     /// The form is the global one and the model has constraints.
     #[error("derivatives of a model with constraints need its reduced form")]
     Constrained,
@@ -91,7 +97,7 @@ impl VariationError {
     fn beforehand(description: &Description, settings: &Settings) -> Option<Self> {
         let is_free = description.constraints.is_empty();
         match settings.form {
-            _ if !description.modes.is_empty() => Some(Self::Modes),
+            Form::Reduced if !description.modes.is_empty() => Some(Self::Modes),
             Form::Global if !is_free => Some(Self::Constrained),
             _ if !settings.integrator.is_adaptive() => Some(Self::FixedStep),
             _ => None,
@@ -106,6 +112,15 @@ impl From<Fault> for VariationError {
 }
 
 impl Variable {
+    /// The coordinate that it is about, if the mode does not have that one.
+    fn absent(self, description: &Description, mode: usize) -> Option<usize> {
+        let (Self::Position(coordinate) | Self::Velocity(coordinate)) = self else {
+            return None;
+        };
+        let mode = description.modes.get(mode)?;
+        (!mode.coordinates.contains(&coordinate)).then_some(coordinate)
+    }
+
     /// The variable of this name: a coordinate, a velocity, a quasi-velocity of the reduced form, or a parameter.
     ///
     /// # Errors
@@ -132,14 +147,14 @@ impl Variable {
 }
 
 /// Derivatives of the last state of a run with respect to these variables. `values` are those of all parameters, inputs
-/// included. The run is given up once `is_over` returns true.
+/// included; the run begins in the mode of this number. The run is given up once `is_over` returns true.
 ///
 /// # Errors
 /// [`Refusal`] if the run does not start. The inner error explains why it has no derivatives.
 // NOTE: a function and not a method of `Runs`, so that a program that does not call it is linked without it.
 pub fn differentiate(
     form: &erased::Form,
-    values: &[f64],
+    (values, mode): (&[f64], usize),
     origin: &Origin,
     settings: &Settings,
     variables: &[Variable],
@@ -154,6 +169,11 @@ pub fn differentiate(
     };
     for (index, value) in values.iter().enumerate() {
         model.set_parameter(index, *value);
+    }
+    model.set_mode(mode);
+    let absent = variables.iter().find_map(|it| it.absent(description, mode));
+    if let Some(coordinate) = absent {
+        return Ok(Err(VariationError::Absent { coordinate }));
     }
     let system = match settings.form {
         Form::Reduced => model,
@@ -285,13 +305,6 @@ impl Differentiator<'_> {
             _ => {}
         }
         let parameters = parameters_along(system, &parameter);
-        if system.description().is_first_order {
-            let mut tangent = parameter;
-            for (entry, q) in tangent.state.as_mut_slice().iter_mut().zip(q.as_slice()) {
-                *entry = q.slopes()[0];
-            }
-            return Ok(tangent);
-        }
         let state = system.composed(&parameters, Dual::of(0.0), &q, &qdot)?;
         let mut tangent = parameter;
         for (entry, value) in tangent
@@ -361,9 +374,20 @@ fn derivatives<S: Instance + Variational>(
         let parameters = parameters_along(system, tangent);
         let qdot = system.velocities(&parameters, Dual::of(t), &row)?;
         let slope = |value: &Dual| value.slopes()[0];
+        // Positions are components of the state, at places that its mode tells.
+        let mut moved = tangent.state;
+        if !system.description().modes.is_empty()
+            && let Some((last, mode)) = moved
+                .as_mut_slice()
+                .last_mut()
+                .zip(StateVector::as_slice(state).last())
+        {
+            *last = *mode;
+        }
+        let positions = system.position(&moved);
         found
             .q
-            .push(row.as_slice()[..n].iter().map(slope).collect());
+            .push(StateVector::as_slice(&positions)[..n].to_vec());
         found
             .qdot
             .push(qdot.as_slice()[..n].iter().map(slope).collect());

@@ -67,10 +67,11 @@ pub trait Variational: TaylorField + System + Sized {
         state: &Self::Row<L>,
     ) -> Result<Self::Configuration<L>, Fault>;
 
-    /// The state with these positions and velocities; see [`System::state_unchecked`].
+    /// The state with these positions and velocities, in the mode in which states are made; see
+    /// [`System::state_unchecked`].
     ///
     /// # Errors
-    /// A [`Fault`] where the state cannot be formed; [`Fault::SeveralModes`] for a model with modes.
+    /// A [`Fault`] where the state cannot be formed.
     fn composed<L: Numbers>(
         &self,
         parameters: &Self::Parameters<L>,

@@ -9,6 +9,7 @@ use crate::describe::{Instance, Report, VariationalVisitor};
 use crate::error::{Fault, StateError};
 use crate::generated::admit;
 use crate::initial::{complete_positions, complete_velocities};
+use crate::inputs::Actuated;
 use crate::kernels::{
     Declared, Documentation, Documented, HasConstraints, HasDivergence, HasSurfaces, HasVariations,
     KernelTable, Part, Pointers, Tabled, Tables, nearest_of_declared,
@@ -215,6 +216,19 @@ impl<'f, const C: usize> Declared for Erased<'f, C> {
         match self.constraints() {
             0 => self.state_unchecked(t, q, qdot),
             _ => nearest_of_declared(self, t, q, qdot),
+        }
+    }
+}
+
+/// Inputs come after the described parameters.
+impl<const C: usize> Actuated for Erased<'_, C> {
+    type Inputs = Bounded<f64, PARAMETERS>;
+
+    fn set_inputs(&mut self, inputs: &Self::Inputs) {
+        let first = self.form.documentation.description.parameters.len();
+        let entries = self.values.as_mut().iter_mut().skip(first);
+        for (entry, input) in entries.zip(inputs.as_ref()) {
+            *entry = *input;
         }
     }
 }

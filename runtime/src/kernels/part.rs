@@ -220,6 +220,19 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
+    /// Same as [`Part::gathered`], over any kind of number.
+    pub(crate) fn gathered_row<L: Numbers, R: Row<L>>(&self, row: &R) -> R {
+        let Some(mode) = self.mode() else {
+            return *row;
+        };
+        let mut gathered = R::zeros(row.as_slice().len());
+        let entries = gathered.as_mut_slice().iter_mut();
+        for (entry, &place) in entries.zip(&mode.coordinates) {
+            *entry = row.as_slice()[place];
+        }
+        gathered
+    }
+
     /// Same as [`Part::of_surfaces`], over any kind of number.
     pub(crate) fn row_of_surfaces<L: Numbers, R: Row<L>>(&self, row: R, elsewhere: L) -> R {
         match self.mode() {

@@ -305,12 +305,14 @@ impl<S: HasVariations> Variational for S {
         q: &S::Positions<L>,
         qdot: &S::Positions<L>,
     ) -> Result<RowOf<S, L>, Fault> {
-        if has_modes(self) {
-            return Err(Fault::SeveralModes);
-        }
+        let part = Part::start(self);
+        let [q, qdot] = [part.gathered_row(q), part.gathered_row(qdot)];
         let arguments = (parameters.as_slice(), t);
-        let places = [q.as_slice(), qdot.as_slice()];
-        Part::start(self).row_by(S::Kernels::motion, arguments, places)
+        part.row_by(
+            S::Kernels::motion,
+            arguments,
+            [q.as_slice(), qdot.as_slice()],
+        )
     }
 
     fn deviations<L: Numbers>(

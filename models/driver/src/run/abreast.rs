@@ -48,6 +48,7 @@ pub(crate) fn simulate_abreast<M: Model>(
         states.push(state);
         bridges.push(Bridge {
             model,
+            point: |t, state: &M::State| point(model, t, state),
             watch,
             balance: None,
         });
@@ -75,13 +76,16 @@ pub(crate) fn simulate_abreast<M: Model>(
         let model = &models[index];
         let ended = run.map_err(Refusal::from).map(|run| {
             let (_, laws) = effects(model, settings);
-            let first = point(model, 0.0, &states[index]);
+            let ends = [
+                point(model, 0.0, &states[index]),
+                point(model, run.t, &run.state),
+            ];
             let solved = Solved {
                 run,
                 step: None,
                 laws,
             };
-            ending(model, first, solved, settings)
+            ending(ends, solved, settings)
         });
         endings[index] = Some(ended);
     });

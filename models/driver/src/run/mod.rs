@@ -9,10 +9,12 @@ macro_rules! limited {
 
 mod abreast;
 mod energy;
+mod steered;
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
+use dalembert::describe::Description;
 use dalembert::integrate::{
     AUTOMATIC_STEPS, Chosen, Counters, Dla2, Dla4, Dop853, DormandPrince5, FixedStep, Gauss4,
     Gauss6, Method, Rk4, Taylor, Tolerance,
@@ -30,6 +32,7 @@ use crate::refusal::Refusal;
 use crate::typed::{Model, point};
 pub(crate) use abreast::{Abreast, simulate_abreast};
 use energy::Balance;
+pub use steered::{Control, steer};
 
 /// Settings of a run.
 #[derive(Debug, Clone)]
@@ -168,14 +171,16 @@ pub(crate) fn simulate<M: Model>(
     let balance = is_doubtful.then(|| Balance::of(model, 0.0, &state));
     let mut bridge = Bridge {
         model,
+        point: |t, state: &M::State| point(model, t, state),
         watch,
         balance: balance.flatten(),
     };
     let solved = solve(model, &state, settings, &mut bridge)?;
     let warnings = warnings(settings, &solved, bridge.balance);
+    let last = point(model, solved.run.t, &solved.run.state);
     Ok(Ending {
         warnings,
-        ..ending(model, first, solved, settings)
+        ..ending([first, last], solved, settings)
     })
 }
 
@@ -203,18 +208,13 @@ fn warnings<S>(settings: &Settings, solved: &Solved<S>, balance: Option<Balance>
 }
 
 /// The ending of a run in the names and types of the driver.
-fn ending<M: Model>(
-    model: &M,
-    first: Point,
-    solved: Solved<M::State>,
-    settings: &Settings,
-) -> Ending {
+fn ending<S>([first, last]: [Point; 2], solved: Solved<S>, settings: &Settings) -> Ending {
     let Solved { run, step, laws } = solved;
     Ending {
         outcome: run.outcome,
         t: run.t,
         first,
-        last: point(model, run.t, &run.state),
+        last,
         counters: run.counters,
         step,
         laws,
@@ -306,14 +306,16 @@ pub(crate) fn effects<M: Instance + Scene>(
 }
 
 /// Forwards segments and events of the runtime to a [`Watch`].
-struct Bridge<'a, M> {
+struct Bridge<'a, M, P> {
     model: &'a M,
+    /// The values of a state at a time.
+    point: P,
     watch: &'a mut dyn Watch,
     /// The energy balance, if the watch wants warnings about a fixed-step integrator.
     balance: Option<Balance>,
 }
 
-impl<M> Bridge<'_, M> {
+impl<M, P> Bridge<'_, M, P> {
     fn go_on(&self) -> ControlFlow<()> {
         match self.watch.is_over() {
             true => ControlFlow::Break(()),
@@ -322,13 +324,14 @@ impl<M> Bridge<'_, M> {
     }
 }
 
-impl<M: Model> Observer<M> for Bridge<'_, M> {
+impl<M: Model, P: Fn(f64, &M::State) -> Point> Observer<M> for Bridge<'_, M, P> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
         if let Some(balance) = &mut self.balance {
             balance.follow(self.model, segment);
         }
         self.watch.step(&SegmentPiece {
-            model: self.model,
+            description: self.model.description(),
+            point: &self.point,
             segment: RefCell::new(segment),
         });
         self.go_on()
@@ -341,8 +344,8 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
         self.watch.impact(Impact {
             t: event.t,
             surface: event.surface,
-            before: point(self.model, event.t, &event.before),
-            after: point(self.model, event.t, &event.after),
+            before: (self.point)(event.t, &event.before),
+            after: (self.point)(event.t, &event.after),
             simultaneous: event.simultaneous,
             graze: event.graze,
         });
@@ -356,7 +359,7 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
         self.watch.contact(Contact {
             t: hold.t,
             surface: hold.surface,
-            at: point(self.model, hold.t, &hold.state),
+            at: (self.point)(hold.t, &hold.state),
             begins: hold.begins,
             accumulation: hold.accumulation,
         });
@@ -365,12 +368,13 @@ impl<M: Model> Observer<M> for Bridge<'_, M> {
 }
 
 /// A segment of a run. A query inside it prepares the dense output, hence the cell.
-struct SegmentPiece<'a, 'b, M: Model> {
-    model: &'a M,
-    segment: RefCell<&'a mut Segment<'b, M::State>>,
+struct SegmentPiece<'a, 'b, S, P> {
+    description: &'a Description,
+    point: &'a P,
+    segment: RefCell<&'a mut Segment<'b, S>>,
 }
 
-impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
+impl<S: StateVector, P: Fn(f64, &S) -> Point> Piece for SegmentPiece<'_, '_, S, P> {
     fn span(&self) -> (f64, f64) {
         let segment = self.segment.borrow();
         (segment.t_start(), segment.t_end())
@@ -379,8 +383,8 @@ impl<M: Model> Piece for SegmentPiece<'_, '_, M> {
     fn at(&self, t: f64) -> Point {
         let state = self.segment.borrow_mut().at(t);
         match state {
-            Ok(state) => point(self.model, t, &state),
-            Err(_) => Point::undefined(self.model.description()),
+            Ok(state) => (self.point)(t, &state),
+            Err(_) => Point::undefined(self.description),
         }
     }
 }

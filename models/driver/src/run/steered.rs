@@ -1,0 +1,251 @@
+//! Runs whose inputs are functions of time and state.
+//!
+//! They are made by the system of all forms with the largest capacity only, for which this code is compiled once.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+
+use dalembert::effects::{Moment, StepView};
+use dalembert::erased::{self, Bounded, Erased, PARAMETERS};
+use dalembert::forces::NoForces;
+use dalembert::inputs::Steered;
+use dalembert::integrate::{
+    Chosen, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Stepper, Tolerance,
+};
+use dalembert::simulation::STEP_BUDGET;
+use dalembert::{
+    Effect, Event, Hold, Impacts, Instance, Observer, Outcome, Projection, SceneEffects, Segment,
+    Simulation, StateVector, System, VectorField,
+};
+
+use super::{Bridge, Ending, Settings, Solved, Watch, ending, stepping};
+use crate::integrator::{Form, Integrator};
+use crate::model::Origin;
+use crate::refusal::Refusal;
+use crate::typed::{point, prepare};
+
+/// The system whose inputs are given.
+type Plain<'f> = Erased<'f, 32>;
+
+/// The state of that system.
+type State<'f> = <Plain<'f> as VectorField>::State;
+
+/// Values of all inputs.
+type Inputs = Bounded<f64, PARAMETERS>;
+
+/// The system with inputs from a function.
+type Driven<'f, 'c> = Steered<Plain<'f>, &'c dyn Fn(f64, &State<'f>) -> Inputs>;
+
+/// Inputs as functions of time, positions and velocities.
+pub struct Control<'c> {
+    /// Values of all inputs, in order. Velocities of a first-order system are those without inputs.
+    pub inputs: &'c dyn Fn(f64, &[f64], &[f64]) -> Vec<f64>,
+    /// The time for which values are held; without it they are taken wherever the motion is evaluated.
+    pub period: Option<f64>,
+}
+
+/// Makes a run with these inputs, as [`Runs::simulate`](crate::Runs::simulate) does; `None` for a form that is too large, and for
+/// Taylor series and discrete principles, which know no inputs from outside. `values` are those of all parameters.
+///
+/// # Errors
+/// [`Refusal`] if the run does not start.
+// NOTE: a function and not a method of `Runs`, so that a program that does not call it is linked without it.
+pub fn steer(
+    form: &erased::Form,
+    values: &[f64],
+    origin: &Origin,
+    settings: &Settings,
+    control: &Control<'_>,
+    watch: &mut dyn Watch,
+) -> Option<Result<Ending, Refusal>> {
+    let mut model = Plain::of(form)?;
+    for (index, value) in values.iter().enumerate() {
+        model.set_parameter(index, *value);
+    }
+    let system = match settings.form {
+        Form::Reduced => model,
+        Form::Global => model.global(),
+    };
+    let state = match prepare(&model, &system, 0.0, origin) {
+        Ok(state) => state,
+        Err(error) => return Some(Err(error.into())),
+    };
+    let taken = |t: f64, state: &State<'_>| -> Inputs {
+        let q = system.position(state);
+        let qdot = system.velocity(t, state).unwrap_or_else(|_| {
+            let mut unknown = q;
+            unknown.as_mut_slice().fill(f64::NAN);
+            unknown
+        });
+        let values = (control.inputs)(t, StateVector::as_slice(&q), StateVector::as_slice(&qdot));
+        let mut inputs = Inputs::all(values.len(), 0.0);
+        inputs
+            .as_mut()
+            .iter_mut()
+            .zip(&values)
+            .for_each(|(entry, value)| *entry = *value);
+        inputs
+    };
+    let held = Cell::new(Inputs::all(0, 0.0));
+    let kept = |_: f64, _: &State<'_>| held.get();
+    let clock = control.period.map(|period| Clock {
+        period,
+        next: 1,
+        due: None,
+        held: &held,
+        taken: &taken,
+    });
+    let steered = Steered {
+        system,
+        inputs: match clock {
+            Some(_) => &kept as &dyn Fn(f64, &State<'_>) -> Inputs,
+            None => &taken,
+        },
+    };
+    run_chosen(&steered, state, settings, clock, watch)
+}
+
+/// Makes the run with the integrator of the settings.
+fn run_chosen<'f>(
+    steered: &Driven<'f, '_>,
+    state: State<'f>,
+    settings: &Settings,
+    clock: Option<Clock<'_, 'f>>,
+    watch: &mut dyn Watch,
+) -> Option<Result<Ending, Refusal>> {
+    let tolerance = match Tolerance::new(settings.tol) {
+        Ok(tolerance) => tolerance,
+        Err(error) => return Some(Err(error.into())),
+    };
+    let longest = settings.max_step.unwrap_or(f64::INFINITY);
+    macro_rules! run {
+        ($stepper:expr) => {{
+            let mut stepper = $stepper;
+            run(steered, &mut stepper, state, settings, clock, watch)
+        }};
+        (limited $stepper:expr) => {
+            match $stepper.with_max_step(longest) {
+                Ok(stepper) => run!(stepper),
+                Err(error) => Err(error.into()),
+            }
+        };
+    }
+    Some(match settings.integrator {
+        Integrator::Dop853 => run!(limited Dop853::new(tolerance)),
+        Integrator::Dopri5 => run!(limited DormandPrince5::new(tolerance)),
+        Integrator::Rk4 => run!(stepping(Rk4::new(tolerance), settings)),
+        Integrator::Gauss4 => run!(stepping(Gauss4::new(tolerance), settings)),
+        Integrator::Gauss6 => run!(stepping(Gauss6::new(tolerance), settings)),
+        Integrator::Taylor | Integrator::Dla2 | Integrator::Dla4 => return None,
+    })
+}
+
+fn run<'f, 'c>(
+    steered: &Driven<'f, 'c>,
+    stepper: &mut impl Stepper<Driven<'f, 'c>>,
+    state: State<'f>,
+    settings: &Settings,
+    clock: Option<Clock<'_, 'f>>,
+    watch: &mut dyn Watch,
+) -> Result<Ending, Refusal> {
+    let plain = &steered.system;
+    let tables = &plain.form().tables;
+    let mut impacts = (tables.dimensions.surfaces > 0).then(|| Impacts::declared(steered));
+    for &(surface, law) in &settings.laws {
+        impacts.set_law(surface, law);
+    }
+    if settings.impacts.is_some() {
+        impacts.set_impact_budget(settings.impacts);
+    }
+    impacts.set_policies(settings.policies);
+    let mut projection = tables.drifts.then(Projection::new);
+    if let Some(on) = settings.projection {
+        projection.set_projection(on);
+    }
+    let laws = (0..plain.description().surfaces.len())
+        .map(|surface| impacts.law(steered, surface))
+        .collect();
+    let values = |t: f64, state: &State<'f>| point(&steered.at(t, state), t, state);
+    let mut bridge = Driver(Bridge {
+        model: plain,
+        point: &values,
+        watch,
+        balance: None,
+    });
+    let budget = settings.steps.unwrap_or(STEP_BUDGET);
+    let effects = (projection, impacts, clock);
+    let mut simulation =
+        Simulation::new(steered, Chosen::new(stepper), effects).with_step_budget(budget);
+    let run = simulation.run(0.0, state, settings.until, &mut bridge)?;
+    let ends = [values(0.0, &state), values(run.t, &run.state)];
+    let step = simulation.fixed_step();
+    Ok(ending(ends, Solved { run, step, laws }, settings))
+}
+
+/// Observes a system with inputs as if it were the system without.
+struct Driver<'a, 'f, P>(Bridge<'a, Plain<'f>, P>);
+
+impl<'f, 'c, P> Observer<Driven<'f, 'c>> for Driver<'_, 'f, P>
+where
+    P: Fn(f64, &State<'f>) -> crate::model::Point,
+{
+    fn step(&mut self, segment: &mut Segment<'_, State<'f>>) -> ControlFlow<()> {
+        Observer::<Plain<'f>>::step(&mut self.0, segment)
+    }
+
+    fn event(&mut self, event: &Event<State<'f>>) -> ControlFlow<()> {
+        Observer::<Plain<'f>>::event(&mut self.0, event)
+    }
+
+    fn hold(&mut self, hold: &Hold<State<'f>>) -> ControlFlow<()> {
+        Observer::<Plain<'f>>::hold(&mut self.0, hold)
+    }
+}
+
+/// Takes the inputs at multiples of a period, where it ends the step.
+#[derive(Clone, Copy)]
+struct Clock<'c, 'f> {
+    period: f64,
+    /// The number of the next period.
+    next: u64,
+    /// The fraction of the present step at which it begins.
+    due: Option<f64>,
+    held: &'c Cell<Inputs>,
+    taken: &'c dyn Fn(f64, &State<'f>) -> Inputs,
+}
+
+impl<'f, 'c> Effect<Driven<'f, 'c>> for Clock<'_, 'f> {
+    type Forces = NoForces;
+
+    fn begin<O: Observer<Driven<'f, 'c>>>(
+        &mut self,
+        now: &mut Moment<'_, Driven<'f, 'c>>,
+        _: &mut O,
+    ) -> Result<(), Outcome> {
+        self.held.set((self.taken)(now.t, now.state));
+        Ok(())
+    }
+
+    fn propose<Step: Stepper<Driven<'f, 'c>>>(
+        &mut self,
+        step: &mut StepView<'_, Driven<'f, 'c>, Step>,
+    ) -> Result<Option<f64>, Outcome> {
+        let time = self.next as f64 * self.period;
+        let theta = ((time - step.t_start()) / step.length()).max(f64::EPSILON);
+        self.due = (time <= step.t_end()).then_some(theta.min(1.0));
+        Ok(self.due)
+    }
+
+    fn act<O: Observer<Driven<'f, 'c>>>(
+        &mut self,
+        theta: f64,
+        now: &mut Moment<'_, Driven<'f, 'c>>,
+        _: &mut O,
+    ) -> Result<(), Outcome> {
+        if self.due.take() == Some(theta) {
+            self.next += 1;
+            self.held.set((self.taken)(now.t, now.state));
+        }
+        Ok(())
+    }
+}
