@@ -11,7 +11,7 @@ digits as that takes, and every claim that was proved is tested at random states
   exact              the same for the closed form exp(G); what G takes logarithms of is enclosed away from 0
   no_density         brackets of the fields of D: one of them is a combination of others, and its demand is not
   locally_exact      all demands of brackets are those of a function, as far as the brackets are independent
-  symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints
+  symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints, or commutes with the rates
   volume_kept        the density satisfies Liouville's equation, and the motion through each surface has the derivative that keeps it
   factor             the determinant of the derivative of the motion through the surface, times the densities
   symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt
@@ -1399,6 +1399,15 @@ def both_ranks(elements):
 def check_symmetry(model, claim, source):
     field = [model.names.compile(own) for own in claim["field"]]
     at = lambda state: [own(state) for own in field]
+    if model.rates is not None:
+        motion = lambda state: [own(state) for own in model.rates]
+
+        def commutator(state):
+            of_motion = model.derivative(motion, state, model.along(state, 0, at(state)))
+            of_field = model.derivative(at, state, model.along(state, 1, motion(state)))
+            return [own - other for own, other in zip(of_motion, of_field)]
+        found = [own for state in states(model, source, commutator) for own in state]
+        return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
     def change(state):
         """The derivative of L along the lifted flow."""

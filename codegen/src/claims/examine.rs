@@ -15,8 +15,8 @@ use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
 use super::{
-    alternatives, conserved, density, energy, impact, integrable, invariant, involution, jumps,
-    kept, symmetry, symplectic,
+    alternatives, conserved, density, energy, equivariance, impact, integrable, invariant,
+    involution, jumps, kept, symmetry, symplectic,
 };
 use crate::mechanics::Derivation;
 use crate::mechanics::energy::total_energy;
@@ -260,7 +260,10 @@ impl<'e> Examiner<'e> {
             symmetry::check_symmetry(self.model, &self.dynamics, field, self.seed);
         if matches!(verdict, Verdict::Proved(_)) {
             let (model, around) = self.around();
-            remarks.extend(jumps::momentum_at_surfaces(model, &around, field));
+            remarks.extend(match model.is_first_order() {
+                true => equivariance::symmetry_at_surfaces(model, &around, field),
+                false => jumps::momentum_at_surfaces(model, &around, field),
+            });
         }
         (verdict, remarks)
     }

@@ -14,6 +14,7 @@
 //! | `geometry.rs`, `dynamics.rs`, `branches.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
+//! | `equivariance.rs` | symmetries of motion, surfaces and their maps together |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
 //! | `wall.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
@@ -46,6 +47,7 @@ mod density;
 pub mod dynamics;
 mod elimination;
 mod energy;
+mod equivariance;
 mod evidence;
 pub mod exactness;
 mod examine;
@@ -96,6 +98,7 @@ mod wall;
 
 pub use conditions::{Condition, Equation, Scan, find_conditions};
 pub use dynamics::{Dynamics, Motion};
+pub(crate) use equivariance::{Fields, check_equivariance};
 pub use exactness::{Exactness, Local, decide, decide_local};
 pub use examine::{Examined, examine, examine_mode, examine_scene, examine_volume};
 pub use existence::Decision;

@@ -42,6 +42,9 @@ pub(crate) fn check_symmetry(
     field: &[ExprId],
     seed: u64,
 ) -> (Verdict, Vec<String>) {
+    if let Some(rates) = model.field.clone() {
+        return check_commuting(model, dynamics, field, &rates, seed);
+    }
     let directions = lifted(model, field);
     let kept = kept(model, field);
     let rate = kept.rate;
@@ -54,32 +57,101 @@ pub(crate) fn check_symmetry(
             .collect(),
     };
     changes.extend(of_constraints(model, dynamics, &directions));
-    let mut whole: Option<Certificate> = None;
-    for change in &changes {
-        match evidence(model, change, seed).verdict(true, change.wording(), seed) {
-            Verdict::Proved(certificate) => whole = Some(joined(whole, certificate)),
-            Verdict::Undecided(reason) => {
-                let verdict = Verdict::Undecided(format!("{}: {reason}", change.question()));
-                return (verdict, Vec::new());
-            }
-            refuted => return (refuted, Vec::new()),
-        }
-    }
-    let mut certificate =
-        whole.unwrap_or_else(|| Certificate::without_chance(KEPT.to_owned(), seed));
+    let mut certificate = match proved_together(model, &changes, seed) {
+        Ok(certificate) => certificate,
+        Err(verdict) => return (verdict, Vec::new()),
+    };
     if !is_kept {
         certificate.shown = GAUGE.to_owned();
     }
-    let jump = field
-        .iter()
-        .find_map(|expr| possible_jump(model, *expr, &[], &mut |_, _| false));
-    if let Some(place) = jump {
-        let text = format!("where it is smooth it is one, but it may jump {place}");
-        return (Verdict::Undecided(text), Vec::new());
+    if let Some(open) = jump(model, field) {
+        return (open, Vec::new());
     }
     let gauge = (!is_kept).then_some(rate);
     let remarks = vec![momentum_equation(model, field, gauge)];
     (Verdict::Proved(certificate), remarks)
+}
+
+/// The verdict on the claim that a flow keeps the forces.
+pub(super) fn check_forces(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    field: &[ExprId],
+    seed: u64,
+) -> Verdict {
+    let directions = lifted(model, field);
+    let changes = of_forces(model, dynamics, field, &directions);
+    match proved_together(model, &changes, seed) {
+        Ok(certificate) => Verdict::Proved(certificate),
+        Err(verdict) => verdict,
+    }
+}
+
+/// The verdict on a symmetry of a first-order system: its flow takes motions to motions where both fields commute.
+fn check_commuting(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    field: &[ExprId],
+    rates: &[ExprId],
+    seed: u64,
+) -> (Verdict, Vec<String>) {
+    let symbols: Vec<SymbolId> = (model.coordinates.iter())
+        .map(|coordinate| coordinate.q)
+        .collect();
+    let along = |values: &[ExprId]| -> Vec<(SymbolId, ExprId)> {
+        let pairs = symbols.iter().zip(values);
+        pairs.map(|(q, value)| (*q, *value)).collect()
+    };
+    let mut motion = along(rates);
+    let one = model.pool.one();
+    motion.push((model.time, one));
+    let directions = along(field);
+    let mut changes = Vec::new();
+    for (i, (component, rate)) in field.iter().zip(rates).enumerate() {
+        let of_rate = model.pool.derivative_along(*rate, &directions);
+        let of_field = model.pool.derivative_along(*component, &motion);
+        let name = &model.coordinates[i].name.display;
+        changes.push(Change {
+            name: format!("rate of dot({name}) along its flow, less that of its component"),
+            rate: model.pool.sub(of_rate, of_field),
+            subject: Subject::Rates,
+            on_d: Some(dynamics),
+        });
+    }
+    let verdict = match proved_together(model, &changes, seed) {
+        Ok(certificate) => jump(model, field).unwrap_or(Verdict::Proved(certificate)),
+        Err(verdict) => verdict,
+    };
+    (verdict, Vec::new())
+}
+
+/// An open verdict on a field that may jump.
+fn jump(model: &mut Model, field: &[ExprId]) -> Option<Verdict> {
+    let place = field
+        .iter()
+        .find_map(|expr| possible_jump(model, *expr, &[], &mut |_, _| false))?;
+    let text = format!("where it is smooth it is one, but it may jump {place}");
+    Some(Verdict::Undecided(text))
+}
+
+/// The certificate that all changes vanish, or the verdict on the first that is not shown to.
+fn proved_together(
+    model: &Model,
+    changes: &[Change<'_>],
+    seed: u64,
+) -> Result<Certificate, Verdict> {
+    let mut whole: Option<Certificate> = None;
+    for change in changes {
+        match evidence(model, change, seed).verdict(true, change.wording(), seed) {
+            Verdict::Proved(certificate) => whole = Some(joined(whole, certificate)),
+            Verdict::Undecided(reason) => {
+                let reason = format!("{}: {reason}", change.question());
+                return Err(Verdict::Undecided(reason));
+            }
+            refuted => return Err(refuted),
+        }
+    }
+    Ok(whole.unwrap_or_else(|| Certificate::without_chance(KEPT.to_owned(), seed)))
 }
 
 /// Joins two certificates.
@@ -114,21 +186,66 @@ fn of_constraints<'d>(
         changes.push(Change {
             name: format!("rate of the left side of {name} along its flow"),
             rate: model.pool.derivative_along(left, directions),
+            subject: Subject::Constraints,
             on_d: Some(dynamics),
         });
     }
     changes
 }
 
+/// The change of each force at velocities in D, up to what vanishes.
+fn of_forces<'d>(
+    model: &mut Model,
+    dynamics: &'d Dynamics,
+    field: &[ExprId],
+    directions: &[(SymbolId, ExprId)],
+) -> Vec<Change<'d>> {
+    let mut changes = Vec::new();
+    for force in 0..model.forces.len() {
+        let form = model.forces[force].form.clone();
+        for i in 0..form.len() {
+            let mut terms = vec![model.pool.derivative_along(form[i], directions)];
+            for (component, along) in field.iter().zip(&form) {
+                let slope = model.pool.diff(*component, model.coordinates[i].q);
+                terms.push(model.pool.mul(*along, slope));
+            }
+            let rate = model.pool.sum(&terms);
+            if model.pool.zero_test(rate) == Zero::Proved {
+                continue;
+            }
+            let names = [&model.forces[force].name, &model.coordinates[i].name];
+            let [force, coordinate] = names.map(|name| name.display.clone());
+            changes.push(Change {
+                name: format!("rate of the force {force} on {coordinate} along its flow"),
+                rate,
+                subject: Subject::Forces,
+                on_d: Some(dynamics),
+            });
+        }
+    }
+    changes
+}
+
 /// The certificates of a symmetry of the Lagrangian itself, and of one that changes it by a total derivative.
 const KEPT: &str = "its flow keeps the Lagrangian and the constraints";
+const RATES: &str = "its flow keeps the rates";
 const GAUGE: &str =
     "its flow changes the Lagrangian by a total time derivative and keeps the constraints";
+
+/// Quantities that a symmetry keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Subject {
+    Lagrangian,
+    Constraints,
+    Forces,
+    Rates,
+}
 
 /// The rate of something along a flow.
 struct Change<'d> {
     rate: ExprId,
     name: String,
+    subject: Subject,
     /// The motion, if velocities are those in D.
     on_d: Option<&'d Dynamics>,
 }
@@ -139,30 +256,41 @@ impl Change<'_> {
         Change {
             name,
             rate,
+            subject: Subject::Lagrangian,
             on_d: None,
         }
     }
 
     fn question(&self) -> &'static str {
-        match self.on_d {
-            None => "whether its flow keeps the Lagrangian up to a total time derivative",
-            Some(_) => "whether its flow keeps the constraints",
+        match self.subject {
+            Subject::Lagrangian => {
+                "whether its flow keeps the Lagrangian up to a total time derivative"
+            }
+            Subject::Constraints => "whether its flow keeps the constraints",
+            Subject::Forces => "whether its flow keeps the forces",
+            Subject::Rates => "whether its flow keeps the rates",
         }
     }
 
     fn wording(&self) -> Wording {
-        let (differs, help) = match self.on_d {
-            None => (
+        let corrected = "leave it out, or correct the field";
+        let (differs, help) = match self.subject {
+            Subject::Lagrangian => (
                 "its flow changes the Lagrangian by more than a total time derivative",
-                "leave it out, or correct the field",
+                corrected,
             ),
-            Some(_) => (
+            Subject::Constraints => (
                 "its flow takes allowed velocities to others",
                 "leave it out, or add the motion of the coordinates that the constraints lack",
             ),
+            Subject::Forces => ("its flow changes the forces", corrected),
+            Subject::Rates => ("its flow changes the rates", corrected),
         };
         Wording {
-            vanishes: KEPT.to_owned(),
+            vanishes: match self.subject {
+                Subject::Rates => RATES.to_owned(),
+                _ => KEPT.to_owned(),
+            },
             differs: differs.to_owned(),
             help: [help.to_owned(), String::new()],
         }
@@ -206,7 +334,7 @@ impl Vanishing for Change<'_> {
 }
 
 /// The field, lifted to velocities.
-fn lifted(model: &mut Model, field: &[ExprId]) -> Vec<(SymbolId, ExprId)> {
+pub(super) fn lifted(model: &mut Model, field: &[ExprId]) -> Vec<(SymbolId, ExprId)> {
     let motion = gauge::motion(model);
     let mut directions = Vec::new();
     for (i, component) in field.iter().enumerate() {

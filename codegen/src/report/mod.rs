@@ -10,6 +10,7 @@
 //! | `frame.rs` | the motion reduced to D |
 //! | `request.rs`, `bracket.rs`, `group.rs` | what is asked for in the words of a claim: brackets of functions, reduction by a group |
 //! | `control.rs` | the maximum principle of a model with a cost |
+//! | `modulo.rs` | symmetries for orbits that close up to a group |
 //! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
 //! | `print.rs` | a report as text and as a document of LaTeX |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
@@ -21,6 +22,7 @@ mod density_form;
 mod equations;
 mod frame;
 mod group;
+mod modulo;
 mod print;
 mod request;
 mod volume;
@@ -33,6 +35,7 @@ pub use bracket::{BracketKind, bracket};
 pub use control::control;
 pub use density_form::density_form;
 pub use group::group;
+pub use modulo::{Symmetry, symmetries};
 
 use certificate::Tree;
 use equations::Writer;

@@ -1,5 +1,6 @@
 //! Derivations that are asked for in the words of a claim: of the functions or the fields that it names.
 
+use dalembert_expr::ExprId;
 use proc_macro2::{Span, TokenStream};
 
 use super::{Report, ReportError, Section, Tree, tokens};
@@ -118,6 +119,107 @@ impl Asked {
             certificate: Tree::Absent,
             scenes: Vec::new(),
         }
+    }
+}
+
+/// All modes of a model with fields on each of them; a model without modes is the only one.
+pub(super) struct Whole {
+    pub(super) modes: Vec<Fielded>,
+}
+
+/// A mode with the fields that were asked for.
+pub(super) struct Fielded {
+    pub(super) model: Model,
+    pub(super) derivation: Derivation,
+    pub(super) fields: Vec<Vec<ExprId>>,
+    /// The name, if there are several.
+    pub(super) name: Option<String>,
+}
+
+impl Whole {
+    /// Reads a declaration with fields in place of its claims. `fields` gives those of a mode with these coordinates; none
+    /// stands for a field that vanishes.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub(super) fn of(
+        source: &str,
+        part: Option<&str>,
+        fields: &dyn Fn(&[String]) -> Vec<Option<String>>,
+    ) -> Result<Self, ReportError> {
+        let declared = match super::declaration(source)?.without_claims() {
+            Declaration::Modes(modes) if part.is_none() => modes,
+            Declaration::Modes(_) => {
+                return Err(Asked::refusal("one mode is no whole", "leave out --scene"));
+            }
+            Declaration::Model(_) => {
+                let claims: Vec<String> = fields(&[]).into_iter().flatten().collect();
+                let asked = Asked::of(source, part, &claims)?;
+                let fields = asked.statements.iter().filter_map(field).collect();
+                return Ok(Self {
+                    modes: vec![Fielded {
+                        model: asked.model,
+                        derivation: asked.derivation,
+                        fields,
+                        name: None,
+                    }],
+                });
+            }
+        };
+        Self::of_modes(declared, fields)
+    }
+
+    fn of_modes(
+        mut declared: spec::Modes,
+        fields: &dyn Fn(&[String]) -> Vec<Option<String>>,
+    ) -> Result<Self, ReportError> {
+        let graph = check_modes(&declared).map_err(ReportError::Declaration)?;
+        let mut given = Vec::new();
+        for (mode, checked) in declared.modes.iter_mut().zip(&graph.modes) {
+            let coordinates: Vec<String> = (checked.model.coordinates.iter())
+                .map(|coordinate| coordinate.name.display.clone())
+                .collect();
+            let claims = fields(&coordinates);
+            for claim in claims.iter().flatten() {
+                add(&mut mode.spec, vec![tokens(claim)?]).map_err(ReportError::Declaration)?;
+            }
+            given.push(claims);
+        }
+        let graph = check_modes(&declared).map_err(ReportError::Declaration)?;
+        let mut modes = Vec::new();
+        let checked = declared.modes.iter().zip(graph.modes).zip(given);
+        for ((written, mode), claims) in checked {
+            let mut model = mode.model;
+            let derivation = derive(&mut model);
+            refuse_exhausted(&written.spec, &model).map_err(ReportError::Declaration)?;
+            model.pool.lift_budget();
+            let zeros = vec![model.pool.zero(); model.coordinates.len()];
+            let statements: Vec<Statement> = model
+                .claims
+                .drain(..)
+                .map(|claim| claim.statement)
+                .collect();
+            let mut resolved = statements.iter().filter_map(field);
+            let fields = claims.iter().map(|claim| {
+                let stated = claim.as_ref().and_then(|_| resolved.next());
+                stated.unwrap_or_else(|| zeros.clone())
+            });
+            modes.push(Fielded {
+                fields: fields.collect(),
+                model,
+                derivation,
+                name: Some(written.name.text.clone()),
+            });
+        }
+        Ok(Self { modes })
+    }
+}
+
+/// The field of a claim of symmetry.
+fn field(statement: &Statement) -> Option<Vec<ExprId>> {
+    match statement {
+        Statement::Symmetry(field) => Some(field.clone()),
+        _ => None,
     }
 }
 

@@ -8,6 +8,7 @@
 //! | `reduction.rs` | reduction by groups: equations against the full motion, connections and jumps against their definitions |
 //! | `values.rs` | numbers of a model at a state |
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
+//! | `symmetries.rs` | symmetries of motion, surfaces and their maps together; of first-order systems |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
 
@@ -24,6 +25,7 @@ mod momenta;
 mod qualified;
 mod quantities;
 mod reduction;
+mod symmetries;
 mod symplectic;
 mod systems;
 mod values;

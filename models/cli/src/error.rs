@@ -142,6 +142,9 @@ pub enum CliError {
     /// The generator refused the source of the model.
     #[error("derive: {0}")]
     Derive(String),
+    /// A field of `--modulo` that is no symmetry to follow.
+    #[error("--modulo: {0}")]
+    Modulo(String),
     /// A picture that could not be drawn.
     #[error("{flag} {}: {reason}", path.display())]
     Plot {

@@ -12,6 +12,7 @@
 //! | `connect/` | motions between two configurations |
 //! | `linearisation/` | equilibria, and linearised equations with inputs and outputs |
 //! | `control/` | extremals of models with a cost |
+//! | `modulo.rs` | groups up to which orbits close |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
 //! | `course.rs` | defaults of a run for values that its request leaves open |
@@ -36,6 +37,7 @@ mod integrator;
 mod linear;
 mod linearisation;
 mod model;
+mod modulo;
 pub mod names;
 mod orbit;
 pub mod outcome;
@@ -58,6 +60,7 @@ pub use linearisation::{
 pub use model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
+pub use modulo::{Generator, NoGroup, Symmetries};
 pub use orbit::{Found, Search};
 pub use refusal::{Refusal, Uncertified};
 pub use run::{Contact, Control, Ending, Impact, Piece, Settings, Watch, steer};

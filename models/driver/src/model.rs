@@ -219,6 +219,13 @@ pub trait Runs {
         request: &Continuation,
         watch: &mut dyn FnMut(&Member),
     ) -> Result<Option<Result<Branch, OrbitError>>, Refusal>;
+    /// The first arrival at the section after this state, and the return of the search from there; `None` for a scene
+    /// without variations.
+    fn returned(
+        &self,
+        origin: &Origin,
+        search: &Search,
+    ) -> Result<Option<Result<[Point; 2], OrbitError>>, Refusal>;
     /// The largest Lyapunov exponent per return, over the returns of the search from the first arrival after this state;
     /// `None` for a scene without variations.
     fn exponent(

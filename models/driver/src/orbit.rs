@@ -4,6 +4,7 @@ use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
 use dalembert::integrate::Chosen;
 use dalembert::law::Law;
+use dalembert::variations::group::{Element, Group};
 use dalembert::variations::orbit::ITERATIONS;
 use dalembert::variations::{Orbit, OrbitError, Section, SectionError};
 use dalembert::{
@@ -15,6 +16,7 @@ use crate::continuation::orbits::Orbits;
 use crate::continuation::trace::{Tracer, Watch};
 use crate::continuation::{Branch, Continuation};
 use crate::model::Point;
+use crate::modulo::Symmetries;
 use crate::refusal::Refusal;
 use crate::typed::point;
 
@@ -33,6 +35,8 @@ pub struct Search {
     pub laws: Vec<(usize, Law)>,
     /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
+    /// The symmetries up to which the orbit closes.
+    pub modulo: Option<Symmetries>,
 }
 
 /// A periodic orbit as plain data.
@@ -46,6 +50,8 @@ pub struct Found {
     pub after: Point,
     /// Distance between the point of the section and its image.
     pub residual: f64,
+    /// The factors of the symmetries: their flows take the point to its image.
+    pub element: Vec<f64>,
     /// Number of Newton steps.
     pub iterations: u32,
     /// Directions of the section, each in components of the state.
@@ -104,7 +110,28 @@ impl Work for ForOrbit {
         search: &Search,
     ) -> Result<Found, OrbitError> {
         let orbit = orbit(system, start, search)?;
-        Ok(found(system, &orbit))
+        Ok(found(system, search, &orbit))
+    }
+}
+
+/// Computation of a return without its derivative.
+pub(crate) struct ForReturn;
+
+impl Work for ForReturn {
+    type Output = [Point; 2];
+
+    fn on<S: Instance + Scene + Variational>(
+        self,
+        system: &S,
+        start: &S::State,
+        search: &Search,
+    ) -> Result<[Point; 2], OrbitError> {
+        let mut stepper = Taylor::new(search.tolerance);
+        let mut section =
+            section(system, search, search.horizon, &mut stepper).with_returns(search.returns);
+        let first = section.arrive(start, &mut [])?.before;
+        let next = section.next(&first, &mut [])?.before;
+        Ok([first, next].map(|state| point(system, 0.0, &state)))
     }
 }
 
@@ -191,7 +218,7 @@ fn started<S: Instance>(system: &S, q: &[f64], qdot: &[f64]) -> Result<S::State,
 /// The section of a search, with one return, which takes at most the time `horizon`.
 pub(crate) fn section<'a, S: Instance + Scene + Variational>(
     system: &'a S,
-    search: &Search,
+    search: &'a Search,
     horizon: f64,
     stepper: &'a mut Taylor<S>,
 ) -> Section<'a, S, Chosen<'a, S>, S::Effects> {
@@ -200,16 +227,28 @@ pub(crate) fn section<'a, S: Instance + Scene + Variational>(
         effects.set_law(surface, law);
     }
     effects.set_policies(search.policies);
-    Section::new(
+    let section = Section::new(
         system,
         Chosen::new(stepper),
         effects,
         search.surface,
         horizon,
-    )
+    );
+    match &search.modulo {
+        Some(symmetries) => section.modulo(symmetries),
+        None => section,
+    }
 }
 
-fn found<S: Instance + Variational>(system: &S, orbit: &Orbit<S>) -> Found {
+impl Search {
+    /// The leading coordinates of an element, one for each symmetry.
+    pub(crate) fn factors(&self, element: &Element) -> Vec<f64> {
+        let count = self.modulo.as_ref().map_or(0, Group::dimension);
+        element[..count.min(element.len())].to_vec()
+    }
+}
+
+fn found<S: Instance + Variational>(system: &S, search: &Search, orbit: &Orbit<S>) -> Found {
     let dimension = orbit.dimension;
     let columns = &orbit.derivative.as_ref()[..dimension];
     let rows = (0..dimension).flat_map(|i| columns.iter().map(move |column| column.as_slice()[i]));
@@ -218,6 +257,7 @@ fn found<S: Instance + Variational>(system: &S, orbit: &Orbit<S>) -> Found {
         before: point(system, 0.0, &orbit.point.before),
         after: point(system, 0.0, &orbit.point.after),
         residual: orbit.residual,
+        element: search.factors(&orbit.element),
         iterations: orbit.iterations,
         directions: orbit.directions.as_ref()[..dimension]
             .iter()

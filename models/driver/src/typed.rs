@@ -23,7 +23,7 @@ use crate::linearisation::{Linearisation, Lineariser, Place, Unlinear};
 use crate::model::{
     AnyModel, Code, Contacted, OffConstraint, Origin, Point, Rates, Runs, Start, Together,
 };
-use crate::orbit::{ForBranch, ForExponent, ForOrbit, Found, Search, Visit, Work};
+use crate::orbit::{ForBranch, ForExponent, ForOrbit, ForReturn, Found, Search, Visit, Work};
 use crate::refusal::Refusal;
 use crate::run::{self, Abreast, Ending, Settings, Watch};
 
@@ -463,6 +463,14 @@ impl<O: Owner> Runs for Typed<O> {
     ) -> Result<Option<Result<Branch, OrbitError>>, Refusal> {
         let request = *request;
         self.at_section(origin, search, ForBranch { request, watch })
+    }
+
+    fn returned(
+        &self,
+        origin: &Origin,
+        search: &Search,
+    ) -> Result<Option<Result<[Point; 2], OrbitError>>, Refusal> {
+        self.at_section(origin, search, ForReturn)
     }
 
     fn exponent(

@@ -80,6 +80,19 @@ pub trait Variational: TaylorField + System + Sized {
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault>;
 
+    /// The state of the same mode with the positions and velocities that `change` makes of those of a state, one of each
+    /// per coordinate of the model. Those of coordinates that the mode has not are 0 and stay unused.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the velocities do not exist or the state cannot be formed.
+    fn relocated<L: Numbers>(
+        &self,
+        parameters: &Self::Parameters<L>,
+        t: L,
+        state: &Self::Row<L>,
+        change: impl FnOnce(&mut [L], &mut [L]),
+    ) -> Result<Self::Row<L>, Fault>;
+
     /// The residuals `eta^a(qdot) + eta^a_0` of the constraints that a state may violate, then the levels `f^k` of
     /// those that have one; for a model with modes, also the components that no variation changes.
     ///

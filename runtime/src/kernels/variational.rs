@@ -315,6 +315,25 @@ impl<S: HasVariations> Variational for S {
         )
     }
 
+    fn relocated<L: Numbers>(
+        &self,
+        parameters: &<S as TaylorField>::Parameters<L>,
+        t: L,
+        state: &RowOf<S, L>,
+        change: impl FnOnce(&mut [L], &mut [L]),
+    ) -> Result<RowOf<S, L>, Fault> {
+        let part = Part::of(self, state.as_slice());
+        let length = part.system_dimensions().coordinates;
+        let (mut q, n) = (S::Positions::<L>::zeros(length), part.lengths()[0]);
+        q.as_mut_slice()[..n].copy_from_slice(&state.as_slice()[..n]);
+        let mut q = part.spread_row(q);
+        let mut qdot = self.velocities(parameters, t, state)?;
+        change(q.as_mut_slice(), qdot.as_mut_slice());
+        let [q, qdot] = [part.gathered_row(q), part.gathered_row(qdot)];
+        let places = [q.as_slice(), qdot.as_slice()];
+        part.row_by(S::Kernels::motion, (parameters.as_slice(), t), places)
+    }
+
     fn deviations<L: Numbers>(
         &self,
         parameters: &<S as TaylorField>::Parameters<L>,

@@ -1,5 +1,7 @@
 //! Directions along a section, and linear equations between them. Matrices are arrays of columns.
 
+use super::group::{Group, generators};
+use super::slice::Slice;
 use super::{DIRECTIONS, Dual, Tangent, Undefined};
 use crate::contract::Variational;
 use crate::math;
@@ -11,7 +13,7 @@ use crate::variations::flow::{dual_parameters, dual_state};
 const RANK: f64 = 1e-7;
 
 /// Share of a direction that must remain after projection on those before it.
-const DEPENDENT: f64 = 1e-10;
+pub(super) const DEPENDENT: f64 = 1e-10;
 
 /// Maximum number of sweeps over all pairs of columns.
 const SWEEPS: usize = 60;
@@ -19,12 +21,14 @@ const SWEEPS: usize = 60;
 /// Maximum number of Newton steps back to the section.
 const STEPS: usize = 12;
 
-/// Tangent directions of a section at a point: those along which neither the gap nor the constraints change.
+/// Tangent directions of a section at a point: those along which neither the gap nor the constraints change, across the
+/// directions of a group.
 pub(super) struct Chart<Sys: Variational> {
     /// Orthonormal basis, in units of the components: first the excluded directions, then those of the section.
     frame: Sys::Columns,
     /// Number of excluded directions.
     left_out: usize,
+    slice: Slice<Sys::State>,
     scale: Sys::State,
 }
 
@@ -87,7 +91,7 @@ impl<Sys: Variational> Chart<Sys> {
     /// section, with one the step that keeps it there, per unit of the parameter.
     fn at(
         system: &Sys,
-        fixed: &Fixed<Sys>,
+        (fixed, group): (&Fixed<Sys>, Option<&dyn Group>),
         t: f64,
         point: &Sys::State,
         parameter: Option<usize>,
@@ -125,7 +129,18 @@ impl<Sys: Variational> Chart<Sys> {
             })?;
         }
         let mut correction = system.zero_state();
-        let left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
+        let mut left_out = orthonormalise(frame.as_mut(), equations, &values, &mut correction);
+        let mut slice = Slice::none(system.zero_state());
+        if let Some(group) = group {
+            let mut rates = generators(system, group, point)?;
+            for rate in &mut rates {
+                for (entry, scale) in rate.as_mut_slice().iter_mut().zip(scale.as_slice()) {
+                    *entry /= scale;
+                }
+            }
+            left_out = slice.cut(frame.as_mut(), left_out, rates);
+            slice.solve(&rates, columns(system).as_mut(), columns(system).as_mut());
+        }
         complete(frame.as_mut(), left_out);
         for (entry, scale) in correction.as_mut_slice().iter_mut().zip(scale.as_slice()) {
             *entry *= scale;
@@ -133,6 +148,7 @@ impl<Sys: Variational> Chart<Sys> {
         let chart = Self {
             frame,
             left_out,
+            slice,
             scale,
         };
         Ok((chart, correction))
@@ -141,12 +157,12 @@ impl<Sys: Variational> Chart<Sys> {
     /// The point of the section near a given point, and the directions there.
     pub(super) fn onto(
         system: &Sys,
-        fixed: &Fixed<Sys>,
+        on: (&Fixed<Sys>, Option<&dyn Group>),
         t: f64,
         mut point: Sys::State,
     ) -> Result<(Self, Sys::State), Undefined> {
         for _ in 0..STEPS {
-            let (_, correction) = Self::at(system, fixed, t, &point, None)?;
+            let (_, correction) = Self::at(system, on, t, &point, None)?;
             let before = point;
             add(&mut point, 1.0, &correction);
             if point == before || !point.is_finite() {
@@ -154,7 +170,7 @@ impl<Sys: Variational> Chart<Sys> {
             }
         }
         match point.is_finite() {
-            true => Ok((Self::at(system, fixed, t, &point, None)?.0, point)),
+            true => Ok((Self::at(system, on, t, &point, None)?.0, point)),
             false => Err(Undefined::NotFinite { t }),
         }
     }
@@ -167,7 +183,7 @@ impl<Sys: Variational> Chart<Sys> {
         point: &Sys::State,
         parameter: usize,
     ) -> Result<Sys::State, Undefined> {
-        Ok(Self::at(system, fixed, t, point, Some(parameter))?.1)
+        Ok(Self::at(system, (fixed, None), t, point, Some(parameter))?.1)
     }
 
     /// The units of the components.
@@ -195,16 +211,23 @@ impl<Sys: Variational> Chart<Sys> {
 
     /// The components of a change of the state along the directions.
     pub(super) fn components(&self, change: &Sys::State) -> Sys::State {
+        let mut scaled = self.scaled(change);
+        self.slice.project(&mut scaled);
+        products(&scaled, &self.frame.as_ref()[self.left_out..])
+    }
+
+    /// The values on a change of the state of the functions that are 0 on the slice across the group.
+    pub(super) fn along_group(&self, change: &Sys::State) -> Sys::State {
+        products(&self.scaled(change), self.slice.functions())
+    }
+
+    /// A change of the state in units of its components.
+    fn scaled(&self, change: &Sys::State) -> Sys::State {
         let mut scaled = *change;
         for (entry, scale) in scaled.as_mut_slice().iter_mut().zip(self.scale.as_slice()) {
             *entry /= scale;
         }
-        let mut components = change.zeroed();
-        let directions = &self.frame.as_ref()[self.left_out..];
-        for (component, direction) in components.as_mut_slice().iter_mut().zip(directions) {
-            *component = dot(&scaled, direction);
-        }
-        components
+        scaled
     }
 
     /// The size of a change of the state, in units of its components.
@@ -214,6 +237,15 @@ impl<Sys: Variational> Chart<Sys> {
             f64::max(size, (component / scale).abs())
         })
     }
+}
+
+/// The products of a vector with directions.
+pub(super) fn products<S: StateVector>(vector: &S, directions: &[S]) -> S {
+    let mut components = vector.zeroed();
+    for (component, direction) in components.as_mut_slice().iter_mut().zip(directions) {
+        *component = dot(vector, direction);
+    }
+    components
 }
 
 /// A square matrix of zeros, for as many components as a state has.
@@ -233,28 +265,36 @@ fn orthonormalise<S: StateVector>(
 ) -> usize {
     let mut kept = 0;
     for index in 0..count {
-        let mut row = rows[index];
-        let before = math::sqrt(dot(&row, &row));
+        let row = rows[index];
         let missing = -values.as_slice()[index] - dot(&row, correction);
-        for _ in 0..2 {
-            for earlier in &rows[..kept] {
-                let along = dot(&row, earlier);
-                add(&mut row, -along, earlier);
-            }
-        }
-        let left = math::sqrt(dot(&row, &row));
-        let is_new = left > DEPENDENT * before;
         rows[index] = row.zeroed();
-        if is_new {
-            for entry in row.as_mut_slice() {
-                *entry /= left;
-            }
-            add(correction, missing / left, &row);
-            rows[kept] = row;
+        if let Some(left) = adjoin(rows, kept, row) {
+            add(correction, missing / left, &rows[kept]);
             kept += 1;
         }
     }
     kept
+}
+
+/// Adds a row to the first `kept`, which are orthonormal, unless it depends on them. Returns its length at right angles
+/// to them.
+pub(super) fn adjoin<S: StateVector>(rows: &mut [S], kept: usize, mut row: S) -> Option<f64> {
+    let before = math::sqrt(dot(&row, &row));
+    for _ in 0..2 {
+        for earlier in &rows[..kept] {
+            let along = dot(&row, earlier);
+            add(&mut row, -along, earlier);
+        }
+    }
+    let left = math::sqrt(dot(&row, &row));
+    if kept >= row.count() || left.is_nan() || left <= DEPENDENT * before {
+        return None;
+    }
+    for entry in row.as_mut_slice() {
+        *entry /= left;
+    }
+    rows[kept] = row;
+    Some(left)
 }
 
 /// Completes `count` orthonormal rows to a basis, with the unit vectors that have the largest remainders.

@@ -3,6 +3,7 @@
 use super::OrbitError;
 use super::chart::{Fixed, columns};
 use super::eigenvalues::{Multipliers, eigenvalues};
+use super::group::Element;
 use super::orbit::Trial;
 use super::section::{Arrival, Itinerary, Section};
 use super::transition;
@@ -42,6 +43,8 @@ pub struct Image<Sys: Variational> {
     pub shift: Sys::State,
     /// Derivative of the miss in the parameter, while the point moves with the shift.
     pub slope: Sys::State,
+    /// The element of the group up to which the image is compared.
+    pub element: Element,
     /// The surfaces on the way.
     pub itinerary: Itinerary<Sys>,
 }
@@ -72,7 +75,7 @@ where
         point: &Sys::State,
         parameter: usize,
     ) -> Result<Image<Sys>, OrbitError> {
-        let trial = self.attempt(&anchor.0, *point, Some(parameter))?;
+        let trial = self.attempt(&anchor.0, *point, Some(parameter), None)?;
         if transition::depends_on_time(self.system, &trial.passed.event)? {
             return Err(OrbitError::DependsOnTime);
         }
@@ -102,6 +105,7 @@ fn image<Sys: Variational>(system: &Sys, trial: &Trial<Sys>, is_closed: bool) ->
         multipliers: eigenvalues(work.as_mut(), dimension),
         shift: trial.shift,
         slope: trial.slope,
+        element: trial.element,
         itinerary: trial.passed.itinerary,
     }
 }

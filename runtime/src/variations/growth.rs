@@ -29,7 +29,7 @@ where
     pub fn exponent(&mut self, state: &Sys::State, images: u32) -> Result<f64, OrbitError> {
         let first = self.arrive(state, &mut [])?.before;
         let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
-        let (chart, mut point) = Chart::onto(self.system, &fixed, 0.0, first)?;
+        let (chart, mut point) = Chart::onto(self.system, (&fixed, None), 0.0, first)?;
         // Along every direction of the section, so that hardly any orbit grows at right angles to it.
         let mut deviation = self.system.zero_state();
         for index in 0..chart.dimension() {

@@ -14,7 +14,7 @@
 //!
 //! [`Section`] is the map from one arrival at a surface to a later one (Poincare map), with its derivative.
 //! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers; [`Section::exponent`] is
-//! its largest Lyapunov exponent. [`Section::image`] has the derivative in a parameter too, for families of orbits.
+//! its largest Lyapunov exponent. [`Section::modulo`] lets them close up to a symmetry of a [`Group`]. [`Section::image`] has the derivative in a parameter too, for families of orbits.
 //!
 //! The result is [`Undefined`] if the flow of a system with impacts has no derivative.
 
@@ -26,12 +26,14 @@ mod extrapolation;
 pub mod family;
 mod flow;
 pub(crate) mod graze;
+pub mod group;
 mod growth;
 mod held;
 mod observer;
 pub mod orbit;
 mod rates;
 pub mod section;
+mod slice;
 pub(crate) mod transition;
 
 use core::fmt;
@@ -40,6 +42,7 @@ pub use crate::contract::Tangent;
 pub use dual::{DIRECTIONS, Dual};
 pub use eigenvalues::{Multipliers, eigenvalues};
 pub use family::{Anchor, Image};
+pub use group::Group;
 pub use observer::Variations;
 pub use orbit::{Orbit, OrbitError};
 pub use rates::rates;

@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::chart::{Chart, Fixed, add, columns, dot, least_squares};
 use super::eigenvalues::{Multipliers, eigenvalues};
+use super::group::{Element, GENERATORS, align, pull};
 use super::section::{Arrival, Passed, Section, SectionError};
 use super::transition;
 use super::{Tangent, Undefined};
@@ -46,8 +47,11 @@ pub struct Orbit<Sys: Variational> {
     /// monodromy matrix, without the direction of the motion.
     pub derivative: Sys::Columns,
     /// Eigenvalues of that derivative, the Floquet multipliers of the orbit without the one along the motion. Every
-    /// conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1.
+    /// conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1. Of an orbit modulo a
+    /// group the directions of the group are left out.
     pub multipliers: Multipliers<Sys::State>,
+    /// The element of the group that takes the point to its image, see [`Section::modulo`].
+    pub element: Element,
 }
 
 /// Reason why no orbit was found.
@@ -112,6 +116,8 @@ pub(super) struct Trial<Sys: Variational> {
     pub(super) miss: Sys::State,
     pub(super) residual: f64,
     pub(super) derivative: Sys::Columns,
+    /// The element of the group whose inverse was applied to the image.
+    pub(super) element: Element,
     /// Per unit of the parameter, if there is one: the change of the point that keeps it on the section, and the change
     /// of the miss along the directions.
     pub(super) shift: Sys::State,
@@ -140,7 +146,7 @@ where
         iterations: u32,
     ) -> Result<Orbit<Sys>, OrbitError> {
         let fixed = Fixed::of(self.system, self.surface, 0.0, near)?;
-        let mut trial = self.attempt(&fixed, *near, None)?;
+        let mut trial = self.attempt(&fixed, *near, None, None)?;
         if transition::depends_on_time(self.system, &trial.passed.event)? {
             return Err(OrbitError::DependsOnTime);
         }
@@ -188,8 +194,8 @@ where
         for _ in 0..HALVINGS {
             let mut point = trial.point;
             add(&mut point, factor, &step);
-            match self.attempt(fixed, point, None) {
-                Ok(better) if better.residual < trial.residual => return Ok(Some(better)),
+            match self.attempt(fixed, point, None, Some(trial.element)) {
+                Ok(better) if is_nearer(&better, trial) => return Ok(Some(better)),
                 Ok(_) => failure = None,
                 Err(error) => failure = Some(error),
             }
@@ -207,8 +213,9 @@ where
         fixed: &Fixed<Sys>,
         point: Sys::State,
         parameter: Option<usize>,
+        near: Option<Element>,
     ) -> Result<Trial<Sys>, OrbitError> {
-        let (chart, point) = Chart::onto(self.system, fixed, 0.0, point)?;
+        let (chart, point) = Chart::onto(self.system, (fixed, self.group), 0.0, point)?;
         let dimension = chart.dimension();
         let mut tangents = Sys::tangents();
         for (index, tangent) in tangents.as_mut()[..dimension].iter_mut().enumerate() {
@@ -225,17 +232,27 @@ where
             };
             carried += 1;
         }
-        let passed = self.pass(&point, self.returns, &mut tangents.as_mut()[..carried])?;
+        let tangents = &mut tangents.as_mut()[..carried];
+        let passed = self.pass(&point, self.returns, tangents)?;
+        let (mut image, mut element) = (passed.event.before, [0.0; GENERATORS]);
+        if let Some(group) = self.group {
+            element = align(self.system, group, &chart, [&point, &image], near)?;
+            pull(self.system, group, &element, &mut image, tangents)?;
+        }
         let mut derivative = columns(self.system);
-        let images = tangents.as_ref()[..dimension].iter();
+        let images = tangents[..dimension].iter();
         for (column, image) in derivative.as_mut().iter_mut().zip(images) {
             *column = chart.components(&image.state);
         }
-        let slope = match tangents.as_ref()[..carried].get(dimension) {
-            Some(image) => chart.components(&image.state),
+        let slope = match tangents.get(dimension) {
+            Some(image) => {
+                let mut change = image.state;
+                add(&mut change, -1.0, &shift);
+                chart.components(&change)
+            }
             None => self.system.zero_state(),
         };
-        let mut change = passed.event.before;
+        let mut change = image;
         add(&mut change, -1.0, &point);
         close_angles(self.system, &mut change);
         Ok(Trial {
@@ -245,6 +262,7 @@ where
             miss: chart.components(&change),
             residual: chart.size(&change),
             derivative,
+            element,
             shift,
             slope,
         })
@@ -271,6 +289,7 @@ fn finish<Sys: Variational>(
         dimension,
         directions,
         derivative: trial.derivative,
+        element: trial.element,
         multipliers: multipliers.ok_or(OrbitError::NoMultipliers)?,
     })
 }
@@ -293,6 +312,13 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
         add(&mut step, -component, &trial.chart.direction(index));
     }
     step
+}
+
+/// True if a point is nearer to its image than another one: in its largest component, or in length, which a short Newton
+/// step always lowers.
+fn is_nearer<Sys: Variational>(better: &Trial<Sys>, trial: &Trial<Sys>) -> bool {
+    let [length, before] = [better, trial].map(|trial| dot(&trial.miss, &trial.miss));
+    better.residual < trial.residual || length < before
 }
 
 /// Largest ratio of the length of the image of a direction to that of the direction.

@@ -3,6 +3,7 @@
 use core::fmt;
 use core::ops::ControlFlow;
 
+use super::group::Group;
 use super::transition::gap_rate;
 use super::{Tangent, Undefined, Variations};
 use crate::contract::Variational;
@@ -24,6 +25,8 @@ pub struct Section<'a, Sys: Variational, Step, Effects> {
     pub(super) surface: usize,
     pub(super) returns: u32,
     horizon: f64,
+    /// The group up to whose elements orbits close.
+    pub(super) group: Option<&'a dyn Group>,
     /// Relative error of one step.
     pub(super) tolerance: f64,
 }
@@ -106,6 +109,7 @@ where
             surface,
             returns: 1,
             horizon,
+            group: None,
         }
     }
 
@@ -113,6 +117,13 @@ where
     #[must_use]
     pub fn with_returns(mut self, returns: u32) -> Self {
         self.returns = returns.max(1);
+        self
+    }
+
+    /// Lets orbits close up to an element of a group of symmetries: of the motion, of all surfaces and of their laws.
+    #[must_use]
+    pub fn modulo(mut self, group: &'a dyn Group) -> Self {
+        self.group = Some(group);
         self
     }
 

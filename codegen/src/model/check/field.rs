@@ -120,12 +120,10 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
             Statement::Conserved { .. }
             | Statement::Density(_)
             | Statement::VolumeKept
+            | Statement::Symmetry(_)
             | Statement::Invariant(_)
             | Statement::Factor { .. } => continue,
             Statement::Existence(_) => ("density that is looked for", "state one: `density = ..;`"),
-            Statement::Symmetry(_) => {
-                ("Lagrangian that a symmetry keeps", "write `conserved: ..;`")
-            }
             Statement::Involution(_) | Statement::Integrable(_) => {
                 ("bracket", "write `conserved: ..;` for each function")
             }

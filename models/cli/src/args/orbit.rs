@@ -15,6 +15,10 @@ section. The direction of the motion is not among them; a conserved energy gives
 not a wall, declare a surface with the law `reset { }`. Exit status: 0 an orbit was found, 1 none was found, 2 bad
 flags or input.
 
+--modulo lets the orbit close up to symmetries: a walker that advances along the slope, a top that precesses. The fields must be
+proved symmetries of the motion, of the surfaces and of their maps. The multipliers are those across the directions of the
+symmetries; a conserved momentum of one gives a multiplier 1.
+
 --continue follows the orbit that is found over a parameter (pseudo-arclength continuation), through folds, to both ends of the
 range. If the model's value of the parameter lies outside of the range, the orbit is followed to the nearest end first.
 Derivatives in the state and in the parameter are exact across impacts. Bifurcations are located to rounding:
@@ -29,6 +33,7 @@ leaves the values of its declaration. What was found before is kept, and the exi
 
 More examples:
   dalembert orbit compass_walker --surface heel --continue gamma=0.001..0.017 --plot gaits.svg --axis omega
+  dalembert orbit walker_foot_slip --surface step --modulo 'partial(x_c)'
   dalembert orbit dimensionless_walker --surface step --set alpha=0.3 --initial xi=-0.9 --json -
   dalembert orbit point_billiard --surface wall --period 2 --set ta=2 --initial x=0,y=0,x_dot=0,y_dot=1";
 
@@ -44,6 +49,10 @@ pub struct OrbitArgs {
     /// Number of returns after which the orbit closes.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1)]
     pub period: u32,
+    /// Symmetries up to which the orbit closes, as claims write them, separated by commas: `partial(x)`, or
+    /// `partial(phi) - y*partial(x) + x*partial(y)`.
+    #[arg(long, value_name = "FIELDS", allow_hyphen_values = true)]
+    pub modulo: Option<String>,
     /// The state.
     #[command(flatten)]
     pub state: StateArgs,

@@ -375,6 +375,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
             tolerance: tolerance.map_err(|error| refuse(&error))?,
             laws: run_request::laws(model, &args.run.law)?,
             policies: args.run.policies.policies(),
+            modulo: None,
         })
     };
     Ok(Some(Returns {

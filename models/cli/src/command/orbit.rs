@@ -2,10 +2,13 @@
 
 pub mod branch;
 mod document;
+mod modulo;
 mod summary;
 
 use dalembert::OrbitError;
-use dalembert_driver::{AnyModel, OffConstraint, Refusal, Search};
+use dalembert_driver::{AnyModel, OffConstraint, Origin, Refusal, Search};
+
+use modulo::Drift;
 
 use crate::args::OrbitArgs;
 use crate::entry::Entry;
@@ -24,6 +27,8 @@ struct Finished<'a, T> {
     scene: &'a str,
     search: Search,
     result: Result<T, OrbitError>,
+    /// Coordinates that drift, where that is why no orbit was found.
+    drift: Option<Drift>,
 }
 
 /// Carries out `orbit`.
@@ -44,7 +49,7 @@ pub fn run(
     let origin = initial_state(model.as_ref(), &args.state)?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let result = model.orbit(&origin, &search);
-    let finished = finished(model.as_ref(), args, search, result)?;
+    let finished = finished(model.as_ref(), args, (&origin, search), result)?;
     if let Some(sink) = json {
         sink.write(streams, |output| document::write(output, &finished))?;
     }
@@ -58,15 +63,18 @@ pub fn run(
 fn finished<'a, T>(
     model: &'a dyn AnyModel,
     args: &'a OrbitArgs,
-    search: Search,
+    (origin, search): (&Origin, Search),
     result: Result<Option<Result<T, OrbitError>>, Refusal>,
 ) -> Result<Finished<'a, T>, CliError> {
     let result = result.map_err(|refusal| CliError::refused(model, &refusal))?;
+    let result = result.ok_or_else(|| invariable(model, args))?;
+    let missed = result.as_ref().err();
     Ok(Finished {
         model,
         scene: &args.model.scene,
+        drift: missed.and_then(|missed| modulo::drift(model, args, origin, &search, missed)),
         search,
-        result: result.ok_or_else(|| invariable(model, args))?,
+        result,
     })
 }
 
@@ -114,5 +122,6 @@ fn search(model: &dyn AnyModel, args: &OrbitArgs) -> Result<Search, CliError> {
         tolerance,
         laws: run_request::laws(model, &args.series.law)?,
         policies: args.series.policies.policies(),
+        modulo: modulo::group(model, args)?,
     })
 }

@@ -53,6 +53,8 @@ pub struct Member {
     pub after: Point,
     /// Distance between the point of the section and its image.
     pub residual: f64,
+    /// The factors of the symmetries up to which the orbit closes.
+    pub element: Vec<f64>,
     /// The Floquet multipliers: real and imaginary parts.
     pub multipliers: Vec<[f64; 2]>,
     /// The stability by these multipliers.

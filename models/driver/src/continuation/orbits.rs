@@ -61,7 +61,9 @@ impl<S: Instance + Scene + Variational> Family for Orbits<'_, S> {
             .with_returns(self.search.returns);
         let image = section.image(&self.anchor, &near, self.parameter);
         drop(section);
-        let local = local(&self.system, &image.map_err(Failure::Missed)?, parameter)?;
+        let image = image.map_err(Failure::Missed)?;
+        let mut local = local(&self.system, &image, parameter)?;
+        local.member.element = self.search.factors(&image.element);
         if local.is_closed {
             let longest = PATIENCE * local.member.period;
             self.horizon = f64::min(self.search.horizon, longest);
@@ -97,6 +99,7 @@ fn local<S: Instance + Variational>(
             before: point(system, 0.0, &image.point),
             after: point(system, 0.0, &image.image.after),
             residual: image.residual,
+            element: Vec::new(),
             stability: stability(&multipliers),
             multipliers,
             bifurcation: None,

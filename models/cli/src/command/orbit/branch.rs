@@ -145,7 +145,7 @@ fn follow<F, T>(
         progress.at(name, member.parameter, fraction);
     });
     progress.finish();
-    let finished = super::finished(model, args, search, result)?;
+    let finished = super::finished(model, args, (&origin, search), result)?;
     finish(files, &Followed { finished, request }, ordinate)
 }
 

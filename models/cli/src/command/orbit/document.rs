@@ -3,8 +3,7 @@
 use std::io::{self, Write};
 
 use dalembert::OrbitError;
-use dalembert::describe::Description;
-use dalembert_driver::{Found, Point};
+use dalembert_driver::{Found, Point, Symmetries};
 use serde_json::{Map, Value, json};
 
 use super::Finished;
@@ -16,13 +15,16 @@ use crate::outcome;
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result<()> {
     let mut document = begin(output, finished)?;
     let found = match &finished.result {
-        Err(missed) => return end_missed(document, finished.model.description(), missed),
+        Err(missed) => return end_missed(document, finished, missed),
         Ok(found) => found,
     };
     document.field("outcome", json!({ "kind": "done" }))?;
     document.field("period", number(found.period))?;
     document.field("before", state(&found.before))?;
     document.field("after", state(&found.after))?;
+    if let Some(symmetries) = &finished.search.modulo {
+        document.field("modulo", modulo(symmetries, &found.element))?;
+    }
     document.field("residual", number(found.residual))?;
     document.field("iterations", found.iterations)?;
     let names = components(finished.model.description());
@@ -62,18 +64,37 @@ pub(super) fn begin<'a, T>(
 }
 
 /// Writes why no orbit was found, and closes the document.
-pub(super) fn end_missed(
+pub(super) fn end_missed<T>(
     mut document: Document<'_>,
-    description: &Description,
+    finished: &Finished<'_, T>,
     missed: &OrbitError,
 ) -> io::Result<()> {
     let mut outcome = Map::new();
-    let (kind, details) = outcome::missed(description, missed);
+    let (kind, details) = outcome::missed(finished.model.description(), missed);
     outcome.insert("kind".to_owned(), kind.into());
     let details = details.into_iter();
     outcome.extend(details.map(|(name, value)| (name.to_owned(), value)));
+    if let Some(drift) = &finished.drift {
+        let changes = drift.changes.iter();
+        let changes = changes.map(|(name, change)| (name.clone(), number(*change)));
+        outcome.insert("drift".to_owned(), Map::from_iter(changes).into());
+        outcome.insert("modulo".to_owned(), drift.fields.clone().into());
+    }
     document.field("outcome", outcome)?;
     document.end()
+}
+
+/// The symmetries up to which an orbit closes.
+fn modulo(symmetries: &Symmetries, element: &[f64]) -> Value {
+    let pairs = symmetries.generators().iter().zip(element);
+    let told = pairs.map(|(field, factor)| {
+        json!({
+            "field": field.name,
+            "advance": number(*factor),
+            "conserves_momentum": field.keeps_momentum,
+        })
+    });
+    told.collect()
 }
 
 /// A multiplier.

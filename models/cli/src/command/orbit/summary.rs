@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use dalembert::OrbitError;
 use dalembert::describe::Description;
-use dalembert_driver::{Found, Point};
+use dalembert_driver::{Found, Point, Symmetries};
 
 use super::Finished;
 use crate::error::counted;
@@ -15,7 +15,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
     let description = finished.model.description();
     head(output, finished)?;
     let found = match &finished.result {
-        Err(missed) => return tell_missed(output, description, missed),
+        Err(missed) => return tell_missed(output, finished, missed),
         Ok(found) => found,
     };
     writeln!(
@@ -25,6 +25,11 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
         found.residual
     )?;
     writeln!(output, "  period       {}", found.period)?;
+    let symmetries = finished.search.modulo.iter();
+    let fields = symmetries.flat_map(Symmetries::generators);
+    for (field, factor) in fields.zip(&found.element) {
+        writeln!(output, "  advance      {factor} along {}", field.name)?;
+    }
     writeln!(
         output,
         "  before       {}",
@@ -40,13 +45,35 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
         .iter()
         .map(|multiplier| complex(*multiplier, |part| part.to_string()))
         .collect();
-    writeln!(output, "  multipliers  {}", multipliers.join(", "))
+    writeln!(output, "  multipliers  {}", multipliers.join(", "))?;
+    momenta(output, finished)
 }
 
-/// Writes the model, its scene and the section.
+/// Names the multipliers 1 that belong to momenta of the symmetries.
+fn momenta(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result<()> {
+    let symmetries = finished.search.modulo.iter();
+    let mut kept = symmetries
+        .flat_map(Symmetries::generators)
+        .filter(|field| field.keeps_momentum);
+    kept.try_for_each(|field| {
+        let name = &field.name;
+        writeln!(
+            output,
+            "  conserved    the momentum of {name}: a multiplier 1"
+        )
+    })
+}
+
+/// Writes the model, its scene, the section and the symmetries.
 pub(super) fn head<T>(output: &mut dyn Write, finished: &Finished<'_, T>) -> io::Result<()> {
     writeln!(output, "{}", title(finished))?;
-    writeln!(output, "  section      {}", section(finished))
+    writeln!(output, "  section      {}", section(finished))?;
+    let Some(symmetries) = &finished.search.modulo else {
+        return Ok(());
+    };
+    let fields = symmetries.generators().iter();
+    let fields: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
+    writeln!(output, "  modulo       {}", fields.join(", "))
 }
 
 /// The model and its scene.
@@ -66,18 +93,23 @@ pub(super) fn section<T>(finished: &Finished<'_, T>) -> String {
 }
 
 /// Writes why no orbit was found.
-pub(super) fn tell_missed(
+pub(super) fn tell_missed<T>(
     output: &mut dyn Write,
-    description: &Description,
+    finished: &Finished<'_, T>,
     missed: &OrbitError,
 ) -> io::Result<()> {
+    let description = finished.model.description();
     let (kind, details) = outcome::missed(description, missed);
     let details: String = details
         .iter()
         .map(|(name, detail)| format!(", {name} {detail}"))
         .collect();
     writeln!(output, "  outcome      {kind}{details}")?;
-    outcome::remarks_on_orbit(description, missed)
+    let remarks = match &finished.drift {
+        Some(drift) => drift.remarks().to_vec(),
+        None => outcome::remarks_on_orbit(description, missed),
+    };
+    remarks
         .iter()
         .try_for_each(|(title, text)| writeln!(output, "  {title:<11}  {text}"))
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::super::document::{begin, end_missed, multiplier, state};
 use super::{Followed, reason};
-use crate::json::number;
+use crate::json::{number, vector};
 use crate::names;
 
 /// Writes the document.
@@ -17,11 +17,16 @@ use crate::names;
 pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> {
     let description = followed.finished.model.description();
     let mut document = begin(output, &followed.finished)?;
+    if let Some(symmetries) = &followed.finished.search.modulo {
+        let fields = symmetries.generators().iter();
+        let fields: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
+        document.field("modulo", fields)?;
+    }
     document.field("parameter", followed.name())?;
     let range = followed.request.range.map(number);
     document.field("range", Value::from(range.to_vec()))?;
     let branch = match &followed.finished.result {
-        Err(missed) => return end_missed(document, description, missed),
+        Err(missed) => return end_missed(document, &followed.finished, missed),
         Ok(branch) => branch,
     };
     let kind = match branch.points.is_empty() {
@@ -61,5 +66,6 @@ fn member(member: &Member) -> Value {
         "stability": member.stability.name(),
         "bifurcation": member.bifurcation.map(|it| it.name()),
         "residual": number(member.residual),
+        "advance": vector(&member.element),
     })
 }

@@ -33,6 +33,8 @@ fn head(followed: &Followed<'_>, branch: &Branch) -> Vec<String> {
         head.extend(["re", "im"].map(|part| format!("multiplier.{index}.{part}")));
     }
     head.extend(["stability", "bifurcation", "residual"].map(str::to_owned));
+    let count = branch.points.first().map_or(0, |it| it.element.len());
+    head.extend((1..=count).map(|index| format!("advance.{index}")));
     head
 }
 
@@ -49,6 +51,7 @@ fn row(description: &Description, member: &Member) -> Vec<String> {
     let mut row: Vec<String> = numbers.map(|number| format!("{number:?}")).collect();
     row.extend(words);
     row.push(format!("{:?}", member.residual));
+    row.extend(member.element.iter().map(|factor| format!("{factor:?}")));
     row
 }
 

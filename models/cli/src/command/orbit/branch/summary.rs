@@ -14,12 +14,11 @@ use crate::error::counted;
 /// # Errors
 /// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> {
-    let description = followed.finished.model.description();
     head(output, &followed.finished)?;
     let (name, [first, last]) = (followed.name(), followed.request.range);
     writeln!(output, "  continued    {name} from {first} to {last}")?;
     let branch = match &followed.finished.result {
-        Err(missed) => return tell_missed(output, description, missed),
+        Err(missed) => return tell_missed(output, &followed.finished, missed),
         Ok(branch) => branch,
     };
     if branch.points.is_empty() {

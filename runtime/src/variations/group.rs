@@ -1,0 +1,237 @@
+//! Groups of symmetries that act on the states of a system: relative periodic orbits close up to one of their elements.
+//!
+//! ```text
+//! g = exp(a_1 xi_1 + a_2 xi_2 + ..),   P(z) = g z,   multipliers: eigenvalues of d(g^-1 P) modulo the directions xi_k
+//! ```
+//!
+//! `g^-1 P` maps the directions of the group among themselves, so that its derivative acts on the directions across them.
+
+use super::chart::{Chart, add, columns, least_squares};
+use super::flow::{dual_parameters, dual_state, take_slopes};
+use super::{DIRECTIONS, Dual, Tangent, Undefined};
+use crate::contract::Variational;
+use crate::numbers::Row;
+use crate::state::StateVector;
+
+/// Largest number of generators of a group: one dual number differentiates by the coordinates of an element.
+pub const GENERATORS: usize = DIRECTIONS;
+
+/// Coordinates of an element of a group: the factors of its generators, 0 for those that it has not.
+pub type Element = [f64; GENERATORS];
+
+/// Maximum number of Newton steps to the element that brings two points together.
+const STEPS: usize = 30;
+
+/// Longest step of a coordinate of an element whose action is not linear in it.
+const LONGEST: f64 = 1.0;
+
+/// First guesses of a coordinate of an element. Angles have several solutions, of which the nearest counts.
+const GUESSES: [f64; 6] = [1.0, -1.0, 2.0, -2.0, 3.0, -3.0];
+
+/// Distances that differ by less than this share, or by less than this many units, are the same.
+const SAME: f64 = 1e-3;
+const TOUCHING: f64 = 1e-9;
+
+/// A group of symmetries of a system, which acts on positions and, by its derivative, on velocities.
+pub trait Group {
+    /// Number of generators, at most [`GENERATORS`].
+    fn dimension(&self) -> usize;
+
+    /// Moves a position and a velocity by the element with these coordinates. Missing coordinates of the configuration
+    /// stay as they are.
+    fn act(&self, element: &[Dual; GENERATORS], q: &mut [Dual], qdot: &mut [Dual]);
+}
+
+/// Rates of a state along the generators of a group; the others are 0.
+pub(super) fn generators<Sys: Variational>(
+    system: &Sys,
+    group: &dyn Group,
+    state: &Sys::State,
+) -> Result<[Sys::State; GENERATORS], Undefined> {
+    let parameters = dual_parameters(system, &[]);
+    let row = dual_state::<Sys>(state, &[]);
+    let element = varied([0.0; GENERATORS], 1.0);
+    let moved = moved(system, group, &element, &parameters, &row)?;
+    let mut rates = [system.zero_state(); GENERATORS];
+    for (k, rate) in rates.iter_mut().enumerate() {
+        take(&moved, k, rate);
+    }
+    Ok(rates)
+}
+
+/// Moves a state and directions at it by the inverse of an element.
+pub(super) fn pull<Sys: Variational>(
+    system: &Sys,
+    group: &dyn Group,
+    element: &Element,
+    state: &mut Sys::State,
+    tangents: &mut [Tangent<Sys>],
+) -> Result<(), Undefined> {
+    let inverse = element.map(|factor| Dual::constant(-factor));
+    let from = *state;
+    for some in tangents.chunks_mut(DIRECTIONS) {
+        let parameters = dual_parameters(system, some);
+        let row = dual_state::<Sys>(&from, some);
+        let moved = moved(system, group, &inverse, &parameters, &row)?;
+        take_slopes::<Sys>(&moved, some);
+    }
+    let parameters = dual_parameters(system, &[]);
+    let row = dual_state::<Sys>(&from, &[]);
+    let moved = moved(system, group, &inverse, &parameters, &row)?;
+    take_values(&moved, state);
+    Ok(())
+}
+
+/// The element whose inverse brings an image nearest to a point along the directions of the group, sought from the
+/// element before, if there is one.
+pub(super) fn align<Sys: Variational>(
+    system: &Sys,
+    group: &dyn Group,
+    chart: &Chart<Sys>,
+    [point, image]: [&Sys::State; 2],
+    near: Option<Element>,
+) -> Result<Element, Undefined> {
+    let pair = Pair {
+        system,
+        group,
+        chart,
+        point,
+        image,
+    };
+    if let Some(near) = near {
+        return Ok(pair.aligned(near)?.0);
+    }
+    let mut best = pair.aligned([0.0; GENERATORS])?;
+    for k in 0..group.dimension().min(GENERATORS) {
+        for guess in GUESSES {
+            let mut start = [0.0; GENERATORS];
+            start[k] = guess;
+            let found = pair.aligned(start)?;
+            if is_better(found, best) {
+                best = found;
+            }
+        }
+    }
+    Ok(best.0)
+}
+
+/// True if an element brings two points nearer together than another one, or as near with smaller coordinates.
+fn is_better(found: (Element, f64), best: (Element, f64)) -> bool {
+    let margin = f64::max(SAME * best.1, TOUCHING);
+    let size = |element: Element| element.iter().map(|entry| entry * entry).sum::<f64>();
+    found.1 < best.1 - margin || (found.1 <= best.1 + margin && size(found.0) < size(best.0))
+}
+
+/// A point and an image.
+struct Pair<'a, Sys: Variational> {
+    system: &'a Sys,
+    group: &'a dyn Group,
+    chart: &'a Chart<Sys>,
+    point: &'a Sys::State,
+    image: &'a Sys::State,
+}
+
+impl<Sys: Variational> Pair<'_, Sys> {
+    /// The element near a guess for which the difference has no component along the group, and the size of the
+    /// difference.
+    fn aligned(&self, mut element: Element) -> Result<(Element, f64), Undefined> {
+        let count = GENERATORS
+            .min(self.point.count())
+            .min(self.group.dimension());
+        for _ in 0..STEPS {
+            let (miss, mut slopes, _) = self.difference(&element)?;
+            let mut turned = columns(self.system);
+            let (slopes, turned) = (slopes.as_mut(), turned.as_mut());
+            let step = least_squares(slopes, turned, count, &miss, 0.0);
+            let longest = step.as_slice()[..count]
+                .iter()
+                .fold(LONGEST, |longest, entry| f64::max(longest, entry.abs()));
+            let factor = match self.is_linear() {
+                true => 1.0,
+                false => LONGEST / longest,
+            };
+            let before = element;
+            for (entry, change) in element.iter_mut().zip(&step.as_slice()[..count]) {
+                *entry -= factor * change;
+            }
+            if element == before {
+                break;
+            }
+        }
+        let (_, _, distance) = self.difference(&element)?;
+        let is_finite = element.iter().all(|entry| entry.is_finite());
+        Ok((element, if is_finite { distance } else { f64::INFINITY }))
+    }
+
+    /// True if the second derivative of the action in its coordinates vanishes here: the state moves along a line.
+    fn is_linear(&self) -> bool {
+        let rates = |element: Element| -> Option<[Sys::State; GENERATORS]> {
+            let mut image = *self.image;
+            pull(self.system, self.group, &element, &mut image, &mut []).ok()?;
+            generators(self.system, self.group, &image).ok()
+        };
+        let (Some(here), Some(there)) = (rates([0.0; GENERATORS]), rates([1.0; GENERATORS])) else {
+            return false;
+        };
+        here.iter().zip(&there).all(|(here, there)| {
+            let mut change = *there;
+            add(&mut change, -1.0, here);
+            self.chart.size(&change) <= 1e-12 * self.chart.size(here)
+        })
+    }
+
+    /// The components along the group of the difference between the image, moved by the inverse of an element, and the
+    /// point; their derivatives by the coordinates of the element; the size of the difference.
+    fn difference(&self, element: &Element) -> Result<(Sys::State, Sys::Columns, f64), Undefined> {
+        let parameters = dual_parameters(self.system, &[]);
+        let row = dual_state::<Sys>(self.image, &[]);
+        let inverse = varied(element.map(|factor| -factor), -1.0);
+        let moved = moved(self.system, self.group, &inverse, &parameters, &row)?;
+        let mut change = self.system.zero_state();
+        take_values(&moved, &mut change);
+        add(&mut change, -1.0, self.point);
+        let mut slopes = columns(self.system);
+        for (k, column) in slopes.as_mut().iter_mut().take(GENERATORS).enumerate() {
+            let mut slope = self.system.zero_state();
+            take(&moved, k, &mut slope);
+            *column = self.chart.along_group(&slope);
+        }
+        let miss = self.chart.along_group(&change);
+        Ok((miss, slopes, self.chart.size(&change)))
+    }
+}
+
+/// The coordinates of an element, each with this slope along a direction of its own.
+fn varied(element: Element, slope: f64) -> [Dual; GENERATORS] {
+    core::array::from_fn(|k| {
+        let mut slopes = [0.0; DIRECTIONS];
+        slopes[k] = slope;
+        Dual::new(element[k], slopes)
+    })
+}
+
+fn moved<Sys: Variational>(
+    system: &Sys,
+    group: &dyn Group,
+    element: &[Dual; GENERATORS],
+    parameters: &Sys::Parameters<Dual>,
+    row: &Sys::Row<Dual>,
+) -> Result<Sys::Row<Dual>, Undefined> {
+    let moved = system.relocated(parameters, Dual::constant(0.0), row, |q, qdot| {
+        group.act(element, q, qdot);
+    })?;
+    Ok(moved)
+}
+
+/// The derivative of a row along one direction.
+fn take<S: StateVector>(row: &impl Row<Dual>, direction: usize, slope: &mut S) {
+    for (entry, dual) in slope.as_mut_slice().iter_mut().zip(row.as_slice()) {
+        *entry = dual.slopes()[direction];
+    }
+}
+
+fn take_values<S: StateVector>(row: &impl Row<Dual>, state: &mut S) {
+    for (entry, dual) in state.as_mut_slice().iter_mut().zip(row.as_slice()) {
+        *entry = dual.value;
+    }
+}
