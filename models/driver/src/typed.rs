@@ -510,7 +510,10 @@ impl<O: Owner> Runs for Typed<O> {
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal> {
         let controller = Controller { task, tell };
-        self.owner.system().visit_variational(controller).transpose()
+        self.owner
+            .system()
+            .visit_variational(controller)
+            .transpose()
     }
 
     fn certify(

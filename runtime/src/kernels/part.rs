@@ -224,9 +224,6 @@ impl<'s, S: Declared> Part<'s, S> {
     pub(crate) fn gathered_row<L: Numbers, R: Row<L>>(&self, row: &R) -> R {
         let Some(mode) = self.mode() else {
             return *row;
-    pub(crate) fn gathered_row<L: Numbers, R: Row<L>>(&self, row: R) -> R {
-        let Some(mode) = self.mode() else {
-            return row;
         };
         let mut gathered = R::zeros(row.as_slice().len());
         let entries = gathered.as_mut_slice().iter_mut();

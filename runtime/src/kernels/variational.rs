@@ -329,7 +329,7 @@ impl<S: HasVariations> Variational for S {
         let mut q = part.spread_row(q);
         let mut qdot = self.velocities(parameters, t, state)?;
         change(q.as_mut_slice(), qdot.as_mut_slice());
-        let [q, qdot] = [part.gathered_row(q), part.gathered_row(qdot)];
+        let [q, qdot] = [part.gathered_row(&q), part.gathered_row(&qdot)];
         let places = [q.as_slice(), qdot.as_slice()];
         part.row_by(S::Kernels::motion, (parameters.as_slice(), t), places)
     }

@@ -2,6 +2,8 @@
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
+use super::chapters;
+
 pub fn controlled_ball() -> Figure {
     let panel = |name: &str, title: &str, flags: &str| Panel {
         name: name.to_owned(),
@@ -12,7 +14,9 @@ pub fn controlled_ball() -> Figure {
         model: "controlled_ball",
         name: "optimal",
         title: "The least force that brings a ball to a height",
-        caption: "Extremals of the integral of u^2/2 and of 10 (x - 1)^2 at the end, with m = 2, g = 1, T = 5, and no more than two \
+        chapter: chapters::VARIATIONS,
+        highlight: None,
+        caption: "Extremals of the integral of $u^2/2$ and of $10*(x - 1)^2$ at the end, with $m = 2$, $g = 1$, $T = 5$, and no more than two \
                   impacts. The force is linear between impacts. From a height of 1/2 two impacts are cheapest, from 2 one is: costs \
                   0.2106 and 0.0363. With given ends the ball is held for a cost of 10, and thrown down for 3.4667."
             .to_owned(),

@@ -31,7 +31,7 @@ pub(super) fn picture(finished: &Finished<'_>, args: &ConnectArgs) -> Result<Str
     let drawn = paths::draw(&Sheet {
         title: &summary::title(finished),
         subtitle: &summary::subtitle(finished),
-        names: quantities.iter().map(|it| it.name(description)).collect(),
+        names: quantities.iter().map(|it| it.label(description)).collect(),
         width: f64::from(args.plot_width),
         paths: &paths,
         envelope: &envelope,
