@@ -31,7 +31,8 @@ for (let frame = 0; frame <= parts.input.max; frame++) {
   counts.push(told.filter(([name]) => name === "arc").length);
 }
 const heads = told.filter(([name]) => name === "arc").pop().slice(1, 3);
-console.log(JSON.stringify({ counts, heads, lines: told.filter(([name]) => name === "lineTo").length, button: parts.button.textContent }));
+const lines = told.filter(([name]) => name === "lineTo").length;
+console.log(JSON.stringify({ counts, heads, lines, button: parts.button.textContent }));
 """
 
 

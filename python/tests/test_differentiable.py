@@ -158,7 +158,9 @@ def test_functions_of_torch_take_batches():
 
 
 def test_a_start_that_depends_on_a_parameter_stays():
-    model = Model.from_text("Drop { coordinates { x; } parameters { a = 2; } lagrangian = dot(x)^2/2 - a*x; initial { x = a; until = 1; } }")
+    model = Model.from_text(
+        "Drop { coordinates { x; } parameters { a = 2; } lagrangian = dot(x)^2/2 - a*x; initial { x = a; until = 1; } }"
+    )
     final = Final(model, ["a"], {})
     np.testing.assert_allclose(final.end([3.0]), [2 - 1.5, -3])
     np.testing.assert_allclose(final.jacobian([3.0]), [[-0.5], [-1]], rtol=1e-12)

@@ -25,7 +25,7 @@ use crate::model::{
 };
 use crate::orbit::{ForBranch, ForExponent, ForOrbit, ForReturn, Found, Search, Visit, Work};
 use crate::refusal::Refusal;
-use crate::run::{self, Abreast, Ending, Settings, Watch};
+use crate::run::{self, Ending, Settings, Watch, abreast};
 
 /// A system that can be run behind [`AnyModel`]: the traits that `model!` implements for a model with values for its
 /// parameters.
@@ -553,38 +553,6 @@ impl<O: Owner> Typed<O> {
         };
         model.visit_variational(visit).transpose()
     }
-}
-
-/// Makes several runs at once, in one form of the model. A run without a valid initial state yields its [`Refusal`].
-fn abreast<M: Model, S: Model<Vector = M::Vector>>(
-    model: &M,
-    runs: Vec<Together<'_>>,
-    settings: &Settings,
-    looks_inside: bool,
-    form: impl Fn(&M) -> S,
-) -> Vec<Result<Ending, Refusal>> {
-    let mut refused = Vec::new();
-    let mut begun = Vec::new();
-    for (index, run) in runs.into_iter().enumerate() {
-        let mut member = model.clone();
-        for (index, value) in run.parameters.iter().enumerate() {
-            member.set_parameter(index, *value);
-        }
-        let model = form(&member);
-        match prepare(&member, &model, 0.0, &run.origin) {
-            Ok(state) => begun.push(Abreast {
-                model,
-                state,
-                watch: run.watch,
-            }),
-            Err(error) => refused.push((index, error)),
-        }
-    }
-    let mut endings = run::simulate_abreast(begun, settings, looks_inside);
-    for (index, error) in refused {
-        endings.insert(index, Err(error.into()));
-    }
-    endings
 }
 
 /// Values of a state for tables and pictures.

@@ -5,14 +5,15 @@ use dalembert::simulation::STEP_BUDGET;
 use dalembert::{Observer, Taylor, Tolerance};
 
 use super::{Bridge, Ending, Settings, Solved, Watch, effects, ending};
+use crate::model::Together;
 use crate::refusal::Refusal;
-use crate::typed::{Model, point};
+use crate::typed::{Model, point, prepare};
 
 /// One of many runs: the model with its parameters, the initial state and the observer.
-pub(crate) struct Abreast<'w, M: Model> {
-    pub model: M,
-    pub state: M::State,
-    pub watch: &'w mut dyn Watch,
+struct Abreast<'w, M: Model> {
+    model: M,
+    state: M::State,
+    watch: &'w mut dyn Watch,
 }
 
 /// The integrator of all runs.
@@ -21,9 +22,41 @@ fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, Refusal> {
     Ok(limited!(Taylor::new(tolerance), settings))
 }
 
+/// Makes several runs at once, in one form of the model. A run without a valid initial state yields its [`Refusal`].
+pub(crate) fn abreast<M: Model, S: Model<Vector = M::Vector>>(
+    model: &M,
+    runs: Vec<Together<'_>>,
+    settings: &Settings,
+    looks_inside: bool,
+    form: impl Fn(&M) -> S,
+) -> Vec<Result<Ending, Refusal>> {
+    let mut refused = Vec::new();
+    let mut begun = Vec::new();
+    for (index, run) in runs.into_iter().enumerate() {
+        let mut member = model.clone();
+        for (index, value) in run.parameters.iter().enumerate() {
+            member.set_parameter(index, *value);
+        }
+        let model = form(&member);
+        match prepare(&member, &model, 0.0, &run.origin) {
+            Ok(state) => begun.push(Abreast {
+                model,
+                state,
+                watch: run.watch,
+            }),
+            Err(error) => refused.push((index, error)),
+        }
+    }
+    let mut endings = simulate_abreast(begun, settings, looks_inside);
+    for (index, error) in refused {
+        endings.insert(index, Err(error.into()));
+    }
+    endings
+}
+
 /// Makes several runs as [`simulate`](super::simulate) does, at once and with Taylor series; returns the results in the
 /// order of the runs.
-pub(crate) fn simulate_abreast<M: Model>(
+fn simulate_abreast<M: Model>(
     runs: Vec<Abreast<'_, M>>,
     settings: &Settings,
     looks_inside: bool,

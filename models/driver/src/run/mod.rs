@@ -30,9 +30,9 @@ use crate::integrator::{Form, Integrator};
 use crate::model::Point;
 use crate::refusal::Refusal;
 use crate::typed::{Model, point};
-pub(crate) use abreast::{Abreast, simulate_abreast};
+pub(crate) use abreast::abreast;
 use energy::Balance;
-pub use steered::{Control, steer};
+pub use steered::{Control, InputFunction, steer};
 
 /// Settings of a run.
 #[derive(Debug, Clone)]

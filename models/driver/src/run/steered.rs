@@ -36,10 +36,13 @@ type Inputs = Bounded<f64, PARAMETERS>;
 /// The system with inputs from a function.
 type Driven<'f, 'c> = Steered<Plain<'f>, &'c dyn Fn(f64, &State<'f>) -> Inputs>;
 
+/// Values of all inputs, in order, from time, positions and velocities.
+pub type InputFunction<'c> = dyn Fn(f64, &[f64], &[f64]) -> Vec<f64> + 'c;
+
 /// Inputs as functions of time, positions and velocities.
 pub struct Control<'c> {
     /// Values of all inputs, in order. Velocities of a first-order system are those without inputs.
-    pub inputs: &'c dyn Fn(f64, &[f64], &[f64]) -> Vec<f64>,
+    pub inputs: &'c InputFunction<'c>,
     /// The time for which values are held; without it they are taken wherever the motion is evaluated.
     pub period: Option<f64>,
 }
