@@ -292,7 +292,7 @@ fn other_inputs_have_a_larger_hamiltonian() {
     }
 }
 
-/// The generator's own proof: `H*` is conserved along extremals and at impacts.
+/// The generator proves that `H*` is conserved along extremals and at impacts.
 #[test]
 fn the_hamiltonian_is_proved_to_be_conserved() {
     let spec = spec::parse(BALL.parse().unwrap()).unwrap();
@@ -387,7 +387,7 @@ fn a_cost_changes_nothing_of_the_model() {
     assert_eq!(program(&without), program(&with));
 }
 
-/// What is printed of the ball is (9.13) and (9.14) of the thesis, with a coefficient of restitution.
+/// The printed equations of the ball are (9.13) and (9.14) of the thesis, with a coefficient of restitution.
 #[test]
 fn the_maximum_principle_is_printed() {
     let report = dalembert_codegen::report::control(BALL, None)

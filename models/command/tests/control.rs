@@ -301,7 +301,7 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     assert!(lossy.iter().all(|it| count(it) == 1));
 }
 
-/// With the velocity in place of the momentum the costate of it is `m` times that of the momentum.
+/// The costate of the velocity is `m` times that of the momentum.
 #[test]
 fn a_lagrangian_and_a_field_have_the_same_extremals() {
     let found = extremals_on(BALL, "- --impacts 1");
@@ -342,7 +342,7 @@ fn an_impact_on_a_wall_is_a_motion_to_the_mirror_image() {
     assert_near(cost(1), 6.0 * (1.0 + 4.0) / 8.0, 1e-11);
 }
 
-/// In a frame that moves with the wall nothing moves: the inputs and the cost are the same.
+/// A frame that moves with the wall sees the wall at rest: the inputs and the cost are the same.
 #[test]
 fn a_wall_that_moves_is_a_wall_at_rest_for_its_passenger() {
     let document = |line: &str| {

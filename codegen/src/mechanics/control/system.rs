@@ -38,7 +38,7 @@ pub(super) struct Impact {
 pub(super) enum Back {
     /// The matrix.
     Matrix(Matrix),
-    /// Of an impulse, `qdot+ = R qdot + ..` with `q` kept: `w_v R^{-1}` subtracts `factor*(w_v.direction)*dh`.
+    /// Impulse `qdot+ = R qdot + ..` with `q` kept: `w_v R^{-1} = w_v - factor*(w_v.direction)*dh`.
     Impulse {
         /// `(1 + e)/(e dh(grad h))`
         factor: ExprId,
