@@ -63,7 +63,9 @@ pub enum CliError {
     #[error("--law: {0}")]
     Law(LawError),
     /// Variations, requested for a scene declared without them.
-    #[error("--scene: `{scene}` was declared without `variations`; add it to what the scene uses")]
+    #[error(
+        "--scene: `{scene}` was declared without `variations`; add it to what the scene uses, or leave out --scene"
+    )]
     Invariable {
         /// The scene.
         scene: String,

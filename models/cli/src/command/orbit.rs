@@ -67,7 +67,7 @@ fn finished<'a, T>(
     result: Result<Option<Result<T, OrbitError>>, Refusal>,
 ) -> Result<Finished<'a, T>, CliError> {
     let result = result.map_err(|refusal| CliError::refused(model, &refusal))?;
-    let result = result.ok_or_else(|| invariable(model, args))?;
+    let result = result.ok_or_else(|| invariable(args))?;
     let missed = result.as_ref().err();
     Ok(Finished {
         model,
@@ -87,14 +87,12 @@ const fn exit<T>(finished: &Finished<'_, T>) -> Exit {
 }
 
 /// The error that explains why there are no variations.
-fn invariable(model: &dyn AnyModel, args: &OrbitArgs) -> CliError {
-    match model.description().modes.is_empty() {
-        true => CliError::Invariable {
-            scene: args.model.scene.clone(),
+fn invariable(args: &OrbitArgs) -> CliError {
+    match args.model.scene.as_str() {
+        "all" => CliError::Usage("orbit: the runs of this system have no derivatives"),
+        scene => CliError::Invariable {
+            scene: scene.to_owned(),
         },
-        false => CliError::Usage(
-            "orbit: runs that change between modes have no derivatives; choose one mode with --scene",
-        ),
     }
 }
 
