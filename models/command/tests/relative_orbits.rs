@@ -4,10 +4,13 @@
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
 
+mod support;
+
 use std::f64::consts::PI;
 
-use dalembert_cli::{Exit, Streams};
+use dalembert_cli::Exit;
 use serde_json::Value;
+use support::{Done, run_on, run_words};
 
 /// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section is where the radius is
 /// largest: `r^2` oscillates with the period `pi/w`, and in that time the angle grows by `pi L/sqrt(L^2 + b)`.
@@ -56,29 +59,9 @@ const CART: &str = "
         initial { x = 2; y = 1; h = 0.4; until = 20; }
     }";
 
-struct Done {
-    exit: Exit,
-    output: String,
-    errors: String,
-}
-
 /// Runs a command line given as words, with this standard input.
 fn run(input: &str, words: &[&str]) -> Done {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut input.as_bytes(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = ["dalembert"].iter().chain(words).copied();
-    let exit = dalembert_command::catalogue().run_with(words, &mut streams);
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Done {
-        exit,
-        output: text(output),
-        errors: text(errors),
-    }
+    run_words(input, words.iter().copied())
 }
 
 /// The document of a command line that succeeds.
@@ -119,7 +102,7 @@ fn assert_near(found: f64, expected: f64, within: f64) {
 
 /// The names of the coordinates of a shipped model.
 fn coordinates(model: &str) -> Vec<String> {
-    let list = run("", &["list", "--format", "json"]);
+    let list = run_on("", "list --format json");
     let list: Value = serde_json::from_str(&list.output).unwrap();
     let mut entries = list.as_array().unwrap().iter();
     let entry = entries.find(|entry| entry["name"] == model).unwrap();

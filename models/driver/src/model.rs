@@ -1,8 +1,8 @@
 //! Trait of a model whose type is erased.
 
-use dalembert::describe::{Description, Report};
+use dalembert::describe::{Description, Instance, Report};
 use dalembert::law::Law;
-use dalembert::{Fault, OrbitError, ParameterError, StateError};
+use dalembert::{Fault, OrbitError, ParameterError, StateError, StateVector};
 
 use crate::accuracy::{Plan, Study, Verified};
 use crate::certify::{Certification, Certified, Strike};
@@ -320,5 +320,36 @@ impl Code {
             Self::Pointers => "behind pointers",
             Self::Loaded => "loaded from its text",
         }
+    }
+}
+
+/// Values of a state for tables and pictures.
+pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
+    let description = model.description();
+    let mode = description.modes.get(model.mode(state));
+    // A mode may lack some coordinates of the model.
+    let has = |index: usize| mode.is_none_or(|mode| mode.coordinates.contains(&index));
+    let masked = |values: &[f64]| -> Vec<f64> {
+        let numbered = values.iter().enumerate();
+        numbered
+            .map(|(index, &value)| if has(index) { value } else { f64::NAN })
+            .collect()
+    };
+    let components = |values: Result<M::Vector, Fault>| match values {
+        Ok(values) => masked(values.as_slice()),
+        Err(_) => vec![f64::NAN; model.coordinate_count()],
+    };
+    let mut outputs = vec![f64::NAN; description.outputs.len()];
+    if model.outputs(t, state, &mut outputs).is_err() {
+        outputs.fill(f64::NAN);
+    }
+    Point {
+        mode: mode.map(|mode| mode.name),
+        q: masked(model.position(state).as_slice()),
+        qdot: components(model.velocity(t, state)),
+        p: components(model.momentum(t, state)),
+        energy: model.energy(t, state).unwrap_or(f64::NAN),
+        outputs,
+        view: model.view_path(t, state),
     }
 }

@@ -12,13 +12,13 @@ use dalembert::{
 };
 
 use crate::continuation::family::Failure;
+use crate::continuation::indicator::Precision;
 use crate::continuation::orbits::Orbits;
 use crate::continuation::trace::{Tracer, Watch};
 use crate::continuation::{Branch, Continuation};
-use crate::model::Point;
+use crate::model::{Point, point};
 use crate::modulo::Symmetries;
 use crate::refusal::Refusal;
-use crate::typed::point;
 
 /// Request for a periodic orbit, or for an exponent.
 #[derive(Debug, Clone)]
@@ -171,12 +171,14 @@ impl Work for ForBranch<'_> {
         let orbit = orbit(system, start, search)?;
         let parameter = self.request.parameter;
         let mut family = Orbits::new(system, search, parameter, &orbit)?;
-        let mut tracer = Tracer::new(&mut family, self.request, self.watch);
+        let precision = Precision::of(search.tolerance.relative());
+        let mut tracer = Tracer::new(&mut family, self.request, self.watch, precision);
         let value = system.parameter(parameter);
         let state = orbit.point.before;
         let branch = tracer.branch(state.as_slice(), value);
         branch.map_err(|failure| match failure {
             Failure::Missed(error) => error,
+            Failure::NotKnown => OrbitError::NoMultipliers,
             _ => OrbitError::NotConverged {
                 residual: orbit.residual,
                 iterations: orbit.iterations,

@@ -7,7 +7,7 @@ use dalembert::variations::Tangent;
 use dalembert::{Action, Event, Hold, Instance, Observer, Segment, StateVector, Variations};
 
 use super::Bounce;
-use crate::typed::point;
+use crate::model::point;
 
 /// Notes the impacts of a run, and varies it.
 pub(crate) struct Marksman<'a, S: Variational> {

@@ -17,8 +17,9 @@ use super::units::{Units, unit, units};
 use super::{Boundary, Conjugate, Connection, Unjoined};
 use crate::linear::determinant;
 use crate::model::Point;
+use crate::model::point;
 use crate::refusal::Refusal;
-use crate::typed::{point, vector};
+use crate::typed::vector;
 use crate::variation::constant;
 
 /// Impacts within this fraction of the time after the start or before the end are those of a configuration on a surface.

@@ -19,6 +19,8 @@ pub(crate) enum Failure {
     Parameter(ParameterError),
     /// The map is not defined, or has no derivative.
     Missed(OrbitError),
+    /// Multipliers, or what is computed of them, are no numbers.
+    NotKnown,
     /// Newton's method does not converge, or ends elsewhere.
     Diverged,
     /// The orbit meets this surface more or less often than those before it.

@@ -1,20 +1,35 @@
 //! Test functions: numbers along a branch that change their sign at bifurcations.
 
-use super::family::Node;
+use super::family::{Failure, Node};
 use super::{Bifurcation, Stability};
 use crate::linear::determinant;
 
-/// Distance from the unit circle at which multipliers count as lying on it.
-const ON_CIRCLE: f64 = 1e-6;
+/// Distances below which numbers along a branch count as their limits, by the tolerance of the integrator. Multipliers have an
+/// error of about the tolerance, double ones of its square root.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Precision {
+    /// Distance from the unit circle at which multipliers count as lying on it.
+    on_circle: f64,
+    /// Factors of test functions below this at both ends of a step are 0 all along it, such as those of conserved quantities.
+    always: f64,
+    /// The same between the ends, where a factor that passes 0 is as small.
+    within: f64,
+    /// Distance of the multipliers, and of the direction, of a located bifurcation from their values there.
+    near: f64,
+}
 
-/// Factors of test functions below this at both ends of a step are 0 all along it, such as those of conserved quantities.
-const ALWAYS: f64 = 1e-9;
-
-/// The same between the ends, where a factor that passes 0 is as small.
-const WITHIN: f64 = 1e-13;
-
-/// Distance of the multipliers, and of the direction, of a located bifurcation from their values there.
-const NEAR: f64 = 1e-4;
+impl Precision {
+    /// The distances at a tolerance; those at 1e-14 are the least.
+    pub fn of(tolerance: f64) -> Self {
+        let on_circle = f64::max(1e-6, 10.0 * tolerance.sqrt());
+        Self {
+            on_circle,
+            always: f64::max(1e-9, 1e5 * tolerance),
+            within: f64::max(1e-13, 10.0 * tolerance),
+            near: f64::max(1e-4, on_circle),
+        }
+    }
+}
 
 /// A test function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,18 +67,30 @@ impl Test {
     }
 
     /// The values at both ends of a step, if a bifurcation lies between them.
-    pub fn change(self, ends: [&Node; 2], width: f64) -> Option<[f64; 2]> {
+    ///
+    /// # Errors
+    /// [`Failure::NotKnown`] where one of them is no number.
+    pub fn change(
+        self,
+        ends: [&Node; 2],
+        width: f64,
+        precision: Precision,
+    ) -> Result<Option<[f64; 2]>, Failure> {
         // Where orbits are a family at a constant parameter the determinant is 0 everywhere.
         if self == Self::Crossing && ends.iter().all(|node| node.dimension > 1) {
-            return None;
+            return Ok(None);
         }
-        let values = ends.map(|node| self.value_above(ALWAYS, node, width));
-        (values[0].is_sign_negative() != values[1].is_sign_negative()).then_some(values)
+        let values = ends.map(|node| self.value_above(precision.always, node, width));
+        if values.iter().any(|value| value.is_nan()) {
+            return Err(Failure::NotKnown);
+        }
+        let changes = values[0].is_sign_negative() != values[1].is_sign_negative();
+        Ok(changes.then_some(values))
     }
 
     /// The value at a member between those ends.
-    pub fn value(self, node: &Node, width: f64) -> f64 {
-        self.value_above(WITHIN, node, width)
+    pub fn value(self, node: &Node, width: f64, precision: Precision) -> f64 {
+        self.value_above(precision.within, node, width)
     }
 
     /// The value at a member, without factors below a bound.
@@ -89,21 +116,25 @@ impl Test {
 
     /// True if a member is that of the bifurcation. The product of two real multipliers may pass 1 too, and beside a crossing
     /// a member of the other branch has another direction.
-    pub fn is_met(self, node: &Node) -> bool {
+    pub fn is_met(self, node: &Node, precision: Precision) -> bool {
+        let (near, on_circle) = (precision.near, precision.on_circle);
         let mut multipliers = node.local.member.multipliers.iter();
         match self {
-            Self::Rise => node.rise().abs() < NEAR,
+            Self::Rise => node.rise().abs() < near,
             Self::Crossing => true,
-            Self::Flip => multipliers.any(|&[re, im]| f64::hypot(re + 1.0, im) < NEAR),
+            Self::Flip => multipliers.any(|&[re, im]| f64::hypot(re + 1.0, im) < near),
             Self::Circle => multipliers
-                .any(|&[re, im]| im > ON_CIRCLE && (f64::hypot(re, im) - 1.0).abs() < NEAR),
+                .any(|&[re, im]| im > on_circle && (f64::hypot(re, im) - 1.0).abs() < near),
         }
     }
 }
 
 /// True if a member is a bifurcation up to rounding, or lies among a family.
-pub(super) fn is_degenerate(node: &Node, width: f64) -> bool {
-    let is_zero = |test: &Test| test.value(node, width).abs() < ON_CIRCLE && test.is_met(node);
+pub(super) fn is_degenerate(node: &Node, width: f64, precision: Precision) -> bool {
+    let is_zero = |test: &Test| {
+        let value = test.value(node, width, precision);
+        value.abs() < precision.on_circle && test.is_met(node, precision)
+    };
     node.dimension > 1 || Test::ALL.iter().any(is_zero)
 }
 
@@ -130,17 +161,54 @@ fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
 }
 
 /// Number of multipliers outside the unit circle.
-pub(super) fn outside(multipliers: &[[f64; 2]]) -> usize {
+pub(super) fn outside(multipliers: &[[f64; 2]], precision: Precision) -> usize {
     let moduli = multipliers.iter().map(|&[re, im]| f64::hypot(re, im));
-    moduli.filter(|modulus| *modulus > 1.0 + ON_CIRCLE).count()
+    moduli
+        .filter(|modulus| *modulus > 1.0 + precision.on_circle)
+        .count()
 }
 
-/// The stability by the multipliers.
-pub(super) fn stability(multipliers: &[[f64; 2]]) -> Stability {
+/// The stability by the multipliers; `None` if one of them is no number.
+pub(super) fn stability(multipliers: &[[f64; 2]], precision: Precision) -> Option<Stability> {
+    // NOTE: the larger of a number and NaN is the number.
+    if multipliers.iter().flatten().any(|part| part.is_nan()) {
+        return None;
+    }
     let moduli = multipliers.iter().map(|&[re, im]| f64::hypot(re, im));
-    match moduli.fold(0.0, f64::max) - 1.0 {
-        excess if excess < -ON_CIRCLE => Stability::Stable,
-        excess if excess <= ON_CIRCLE => Stability::Neutral,
+    Some(match moduli.fold(0.0, f64::max) - 1.0 {
+        excess if excess < -precision.on_circle => Stability::Stable,
+        excess if excess <= precision.on_circle => Stability::Neutral,
         _ => Stability::Unstable,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_multiplier_that_is_no_number_leaves_the_stability_open() {
+        let precision = Precision::of(1e-14);
+        let known = |multipliers: &[[f64; 2]]| stability(multipliers, precision);
+        assert_eq!(known(&[]), Some(Stability::Stable));
+        assert_eq!(known(&[[0.5, 0.0], [0.1, 0.2]]), Some(Stability::Stable));
+        assert_eq!(known(&[[1.0, 0.0], [0.1, 0.2]]), Some(Stability::Neutral));
+        assert_eq!(known(&[[0.5, 0.0], [-1.5, 0.0]]), Some(Stability::Unstable));
+        for place in 0..3 {
+            let mut multipliers = [[0.5, 0.0]; 3];
+            multipliers[place] = [f64::NAN, 0.0];
+            assert_eq!(known(&multipliers), None);
+            multipliers[place] = [0.0, f64::NAN];
+            assert_eq!(known(&multipliers), None);
+        }
+    }
+
+    #[test]
+    fn distances_follow_the_tolerance() {
+        let multipliers = [[1.0 + 1e-5, 0.0]];
+        let at = |tolerance| stability(&multipliers, Precision::of(tolerance));
+        assert_eq!(at(1e-14), Some(Stability::Unstable));
+        assert_eq!(at(1e-10), Some(Stability::Neutral));
+        assert_eq!(Precision::of(0.0), Precision::of(1e-14));
     }
 }

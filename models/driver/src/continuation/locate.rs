@@ -35,12 +35,13 @@ impl Tracer<'_, '_> {
         let mut located: Vec<Located> = Vec::new();
         let mut passing = 0;
         for test in Test::ALL {
-            if let Some(values) = test.change([node, next], self.width) {
+            if let Some(values) = test.change([node, next], self.width, self.precision)? {
                 passing += test.passing();
                 located.extend(self.zero(test, [node, next], values, length)?);
             }
         }
-        let [before, after] = [node, next].map(|node| outside(&node.local.member.multipliers));
+        let [before, after] =
+            [node, next].map(|node| outside(&node.local.member.multipliers, self.precision));
         if before.abs_diff(after) > passing && length > REFINED {
             // Two test functions, or one of them twice, have changed their sign inside.
             return Err(Failure::TooLong);
@@ -78,12 +79,15 @@ impl Tracer<'_, '_> {
                 // Beside a crossing members of the other branch may be nearer.
                 Err(_) => break,
             };
-            let value = test.value(&best, self.width);
+            let value = test.value(&best, self.width, self.precision);
+            if value.is_nan() {
+                return Err(Failure::NotKnown);
+            }
             if value == 0.0 || bracket.narrow(fraction, value) * length < LOCATED {
                 break;
             }
         }
-        if !test.is_met(&best) {
+        if !test.is_met(&best, self.precision) {
             return Ok(None);
         }
         let refined = match test {
@@ -122,7 +126,7 @@ impl Tracer<'_, '_> {
     fn root(&self, sides: &[Node]) -> f64 {
         let values = sides
             .iter()
-            .map(|side| Test::Crossing.value(side, self.width));
+            .map(|side| Test::Crossing.value(side, self.width, self.precision));
         let values: Vec<f64> = values.collect();
         let at = |place: f64| interpolated(place, |k| values[k]);
         let mut bracket = Bracket::new([at(-1.0), at(1.0)]);

@@ -10,7 +10,7 @@
 //! | `rotated` | linear equations with more unknowns than equations |
 
 pub(crate) mod family;
-mod indicator;
+pub(crate) mod indicator;
 mod locate;
 pub(crate) mod orbits;
 mod rotated;
@@ -126,6 +126,8 @@ pub enum BranchEnd {
     Parameter(ParameterError),
     /// The return map is not defined beyond.
     Missed(OrbitError),
+    /// Multipliers of the next point, or its test functions, are no finite numbers: its stability is not known.
+    NotKnown,
     /// Newton's method does not converge at the smallest step.
     NotConverged,
     /// The largest number of points was reached.
@@ -135,6 +137,19 @@ pub enum BranchEnd {
 }
 
 impl BranchEnd {
+    /// All kinds.
+    pub const KINDS: [&'static str; 9] = [
+        "range",
+        "grazing",
+        "closed",
+        "parameter",
+        "missed",
+        "not_known",
+        "not_converged",
+        "points",
+        "turned",
+    ];
+
     /// The kind in snake case, as documents write it.
     pub const fn kind(&self) -> &'static str {
         match self {
@@ -143,9 +158,38 @@ impl BranchEnd {
             Self::Closed => "closed",
             Self::Parameter(_) => "parameter",
             Self::Missed(_) => "missed",
+            Self::NotKnown => "not_known",
             Self::NotConverged => "not_converged",
             Self::Points => "points",
             Self::Turned => "turned",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use dalembert::describe::Assumption;
+
+    use super::*;
+
+    #[test]
+    fn all_kinds_of_ends_are_listed() {
+        let error = ParameterError {
+            name: "k",
+            value: 0.0,
+            expected: Assumption::Positive,
+        };
+        let ends = [
+            BranchEnd::Range,
+            BranchEnd::Grazing { surface: 0 },
+            BranchEnd::Closed,
+            BranchEnd::Parameter(error),
+            BranchEnd::Missed(OrbitError::DependsOnTime),
+            BranchEnd::NotKnown,
+            BranchEnd::NotConverged,
+            BranchEnd::Points,
+            BranchEnd::Turned,
+        ];
+        assert_eq!(ends.map(|end| end.kind()), BranchEnd::KINDS);
     }
 }

@@ -8,9 +8,9 @@ use dalembert::{Instance, OrbitError, Scene, StateVector};
 
 use super::Member;
 use super::family::{Failure, Family, Local};
-use super::indicator::stability;
+use super::indicator::{Precision, stability};
+use crate::model::point;
 use crate::orbit::{Search, section};
-use crate::typed::point;
 
 /// Longest return, in units of the period of the last orbit.
 const PATIENCE: f64 = 4.0;
@@ -62,7 +62,8 @@ impl<S: Instance + Scene + Variational> Family for Orbits<'_, S> {
         let image = section.image(&self.anchor, &near, self.parameter);
         drop(section);
         let image = image.map_err(Failure::Missed)?;
-        let mut local = local(&self.system, &image, parameter)?;
+        let precision = Precision::of(self.search.tolerance.relative());
+        let mut local = local(&self.system, &image, parameter, precision)?;
         local.member.element = self.search.factors(&image.element);
         if local.is_closed {
             let longest = PATIENCE * local.member.period;
@@ -76,13 +77,14 @@ fn local<S: Instance + Variational>(
     system: &S,
     image: &Image<S>,
     parameter: f64,
+    precision: Precision,
 ) -> Result<Local, Failure> {
     if image.delay > DELAY * image.image.time {
         // The point leaves the surface, so that its image is not the one of its neighbours on the other side.
         return Err(Failure::TooLong);
     }
     let multipliers = image.multipliers.as_ref();
-    let multipliers = multipliers.ok_or(Failure::Missed(OrbitError::NoMultipliers))?;
+    let multipliers = multipliers.ok_or(Failure::NotKnown)?;
     let multipliers: Vec<[f64; 2]> = multipliers.iter().collect();
     let n = image.dimension;
     let leading = |vector: &S::State| StateVector::as_slice(vector)[..n].to_vec();
@@ -100,7 +102,7 @@ fn local<S: Instance + Variational>(
             after: point(system, 0.0, &image.image.after),
             residual: image.residual,
             element: Vec::new(),
-            stability: stability(&multipliers),
+            stability: stability(&multipliers, precision).ok_or(Failure::NotKnown)?,
             multipliers,
             bifurcation: None,
         },

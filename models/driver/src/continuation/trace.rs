@@ -5,7 +5,7 @@
 //! at a constant parameter too.
 
 use super::family::{Failure, Family, Local, Node, Unknowns};
-use super::indicator::is_degenerate;
+use super::indicator::{Precision, is_degenerate};
 use super::locate::{Located, arc};
 use super::{Branch, BranchEnd, Continuation, Member};
 use crate::linear::{dot, norm};
@@ -54,16 +54,23 @@ pub(crate) struct Tracer<'a, 'w> {
     /// The unit of the parameter: the length of the range.
     pub(super) width: f64,
     watch: Watch<'w>,
+    pub(super) precision: Precision,
 }
 
 impl<'a, 'w> Tracer<'a, 'w> {
-    pub fn new(family: &'a mut dyn Family, request: Continuation, watch: Watch<'w>) -> Self {
+    pub fn new(
+        family: &'a mut dyn Family,
+        request: Continuation,
+        watch: Watch<'w>,
+        precision: Precision,
+    ) -> Self {
         let [first, last] = request.range;
         Self {
             family,
             request,
             width: (last - first).abs(),
             watch,
+            precision,
         }
     }
 
@@ -123,7 +130,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
 
     /// The member, or the next one if it is a bifurcation itself, so that this lies between two members.
     fn shifted(&mut self, start: Node) -> Node {
-        if !is_degenerate(&start, self.width) {
+        if !is_degenerate(&start, self.width, self.precision) {
             return start;
         }
         let is_room = start.parameter() + FIRST * self.width < self.limits()[1];
@@ -380,6 +387,7 @@ fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     let told = failures.iter().rev().find_map(|failure| match failure {
         Failure::Parameter(error) => Some(BranchEnd::Parameter(*error)),
         Failure::Missed(error) => Some(BranchEnd::Missed(*error)),
+        Failure::NotKnown => Some(BranchEnd::NotKnown),
         _ => None,
     });
     told.unwrap_or(BranchEnd::NotConverged)

@@ -5,9 +5,9 @@ use dalembert::simulation::STEP_BUDGET;
 use dalembert::{Observer, Taylor, Tolerance};
 
 use super::{Bridge, Ending, Settings, Solved, Watch, effects, ending};
-use crate::model::Together;
+use crate::model::{Together, point};
 use crate::refusal::Refusal;
-use crate::typed::{Model, point, prepare};
+use crate::typed::{Model, prepare};
 
 /// One of many runs: the model with its parameters, the initial state and the observer.
 struct Abreast<'w, M: Model> {

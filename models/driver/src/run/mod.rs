@@ -27,9 +27,9 @@ use dalembert::{
 };
 
 use crate::integrator::{Form, Integrator};
-use crate::model::Point;
+use crate::model::{Point, point};
 use crate::refusal::Refusal;
-use crate::typed::{Model, point};
+use crate::typed::Model;
 pub(crate) use abreast::abreast;
 use energy::Balance;
 pub use steered::{Control, InputFunction, steer};

@@ -20,9 +20,9 @@ use dalembert::{
 
 use super::{Bridge, Ending, Settings, Solved, Watch, ending, stepping};
 use crate::integrator::{Form, Integrator};
-use crate::model::Origin;
+use crate::model::{Origin, point};
 use crate::refusal::Refusal;
-use crate::typed::{point, prepare};
+use crate::typed::prepare;
 
 /// The system whose inputs are given.
 type Plain<'f> = Erased<'f, 32>;

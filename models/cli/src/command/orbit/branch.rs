@@ -215,6 +215,9 @@ fn reason(followed: &Followed<'_>, end: &BranchEnd) -> String {
             let told = outcome::remarks_on_orbit(description, error).into_iter();
             told.map(|(_, text)| text).next().unwrap_or_default()
         }
+        BranchEnd::NotKnown => {
+            "the stability of the next point is not known: multipliers are not finite".to_owned()
+        }
         BranchEnd::NotConverged => {
             "Newton's method does not converge at the smallest step".to_owned()
         }
