@@ -11,12 +11,15 @@
 //! D span all directions. Sources: W. Clark, thesis, VI.24, VI.25, VI.31 to VI.37; A. Bloch, P. Krishnaprasad, J. Marsden and R. Murray, Arch.
 //! Rational Mech. Anal. 136 (1996).
 
+mod structure;
+
 use dalembert_expr::{ExprId, Pool, Rational, SymbolId, Verdict};
 
-use super::bracket::{Bracket, NoBracket, commutator, derive_bracket, exterior, settled};
+use super::bracket::{Bracket, NoBracket, derive_bracket, exterior, settled};
 use super::inverse::{Matrix, NoMinor, dot, independent_minor, inverse, tidy};
 use super::{Derivation, SurfaceForm};
 use crate::model::{Law, Model, Topology};
+use structure::structure;
 
 /// Reason for which fields are no group to reduce by.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -145,68 +148,6 @@ pub fn derive_reduction(
         reduced,
         impacts,
     })
-}
-
-/// `C_ab^c` of fields that are independent and closed under brackets.
-fn structure(
-    pool: &mut Pool,
-    q: &[SymbolId],
-    fields: &[Vec<ExprId>],
-) -> Result<Vec<Matrix>, NoReduction> {
-    let (rows, columns) = independent_minor(pool, fields)?;
-    if rows.len() < fields.len() {
-        return Err(NoReduction::Dependent);
-    }
-    let chosen = |field: &Vec<ExprId>| columns.iter().map(|j| field[*j]).collect();
-    let minor: Matrix = fields.iter().map(chosen).collect();
-    let inverse = inverse(pool, &minor).ok_or(NoReduction::TooLarge)?;
-    let size = fields.len();
-    let mut constants = vec![vec![vec![pool.zero(); size]; size]; size];
-    for a in 0..size {
-        for b in 0..a {
-            let bracket = commutator(pool, q, [&fields[a], &fields[b]]);
-            let known: Vec<ExprId> = columns.iter().map(|j| bracket[*j]).collect();
-            let factors = (0..size).map(|c| {
-                let column: Vec<ExprId> = inverse.iter().map(|row| row[c]).collect();
-                let factor = dot(pool, &known, &column);
-                settled(pool, factor)
-            });
-            let factors: Vec<ExprId> = factors.collect();
-            match combination(pool, q, &bracket, (&factors, fields)) {
-                Verdict::Proved => {}
-                Verdict::Refuted => return Err(NoReduction::NotClosed(b, a)),
-                Verdict::Undecided => return Err(NoReduction::Undecided(b, a)),
-            }
-            constants[b][a] = factors.iter().map(|factor| pool.neg(*factor)).collect();
-            constants[a][b] = factors;
-        }
-    }
-    Ok(constants)
-}
-
-/// The claim that a field is the combination of others with these factors, and that the factors are constant.
-fn combination(
-    pool: &mut Pool,
-    q: &[SymbolId],
-    field: &[ExprId],
-    (factors, fields): (&[ExprId], &[Vec<ExprId>]),
-) -> Verdict {
-    let mut rests = Vec::new();
-    for factor in factors {
-        rests.extend(q.iter().map(|symbol| pool.diff(*factor, *symbol)));
-    }
-    for (k, entry) in field.iter().enumerate() {
-        let column: Vec<ExprId> = fields.iter().map(|field| field[k]).collect();
-        let sum = dot(pool, factors, &column);
-        rests.push(pool.sub(*entry, sum));
-    }
-    let verdicts: Vec<Verdict> = rests.into_iter().map(|rest| pool.zero_test(rest)).collect();
-    let any = |verdict| verdicts.contains(&verdict);
-    match (any(Verdict::Refuted), any(Verdict::Undecided)) {
-        (true, _) => Verdict::Refuted,
-        (false, true) => Verdict::Undecided,
-        (false, false) => Verdict::Proved,
-    }
 }
 
 /// Combinations of fields that forms annihilate, and true if the forms are independent on the fields.

@@ -5,6 +5,7 @@ mod certify;
 mod choice;
 mod connect;
 mod control;
+mod derive;
 mod ensemble;
 mod errata;
 mod file;
@@ -28,6 +29,7 @@ use crate::scalar;
 pub use certify::CertifyArgs;
 pub use connect::ConnectArgs;
 pub use control::ControlArgs;
+pub use derive::{DeriveArgs, DeriveFormat};
 pub use ensemble::EnsembleArgs;
 pub use errata::ErrataArgs;
 pub use file::{BuildArgs, ExportArgs, NewArgs, WatchArgs};
@@ -216,54 +218,12 @@ pub enum Format {
     Json,
 }
 
-/// Format of a derivation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DeriveFormat {
-    /// For people.
-    Text,
-    /// For documents.
-    Latex,
-    /// For programs.
-    Json,
-}
-
 /// `list`
 #[derive(Debug, Args)]
 pub struct ListArgs {
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
-}
-
-/// `derive`
-#[derive(Debug, Args)]
-pub struct DeriveArgs {
-    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
-    pub model: String,
-    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
-    #[arg(long, value_name = "SCENE", default_value = "all")]
-    pub scene: String,
-    /// Print the bracket of two functions of positions, velocities and momenta, such as `x,momentum(x)`, instead.
-    #[arg(
-        long,
-        value_name = "F,G",
-        conflicts_with = "jacobiator",
-        allow_hyphen_values = true
-    )]
-    pub bracket: Option<String>,
-    /// Print the Jacobiator of three functions instead.
-    #[arg(long, value_name = "F,G,H", allow_hyphen_values = true)]
-    pub jacobiator: Option<String>,
-    /// Print the reduction by symmetries instead: locked inertia, momentum map, connection, curvature, reduced equations. Fields are
-    /// written as in claims: `partial(x),partial(y)`.
-    #[arg(long, value_name = "XI,..", conflicts_with_all = ["bracket", "jacobiator"], allow_hyphen_values = true)]
-    pub group: Option<String>,
-    /// Print the maximum principle instead, of a model with a `cost`: H*, optimal inputs, the field of the costate, its jumps at impacts.
-    #[arg(long, conflicts_with_all = ["bracket", "jacobiator", "group"])]
-    pub control: bool,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
-    pub format: DeriveFormat,
 }
 
 /// `check`

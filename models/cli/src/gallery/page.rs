@@ -99,9 +99,9 @@ fn highlights(chapters: &Chapters<'_>) -> String {
             drawn.find(|(plate, _)| std::ptr::eq(plate.panel, panel))
         });
         if let Some((_, Ok(print))) = print {
-            let _ = write!(
+            let _ = writeln!(
                 row,
-                "<a href=\"#{}\">{}<span>{}</span></a>\n",
+                "<a href=\"#{}\">{}<span>{}</span></a>",
                 anchor(drawn),
                 labelled(&print.svg, figure.title),
                 escaped(figure.title)
