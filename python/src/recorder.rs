@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use dalembert::describe::ModeInfo;
 use dalembert_driver::{
-    Contact, Control, Ending, Grid, Impact, Piece, Point, Refusal, Watch, steer,
+    Changes, Contact, Control, Ending, Grid, Impact, Piece, Point, Refusal, Watch, steer,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -451,7 +451,7 @@ fn steered(
     };
     let control = Control {
         inputs: &inputs,
-        period: steering.period,
+        changes: steering.period.map_or(Changes::Everywhere, Changes::Held),
     };
     let (origin, settings) = (&course.origin, &course.settings);
     let ended = steer(

@@ -37,6 +37,7 @@ pub fn bracket(
     functions: &str,
     kind: BracketKind,
 ) -> Result<Report, ReportError> {
+    Asked::check_list(functions, "x, momentum(x)")?;
     let mut asked = Asked::of(source, part, &[format!("involution: {functions}")])?;
     let functions = asked.functions();
     if functions.len() != kind.arity() {

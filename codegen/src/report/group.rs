@@ -17,6 +17,7 @@ use crate::model::Statement;
 /// # Errors
 /// [`ReportError`]: a field that is no symmetry, with the reason; fields that are no group.
 pub fn group(source: &str, part: Option<&str>, fields: &str) -> Result<Report, ReportError> {
+    Asked::check_list(fields, "partial(x), partial(y)")?;
     let claims: Vec<String> = (separated(tokens(fields)?).iter())
         .map(|field| format!("symmetry: {field}"))
         .collect();

@@ -66,6 +66,7 @@ pub fn symmetries(
     fields: &str,
     parameters: &[(&str, f64)],
 ) -> Result<Vec<Symmetry>, ReportError> {
+    Asked::check_list(fields, "partial(x), partial(y)")?;
     tokens(fields)?;
     let written = parts(fields);
     if written.iter().any(String::is_empty) {

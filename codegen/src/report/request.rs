@@ -97,6 +97,20 @@ impl Asked {
         }
     }
 
+    /// Refuses a list that is empty or has other separators than commas. `example` is a right one.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub(super) fn check_list(list: &str, example: &str) -> Result<(), ReportError> {
+        let text = match list.trim() {
+            "" => "nothing is given",
+            list if list.contains(';') => "`;` does not separate what is given",
+            _ => return Ok(()),
+        };
+        let help = format!("write a list with commas: `{example}`");
+        Err(Self::refusal(text, &help))
+    }
+
     /// A refusal of what was asked.
     pub(super) fn refusal(text: impl Into<String>, help: &str) -> ReportError {
         let mut mistakes = Diagnostics::new();

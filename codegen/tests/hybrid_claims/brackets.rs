@@ -197,6 +197,8 @@ fn refusals_name_what_is_missing() {
     };
     for (functions, expected) in [
         ("x", "2 functions are needed, found 1"),
+        (" ", "nothing is given"),
+        ("x; y", "`;` does not separate what is given"),
         ("x, y, z", "unknown name `z`"),
         ("x, x", "`x` twice"),
         ("x, momentum(y) +", "expected"),

@@ -458,6 +458,11 @@ fn groups_are_printed_and_refused_with_the_reason() {
             "[partial(x), partial(phi) - y*partial(x) + x*partial(y)] is no combination of the fields",
         ),
         ("partial(x),", "expected an expression"),
+        ("", "nothing is given"),
+        (
+            "partial(x); partial(y)",
+            "`;` does not separate what is given",
+        ),
         ("dot(x)*partial(x)", "is not a vector field"),
     ] {
         let error = group(&source, None, fields).expect_err(fields).to_string();

@@ -25,6 +25,7 @@ use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert_driver::{Form, Integrator, OffConstraint};
 
+use crate::input_table::Between;
 use crate::scalar;
 pub use certify::CertifyArgs;
 pub use connect::ConnectArgs;
@@ -456,6 +457,13 @@ pub struct SimulateArgs {
     /// Integrator and end of the run.
     #[command(flatten)]
     pub course: CourseArgs,
+    /// Take inputs from a table with a column `t` and columns of inputs, such as that of `control --inputs`. Two rows at one time
+    /// are a jump. Inputs without a column are those of --input; before the first row and after the last one they are held.
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["verify", "certify"])]
+    pub inputs: Option<PathBuf>,
+    /// Inputs between the rows of --inputs.
+    #[arg(long, value_enum, requires = "inputs", default_value_t = Between::Cubic)]
+    pub between: Between,
     /// Certified motion.
     #[command(flatten)]
     pub certify: CertifyArgs,

@@ -1,10 +1,24 @@
 //! Flags of boundary-value problems: components of an end by name, and numbers of impacts.
 
-use crate::error::CliError;
+use crate::error::{CliError, counted};
 use crate::{names, scalar};
 
 /// Largest number of impacts.
 const MOST_IMPACTS: usize = 1000;
+
+/// Reasons of a scan for which its search is not exhaustive, to be appended to others.
+pub fn doubts(unresolved: usize, given_up: usize) -> String {
+    let mut text = String::new();
+    if unresolved > 0 {
+        let intervals = counted(unresolved, "interval");
+        text += &format!("; {intervals} of the scan not resolved");
+    }
+    if given_up > 0 {
+        let starts = counted(given_up, "start");
+        text += &format!("; {starts} given up, whose motions take too many steps");
+    }
+    text
+}
 
 /// The components that a flag gives by name; `None` for those that it does not name. `what` is what they are.
 ///

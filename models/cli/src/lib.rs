@@ -35,6 +35,7 @@ mod error;
 mod exit;
 mod expression;
 pub mod gallery;
+mod input_table;
 mod json;
 mod map;
 mod model_file;

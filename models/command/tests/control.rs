@@ -3,8 +3,11 @@
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
 
-use dalembert_cli::{Exit, Streams};
+mod support;
+
+use dalembert_cli::Exit;
 use serde_json::Value;
+use support::run_on;
 
 /// The ball by its Lagrangian.
 const BALL: &str = "
@@ -65,31 +68,6 @@ const WEIGHTED: &str = "
         field { dot(x) = u; }
         initial { x = 1; until = 1; }
     }";
-
-struct Done {
-    exit: Exit,
-    output: String,
-    errors: String,
-}
-
-/// Runs a command with this standard input.
-fn run_on(input: &str, line: &str) -> Done {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut input.as_bytes(),
-        output: &mut output,
-        errors: &mut errors,
-        terminal: false,
-    };
-    let words = ["dalembert"].into_iter().chain(line.split_whitespace());
-    let exit = dalembert_command::catalogue().run_with(words, &mut streams);
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    Done {
-        exit,
-        output: text(output),
-        errors: text(errors),
-    }
-}
 
 /// The extremals of a document, by cost.
 fn extremals_on(input: &str, line: &str) -> Vec<Value> {
@@ -180,14 +158,14 @@ fn the_extremals_of_a_ball_with_a_free_end_are_the_references() {
         Reference {
             impacts: 0,
             cost: 8.073248407643312,
-            costate: [-1.2420382165605095, -3.1050955414012739],
+            costate: [-1.2420382165605095, -3.105095541401274],
             end: [0.9378980891719745, -2.2372611464968153],
             times: &[],
         },
         Reference {
             impacts: 1,
             cost: 1.9530584410888775,
-            costate: [-4.4000272965428553, -0.5648549392476628],
+            costate: [-4.400027296542856, -0.5648549392476628],
             end: [0.9613233606479138, -2.5084375053044895],
             times: &[0.9659448683239102],
         },
@@ -222,7 +200,7 @@ fn the_extremals_of_a_ball_from_above_are_the_references() {
     let references = [
         Reference {
             impacts: 0,
-            cost: 6.3176751592356688,
+            cost: 6.317675159235669,
             costate: [-1.0987261146496815, -2.7468152866242038],
             end: [0.9450636942675159, -3.1329617834394905],
             times: &[],
@@ -239,7 +217,7 @@ fn the_extremals_of_a_ball_from_above_are_the_references() {
             cost: 1.3016062628651303,
             costate: [2.0192427649036086, 0.8359644832488176],
             end: [0.9107402307191314, 2.2645669951979243],
-            times: &[1.9098725167402616, 4.3595372607081886],
+            times: &[1.9098725167402616, 4.359537260708189],
         },
     ];
     assert_found(&extremals, &references);
@@ -262,13 +240,13 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
             1,
             3.466699139518846,
             [-1.5910544673048883, -2.2267878888070656],
-            &[2.7912878474779200],
+            &[2.79128784747792],
         ),
         reference(
             1,
             3.466699139518846,
-            [-1.6113050297987311, -1.7732121111929344],
-            &[2.2087121525220800],
+            [-1.611305029798731, -1.7732121111929344],
+            &[2.20871215252208],
         ),
         reference(1, 3.468, [-1.632, -2.04], &[2.5]),
     ];
@@ -287,14 +265,14 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
         reference(
             1,
             3.5840520919982643,
-            [-2.0450961656489182, -2.3603703840088969],
+            [-2.045096165648918, -2.3603703840088969],
             &[2.6850457622337503],
         ),
         reference(
             1,
             3.5857331597731605,
-            [-2.1210185139506654, -1.9812855640264530],
-            &[2.2275219100196289],
+            [-2.1210185139506654, -1.981285564026453],
+            &[2.227521910019629],
         ),
     ];
     assert_found(&lossy, &references);
@@ -308,7 +286,7 @@ fn a_lagrangian_and_a_field_have_the_same_extremals() {
     assert_eq!(found.len(), 1);
     assert_near(number(&found[0]["cost"]), 1.9530584410888775, 1e-10);
     let costate = &found[0]["start"]["costate"];
-    assert_near(number(&costate["x"]), -4.4000272965428553, 1e-9);
+    assert_near(number(&costate["x"]), -4.400027296542856, 1e-9);
     assert_near(number(&costate["x_dot"]), 2.0 * -0.5648549392476628, 1e-9);
     let end = &found[0]["end"]["state"];
     assert_near(number(&end["x_dot"]), -2.5084375053044895 / 2.0, 1e-9);

@@ -6,11 +6,10 @@ use std::f64::consts::PI;
 
 use dalembert_cli::Exit;
 use serde_json::Value;
-use support::run_words;
+use support::run_on;
 
 fn run(words: &[&str]) -> (Exit, String) {
-    let words = ["errata"].into_iter().chain(words.iter().copied());
-    let done = run_words("", words);
+    let done = run_on("", &["errata", &words.join(" ")].join(" "));
     assert!(done.errors.is_empty(), "{}", done.errors);
     (done.exit, done.output)
 }

@@ -6,12 +6,13 @@
 mod support;
 
 use dalembert_cli::Exit;
-use support::run_words;
+use support::run_on;
 
 /// The rows of a map of the walker.
 fn rows(flags: &[&str]) -> Vec<Vec<String>> {
     let walk = "map dimensionless_walker --returns 50 --fail theta>pi/2 --csv -";
-    let done = run_words("", walk.split(' ').chain(flags.iter().copied()));
+    let quoted = flags.iter().map(|flag| format!(" '{flag}'"));
+    let done = run_on("", &format!("{walk}{}", quoted.collect::<String>()));
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     done.output
         .lines()

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use dalembert_cli::Exit;
 use serde_json::Value;
-use support::{Done, run_on, run_words};
+use support::{Done, run_on};
 
 /// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section is where the radius is
 /// largest: `r^2` oscillates with the period `pi/w`, and in that time the angle grows by `pi L/sqrt(L^2 + b)`.
@@ -61,7 +61,8 @@ const CART: &str = "
 
 /// Runs a command line given as words, with this standard input.
 fn run(input: &str, words: &[&str]) -> Done {
-    run_words(input, words.iter().copied())
+    let quoted = words.iter().map(|word| format!("'{word}' "));
+    run_on(input, &quoted.collect::<String>())
 }
 
 /// The document of a command line that succeeds.

@@ -63,6 +63,8 @@ pub use model::{
 pub use modulo::{Generator, NoGroup, Symmetries};
 pub use orbit::{Found, Search};
 pub use refusal::{Refusal, Uncertified};
-pub use run::{Contact, Control, Ending, Impact, InputFunction, Piece, Settings, Watch, steer};
+pub use run::{
+    Changes, Contact, Control, Ending, Impact, InputFunction, Piece, Settings, Watch, steer,
+};
 pub use typed::{Model, of_form, of_type};
 pub use variation::{Derivatives, Variable, VariationError, differentiate};

@@ -12,7 +12,7 @@ use crate::control::{Controlled, Task, Unsought};
 use crate::linearisation::{Linearisation, Place, Unlinear};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
-use crate::run::{Ending, Settings, Watch};
+use crate::run::{Control, Ending, Settings, Watch};
 
 /// Velocities or momenta, one per coordinate.
 #[derive(Debug, Clone, PartialEq)]
@@ -180,6 +180,17 @@ pub trait Runs {
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, Refusal>;
+    /// Makes a run with inputs that are functions; see [`steer`](crate::steer). `None` for a model without a form, too.
+    ///
+    /// # Errors
+    /// [`Refusal`] if the run does not start.
+    fn steer(
+        &self,
+        origin: &Origin,
+        settings: &Settings,
+        control: &Control<'_>,
+        watch: &mut dyn Watch,
+    ) -> Option<Result<Ending, Refusal>>;
     /// Makes several runs as [`Runs::simulate`] does, at once and with Taylor series; `looks_inside` is true if watches
     /// evaluate states inside steps.
     fn simulate_abreast(

@@ -25,7 +25,7 @@ use crate::model::{
 };
 use crate::orbit::{ForBranch, ForExponent, ForOrbit, ForReturn, Found, Search, Visit, Work};
 use crate::refusal::Refusal;
-use crate::run::{self, Ending, Settings, Watch, abreast};
+use crate::run::{self, Control, Ending, Settings, Watch, abreast};
 
 /// A system that can be run behind [`AnyModel`]: the traits that `model!` implements for a model with values for its
 /// parameters.
@@ -408,6 +408,25 @@ impl<O: Owner> Runs for Typed<O> {
         in_form!(self, origin, settings, |model, state| run::simulate(
             model, state, settings, watch
         ))
+    }
+
+    fn steer(
+        &self,
+        origin: &Origin,
+        settings: &Settings,
+        control: &Control<'_>,
+        watch: &mut dyn Watch,
+    ) -> Option<Result<Ending, Refusal>> {
+        let values = TaylorField::parameters(&self.owner.system());
+        let form = self.owner.form()?;
+        run::steer(
+            form,
+            Row::as_slice(&values),
+            origin,
+            settings,
+            control,
+            watch,
+        )
     }
 
     fn simulate_abreast(

@@ -11,6 +11,7 @@ use crate::args::SimulateArgs;
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::input_table::{self, InputTable};
 use crate::plot::trace::{Source, Trace};
 use crate::plot::{self, Drawn, Picture, quantity};
 use crate::progress::Progress;
@@ -25,6 +26,8 @@ pub(crate) struct Finished<'a> {
     pub model: &'a dyn AnyModel,
     pub scene: &'a str,
     pub settings: Settings,
+    /// Inputs that change.
+    pub inputs: Option<InputTable>,
     pub record: Record,
     pub ending: Ending,
     /// Its measured error, if requested.
@@ -36,6 +39,8 @@ pub(crate) struct Finished<'a> {
 pub struct Prepared {
     pub settings: Settings,
     pub origin: Origin,
+    /// Inputs that change.
+    pub inputs: Option<InputTable>,
     /// The source of the curve of its picture, if a picture is requested.
     pub source: Option<Source>,
 }
@@ -139,6 +144,7 @@ pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, Cl
     Ok(Prepared {
         settings: run_request::course(model, &args.run, &args.course)?,
         origin: initial_state(model, &args.run.state)?,
+        inputs: input_table::given(args.inputs.as_deref(), args.between, model)?,
         source,
     })
 }
@@ -153,7 +159,10 @@ fn finish<'a>(
 ) -> Result<Finished<'a>, CliError> {
     let (record, ending) = carry_out(model, &prepared, args, keeps, terminal)?;
     let Prepared {
-        settings, origin, ..
+        settings,
+        origin,
+        inputs,
+        ..
     } = prepared;
     let verified = match args.verify {
         true => Some(
@@ -167,6 +176,7 @@ fn finish<'a>(
         model,
         scene: &args.run.model.scene,
         settings,
+        inputs,
         record,
         ending,
         verified,
@@ -180,12 +190,19 @@ fn carry_out(
     Prepared {
         settings,
         origin,
+        inputs,
         source,
     }: &Prepared,
     args: &SimulateArgs,
     keeps: Vec<&mut dyn Keep>,
     terminal: bool,
 ) -> Result<(Record, Ending), CliError> {
+    let simulate = |recorder: &mut Recorder<'_>| match inputs {
+        Some(table) => table.simulate(model, origin, settings, recorder),
+        None => model
+            .simulate(origin, settings, recorder)
+            .map_err(|refusal| CliError::refused(model, &refusal)),
+    };
     let sampled = !keeps.is_empty();
     let progress = || Progress::new(settings.until, terminal);
     let mut grid = Grid {
@@ -199,10 +216,7 @@ fn carry_out(
             keeps: Vec::new(),
         };
         let mut recorder = Recorder::new(nothing, progress());
-        grid.end = model
-            .simulate(origin, settings, &mut recorder)
-            .map_err(|refusal| CliError::refused(model, &refusal))?
-            .t;
+        grid.end = simulate(&mut recorder)?.t;
     }
     if grid.end == 0.0 {
         grid.count = grid.count.min(1);
@@ -213,9 +227,7 @@ fn carry_out(
         keeps,
     };
     let mut recorder = Recorder::new(wanted, progress());
-    let ending = model
-        .simulate(origin, settings, &mut recorder)
-        .map_err(|refusal| CliError::refused(model, &refusal))?;
+    let ending = simulate(&mut recorder)?;
     let record = recorder.finish(ending.t, &ending.last)?;
     Ok((record, ending))
 }

@@ -10,6 +10,7 @@ use super::legend::{Item, Symbol};
 use super::plane::{self, Plane, Words};
 use super::quantity::{Quantity, of_state};
 use super::style::{self, PALETTE};
+use crate::symbols;
 
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 720.0;
@@ -65,7 +66,7 @@ impl Ordinate {
         }
     }
 
-    fn name(self, description: &Description) -> String {
+    fn label(self, description: &Description) -> String {
         match self {
             Self::Period => "period".to_owned(),
             Self::Before(quantity) => quantity.label(description),
@@ -116,7 +117,10 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
     let words = Words {
         title: chart.title,
         subtitle: chart.subtitle,
-        axes: [chart.parameter, &chart.ordinate.name(chart.description)],
+        axes: [
+            &symbols::text(chart.parameter),
+            &chart.ordinate.label(chart.description),
+        ],
         head: &chart.legend(),
     };
     plane.sheet(

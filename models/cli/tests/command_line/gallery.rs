@@ -38,6 +38,8 @@ fn figures() -> Vec<Figure> {
         model: "oscillator",
         name: "lissajous",
         title: "Two springs",
+        chapter: "Springs",
+        highlight: Some(0),
         caption: "Where k < 5 & more.".to_owned(),
         source: Some("A book, Fig. 1"),
         panels: vec![

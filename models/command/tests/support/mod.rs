@@ -12,13 +12,8 @@ pub struct Done {
     pub errors: String,
 }
 
-/// Runs a command line, its words separated by blanks, with this standard input.
+/// Runs a command line with this standard input. Words are separated by blanks; single quotes hold a word with blanks together.
 pub fn run_on(input: &str, line: &str) -> Done {
-    run_words(input, line.split_whitespace())
-}
-
-/// Runs the command of these words, with this standard input.
-pub fn run_words<'a>(input: &str, words: impl Iterator<Item = &'a str>) -> Done {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {
         input: &mut input.as_bytes(),
@@ -26,7 +21,7 @@ pub fn run_words<'a>(input: &str, words: impl Iterator<Item = &'a str>) -> Done 
         errors: &mut errors,
         terminal: false,
     };
-    let words = ["dalembert"].into_iter().chain(words);
+    let words = ["dalembert".to_owned()].into_iter().chain(words(line));
     let exit = dalembert_command::catalogue().run_with(words, &mut streams);
     let text = |bytes| String::from_utf8(bytes).expect("text");
     Done {
@@ -34,4 +29,15 @@ pub fn run_words<'a>(input: &str, words: impl Iterator<Item = &'a str>) -> Done 
         output: text(output),
         errors: text(errors),
     }
+}
+
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    for (place, part) in line.split('\'').enumerate() {
+        match place % 2 {
+            0 => words.extend(part.split_whitespace().map(str::to_owned)),
+            _ => words.push(part.to_owned()),
+        }
+    }
+    words
 }

@@ -7,6 +7,8 @@ pub(crate) enum Course {
     Reached(Vec<usize>),
     /// It has more impacts than allowed.
     Beyond,
+    /// It takes too many steps to be followed.
+    GivenUp,
     /// It ends early for another reason, or begins with an impact.
     Lost,
 }

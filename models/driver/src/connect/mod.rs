@@ -141,6 +141,8 @@ pub struct Connected {
     pub runs: u64,
     /// Intervals of a scan with a change that was not resolved.
     pub unresolved: usize,
+    /// Number of starts whose motion took too many steps to be followed.
+    pub given_up: usize,
 }
 
 impl Plan {
@@ -262,6 +264,7 @@ impl VariationalVisitor for Joiner<'_, '_> {
                 is_bounded: found.is_bounded,
                 runs: shooter.runs(),
                 unresolved: found.unresolved,
+                given_up: found.given_up,
             }
         });
         Ok(connected)

@@ -51,6 +51,21 @@ pub(super) struct Ray {
     pub is_bounded: bool,
 }
 
+impl Ray {
+    /// Number of starts whose motion was given up.
+    pub fn given_up(&self) -> usize {
+        count(&self.samples)
+    }
+}
+
+/// Number of starts whose motion was given up.
+fn count(samples: &[Sample]) -> usize {
+    let given_up = samples
+        .iter()
+        .filter(|it| it.shot.course == Course::GivenUp);
+    given_up.count()
+}
+
 /// Scans the ray of a direction; `units` are the values of unknowns at speed 1.
 pub(super) fn ray(
     aim: &mut dyn Aim,
@@ -72,7 +87,7 @@ pub(super) fn ray(
     let mut speed = speeds.first;
     let mut doublings = Doublings::default();
     let begun = scan.aim.steps();
-    while speed < speeds.most && !ray.is_bounded {
+    while speed < speeds.most {
         let is_long = scan.aim.steps() - begun > density.steps;
         if speeds.is_open && (doublings.are_over() || is_long) {
             break;
@@ -87,7 +102,11 @@ pub(super) fn ray(
         }
         let (before, made) = ray.samples.split_at(begin);
         let reaches = |it: &Sample| matches!(it.shot.course, Course::Reached(_));
-        ray.is_bounded = !made.iter().any(reaches);
+        let is_last = !made.iter().any(reaches);
+        ray.is_bounded = is_last && count(made) == 0;
+        if is_last {
+            break;
+        }
         doublings.note(before, made);
         speed *= 2.0;
     }
@@ -171,6 +190,6 @@ pub(super) fn windows(samples: &[Sample], least: usize) -> impl Iterator<Item = 
     let stretches = samples.chunk_by(|left, right| left.shot.course == right.shot.course);
     stretches.filter(move |stretch| match &stretch[0].shot.course {
         Course::Reached(surfaces) => surfaces.len() >= least,
-        Course::Beyond | Course::Lost => false,
+        Course::Beyond | Course::GivenUp | Course::Lost => false,
     })
 }

@@ -65,6 +65,8 @@ pub(crate) struct Found {
     pub kinetic: f64,
     pub is_bounded: bool,
     pub unresolved: usize,
+    /// Number of starts whose motion was given up.
+    pub given_up: usize,
 }
 
 /// A start from which Newton's method goes on.
@@ -159,6 +161,7 @@ impl<'a> Search<'a> {
         let ray = scan::ray(self.aim, direction, &self.units.unknowns, density, speeds);
         self.found.directions += 1;
         self.found.is_bounded &= ray.is_bounded;
+        self.found.given_up += ray.given_up();
         let last = ray.samples.last().map_or(0.0, |sample| sample.speed);
         self.found.kinetic = self.found.kinetic.max(0.5 * last * last);
         ray
@@ -202,7 +205,7 @@ impl<'a> Search<'a> {
         let meets = |it: &&Sample| match &it.shot.course {
             Course::Reached(surfaces) => !surfaces.is_empty(),
             Course::Beyond => true,
-            Course::Lost => false,
+            Course::GivenUp | Course::Lost => false,
         };
         let fastest = ray.samples.iter().rev().find(meets);
         let fastest = fastest.map_or(self.speeds().first, |it| it.speed);
@@ -316,7 +319,7 @@ impl<'a> Search<'a> {
     fn pursue(&mut self, mut candidates: Vec<Candidate>) {
         let key = |it: &Candidate| match &it.course {
             Course::Reached(surfaces) => (surfaces.len(), surfaces.clone()),
-            Course::Beyond | Course::Lost => (usize::MAX, Vec::new()),
+            Course::Beyond | Course::GivenUp | Course::Lost => (usize::MAX, Vec::new()),
         };
         candidates.sort_by(|left, right| {
             let courses = key(left).cmp(&key(right));

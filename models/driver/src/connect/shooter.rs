@@ -255,6 +255,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             Some(Outcome::Done) => Course::Reached(counted.by_ref().map(|hit| hit.1).collect()),
             // Accumulating impacts are too many too.
             Some(Outcome::Zeno { .. }) => Course::Beyond,
+            Some(Outcome::StepBudget) => Course::GivenUp,
             _ => Course::Lost,
         }
     }

@@ -102,6 +102,8 @@ pub struct Controlled {
     pub is_bounded: bool,
     /// Intervals of a scan with a change that was not resolved.
     pub unresolved: usize,
+    /// Number of starts whose motion took too many steps to be followed.
+    pub given_up: usize,
 }
 
 /// Reasons for which no extremals are sought.
@@ -165,6 +167,7 @@ impl VariationalVisitor for Controller<'_, '_> {
                 runs: shooter.runs(),
                 is_bounded: found.is_bounded,
                 unresolved: found.unresolved,
+                given_up: found.given_up,
             }
         }))
     }

@@ -267,6 +267,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             _ if hits.iter().any(|(t, _)| is_at_end(*t)) => Course::Lost,
             Some(Outcome::Done | Outcome::ImpactBudget) if is_beyond => Course::Beyond,
             Some(Outcome::Zeno { .. }) => Course::Beyond,
+            Some(Outcome::StepBudget) => Course::GivenUp,
             Some(Outcome::Done) if ended.is_some_and(|run| self.is_valid(time, &run.state)) => {
                 Course::Reached(hits.iter().map(|hit| hit.1).collect())
             }

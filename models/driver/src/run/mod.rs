@@ -32,7 +32,7 @@ use crate::refusal::Refusal;
 use crate::typed::Model;
 pub(crate) use abreast::abreast;
 use energy::Balance;
-pub use steered::{Control, InputFunction, steer};
+pub use steered::{Changes, Control, InputFunction, steer};
 
 /// Settings of a run.
 #[derive(Debug, Clone)]

@@ -43,8 +43,20 @@ pub type InputFunction<'c> = dyn Fn(f64, &[f64], &[f64]) -> Vec<f64> + 'c;
 pub struct Control<'c> {
     /// Values of all inputs, in order. Velocities of a first-order system are those without inputs.
     pub inputs: &'c InputFunction<'c>,
-    /// The time for which values are held; without it they are taken wherever the motion is evaluated.
-    pub period: Option<f64>,
+    /// The times at which they change.
+    pub changes: Changes<'c>,
+}
+
+/// Times at which inputs change.
+#[derive(Debug, Clone, Copy)]
+pub enum Changes<'c> {
+    /// Inputs are taken wherever the motion is evaluated.
+    Everywhere,
+    /// They are taken at multiples of this period, and held between.
+    Held(f64),
+    /// They are taken wherever the motion is evaluated, from functions of which each is smooth up to the next of these times.
+    /// A step ends at such a time. The cell has the number of times that have passed.
+    Pieces(&'c [f64], &'c Cell<usize>),
 }
 
 /// Makes a run with these inputs, as [`Runs::simulate`](crate::Runs::simulate) does; `None` for a form that is too large, and for
@@ -91,18 +103,19 @@ pub fn steer(
     };
     let held = Cell::new(Inputs::all(0, 0.0));
     let kept = |_: f64, _: &State<'_>| held.get();
-    let clock = control.period.map(|period| Clock {
-        period,
-        next: 1,
+    let clock = Clock {
+        changes: control.changes,
+        next: 0,
         due: None,
         held: &held,
         taken: &taken,
-    });
+    };
+    let clock = (!matches!(control.changes, Changes::Everywhere)).then_some(clock);
     let steered = Steered {
         system,
-        inputs: match clock {
-            Some(_) => &kept as &dyn Fn(f64, &State<'_>) -> Inputs,
-            None => &taken,
+        inputs: match control.changes {
+            Changes::Held(_) => &kept as &dyn Fn(f64, &State<'_>) -> Inputs,
+            Changes::Everywhere | Changes::Pieces(..) => &taken,
         },
     };
     run_chosen(&steered, state, settings, clock, watch)
@@ -205,16 +218,36 @@ where
     }
 }
 
-/// Takes the inputs at multiples of a period, where it ends the step.
+/// Changes the inputs at given times, where it ends the step.
 #[derive(Clone, Copy)]
 struct Clock<'c, 'f> {
-    period: f64,
-    /// The number of the next period.
-    next: u64,
-    /// The fraction of the present step at which it begins.
+    changes: Changes<'c>,
+    /// Number of changes that have passed.
+    next: usize,
+    /// The fraction of the present step at which the next one comes.
     due: Option<f64>,
     held: &'c Cell<Inputs>,
     taken: &'c dyn Fn(f64, &State<'f>) -> Inputs,
+}
+
+impl<'f> Clock<'_, 'f> {
+    /// The time of the next change.
+    fn time(&self) -> f64 {
+        match self.changes {
+            Changes::Everywhere => f64::INFINITY,
+            Changes::Held(period) => (self.next + 1) as f64 * period,
+            Changes::Pieces(times, _) => times.get(self.next).copied().unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// Changes the inputs.
+    fn change(&self, t: f64, state: &State<'f>) {
+        match self.changes {
+            Changes::Everywhere => {}
+            Changes::Held(_) => self.held.set((self.taken)(t, state)),
+            Changes::Pieces(_, passed) => passed.set(self.next),
+        }
+    }
 }
 
 impl<'f, 'c> Effect<Driven<'f, 'c>> for Clock<'_, 'f> {
@@ -225,7 +258,10 @@ impl<'f, 'c> Effect<Driven<'f, 'c>> for Clock<'_, 'f> {
         now: &mut Moment<'_, Driven<'f, 'c>>,
         _: &mut O,
     ) -> Result<(), Outcome> {
-        self.held.set((self.taken)(now.t, now.state));
+        if let Changes::Pieces(times, _) = self.changes {
+            self.next = times.partition_point(|time| *time <= now.t);
+        }
+        self.change(now.t, now.state);
         Ok(())
     }
 
@@ -233,7 +269,7 @@ impl<'f, 'c> Effect<Driven<'f, 'c>> for Clock<'_, 'f> {
         &mut self,
         step: &mut StepView<'_, Driven<'f, 'c>, Step>,
     ) -> Result<Option<f64>, Outcome> {
-        let time = self.next as f64 * self.period;
+        let time = self.time();
         let theta = ((time - step.t_start()) / step.length()).max(f64::EPSILON);
         self.due = (time <= step.t_end()).then_some(theta.min(1.0));
         Ok(self.due)
@@ -247,7 +283,7 @@ impl<'f, 'c> Effect<Driven<'f, 'c>> for Clock<'_, 'f> {
     ) -> Result<(), Outcome> {
         if self.due.take() == Some(theta) {
             self.next += 1;
-            self.held.set((self.taken)(now.t, now.state));
+            self.change(now.t, now.state);
         }
         Ok(())
     }

@@ -40,6 +40,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
         "kinetic_energy": number(connected.kinetic),
         "bounded": connected.is_bounded,
         "unresolved": connected.unresolved,
+        "given_up": connected.given_up,
         "exhaustive": false,
     });
     document.field("search", search)?;

@@ -6,7 +6,7 @@ use dalembert::describe::Description;
 use dalembert_driver::{Connection, Point};
 
 use super::Finished;
-use crate::{error, names};
+use crate::{ends, error, names};
 
 /// Writes the summary.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -93,14 +93,8 @@ fn doubt(finished: &Finished<'_>) -> String {
         true => "faster starts have too many impacts or no motion to the end",
         false => "faster starts were not tried (--energy)",
     };
-    let unresolved = match connected.unresolved {
-        0 => String::new(),
-        count => format!(
-            "; {} of the scan not resolved",
-            error::counted(count, "interval")
-        ),
-    };
-    format!("a scan samples starts, so motions may be missed; {faster}{unresolved}")
+    let doubts = ends::doubts(connected.unresolved, connected.given_up);
+    format!("a scan samples starts, so motions may be missed; {faster}{doubts}")
 }
 
 fn write_motion(

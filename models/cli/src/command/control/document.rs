@@ -36,6 +36,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
         "runs": controlled.runs,
         "bounded": controlled.is_bounded,
         "unresolved": controlled.unresolved,
+        "given_up": controlled.given_up,
         "exhaustive": false,
     });
     document.field("search", search)?;

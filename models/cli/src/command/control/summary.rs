@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use dalembert_driver::{Extremal, SecondOrder};
 
 use super::Finished;
-use crate::{error, names};
+use crate::{ends, error, names};
 
 /// Writes the summary.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -77,14 +77,9 @@ pub(super) fn counted(finished: &Finished<'_>) -> String {
 
 /// Reasons for which the search is not exhaustive.
 fn doubt(finished: &Finished<'_>) -> String {
-    let unresolved = match finished.controlled.unresolved {
-        0 => String::new(),
-        count => format!(
-            "; {} of the scan not resolved",
-            error::counted(count, "interval")
-        ),
-    };
-    format!("a scan samples costates, so extremals may be missed{unresolved}")
+    let controlled = &finished.controlled;
+    let doubts = ends::doubts(controlled.unresolved, controlled.given_up);
+    format!("a scan samples costates, so extremals may be missed{doubts}")
 }
 
 /// The second-order test: its word, and what it says.

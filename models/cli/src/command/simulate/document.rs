@@ -84,10 +84,14 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
     document.field("scene", *scene)?;
     document.field("parameters", named(names, &values))?;
     if !model.inputs().is_empty() {
-        let held: Vec<f64> = (0..model.inputs().len())
-            .map(|index| model.parameter(values.len() + index))
-            .collect();
-        document.field("inputs", named(model.inputs().iter().copied(), &held))?;
+        let table = finished.inputs.as_ref();
+        let is_held = |index: &usize| table.is_none_or(|table| !table.has(*index));
+        let held: Vec<usize> = (0..model.inputs().len()).filter(is_held).collect();
+        let names = held.iter().map(|&index| model.inputs()[index]);
+        let held = held
+            .iter()
+            .map(|index| model.parameter(values.len() + index));
+        document.field("inputs", named(names, &held.collect::<Vec<f64>>()))?;
     }
     document.field("form", settings.form.name())?;
     document.field("integrator", settings.integrator.name())?;
