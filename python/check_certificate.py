@@ -198,7 +198,7 @@ def asinh(x):
     return -asinh(-x) if x < 0 else ln(x + sqrt(x * x + 1))
 
 
-FUNCTIONS = {own.__name__: own for own in (
+FUNCTIONS = {item.__name__: item for item in (
     sin, cos, tan, asin, acos, atan, atan2, sqrt, ln, exp, sinh, cosh, tanh, asinh, abs)}
 
 
@@ -333,7 +333,7 @@ class Names:
             numerator, denominator = rational(tree[2])
             return f"P({self.code(tree[1])},{numerator},{denominator})"
         if kind == "call":
-            return f"{tree[1]}({','.join(self.code(own) for own in tree[2])})"
+            return f"{tree[1]}({','.join(self.code(item) for item in tree[2])})"
         return f"({self.code(tree[1])}{kind}{self.code(tree[2])})"
 
 
@@ -358,14 +358,14 @@ def eliminated(rows, columns):
         for i, row in enumerate(rows):
             if i != done and row[column] != 0:
                 factor = row[column]
-                rows[i] = [own - factor * other for own, other in zip(row, rows[done])]
+                rows[i] = [item - factor * other for item, other in zip(row, rows[done])]
         places.append(column)
         done += 1
     return rows, places, determinant
 
 
 def solve(matrix, right):
-    rows, places, _ = eliminated([row + [own] for row, own in zip(matrix, right)], len(matrix))
+    rows, places, _ = eliminated([row + [item] for row, item in zip(matrix, right)], len(matrix))
     if len(places) < len(matrix):
         raise Unsuitable("a singular matrix")
     return [row[-1] for row in rows]
@@ -380,7 +380,7 @@ def dot(a, b):
 
 
 def moved(point, direction, h):
-    return [own + h * by for own, by in zip(point, direction)]
+    return [item + h * by for item, by in zip(point, direction)]
 
 
 # The motion ------------------------------------------------------------------------------------------------------------
@@ -389,24 +389,24 @@ class Model:
     """A declaration, and what follows from it. A state is a list `[t, q.., v.., parameters..]`."""
 
     def __init__(self, content):
-        self.q = [own["name"] for own in content["coordinates"]]
+        self.q = [item["name"] for item in content["coordinates"]]
         self.v = [f"dot({name})" for name in self.q]
         self.n = len(self.q)
         self.coordinates, self.parameters = content["coordinates"], content["parameters"]
-        names = ["t", *self.q, *self.v, *(own["name"] for own in self.parameters)]
+        names = ["t", *self.q, *self.v, *(item["name"] for item in self.parameters)]
         self.names = Names(names)
         extended = Names([*names, "energy", *(f"momentum({name})" for name in self.q)])
         self.compile_claimed = extended.compile
         motion = content["motion"]
-        compile_all = lambda texts: [self.names.compile(own) for own in texts]
+        compile_all = lambda texts: [self.names.compile(item) for item in texts]
         self.rates = compile_all(motion["rates"]) if "rates" in motion else None
         if self.rates is None:
             self.metric = [compile_all(row) for row in motion["metric"]]
             self.linear = compile_all(motion["linear"])
             self.potential = self.names.compile(motion["potential"])
-            self.forces = [compile_all(own) for own in motion["forces"]]
-        self.constraints = [self.constraint(own) for own in content["constraints"]]
-        self.is_nonlinear = any(own["nonlinear"] is not None for own in content["constraints"])
+            self.forces = [compile_all(item) for item in motion["forces"]]
+        self.constraints = [self.constraint(item) for item in content["constraints"]]
+        self.is_nonlinear = any(item["nonlinear"] is not None for item in content["constraints"])
         self.surfaces = content["surfaces"]
         self.density = content["density"]
         self.parts = {}
@@ -416,7 +416,7 @@ class Model:
         """The components of a form and its affine part, or nothing and a function of the state."""
         if entry["nonlinear"] is not None:
             return None, self.names.compile(entry["nonlinear"])
-        form = [self.names.compile(own) for own in entry["form"]]
+        form = [self.names.compile(item) for item in entry["form"]]
         return form, self.names.compile(entry["affine"])
 
     # Places of a state.
@@ -448,11 +448,11 @@ class Model:
 
     # Quantities at a state.
     def metric_at(self, state):
-        return [[own(state) for own in row] for row in self.metric]
+        return [[item(state) for item in row] for row in self.metric]
 
     def momentum_at(self, state):
         v, g = self.velocities(state), self.metric_at(state)
-        return [dot(row, v) + own(state) for row, own in zip(g, self.linear)]
+        return [dot(row, v) + item(state) for row, item in zip(g, self.linear)]
 
     def kinetic_at(self, state):
         v, g = self.velocities(state), self.metric_at(state)
@@ -462,24 +462,24 @@ class Model:
         return self.kinetic_at(state) + self.potential(state)
 
     def lagrangian_at(self, state):
-        linear = dot([own(state) for own in self.linear], self.velocities(state))
+        linear = dot([item(state) for item in self.linear], self.velocities(state))
         return self.kinetic_at(state) + linear - self.potential(state)
 
     def forms_at(self, state):
-        return [self.form_at(state, *own) for own in self.constraints]
+        return [self.form_at(state, *item) for item in self.constraints]
 
     def form_at(self, state, form, phi):
         """The form, or the derivative of the function by the velocities (Chetaev's rule)."""
         if form is None:
             return [self.derivative(phi, state, self.along(state, 0, None, self.axis(i))) for i in range(self.n)]
-        return [own(state) for own in form]
+        return [item(state) for item in form]
 
     def affine_at(self, state):
         return [affine(state) for _, affine in self.constraints]
 
     def residuals_at(self, state):
         v = self.velocities(state)
-        linear = lambda form: Decimal(0) if form is None else dot([own(state) for own in form], v)
+        linear = lambda form: Decimal(0) if form is None else dot([item(state) for item in form], v)
         return [linear(form) + rest(state) for form, rest in self.constraints]
 
     def acceleration(self, state):
@@ -490,18 +490,18 @@ class Model:
         rates = self.derivative(self.momentum_at, state, drift)
         right = [slope - rate for slope, rate in zip(slopes, rates)]
         for force in self.forces:
-            right = [own + part(state) for own, part in zip(right, force)]
+            right = [item + part(state) for item, part in zip(right, force)]
         forms, m = self.forms_at(state), len(self.constraints)
         bends = self.derivative(self.residuals_at, state, drift) if m else []
         g = self.metric_at(state)
         matrix = [[*row, *(-forms[a][i] for a in range(m))] for i, row in enumerate(g)]
         matrix += [[*form, *([Decimal(0)] * m)] for form in forms]
         del zeros
-        return solve(matrix, right + [-own for own in bends])[:self.n]
+        return solve(matrix, right + [-item for item in bends])[:self.n]
 
     def direction_of_motion(self, state):
         if self.rates is not None:
-            rates = [own(state) for own in self.rates]
+            rates = [item(state) for item in self.rates]
             return self.along(state, 1, rates)
         return self.along(state, 1, self.velocities(state), self.acceleration(state))
 
@@ -526,7 +526,7 @@ class Model:
     def state_of(self, other, state, q, v):
         """A state of this mode, with the time and the parameters of a state of another one."""
         places = other.names.places
-        rest = [state[places[own["name"]]] for own in self.parameters]
+        rest = [state[places[item["name"]]] for item in self.parameters]
         return [state[0], *q, *v, *rest]
 
     # Random states.
@@ -536,24 +536,24 @@ class Model:
     def random_state(self, source, given):
         """A random state on the constraints, with the given values where there are some."""
         state = [self.number(source, Decimal(-1), Decimal(1))]
-        for own in self.coordinates:
+        for item in self.coordinates:
             low, high = Decimal("-1.6"), Decimal("1.6")
-            if own["kind"] == "angle":
+            if item["kind"] == "angle":
                 low, high = Decimal(-3), Decimal(3)
-            if own["kind"] == "interval":
-                low, high = (constant(own[end]) for end in ("low", "high"))
+            if item["kind"] == "interval":
+                low, high = (constant(item[end]) for end in ("low", "high"))
                 if high - low > 8:
                     middle = min(max(Decimal(1), low + 1), high - 1)
                     low, high = max(low, middle - 4), min(high, middle + 4)
             state.append(self.number(source, low, high))
         state += [self.number(source, Decimal(-1), Decimal(1)) for _ in range(self.n)]
-        state += [self.parameter(source, own) for own in self.parameters]
+        state += [self.parameter(source, item) for item in self.parameters]
         for name, value in given.items():
             state[self.names.places[name]] = Decimal(repr(value))
         return self.on_constraints(state)
 
-    def parameter(self, source, own):
-        assumption, default = own["assumption"], own["default"]
+    def parameter(self, source, item):
+        assumption, default = item["assumption"], item["default"]
         if default is not None and source.random() < 0.5:
             return constant(default)
         if isinstance(assumption, list):
@@ -569,12 +569,12 @@ class Model:
         for _ in range(40 if self.is_nonlinear else 1):
             forms, residuals = self.forms_at(state), self.residuals_at(state)
             square = [[dot(a, b) for b in forms] for a in forms]
-            by = solve(square, [-own for own in residuals])
+            by = solve(square, [-item for item in residuals])
             v = self.velocities(state)
             for factor, form in zip(by, forms):
                 v = moved(v, form, factor)
             state = self.with_velocities(state, v)
-        if self.is_nonlinear and not all(is_small(own, 1, 40) for own in self.residuals_at(state)):
+        if self.is_nonlinear and not all(is_small(item, 1, 40) for item in self.residuals_at(state)):
             raise Unsuitable("the constraints were not reached")
         return state
 
@@ -583,7 +583,7 @@ class Model:
         """The places of dependent velocities that are safe here."""
         if not self.constraints:
             return []
-        rows, chosen = [list(own) for own in self.forms_at(state)], []
+        rows, chosen = [list(item) for item in self.forms_at(state)], []
         for a in range(len(rows)):
             best = max((j for j in range(self.n) if j not in chosen), key=lambda j: abs(rows[a][j]))
             if abs(rows[a][best]) < Decimal("1e-6"):
@@ -603,7 +603,7 @@ class Model:
         if dependent:
             forms, affine = self.forms_at(state), self.affine_at(state)
             matrix = [[form[j] for j in dependent] for form in forms]
-            right = [-(dot(form, v) + own) for form, own in zip(forms, affine)]
+            right = [-(dot(form, v) + item) for form, item in zip(forms, affine)]
             for place, value in zip(dependent, solve(matrix, right)):
                 v[place] = value
         return self.with_velocities(state, v)
@@ -619,7 +619,7 @@ class Model:
         whole = lambda s: density(s) * self.weight(s, dependent)
 
         def flux(i):
-            return lambda s: (lambda own: whole(own) * self.velocities(own)[i])(self.completed(s, u, dependent))
+            return lambda s: (lambda item: whole(item) * self.velocities(item)[i])(self.completed(s, u, dependent))
         total = self.derivative(lambda s: whole(self.completed(s, u, dependent)), base, self.along(base, 1))
         for i in range(self.n):
             total += self.derivative(flux(i), base, self.along(base, 0, self.axis(i)))
@@ -627,7 +627,7 @@ class Model:
         for k, place in enumerate(independent):
             ends = []
             for sign in (1, -1):
-                shifted = [own + (sign * h if j == k else 0) for j, own in enumerate(u)]
+                shifted = [item + (sign * h if j == k else 0) for j, item in enumerate(u)]
                 end = self.completed(base, shifted, dependent)
                 ends.append(whole(end) * self.acceleration(end)[place])
             total += (ends[0] - ends[1]) / (2 * h)
@@ -668,14 +668,14 @@ def enclosure(tree, box):
         return times(enclosure(tree[1], box), reciprocal(enclosure(tree[2], box)))
     if kind == "^":
         return raised(enclosure(tree[1], box), *rational(tree[2]))
-    return called(tree[1], [enclosure(own, box) for own in tree[2]])
+    return called(tree[1], [enclosure(item, box) for item in tree[2]])
 
 
 def times(x, y):
     zero = Decimal(0)
     product = lambda context, a, b: zero if a == 0 or b == 0 else context.multiply(a, b)
     pairs = [(a, b) for a in x for b in y]
-    return min(product(DOWN, *own) for own in pairs), max(product(UP, *own) for own in pairs)
+    return min(product(DOWN, *item) for item in pairs), max(product(UP, *item) for item in pairs)
 
 
 def reciprocal(x):
@@ -749,7 +749,7 @@ def is_exponential(tree):
         return Decimal(tree[1]) != 0
     if kind == "call":
         return tree[1] in ("exp", "cosh")
-    return kind in ("neg", "*", "/", "^") and all(is_exponential(own) for own in tree[1:3] if kind != "^" or own is tree[1])
+    return kind in ("neg", "*", "/", "^") and all(is_exponential(item) for item in tree[1:3] if kind != "^" or item is tree[1])
 
 
 def excludes_zero(tree, box, depth):
@@ -761,7 +761,7 @@ def excludes_zero(tree, box, depth):
         return True
     if depth == 0:
         return False
-    name = max(box, key=lambda own: box[own][1] - box[own][0])
+    name = max(box, key=lambda item: box[item][1] - box[item][0])
     low, high = box[name]
     if high == low:
         return False
@@ -807,7 +807,7 @@ def check_conserved(model, claim, source):
             return model.derivative(quantity, state, model.direction_of_motion(state)), quantity(state)
         changes = states(model, source, rate, count, at)
     is_kept = all(is_small(change, size) for change, size in changes)
-    return is_kept == claim["holds"], f"changes by {', '.join(f'{float(own):.1e}' for own, _ in changes)}"
+    return is_kept == claim["holds"], f"changes by {', '.join(f'{float(item):.1e}' for item, _ in changes)}"
 
 
 def across(model, surface, text, state):
@@ -845,15 +845,15 @@ def arrived(model, surface, state):
 
 def rate_of(model, gap, slope, state):
     """The rate of a gap along the motion."""
-    velocities = model.velocities(state) if model.rates is None else [own(state) for own in model.rates]
+    velocities = model.velocities(state) if model.rates is None else [item(state) for item in model.rates]
     return dot(slope, velocities) + model.derivative(gap, state, model.along(state, 1))
 
 
 def counts(model, surface, state):
     """Whether a surface counts at a state: by its own conditions, and where none of the lists of other surfaces holds."""
     value = lambda text: model.names.compile(text)(state)
-    is_excluded = any(all(value(own) >= 0 for own in others) for others in surface["excluded"])
-    return all(value(own) > 0 for own in surface["when"]) and not is_excluded
+    is_excluded = any(all(value(item) >= 0 for item in others) for others in surface["excluded"])
+    return all(value(item) > 0 for item in surface["when"]) and not is_excluded
 
 
 def landed(model, surface, state, slope, rate):
@@ -863,7 +863,7 @@ def landed(model, surface, state, slope, rate):
         return passed(model, model.mode(transition["enters"]), transition, state, slope, rate)
     if surface["reset"] is not None:
         count = model.n if model.rates is not None else 2 * model.n
-        after = [model.names.compile(own)(state) for own in surface["reset"][:count]]
+        after = [model.names.compile(item)(state) for item in surface["reset"][:count]]
         return model, [state[0], *after, *state[1 + count:]]
     if model.rates is not None:
         raise NotChecked("the law of a first-order system is a reset")
@@ -874,7 +874,7 @@ def passed(model, entered, transition, state, slope, rate):
     """The state behind a transition: as declared, or as mechanics continues the motion."""
     declared = transition["state"]
     if declared is not None:
-        values = {name: [model.names.compile(own)(state) for own in declared[name]] for name in ("q", "qdot")}
+        values = {name: [model.names.compile(item)(state) for item in declared[name]] for name in ("q", "qdot")}
         velocities = values["qdot"] or [Decimal(0)] * entered.n
         return entered, entered.state_of(model, state, values["q"], velocities)
     after = entered.state_of(model, state, model.positions(state), model.velocities(state))
@@ -897,7 +897,7 @@ def nearest(model, state):
     g, forms = model.metric_at(state), model.forms_at(state)
     matrix = [[*row, *(forms[a][i] for a in range(m))] for i, row in enumerate(g)]
     matrix += [[*form, *([Decimal(0)] * m)] for form in forms]
-    step = solve(matrix, [*([Decimal(0)] * model.n), *(-own for own in model.residuals_at(state))])
+    step = solve(matrix, [*([Decimal(0)] * model.n), *(-item for item in model.residuals_at(state))])
     return model.with_velocities(state, moved(model.velocities(state), step[:model.n], 1))
 
 
@@ -906,7 +906,7 @@ def refracted(model, entered, state, slope, rate):
     momentum, normal = model.momentum_at(state), projected_normal(model, slope, state)
     push = [dot(row, normal) for row in model.metric_at(state)]
     after = entered.state_of(model, state, model.positions(state), model.velocities(state))
-    g, linear = entered.metric_at(after), [own(after) for own in entered.linear]
+    g, linear = entered.metric_at(after), [item(after) for item in entered.linear]
     moving = rate - dot(slope, model.velocities(state))
 
     def excess(c):
@@ -965,7 +965,7 @@ class Crossing:
         entered, self.after = landed(model, surface, self.before, slope, self.rate)
         self.models = (model, entered)
         ends = zip(self.models, (self.before, self.after))
-        self.dependent = [[] if mode.rates else mode.dependent(own) for mode, own in ends]
+        self.dependent = [[] if mode.rates else mode.dependent(item) for mode, item in ends]
         size = len(self.coordinates(self.before, 0))
         carried = [self.derivative(i) for i in range(size)]
         incoming, outgoing = self.motion(self.before, 0), self.motion(self.after, 1)
@@ -975,7 +975,7 @@ class Crossing:
         self.columns = []
         for i, column in enumerate(carried):
             share = model.derivative(gap, self.before, self.direction(i)) / self.rate
-            self.columns.append([own + (to - by) * share for own, to, by in zip(column, outgoing, image)])
+            self.columns.append([item + (to - by) * share for item, to, by in zip(column, outgoing, image)])
 
     def independent(self, side):
         return [i for i in range(self.models[side].n) if i not in self.dependent[side]]
@@ -994,7 +994,7 @@ class Crossing:
     def direction(self, i, side=0):
         """The tangent of a coordinate."""
         h, start = self.models[0].precision.h, self.coordinates((self.before, self.after)[side], side)
-        ends = [self.at([own + (sign * h if k == i else 0) for k, own in enumerate(start)], side) for sign in (1, -1)]
+        ends = [self.at([item + (sign * h if k == i else 0) for k, item in enumerate(start)], side) for sign in (1, -1)]
         return [(a - b) / (2 * h) for a, b in zip(*ends)]
 
     def derivative(self, i):
@@ -1003,7 +1003,7 @@ class Crossing:
         h, start, ends = model.precision.h, self.coordinates(self.before, 0), []
         gap = model.names.compile(self.surface["gap"])
         for sign in (1, -1):
-            state = self.at([own + (sign * h if k == i else 0) for k, own in enumerate(start)])
+            state = self.at([item + (sign * h if k == i else 0) for k, item in enumerate(start)])
             slope = [model.derivative(gap, state, model.along(state, 0, model.axis(k))) for k in range(model.n)]
             mode, after = landed(model, self.surface, state, slope, rate_of(model, gap, slope, state))
             if mode is not entered:
@@ -1014,7 +1014,7 @@ class Crossing:
     def motion(self, state, side):
         model = self.models[side]
         if model.rates:
-            return [Decimal(1), *(own(state) for own in model.rates)]
+            return [Decimal(1), *(item(state) for item in model.rates)]
         acceleration = model.acceleration(state)
         return [Decimal(1), *model.velocities(state), *(acceleration[i] for i in self.independent(side))]
 
@@ -1023,14 +1023,14 @@ class Crossing:
         ends = list(zip(self.models, (self.before, self.after), self.dependent))
         weights = [Decimal(1) if mode.rates else mode.weight(state, dependent) for mode, state, dependent in ends]
         values = [density(state) * weight for density, (_, state, _), weight in zip(densities, ends, weights)]
-        factor = determinant([own[1:] for own in self.columns[1:]]) * values[1] / values[0]
+        factor = determinant([item[1:] for item in self.columns[1:]]) * values[1] / values[0]
         transition = self.surface["transition"]
         slides = self.models[0].rates and transition is not None and transition["state"] is None
         return factor if slides else abs(factor)
 
     def form_defects(self):
         """The change of `dp dq - dH dt`, without constraints."""
-        before, after = (self.form(own, side) for side, own in enumerate((self.before, self.after)))
+        before, after = (self.form(item, side) for side, item in enumerate((self.before, self.after)))
         size, columns = len(self.columns), self.columns
         inner = range(len(after))
         value = lambda a, b: sum((a[i] * b[j] * after[i][j] for i in inner for j in inner), Decimal(0))
@@ -1040,11 +1040,11 @@ class Crossing:
         model = self.models[side]
         size = 1 + 2 * model.n
         axes = [[Decimal(int(k == i)) for k in range(len(state))] for i in range(size)]
-        momenta = [model.derivative(model.momentum_at, state, own) for own in axes]
-        energies = [model.derivative(model.energy_at, state, own) for own in axes]
+        momenta = [model.derivative(model.momentum_at, state, item) for item in axes]
+        energies = [model.derivative(model.energy_at, state, item) for item in axes]
 
         def entry(i, j):
-            place = lambda own, k: Decimal(int(own == 1 + k))
+            place = lambda item, k: Decimal(int(item == 1 + k))
             pairs = [momenta[i][k] * place(j, k) - momenta[j][k] * place(i, k) for k in range(model.n)]
             return sum(pairs, Decimal(0)) - energies[i] * int(j == 0) + energies[j] * int(i == 0)
         return [[entry(i, j) for j in range(size)] for i in range(size)]
@@ -1074,14 +1074,14 @@ def check_factor(model, claim, source):
         crossing = Crossing(model, surface, state)
         return crossing.factor(densities) - stated(crossing.before)
     found = states(model, source, change)
-    return all(is_small(own, 1, 20) for own in found), f"differs by {', '.join(f'{float(own):.1e}' for own in found)}"
+    return all(is_small(item, 1, 20) for item in found), f"differs by {', '.join(f'{float(item):.1e}' for item in found)}"
 
 
 def constrained_to_less(model, surface, stated, source):
     """Whether instantaneous constraints hold that the others do not imply: volumes become 0."""
     def ranks(state):
         forms, m = model.forms_at(state), len(model.constraints)
-        extra = [[model.names.compile(own)(state) for own in entry["form"]] for entry in surface["instantaneous"]]
+        extra = [[model.names.compile(item)(state) for item in entry["form"]] for entry in surface["instantaneous"]]
         return len(eliminated([*forms, *extra], model.n)[1]) - m, stated(state)
     found = states(model, source, ranks)
     return all(rank > 0 and factor == 0 for rank, factor in found), "instantaneous constraints map states on a line to one"
@@ -1095,7 +1095,7 @@ def check_kept(model, claim, source):
     for surface in model.surfaces:
         densities = densities_of(model, surface, density)
         found = states(model, source, lambda state: Crossing(model, surface, state).factor(densities) - 1)
-        holds = holds and all(is_small(own, 1, 20) for own in found)
+        holds = holds and all(is_small(item, 1, 20) for item in found)
     return holds, text
 
 
@@ -1103,18 +1103,18 @@ def check_symplectic(model, claim, source):
     """The forces are closed, and all that happens at surfaces keeps `dp dq - dH dt`."""
     if model.rates is not None or model.constraints:
         raise NotChecked("the symplectic form belongs to mechanical systems without constraints")
-    total = lambda state: [sum((own[i](state) for own in model.forces), Decimal(0)) for i in range(model.n)]
+    total = lambda state: [sum((item[i](state) for item in model.forces), Decimal(0)) for i in range(model.n)]
 
     def defects(state):
         slopes = [model.derivative(total, state, model.along(state, 0, model.axis(i))) for i in range(model.n)]
         found = [slopes[i][j] - slopes[j][i] for i in range(model.n) for j in range(i)]
         by_velocity = [model.derivative(total, state, model.along(state, 0, None, model.axis(i))) for i in range(model.n)]
-        return found + [own for row in by_velocity for own in row] + [Decimal(0)]
-    found = [own for state in states(model, source, defects) for own in state]
+        return found + [item for row in by_velocity for item in row] + [Decimal(0)]
+    found = [item for state in states(model, source, defects) for item in state]
     for surface in model.surfaces:
         crossings = states(model, source, lambda state: Crossing(model, surface, state).form_defects(), 2)
-        found += [own for defects in crossings for own in defects]
-    return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
+        found += [item for defects in crossings for item in defects]
+    return all(is_small(item, 1, 20) for item in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
 
 class Chart:
@@ -1136,7 +1136,7 @@ class Chart:
         n = self.model.n
         state = [*z[:1 + n], *self.state[1 + n:]]
         if self.model.rates:
-            return self.model.with_velocities(state, [own(state) for own in self.model.rates])
+            return self.model.with_velocities(state, [item(state) for item in self.model.rates])
         return self.model.completed(state, z[1 + n:], self.dependent)
 
     def along(self, z, vector):
@@ -1152,10 +1152,10 @@ class Chart:
 
     def form(self, terms, z, vectors):
         """The sum of `c det(df_i(v_j))`."""
-        state, directions = self.at(z), [self.along(z, own) for own in vectors]
+        state, directions = self.at(z), [self.along(z, item) for item in vectors]
         total = Decimal(0)
         for coefficient, functions in terms:
-            rows = [[self.model.derivative(own, state, by) for by in directions] for own in functions]
+            rows = [[self.model.derivative(item, state, by) for by in directions] for item in functions]
             total += coefficient(state) * determinant(rows)
         return total
 
@@ -1163,7 +1163,7 @@ class Chart:
 def check_form(model, claim, source):
     """The form on vectors that the motion carries along, between surfaces and through each of them."""
     def terms_of(mode):
-        return [(mode.claimed(own["coefficient"]), [mode.claimed(f) for f in own["differentials"]]) for own in claim["terms"]]
+        return [(mode.claimed(item["coefficient"]), [mode.claimed(f) for f in item["differentials"]]) for item in claim["terms"]]
     terms = terms_of(model)
     degree = len(claim["terms"][0]["differentials"])
 
@@ -1174,9 +1174,9 @@ def check_form(model, claim, source):
         chart = Chart(model, state)
         z, given, h, ends = chart.coordinates(), vectors(chart.size), model.precision.h, []
         drift = chart.motion(z)
-        spread = [model.derivative(chart.motion, z, own) for own in given]
+        spread = [model.derivative(chart.motion, z, item) for item in given]
         for step in (h, -h):
-            carried = [moved(own, by, step) for own, by in zip(given, spread)]
+            carried = [moved(item, by, step) for item, by in zip(given, spread)]
             ends.append(chart.form(terms, moved(z, drift, step), carried))
         return (ends[0] - ends[1]) / (2 * h)
 
@@ -1184,23 +1184,23 @@ def check_form(model, claim, source):
         def of(state):
             crossing = Crossing(model, surface, state)
             entered = crossing.models[1]
-            before, after = (Chart(*own) for own in zip(crossing.models, (crossing.before, crossing.after), crossing.dependent))
+            before, after = (Chart(*item) for item in zip(crossing.models, (crossing.before, crossing.after), crossing.dependent))
             given = vectors(before.size)
-            carried = [[dot(own, row) for row in zip(*crossing.columns)] for own in given]
+            carried = [[dot(item, row) for row in zip(*crossing.columns)] for item in given]
             start = before.form(terms, before.coordinates(), given)
             return after.form(terms_of(entered), after.coordinates(), carried) - start
         return of
     found = states(model, source, rate)
     for surface in model.surfaces:
         found += states(model, source, change(surface), 2)
-    return all(is_small(own, 1, 18) for own in found), f"largest change {float(max(map(abs, found))):.1e}"
+    return all(is_small(item, 1, 18) for item in found), f"largest change {float(max(map(abs, found))):.1e}"
 
 
 def check_energy(model, claim, source):
     surface = model.surfaces[claim["under"]]
     pairs = states(model, source, lambda state: across(model, surface, "energy", state))
     gains = [after - before for before, after in pairs]
-    return all(own <= 0 or is_small(own, 1) for own in gains), f"gains {', '.join(f'{float(own):.1e}' for own in gains)}"
+    return all(item <= 0 or is_small(item, 1) for item in gains), f"gains {', '.join(f'{float(item):.1e}' for item in gains)}"
 
 
 def check_density(model, claim, source):
@@ -1222,32 +1222,32 @@ def balanced(model, source, density):
                 total += model.derivative(flux(i), state, model.along(state, 0, model.axis(i)))
             return total / density(state)
         found = states(model, source, spread)
-        return all(is_small(own, 1) for own in found), f"defects {', '.join(f'{float(own):.1e}' for own in found)}"
+        return all(is_small(item, 1) for item in found), f"defects {', '.join(f'{float(item):.1e}' for item in found)}"
 
     def defect(state):
         dependent = model.dependent(state)
-        u = [own for i, own in enumerate(model.velocities(state)) if i not in dependent]
+        u = [item for i, item in enumerate(model.velocities(state)) if i not in dependent]
         return model.divergence(state, u, dependent, density)
     defects = states(model, source, defect)
-    return all(is_small(own, 1) for own in defects), f"defects {', '.join(f'{float(own):.1e}' for own in defects)}"
+    return all(is_small(item, 1) for item in defects), f"defects {', '.join(f'{float(item):.1e}' for item in defects)}"
 
 
 def closed_density(model, closed):
     """A density in closed form."""
-    terms = [(model.names.compile(own["coefficient"]), own) for own in closed["terms"]]
+    terms = [(model.names.compile(item["coefficient"]), item) for item in closed["terms"]]
 
     def density(state):
         total = Decimal(0)
-        for coefficient, own in terms:
-            total += coefficient(state) * summand(own, state)
+        for coefficient, item in terms:
+            total += coefficient(state) * summand(item, state)
         return exp(total)
 
-    def summand(own, state):
-        kind = own["kind"]
+    def summand(item, state):
+        kind = item["kind"]
         if kind == "plain":
-            return model.names.compile(own["of"])(state)
+            return model.names.compile(item["of"])(state)
         if kind == "logarithm":
-            return ln(abs(model.names.compile(own["of"])(state)))
+            return ln(abs(model.names.compile(item["of"])(state)))
         if kind == "metric_determinant":
             return ln(abs(determinant(model.metric_at(state))))
         forms = model.forms_at(state)
@@ -1269,8 +1269,8 @@ def check_exact(model, claim, source):
     density = closed_density(model, closed)
     holds, text = balanced(model, source, density)
     if claim["kind"] == "exact":
-        logarithms = [own["of"] for own in closed["terms"] if own["kind"] == "logarithm"]
-        open_ones = [own for own in logarithms if not is_regular(model, own)]
+        logarithms = [item["of"] for item in closed["terms"] if item["kind"] == "logarithm"]
+        open_ones = [item for item in logarithms if not is_regular(model, item)]
         if open_ones:
             return False, f"0 could not be excluded for {', '.join(open_ones)} at the declared parameters"
         if not is_single_valued(model, density, source):
@@ -1281,36 +1281,36 @@ def check_exact(model, claim, source):
 def is_regular(model, text):
     """Whether the function is nowhere 0, at the declared parameters where there are some."""
     box = {}
-    for own in model.coordinates:
+    for item in model.coordinates:
         low, high = EVERYTHING
-        if own["kind"] == "angle":
+        if item["kind"] == "angle":
             low, high = Decimal("-3.2"), Decimal("3.2")
-        if own["kind"] == "interval":
-            low, high = constant(own["low"]), constant(own["high"])
-        box[own["name"]] = (low, high)
-    for own in model.parameters:
-        if own["default"] is not None:
-            value = constant(own["default"])
-            box[own["name"]] = (value, value)
-        elif isinstance(own["assumption"], list):
-            box[own["name"]] = tuple(constant(end) for end in own["assumption"])
+        if item["kind"] == "interval":
+            low, high = constant(item["low"]), constant(item["high"])
+        box[item["name"]] = (low, high)
+    for item in model.parameters:
+        if item["default"] is not None:
+            value = constant(item["default"])
+            box[item["name"]] = (value, value)
+        elif isinstance(item["assumption"], list):
+            box[item["name"]] = tuple(constant(end) for end in item["assumption"])
         else:
-            box[own["name"]] = (Decimal("1e-6"), EVERYTHING[1]) if own["assumption"] == "positive" else EVERYTHING
+            box[item["name"]] = (Decimal("1e-6"), EVERYTHING[1]) if item["assumption"] == "positive" else EVERYTHING
     tree = Parser(text).whole()
     used = set(re.findall(r"[^\W\d]\w*(?:\.\d+)*", text))
-    box = {name: own for name, own in box.items() if name in used}
+    box = {name: item for name, item in box.items() if name in used}
     box["t"] = EVERYTHING
-    return excludes_zero(tree, {name: own for name, own in box.items() if name in used}, 14)
+    return excludes_zero(tree, {name: item for name, item in box.items() if name in used}, 14)
 
 
 def is_single_valued(model, density, source):
     def ratios(state):
         turn, found = 2 * pi_of(model.precision.digits), []
-        for i, own in enumerate(model.coordinates):
-            if own["kind"] == "angle":
+        for i, item in enumerate(model.coordinates):
+            if item["kind"] == "angle":
                 found.append(density(moved(state, model.along(state, 0, model.axis(i)), turn)) / density(state) - 1)
         return found
-    return all(is_small(own, 1) for found in states(model, source, ratios, 1) for own in found)
+    return all(is_small(item, 1) for found in states(model, source, ratios, 1) for item in found)
 
 
 def check_hull(model, source, exists, at=None):
@@ -1330,9 +1330,9 @@ def check_hull(model, source, exists, at=None):
 def bend(model, state):
     """The second difference of the divergence along a line of independent velocities: 0 if it is linear in them."""
     dependent = model.dependent(state)
-    u = [own for i, own in enumerate(model.velocities(state)) if i not in dependent]
+    u = [item for i, item in enumerate(model.velocities(state)) if i not in dependent]
     step = [Decimal(i + 1) * (-1) ** i for i in range(len(u))]
-    rates = [model.divergence(state, moved(u, step, k), dependent, lambda own: Decimal(1)) for k in range(3)]
+    rates = [model.divergence(state, moved(u, step, k), dependent, lambda item: Decimal(1)) for k in range(3)]
     return rates[0] - 2 * rates[1] + rates[2]
 
 
@@ -1340,7 +1340,7 @@ def hull_ranks(model, state):
     dependent = model.dependent(state)
     count = model.n - len(dependent)
     zero = [Decimal(0)] * count
-    one = lambda own: Decimal(1)
+    one = lambda item: Decimal(1)
 
     def demand(s, u):
         return -model.divergence(s, u, dependent, one)
@@ -1354,22 +1354,22 @@ def hull_ranks(model, state):
         def field(s):
             base = drift(s)
             ends = [*model.velocities(model.completed(s, u, dependent)), demand(s, u)]
-            return [Decimal(0), *(own - other for own, other in zip(ends, base[1:]))]
+            return [Decimal(0), *(item - other for item, other in zip(ends, base[1:]))]
         return field
     start = drift(state)
-    depends_on_time = not is_small(sum(abs(own) for own in model.derivative(drift, state, model.along(state, 1))), 1, 20)
+    depends_on_time = not is_small(sum(abs(item) for item in model.derivative(drift, state, model.along(state, 1))), 1, 20)
     generators = [generator(k) for k in range(count)]
-    if depends_on_time or not is_small(sum(abs(own) for own in start[1:]), 0, 20):
+    if depends_on_time or not is_small(sum(abs(item) for item in start[1:]), 0, 20):
         generators.append(drift if depends_on_time else (lambda s: [Decimal(0), *drift(s)[1:]]))
 
     def bracket(x, y):
         def field(s):
             a, b = x(s), y(s)
-            into = lambda own: model.along(s, own[0], own[1:1 + model.n])
+            into = lambda item: model.along(s, item[0], item[1:1 + model.n])
             forth, back = model.derivative(y, s, into(a)), model.derivative(x, s, into(b))
             return [p - q for p, q in zip(forth, back)]
         return field
-    elements, newest = [own(state) for own in generators], generators
+    elements, newest = [item(state) for item in generators], generators
     ranks = both_ranks(elements)
     while newest:
         found = []
@@ -1377,13 +1377,13 @@ def hull_ranks(model, state):
             for y in newest:
                 if x is y:
                     continue
-                own = bracket(x, y)
-                value = own(state)
+                item = bracket(x, y)
+                value = item(state)
                 after = both_ranks([*elements, value])
                 if after != ranks:
                     elements.append(value)
                     ranks = after
-                    found.append(own)
+                    found.append(item)
                 if ranks[1] > ranks[0]:
                     return ranks
         newest = found
@@ -1392,22 +1392,22 @@ def hull_ranks(model, state):
 
 def both_ranks(elements):
     width = len(elements[0])
-    rank = lambda columns: len(eliminated([own[:columns] for own in elements], columns)[1])
+    rank = lambda columns: len(eliminated([item[:columns] for item in elements], columns)[1])
     return rank(width - 1), rank(width)
 
 
 def check_symmetry(model, claim, source):
-    field = [model.names.compile(own) for own in claim["field"]]
-    at = lambda state: [own(state) for own in field]
+    field = [model.names.compile(item) for item in claim["field"]]
+    at = lambda state: [item(state) for item in field]
     if model.rates is not None:
-        motion = lambda state: [own(state) for own in model.rates]
+        motion = lambda state: [item(state) for item in model.rates]
 
         def commutator(state):
             of_motion = model.derivative(motion, state, model.along(state, 0, at(state)))
             of_field = model.derivative(at, state, model.along(state, 1, motion(state)))
-            return [own - other for own, other in zip(of_motion, of_field)]
-        found = [own for state in states(model, source, commutator) for own in state]
-        return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
+            return [item - other for item, other in zip(of_motion, of_field)]
+        found = [item for state in states(model, source, commutator) for item in state]
+        return all(is_small(item, 1, 20) for item in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
     def change(state):
         """The derivative of L along the lifted flow."""
@@ -1431,15 +1431,15 @@ def check_symmetry(model, claim, source):
         spreads = [model.derivative(at, state, model.along(state, 0, model.axis(i))) for i in range(model.n)]
         along = model.along(state, 0, at(state))
         for a in range(m):
-            row = lambda s: [*(own(s) for own in model.constraints[a][0]), model.constraints[a][1](s)]
+            row = lambda s: [*(item(s) for item in model.constraints[a][0]), model.constraints[a][1](s)]
             turned = model.derivative(row, state, along)
             turned = [turned[i] + dot(forms[a], spreads[i]) for i in range(model.n)] + turned[model.n:]
-            rows = [[*form, own] for form, own in zip(forms, model.affine_at(state))]
+            rows = [[*form, item] for form, item in zip(forms, model.affine_at(state))]
             whole = eliminated([*rows, turned], model.n + 1)[1]
             found.append(Decimal(len(whole) - m))
         return found
-    found = [own for state in states(model, source, defects) for own in state]
-    return all(is_small(own, 1, 20) for own in found), f"largest defect {float(max(map(abs, found))):.1e}"
+    found = [item for state in states(model, source, defects) for item in state]
+    return all(is_small(item, 1, 20) for item in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
 
 def on_d(model, state):
@@ -1540,7 +1540,7 @@ def judged(model, claim, source):
     """The word for a claim, and why."""
     if claim["verdict"] != "proved":
         return "open", claim["verdict"]
-    if not all(is_prime(own) and own > 2 ** 60 for own in claim["primes"]):
+    if not all(is_prime(item) and item > 2 ** 60 for item in claim["primes"]):
         return "FAILED", "a modulus is no prime of 61 bits"
     if claim["points"] > 0 and not claim["chance_of_error"] < 1e-12:
         return "FAILED", "the chance of error is not small"
@@ -1566,7 +1566,7 @@ def main(arguments=None):
                 document = json.load(file)
             if document["format"] != FORMAT:
                 raise ValueError(f"its format is {document['format']!r}, expected {FORMAT!r}")
-            parts = [(own["name"], own["content"], Model(own["content"])) for own in document["parts"]]
+            parts = [(item["name"], item["content"], Model(item["content"])) for item in document["parts"]]
             modes = {name: model for name, _, model in parts}
             for _, _, model in parts:
                 model.parts = modes

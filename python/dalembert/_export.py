@@ -69,8 +69,8 @@ def results(module: Any, routine: Sequence[Any], known: Mapping[str, Sequence[An
         if line is not None:
             value, operation, operands = line
             function = SIGNS.get(operation) or getattr(module, operation)
-            values[value] = function(*(operand(*own) for own in operands))
-    return [operand(*own) for own in outputs]
+            values[value] = function(*(operand(*item) for item in operands))
+    return [operand(*item) for item in outputs]
 
 
 def _scene(model: Model, scene: str | None) -> str | None:

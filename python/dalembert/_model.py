@@ -415,7 +415,7 @@ class Model:
         }
         wanted = _events.taken(events)
         request |= {
-            "events": [(None if isinstance(own.function, str) else own.function, own.direction, own.terminal) for own in wanted],
+            "events": [(None if isinstance(item.function, str) else item.function, item.direction, item.terminal) for item in wanted],
             "watched": _events.watched(self, wanted), "on_step": on_step,
             "on_event": _events.listener(self, wanted, on_event),
         }
@@ -552,22 +552,22 @@ class Model:
         if self.parameters:
             lines.append("  parameters")
             width = max(map(len, self.parameters))
-            for own in self.declared_parameters:
-                about = "  ".join(part for part in [own.assumption, own.documentation] if part)
-                lines.append(f"    {own.name:{width}} = {own.value:<12g} {about}".rstrip())
+            for item in self.declared_parameters:
+                about = "  ".join(part for part in [item.assumption, item.documentation] if part)
+                lines.append(f"    {item.name:{width}} = {item.value:<12g} {about}".rstrip())
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{escape(own.name)}</td><td>{own.value:g}</td><td>{escape(own.assumption)}</td>"
-            f"<td style='text-align: left'>{escape(own.documentation)}</td></tr>"
-            for own in self.declared_parameters
+            f"<tr><td>{escape(item.name)}</td><td>{item.value:g}</td><td>{escape(item.assumption)}</td>"
+            f"<td style='text-align: left'>{escape(item.documentation)}</td></tr>"
+            for item in self.declared_parameters
         )
         table = f"<table><tr><th>parameter</th><th>value</th><th>values</th><th></th></tr>{rows}</table>" if rows else ""
         return f"<h3>{escape(self.name)}</h3><p>{escape(self.documentation)}</p>{table}{self.derive().to_html(heading=False)}"
 
     def __reduce__(self) -> Any:
-        given = {own.name: own.value for own in self.declared_parameters if own.value == own.value}
+        given = {item.name: item.value for item in self.declared_parameters if item.value == item.value}
         return _restored, (self.source, self._claims, self._scene, given)
 
 

@@ -68,7 +68,7 @@ def border(run: Run, t: float, count: int = GRID) -> np.ndarray:
     # Each square of the grid in two triangles, in each of which the border is one segment.
     index = np.arange(count * count).reshape(count, count)
     corners = [index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]]
-    triangles = np.concatenate([np.stack([corners[k] for k in own], -1).reshape(-1, 3) for own in [(0, 1, 2), (0, 2, 3)]])
+    triangles = np.concatenate([np.stack([corners[k] for k in item], -1).reshape(-1, 3) for item in [(0, 1, 2), (0, 2, 3)]])
     places = np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
     level = values.ravel()
     inside = level[triangles] > 0

@@ -148,7 +148,7 @@ class Derivation:
     def verdicts(self) -> tuple[Verdict, ...]:
         """The verdicts on the claims, in order."""
         return tuple(
-            Verdict(**{**own, "remarks": tuple(own["remarks"])}, scene=self._scene) for own in self._native["findings"]
+            Verdict(**{**each, "remarks": tuple(each["remarks"])}, scene=self._scene) for each in self._native["findings"]
         )
 
     @property

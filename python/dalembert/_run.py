@@ -160,9 +160,9 @@ class Run:
         light that rounding may have decided it), and ``before`` and ``after``, which have a field for each coordinate, each
         velocity and the energy: ``run.events["after"]["theta_dot"]``. Of a model with modes, ``mode`` is a field of both.
         """
-        own = self._native.impacts
-        flags = {"simultaneous": own.simultaneous, "grazing": own.grazing}
-        return self._table(own.surfaces, flags, {"before": own.before, "after": own.after})
+        item = self._native.impacts
+        flags = {"simultaneous": item.simultaneous, "grazing": item.grazing}
+        return self._table(item.surfaces, flags, {"before": item.before, "after": item.after})
 
     @cached_property
     def contacts(self) -> np.ndarray:
@@ -171,9 +171,9 @@ class Run:
         Fields are ``t``, ``surface``, ``begins``, ``accumulates_at`` (NaN where the contact does not begin by impacts that
         accumulate), and ``at``, the state.
         """
-        own = self._native.contacts
-        flags = {"begins": own.begins, "accumulates_at": own.accumulation}
-        return self._table(own.surfaces, flags, {"at": own.at})
+        item = self._native.contacts
+        flags = {"begins": item.begins, "accumulates_at": item.accumulation}
+        return self._table(item.surfaces, flags, {"at": item.at})
 
     @cached_property
     def crossings(self) -> np.ndarray:
@@ -183,8 +183,8 @@ class Run:
         that begins at 0 or only touches it is none, and neither is a jump at an impact. Between the integrator's steps nothing
         is missed that a polynomial of degree 8 resolves on some part of a step.
         """
-        own, names = self._native.crossings, [event.label for event in self._events]
-        return self._table(own.events, {"rising": own.rising}, {"at": own.at}, "event", names)
+        item, names = self._native.crossings, [event.label for event in self._events]
+        return self._table(item.events, {"rising": item.rising}, {"at": item.at}, "event", names)
 
     def _table(
         self,
@@ -208,11 +208,11 @@ class Run:
         table[title] = names[places]
         for name, flag in flags.items():
             table[name] = flag
-        for place, own in states.items():
+        for place, item in states.items():
             for name in columns:
-                table[place][name] = _column(self.model, own, name)
+                table[place][name] = _column(self.model, item, name)
             if self.model.modes:
-                table[place]["mode"] = _modes(self.model, own)
+                table[place]["mode"] = _modes(self.model, item)
         return table
 
     # The end ---------------------------------------------------------------------------------------------------------------
@@ -220,14 +220,14 @@ class Run:
     @cached_property
     def outcome(self) -> Outcome:
         """How the run ended."""
-        own = self._native
-        event, callback = own.stop
+        item = self._native
+        event, callback = item.stop
         if event is not None:
             name = self._events[event].label
-            return Outcome(own.kind, own.t_end, True, {"event": name}, f"stopped at the event `{name}`")
+            return Outcome(item.kind, item.t_end, True, {"event": name}, f"stopped at the event `{name}`")
         if callback is not None:
-            return Outcome(own.kind, own.t_end, own.reached, {"callback": callback}, f"stopped by {callback}")
-        return Outcome(own.kind, own.t_end, own.reached, own.details, own.words)
+            return Outcome(item.kind, item.t_end, item.reached, {"callback": callback}, f"stopped by {callback}")
+        return Outcome(item.kind, item.t_end, item.reached, item.details, item.words)
 
     @property
     def last(self) -> dict[str, float]:

@@ -27,9 +27,9 @@ class Scope:
     """
 
     def __init__(self, declaration: Mapping[str, Any]) -> None:
-        self.q = {own["name"]: Function(_plain(own["name"]), real=True)(T) for own in declaration["coordinates"]}
+        self.q = {item["name"]: Function(_plain(item["name"]), real=True)(T) for item in declaration["coordinates"]}
         self.qdot = {name: function.diff(T) for name, function in self.q.items()}
-        self.parameters = {own["name"]: _symbol(own) for own in declaration["parameters"]}
+        self.parameters = {item["name"]: _symbol(item) for item in declaration["parameters"]}
 
     def read(self, text: str) -> Expr:
         """The expression of a text of the language."""
@@ -191,16 +191,16 @@ class Symbolic:
             lagrangian = (v.T * metric * v)[0] / 2 + (linear.T * v)[0] - read(motion["potential"])
             for force in motion["forces"]:
                 forces = {name: forces[name] + read(entry) for name, entry in zip(names, force)}
-        constraints = {own["name"]: _constraint(scope, own, v) for own in declaration["constraints"]}
+        constraints = {item["name"]: _constraint(scope, item, v) for item in declaration["constraints"]}
         forms = {name: tuple(value.diff(rate) for rate in v) for name, value in constraints.items()}
-        surfaces = {own["name"]: read(own["gap"]) for own in declaration["surfaces"]}
+        surfaces = {item["name"]: read(item["gap"]) for item in declaration["surfaces"]}
         return cls(
             T, scope.q, scope.qdot, scope.parameters, lagrangian, rates, forces, constraints, forms, surfaces,
         )
 
 
-def _constraint(scope: Scope, own: Mapping[str, Any], v: sympy.Matrix) -> Expr:
-    if own["nonlinear"] is not None:
-        return scope.read(own["nonlinear"])
-    form = sympy.Matrix([scope.read(entry) for entry in own["form"]])
-    return (form.T * v)[0] + scope.read(own["affine"])
+def _constraint(scope: Scope, item: Mapping[str, Any], v: sympy.Matrix) -> Expr:
+    if item["nonlinear"] is not None:
+        return scope.read(item["nonlinear"])
+    form = sympy.Matrix([scope.read(entry) for entry in item["form"]])
+    return (form.T * v)[0] + scope.read(item["affine"])

@@ -42,7 +42,7 @@ def final_state(model: Model, names: Sequence[str], **arguments: Any) -> Callabl
     def call(function: Callable[[Any], np.ndarray], shape: tuple[int, ...], values: jax.Array) -> jax.Array:
         kind = values.dtype
         result = jax.ShapeDtypeStruct(shape, kind)
-        return jax.pure_callback(lambda own: function(own).astype(kind), result, values, vmap_method="sequential")
+        return jax.pure_callback(lambda item: function(item).astype(kind), result, values, vmap_method="sequential")
 
     @jax.custom_jvp
     def end(values: jax.Array) -> jax.Array:

@@ -41,7 +41,7 @@ enum Function {
     Python(Py<PyAny>),
 }
 
-/// What a run is to watch: functions with directions, and true for each that ends it.
+/// Events that a run watches: functions with directions, and true for each that ends it.
 #[derive(Default)]
 pub(crate) struct Watched<'a> {
     events: Vec<(Function, i32, bool)>,

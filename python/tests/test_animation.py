@@ -15,9 +15,9 @@ from dalembert import Model
 #: A page for the script, whose pen writes down what it is told; the pictures of all frames are drawn one after the other.
 PAGE = """
 const told = [];
-const pen = new Proxy({}, { get: (own, name) => (...given) => told.push([name, ...given]), set: () => true });
+const pen = new Proxy({}, { get: (target, name) => (...given) => told.push([name, ...given]), set: () => true });
 const listeners = {};
-const part = (own) => ({ style: {}, addEventListener: (name, call) => { listeners[name] = call; }, ...own });
+const part = (given) => ({ style: {}, addEventListener: (name, call) => { listeners[name] = call; }, ...given });
 const parts = { canvas: part({ getContext: () => pen }), button: part({}), input: part({ value: 0 }) };
 const root = { querySelector: (name) => parts[name], isConnected: true };
 globalThis.window = {};

@@ -47,9 +47,9 @@ def test_the_motion_satisfies_the_equations_of_sympy(name):
     equations = euler_equations(symbolic.lagrangian, functions, symbolic.t)
     for _ in range(3):
         q, qdot, derived = admissible(model, generator)
-        values = {symbol: model.parameters[own] for own, symbol in symbolic.parameters.items()}
+        values = {symbol: model.parameters[item] for item, symbol in symbolic.parameters.items()}
         # Highest derivatives first: lower ones are parts of them.
-        values |= dict(zip([own.diff(symbolic.t) for own in symbolic.qdot.values()], derived["acceleration"]))
+        values |= dict(zip([item.diff(symbolic.t) for item in symbolic.qdot.values()], derived["acceleration"]))
         values |= dict(zip(symbolic.qdot.values(), qdot))
         values |= dict(zip(functions, q))
         values[symbolic.t] = 0
@@ -58,9 +58,9 @@ def test_the_motion_satisfies_the_equations_of_sympy(name):
             return float(sympy.sympify(expression).subs(list(values.items())))
 
         multipliers, residuals, sizes = derived.get("multipliers", []), [], []
-        for place, (own, equation) in enumerate(zip(symbolic.q, equations)):
+        for place, (item, equation) in enumerate(zip(symbolic.q, equations)):
             terms = [number(term) for term in sympy.Add.make_args(equation.lhs.doit())]
-            terms.append(number(symbolic.forces[own]))
+            terms.append(number(symbolic.forces[item]))
             terms += [
                 multiplier * number(form[place])
                 for multiplier, form in zip(multipliers, symbolic.constraint_forms.values())
@@ -80,7 +80,7 @@ def test_the_lagrangian_that_is_printed_is_that_of_the_declaration(name):
     generator = np.random.default_rng(3)
     names = [*symbolic.qdot.values(), *symbolic.q.values(), *symbolic.parameters.values(), symbolic.t]
     for _ in range(3):
-        values = [(own, sympy.Float(generator.uniform(0.1, 0.9), 30)) for own in names]
+        values = [(item, sympy.Float(generator.uniform(0.1, 0.9), 30)) for item in names]
         difference = (printed - symbolic.lagrangian).subs(values)
         assert abs(sympy.N(difference, 30)) < 1e-20
 
@@ -97,7 +97,7 @@ def test_functions_of_the_language_are_those_of_sympy(name):
 def test_gaps_are_exported():
     symbolic = dalembert.models.rolling_disk.to_sympy()
     x, phi = symbolic.q["x"], symbolic.q["phi"]
-    y, R, ta, tb = symbolic.q["y"], *(symbolic.parameters[own] for own in ["R", "ta", "tb"])
+    y, R, ta, tb = symbolic.q["y"], *(symbolic.parameters[item] for item in ["R", "ta", "tb"])
     edge = 1 - (x + R * sympy.cos(phi)) ** 2 / ta**2 - (y + R * sympy.sin(phi)) ** 2 / tb**2
     assert sympy.simplify(symbolic.surfaces["leading_edge"] - edge) == 0
     assert R.is_positive
@@ -122,7 +122,7 @@ def test_modes_have_declarations_of_their_own():
 
 def test_families_are_named_with_underscores():
     symbolic = dalembert.models.chain3.to_sympy()
-    assert [str(own.func) for own in symbolic.q.values()][0].count("_") == 1
+    assert [str(item.func) for item in symbolic.q.values()][0].count("_") == 1
 
 
 def test_derivations_are_shown_in_notebooks():

@@ -91,7 +91,7 @@ def test_a_terminal_event_ends_the_run(free):
 
 def test_modes_have_events():
     walker = dalembert.models.spring_mass_walker
-    [name] = [own for own in walker.coordinates if own == walker.coordinates[0]]
+    [name] = [item for item in walker.coordinates if item == walker.coordinates[0]]
     run = walker.simulate(events=[f"dot({name})"])
     assert run.outcome.reached and run.crossings.dtype["at"]["mode"].kind == "U"
 
@@ -111,13 +111,13 @@ def test_callbacks_on_events():
     seen = []
     ball = Model.from_text(BALL)
     run = ball.simulate(until=2, rest="contact", events=["dot(x)"], on_event=seen.append)
-    assert [own.kind for own in seen[:3]] == ["impact", "falling", "impact"]
+    assert [item.kind for item in seen[:3]] == ["impact", "falling", "impact"]
     assert seen[0].name == "floor" and seen[0].t == run.events["t"][0]
     assert seen[0].qdot_after[0] == run.events["after"]["x_dot"][0] == pytest.approx(-seen[0].qdot[0] / 2)
     assert seen[-1].kind == "contact"
-    stopped = ball.simulate(until=2, events=["dot(x)"], on_event=lambda own: "stop" if own.kind == "falling" else None)
+    stopped = ball.simulate(until=2, events=["dot(x)"], on_event=lambda item: "stop" if item.kind == "falling" else None)
     assert (stopped.outcome.kind, stopped.outcome.t) == ("stopped", run.crossings["t"][0])
-    at_impact = ball.simulate(until=2, on_event=lambda own: True)
+    at_impact = ball.simulate(until=2, on_event=lambda item: True)
     assert at_impact.outcome.t == run.events["t"][0] and at_impact.last["x_dot"] > 0
 
 

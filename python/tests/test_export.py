@@ -46,7 +46,7 @@ def compiled(compiler, header, folder, name):
         out = np.full(size, np.nan)
         found = getattr(loaded, f"call_{function}")
         found.argtypes = [ctypes.c_double] + [ctypes.c_void_p] * (count + 1)
-        code = found(t, *(own.ctypes.data for own in pointers), out.ctypes.data)
+        code = found(t, *(item.ctypes.data for item in pointers), out.ctypes.data)
         return code, out
 
     return sizes, call
@@ -95,7 +95,7 @@ def test_impacts_of_a_header_are_those_of_a_run(compiler, tmp_path):
         k = list(model.parameters.values())
         assert len(run.events) > 1, name
         for event in run.events[:20]:
-            before, after = ([[event[side][own] for own in names] for names in (model.coordinates, model.velocities)]
+            before, after = ([[event[side][item] for item in names] for names in (model.coordinates, model.velocities)]
                              for side in ("before", "after"))
             state = np.concatenate([before[0], call(f"{name}_motion", event["t"], *before, k)[1]])
             gaps = call(f"{name}_gaps", event["t"], state, k)[1]
@@ -123,14 +123,14 @@ def test_casadi_has_the_functions_of_c(name, compiler, tmp_path):
     generator, compared = np.random.default_rng(5), 0
     for part in _native.lines(model.source, None):
         scene = part["name"].removeprefix(f"{model.name}_") if model.modes else None
-        for own, (of_state, *_) in part["routines"].items():
-            size, _ = sizes[f"{part['name']}_{own}"]
-            function = model.to_casadi(own, scene)
+        for item, (of_state, *_) in part["routines"].items():
+            size, _ = sizes[f"{part['name']}_{item}"]
+            function = model.to_casadi(item, scene)
             n = len(part["coordinates"])
             lengths = [n + len(part["motion"])] if of_state else [n, n]
             for _ in range(2):
                 arrays = [generator.uniform(0.2, 0.8, length) for length in lengths] + [parameters(model)]
-                code, out = call(f"{part['name']}_{own}", 0.3, *arrays)
+                code, out = call(f"{part['name']}_{item}", 0.3, *arrays)
                 if code == 0 and np.isfinite(out).all():
                     close(np.array(casadi.DM(function(0.3, *arrays))).ravel(), out)
                     compared += len(out)

@@ -40,7 +40,7 @@ def test_derivatives_of_a_rolling_disk_are_differences():
     for column, (name, h) in enumerate([("x", 1e-6), ("phi", 1e-5), ("theta_dot", 1e-4), ("phi_dot", 1e-5), ("ta", 1e-6)]):
         value = {"phi_dot": 0.2, "ta": disk.ta, **start}[name]
         moved = [value + h, value - h]
-        pairs = [end({name: own}) if name == "ta" else end({}, **{name: own}) for own in moved]
+        pairs = [end({name: item}) if name == "ta" else end({}, **{name: item}) for item in moved]
         assert {count for _, count in pairs} == {len(run.events)}
         difference = (pairs[0][0] - pairs[1][0]) / (2 * h)
         scale = np.abs(difference).max()

@@ -4,7 +4,7 @@ use dalembert_expr::Function as Elementary;
 
 use crate::program::{Function, Guard, Input, Op, Value};
 
-/// What a line reads.
+/// An operand of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand {
     /// The value of an earlier line.
@@ -44,16 +44,16 @@ pub enum Line {
         value: usize,
         /// Sign or name.
         operation: &'static str,
-        /// What it is applied to.
+        /// The argument.
         operands: Vec<Operand>,
     },
     /// `value > factor*reference`, or else the function ends with a fault.
     Demand {
-        /// What must be greater.
+        /// The side that must be greater.
         value: Operand,
         /// A factor of the reference.
         factor: f64,
-        /// What it is compared with; 0 without.
+        /// The side that it is compared with; 0 without.
         reference: Option<Operand>,
         /// The fault.
         fault: Fault,

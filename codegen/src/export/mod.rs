@@ -54,7 +54,7 @@ pub enum Takes {
 pub struct Routine {
     /// The name: `rate`, `impact_floor`.
     pub name: String,
-    /// What its results are.
+    /// The meaning of its results.
     pub about: String,
     /// Its arguments.
     pub takes: Takes,
@@ -214,7 +214,7 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
     })
 }
 
-/// What `motion` gives.
+/// The result of `motion`.
 fn motion(form: &FormOf<'_>) -> String {
     match form.program.form {
         Form::Reduced => "the quasi-velocities of the state".into(),

@@ -24,7 +24,7 @@ pub enum Between {
     Cubic,
     /// On a line.
     Linear,
-    /// As in the row before.
+    /// At the values of the row before.
     Held,
 }
 

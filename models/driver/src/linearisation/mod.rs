@@ -76,7 +76,7 @@ pub struct Linearisation {
 pub enum Tendency {
     /// All eigenvalues have negative real parts: small deviations decay.
     Stable,
-    /// As many eigenvalues have positive real parts: some deviations grow.
+    /// This many eigenvalues have positive real parts: some deviations grow.
     Unstable(usize),
     /// None has a positive real part, as many have the real part 0 up to rounding: the linearisation does not tell.
     Neutral(usize),

@@ -414,7 +414,7 @@ fn few_steps_end_a_branch_early() {
 /// The guide and the schema of branches name the ends that the code knows.
 #[test]
 fn every_end_is_in_the_guide_and_in_the_schema() {
-    let page = include_str!("../../../../docs/guide/continuation.md");
+    let page = include_str!("../../docs/guide/continuation.md");
     let (_, table) = page
         .split_once("| end | meaning |")
         .expect("the table of ends");
@@ -424,7 +424,7 @@ fn every_end_is_in_the_guide_and_in_the_schema() {
         .take_while(|line| line.starts_with('|'));
     let told: Vec<&str> = rows.filter_map(|row| row.split('`').nth(1)).collect();
     assert_eq!(told, BranchEnd::KINDS);
-    let schema = include_str!("../../../../docs/reference/schemas/branch.json");
+    let schema = include_str!("../../docs/reference/schemas/branch.json");
     let schema: Value = serde_json::from_str(schema).unwrap();
     let kinds = &schema["$defs"]["end"]["properties"]["kind"]["enum"];
     assert_eq!(*kinds, serde_json::json!(BranchEnd::KINDS));

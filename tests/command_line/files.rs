@@ -79,7 +79,7 @@ fn a_model_comes_from_the_standard_input() {
 #[test]
 fn the_pages_show_models_that_run() {
     let folder = Folder::new("pages");
-    let page = include_str!("../../../../docs/language.md");
+    let page = include_str!("../../docs/language.md");
     let two = folder.file("two.dal", block(page, "// Two pendulums."));
     for name in ["rod", "moving"] {
         let done = run(&format!(
@@ -87,7 +87,7 @@ fn the_pages_show_models_that_run() {
         ));
         assert_eq!(done.json()["outcome"]["kind"], "done", "{}", done.errors);
     }
-    let readme = include_str!("../../../../README.md");
+    let readme = include_str!("../../README.md");
     let skate = folder.file("skate.dal", block(readme, "/// Skate on an incline"));
     let done = run(&format!("simulate {skate} --json -"));
     assert_eq!(done.json()["outcome"]["kind"], "done", "{}", done.errors);

@@ -45,9 +45,9 @@ const SCENES: &str = "
         initial { x = 1; until = 1.5; }
     }";
 
-const SLEIGH: &str = include_str!("../../../src/chaplygin_sleigh.dal");
+const SLEIGH: &str = include_str!("../../models/src/chaplygin_sleigh.dal");
 
-const WALKER: &str = include_str!("../../../src/spring_mass_walker.dal");
+const WALKER: &str = include_str!("../../models/src/spring_mass_walker.dal");
 
 /// Runs `simulate --certify` on a text.
 fn certify(text: &str, flags: &str) -> Done {
