@@ -471,7 +471,7 @@ fn a_ball_has_every_speed_for_the_same_time() {
     assert!(last["halves_of_members"].is_null());
     let svg = folder.read("density.svg");
     for text in [
-        "x_dot",
+        "x\u{307}",
         "distance of halves of time",
         "crispEdges",
         "</svg>",

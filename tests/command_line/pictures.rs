@@ -57,7 +57,7 @@ fn quantities_are_drawn_over_time_with_their_groups() {
         "momenta",
         "oscillator --set k=4 --axes t,p,outputs,energy_error",
     );
-    for name in ["p_x.1", "p_x.2", "radius", "energy_error"] {
+    for name in ["p_x₁", "p_x₂", "radius", "relative change of the energy"] {
         assert!(svg.contains(&format!("\n{name}\n")), "{name}");
     }
     let svg = picture("bounces", "bouncing_ball --until 10 --axes t,x_dot");

@@ -202,8 +202,8 @@ fn refusals_name_what_is_missing() {
         ("x, y, z", "unknown name `z`"),
         ("x, x", "`x` twice"),
         ("x, momentum(y) +", "expected"),
-        ("x, momentum(y); y", "expected"),
-        ("x; }", "not a sequence of tokens"),
+        ("x, momentum(y); y", "`;` does not separate what is given"),
+        ("x, }", "not a sequence of tokens"),
     ] {
         let text = refused(&disk(""), None, functions);
         assert!(text.contains(expected), "{functions}: {text}");

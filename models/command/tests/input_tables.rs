@@ -118,7 +118,7 @@ fn between_rows_inputs_are_as_asked() {
     );
 }
 
-/// A sine at 40 rows is met to the fourth power of their distance.
+/// A sine at rows at a distance h is met to 3/128 h^4, and to h^4/24 beside the ends: in all less than 5e-7 in time 3.
 #[test]
 fn a_smooth_input_is_met_closely() {
     let folder = Folder::new("sine");
@@ -128,8 +128,8 @@ fn a_smooth_input_is_met_closely() {
         .collect();
     let table = folder.with("sine.csv", &format!("t,u\n{}\n", rows.join("\n")));
     let [q, qdot] = end(MASS, &format!("- --inputs {table}"));
-    assert_near(qdot[0], 1.0 - 3.0_f64.cos(), 1e-7);
-    assert_near(q[0], 3.0 - 3.0_f64.sin(), 1e-6);
+    assert_near(qdot[0], 1.0 - 3.0_f64.cos(), 5e-7);
+    assert_near(q[0], 3.0 - 3.0_f64.sin(), 1.5e-6);
 }
 
 #[test]
