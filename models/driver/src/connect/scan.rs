@@ -193,3 +193,56 @@ pub(super) fn windows(samples: &[Sample], least: usize) -> impl Iterator<Item = 
         Course::Beyond | Course::GivenUp | Course::Lost => false,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Motions that reach the end up to a speed of 1, and end in this way beyond.
+    struct Ends(Course);
+
+    impl Aim for Ends {
+        fn steps(&self) -> u64 {
+            0
+        }
+
+        fn shoot(&mut self, w: &[f64], _with_slopes: bool) -> Shot {
+            let is_slow = w[0] < 1.0;
+            Shot {
+                course: match is_slow {
+                    true => Course::Reached(Vec::new()),
+                    false => self.0.clone(),
+                },
+                misses: vec![w[0]],
+                slopes: Vec::new(),
+            }
+        }
+    }
+
+    fn scanned(beyond: Course) -> Ray {
+        let density = Density {
+            first: 4,
+            doubling: 4,
+            halvings: 3,
+            steps: 1000,
+        };
+        let speeds = Speeds {
+            first: 2.0,
+            most: 64.0,
+            is_open: true,
+        };
+        ray(&mut Ends(beyond), &[1.0], &[1.0], density, speeds)
+    }
+
+    #[test]
+    fn a_ray_is_bounded_only_if_no_motion_was_given_up() {
+        let bounded = scanned(Course::Beyond);
+        assert!(bounded.is_bounded);
+        assert_eq!(bounded.given_up(), 0);
+        let open = scanned(Course::GivenUp);
+        assert!(!open.is_bounded);
+        assert!(open.given_up() > 4, "{}", open.given_up());
+        let speeds = open.samples.iter().map(|sample| sample.speed);
+        assert!(speeds.fold(0.0, f64::max) <= 4.0, "the scan goes on");
+    }
+}
