@@ -49,7 +49,7 @@ impl Sign {
     /// The changes of the sign in a step from `span[0]` to `span[1]`, in order.
     ///
     /// # Errors
-    /// That of the function.
+    /// The error of the function.
     pub(crate) fn follow<E>(
         &mut self,
         span: [f64; 2],

@@ -56,6 +56,12 @@ pub(super) fn greek_name(letter: char) -> Option<&'static str> {
         .map(|(_, name)| *name)
 }
 
+/// The Greek letter of this name.
+pub fn greek_letter(name: &str) -> Option<char> {
+    let found = LETTERS.iter().find(|(_, known)| *known == name);
+    found.map(|(letter, _)| *letter)
+}
+
 /// The name in a formula.
 pub(super) fn latex(name: &Name) -> String {
     decorated(name, |letter| letter)

@@ -40,6 +40,7 @@ pub(crate) use check::check_within;
 pub use exterior::{ExteriorForm, Wedge};
 pub use graph::{Entry, Mode, ModeGraph, Places, check_modes};
 pub use index::INDICES;
+pub use latex::greek_letter;
 pub use law::{Law, Reset};
 pub use scene::{Extras, Parts, Scene};
 pub use transition::{Map, Transition};

@@ -15,6 +15,7 @@ mod linearise;
 mod map;
 mod orbit;
 mod rows;
+mod search;
 mod series;
 
 use std::path::PathBuf;
@@ -39,6 +40,7 @@ pub use linearise::LineariseArgs;
 pub use map::MapArgs;
 pub use orbit::OrbitArgs;
 pub use rows::RowsArgs;
+pub use search::SearchArgs;
 pub use series::SeriesArgs;
 
 /// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.

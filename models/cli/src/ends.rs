@@ -1,10 +1,42 @@
 //! Flags of boundary-value problems: components of an end by name, and numbers of impacts.
 
-use crate::error::{CliError, counted};
+use dalembert::describe::Description;
+use dalembert_driver::{AnyModel, Refusal, Stage};
+
+use crate::error::{self, CliError, counted};
+use crate::progress::Stages;
 use crate::{names, scalar};
 
 /// Largest number of impacts.
 const MOST_IMPACTS: usize = 1000;
+
+/// Makes a search and shows its progress. `place` is the flag of the start, `refused` words a problem that has no answer.
+///
+/// # Errors
+/// A start that is refused, a problem without an answer, a scene without variations.
+pub fn sought<T, E>(
+    (model, scene, place): (&dyn AnyModel, &str, &str),
+    terminal: bool,
+    search: impl FnOnce(&mut dyn FnMut(Stage)) -> Result<Option<Result<T, E>>, Refusal>,
+    refused: impl FnOnce(&Description, &E) -> CliError,
+) -> Result<T, CliError> {
+    let mut stages = Stages::new(terminal);
+    let result = search(&mut |stage| {
+        stages.at(stage.done, stage.all, &format!("{} found", stage.found));
+    });
+    stages.finish();
+    let description = model.description();
+    let result = result.map_err(|refusal| CliError::Input {
+        place: place.to_owned(),
+        reason: error::refusal_text(description, &refusal),
+    })?;
+    match result {
+        Some(found) => found.map_err(|reason| refused(description, &reason)),
+        None => Err(CliError::Invariable {
+            scene: scene.to_owned(),
+        }),
+    }
+}
 
 /// Reasons of a scan for which its search is not exhaustive, to be appended to others.
 pub fn doubts(unresolved: usize, given_up: usize) -> String {

@@ -4,6 +4,7 @@
 use std::fmt;
 use std::io::{self, Write};
 
+use dalembert_driver::AnyModel;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
@@ -133,6 +134,27 @@ impl<'a> Document<'a> {
             output,
             empty: true,
         })
+    }
+
+    /// Opens the object of a command that runs a model, with its name, scene and parameters.
+    ///
+    /// # Errors
+    /// An I/O error of the stream.
+    pub fn of_model(
+        output: &'a mut dyn Write,
+        model: &dyn AnyModel,
+        scene: &str,
+    ) -> io::Result<Self> {
+        let description = model.description();
+        let parameters = description.parameters.iter();
+        let values: Vec<f64> = (0..parameters.len())
+            .map(|index| model.parameter(index))
+            .collect();
+        let mut document = Self::begin(output)?;
+        document.field("model", description.name)?;
+        document.field("scene", scene)?;
+        document.field("parameters", named(parameters.map(|it| it.name), &values))?;
+        Ok(document)
     }
 
     /// Writes a key with a value on its line.

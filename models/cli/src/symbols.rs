@@ -1,35 +1,6 @@
 //! Symbols for the names of quantities, as pictures and pages show them: `theta_dot` is θ with a dot, `x1` has an index.
 
-/// Greek letters by the names that models give them.
-const GREEK: [(&str, char); 27] = [
-    ("alpha", 'α'),
-    ("beta", 'β'),
-    ("gamma", 'γ'),
-    ("delta", 'δ'),
-    ("eps", 'ε'),
-    ("epsilon", 'ε'),
-    ("zeta", 'ζ'),
-    ("eta", 'η'),
-    ("theta", 'θ'),
-    ("kappa", 'κ'),
-    ("lambda", 'λ'),
-    ("mu", 'μ'),
-    ("nu", 'ν'),
-    ("xi", 'ξ'),
-    ("pi", 'π'),
-    ("rho", 'ρ'),
-    ("sigma", 'σ'),
-    ("tau", 'τ'),
-    ("phi", 'φ'),
-    ("chi", 'χ'),
-    ("psi", 'ψ'),
-    ("omega", 'ω'),
-    ("Gamma", 'Γ'),
-    ("Delta", 'Δ'),
-    ("Theta", 'Θ'),
-    ("Phi", 'Φ'),
-    ("Omega", 'Ω'),
-];
+use dalembert_codegen::model::greek_letter;
 
 /// A dot above the letter before it.
 const DOT: char = '\u{307}';
@@ -58,9 +29,10 @@ impl Symbol {
             None => (family, false),
         };
         let letters = family.trim_end_matches(|it: char| it.is_ascii_digit());
-        let greek = GREEK.iter().find(|(name, _)| *name == letters);
-        let letter = match greek {
-            Some((_, letter)) => letter.to_string(),
+        // A common short name.
+        let name = if letters == "eps" { "epsilon" } else { letters };
+        let letter = match greek_letter(name) {
+            Some(letter) => letter.to_string(),
             None if letters.chars().count() == 1 => letters.to_owned(),
             None => return None,
         };

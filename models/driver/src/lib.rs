@@ -34,6 +34,7 @@ pub mod course;
 pub mod drift;
 mod grid;
 mod integrator;
+mod least_squares;
 mod linear;
 mod linearisation;
 mod model;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::ValueParser;
 
-use super::{ModelArgs, SeriesArgs};
+use super::{ModelArgs, SearchArgs, SeriesArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
@@ -50,21 +50,9 @@ pub struct ConnectArgs {
     /// Time of the end.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub time: f64,
-    /// Number of impacts, or its least and largest value, both included: `2`, `0..3`.
-    #[arg(
-        long,
-        value_name = "N|A..B",
-        allow_hyphen_values = true,
-        default_value = "0"
-    )]
-    pub impacts: String,
-    /// Number of directions in which starts are scanned, for two unknowns or more. Default: 96 for two, 240 for three,
-    /// 480 for more.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
-    pub starts: Option<u32>,
-    /// Seed that turns these directions.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
+    /// The search.
+    #[command(flatten)]
+    pub search: SearchArgs,
     /// Largest kinetic energy of a start. Default: as the problem suggests, see below.
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub energy: Option<f64>,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::ValueParser;
 
-use super::ModelArgs;
+use super::{ModelArgs, SearchArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
@@ -45,21 +45,9 @@ pub struct ControlArgs {
     /// Time of the end. Default: the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// Number of impacts, or its least and largest value, both included: `2`, `0..3`.
-    #[arg(
-        long,
-        value_name = "N|A..B",
-        allow_hyphen_values = true,
-        default_value = "0"
-    )]
-    pub impacts: String,
-    /// Number of directions in which costates are scanned, for two unknowns or more. Default: 96 for two, 240 for three,
-    /// 480 for more.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
-    pub starts: Option<u32>,
-    /// Seed that turns these directions.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
+    /// The search.
+    #[command(flatten)]
+    pub search: SearchArgs,
     /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-14", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,

@@ -13,7 +13,6 @@ use crate::entry::Entry;
 use crate::error::{self, CliError};
 use crate::exit::Exit;
 use crate::plot::{Drawn, quantity};
-use crate::progress::Stages;
 use crate::sink::Sink;
 use crate::state_input::build_model;
 use crate::{Streams, ends, names, run_request};
@@ -40,7 +39,7 @@ pub fn run(
     run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
     let model = build_model(models, &args.model)?;
     let boundary = boundary(model.as_ref(), args)?;
-    check_axes(model.description(), args)?;
+    quantity::check("--axes", args.axes.as_deref(), model.description())?;
     // Opened before the search, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
@@ -72,18 +71,11 @@ pub fn run(
 pub fn draw(models: &[Entry], args: &ConnectArgs) -> Result<Drawn, CliError> {
     let model = build_model(models, &args.model)?;
     let boundary = boundary(model.as_ref(), args)?;
-    check_axes(model.description(), args)?;
+    quantity::check("--axes", args.axes.as_deref(), model.description())?;
     let finished = find(model.as_ref(), args, boundary, false)?;
     Ok(Drawn {
         svg: film::picture(&finished, args)?,
         outcome: summary::counted(&finished),
-    })
-}
-
-fn check_axes(description: &Description, args: &ConnectArgs) -> Result<(), CliError> {
-    let axes = args.axes.as_deref();
-    axes.map_or(Ok(()), |axes| {
-        quantity::parse("--axes", axes, description).map(drop)
     })
 }
 
@@ -94,29 +86,17 @@ fn find<'a>(
     boundary: Boundary,
     terminal: bool,
 ) -> Result<Finished<'a>, CliError> {
-    let mut stages = Stages::new(terminal);
-    let result = model.connect(&boundary, &mut |stage| {
-        stages.at(stage.done, stage.all, &format!("{} found", stage.found));
-    });
-    stages.finish();
-    let description = model.description();
-    let result = result.map_err(|refusal| CliError::Input {
-        place: "--from".to_owned(),
-        reason: error::refusal_text(description, &refusal),
-    })?;
-    let connected = match result {
-        Some(Ok(connected)) => connected,
-        Some(Err(unjoined)) => return Err(refused(description, &unjoined)),
-        None => {
-            return Err(CliError::Invariable {
-                scene: args.model.scene.clone(),
-            });
-        }
-    };
+    let about = (model, args.model.scene.as_str(), "--from");
+    let connected = ends::sought(
+        about,
+        terminal,
+        |tell| model.connect(&boundary, tell),
+        refused,
+    )?;
     Ok(Finished {
         model,
         scene: &args.model.scene,
-        seed: args.seed,
+        seed: args.search.seed,
         boundary,
         connected,
     })
@@ -187,7 +167,7 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
             "connect: motions that change between modes are not solved for; write the mode as a model of its own",
         ));
     }
-    let impacts = ends::impacts(&args.impacts)?;
+    let impacts = ends::impacts(&args.search.impacts)?;
     if description.surfaces.is_empty() && impacts[1] > 0 {
         return Err(CliError::Usage(
             "--impacts: the model has no impact surfaces",
@@ -211,8 +191,8 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
         tolerance,
         laws: run_request::laws(model, &args.series.law)?,
         policies: args.series.policies.policies(),
-        directions: args.starts.map(|count| count as usize),
-        seed: args.seed,
+        directions: args.search.starts.map(|count| count as usize),
+        seed: args.search.seed,
         kinetic: args.energy,
         envelope: args.envelope.map_or(0, |count| count as usize),
     })

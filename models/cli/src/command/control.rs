@@ -11,10 +11,9 @@ use dalembert_driver::{AnyModel, Controlled, Form, Integrator, Settings, Task, U
 
 use crate::args::{ControlArgs, ModelArgs};
 use crate::entry::Entry;
-use crate::error::{self, CliError};
+use crate::error::CliError;
 use crate::exit::Exit;
 use crate::plot::{Drawn, quantity};
-use crate::progress::Stages;
 use crate::sink::Sink;
 use crate::state_input::{build_model, find_model};
 use crate::{Streams, ends, names, run_request};
@@ -79,7 +78,7 @@ pub fn run(
     run_request::check_outputs([&args.csv, &args.json, &args.inputs, &args.plot])?;
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
-    check_axes(model.description(), args)?;
+    quantity::check("--axes", args.axes.as_deref(), model.description())?;
     // Opened before the search, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
@@ -118,7 +117,7 @@ pub fn run(
 pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
-    check_axes(model.description(), args)?;
+    quantity::check("--axes", args.axes.as_deref(), model.description())?;
     let finished = find(model.as_ref(), args, task, false)?;
     Ok(Drawn {
         svg: film::picture(&finished, args)?,
@@ -149,19 +148,12 @@ fn model_of_extremals(models: &[Entry], args: &ControlArgs) -> Result<Box<dyn An
     build_model(&extremals, &args)
 }
 
-fn check_axes(description: &Description, args: &ControlArgs) -> Result<(), CliError> {
-    let axes = args.axes.as_deref();
-    axes.map_or(Ok(()), |axes| {
-        quantity::parse("--axes", axes, description).map(drop)
-    })
-}
-
 /// The request of the flags.
 fn task(model: &dyn AnyModel, args: &ControlArgs) -> Result<Task, CliError> {
     let description = model.description();
     let count = (description.coordinates.len() - 1) / 2;
     let states = names::coordinates(description).take(count);
-    let impacts = ends::impacts(&args.impacts)?;
+    let impacts = ends::impacts(&args.search.impacts)?;
     if description.surfaces.is_empty() && impacts[1] > 0 {
         return Err(CliError::Usage(
             "--impacts: the model has no impact surfaces",
@@ -183,8 +175,8 @@ fn task(model: &dyn AnyModel, args: &ControlArgs) -> Result<Task, CliError> {
         ))?,
         impacts,
         tolerance,
-        directions: args.starts.map(|count| count as usize),
-        seed: args.seed,
+        directions: args.search.starts.map(|count| count as usize),
+        seed: args.search.seed,
     })
 }
 
@@ -195,25 +187,8 @@ fn find<'a>(
     task: Task,
     terminal: bool,
 ) -> Result<Finished<'a>, CliError> {
-    let mut stages = Stages::new(terminal);
-    let result = model.control(&task, &mut |stage| {
-        stages.at(stage.done, stage.all, &format!("{} found", stage.found));
-    });
-    stages.finish();
-    let description = model.description();
-    let result = result.map_err(|refusal| CliError::Input {
-        place: "--initial".to_owned(),
-        reason: error::refusal_text(description, &refusal),
-    })?;
-    let controlled = match result {
-        Some(Ok(controlled)) => controlled,
-        Some(Err(unsought)) => return Err(refused(description, &unsought)),
-        None => {
-            return Err(CliError::Invariable {
-                scene: args.model.scene.clone(),
-            });
-        }
-    };
+    let about = (model, args.model.scene.as_str(), "--initial");
+    let controlled = ends::sought(about, terminal, |tell| model.control(&task, tell), refused)?;
     Ok(Finished {
         model,
         scene: &args.model.scene,

@@ -108,6 +108,14 @@ pub fn parse(flag: &str, text: &str, description: &Description) -> Result<Vec<Qu
     }
 }
 
+/// Checks the quantities of `--axes`, if they are given.
+///
+/// # Errors
+/// The errors of [`parse`].
+pub fn check(flag: &str, text: Option<&str>, description: &Description) -> Result<(), CliError> {
+    text.map_or(Ok(()), |text| parse(flag, text, description).map(drop))
+}
+
 /// Parses one quantity of a single state.
 ///
 /// # Errors

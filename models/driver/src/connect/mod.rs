@@ -17,12 +17,10 @@
 //! | `search.rs` | the search: rays, starts, deflation |
 //! | `directions.rs` | directions that cover a sphere |
 //! | `conjugate.rs` | conjugate points of a motion |
-//! | `least_squares.rs` | linear equations |
 
 pub(crate) mod aim;
 mod conjugate;
 mod directions;
-pub(crate) mod least_squares;
 mod line;
 mod newton;
 pub(crate) mod observers;

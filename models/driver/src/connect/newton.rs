@@ -4,7 +4,7 @@
 //! multiplies the step by `1/(1 - dM(step)/M)`.
 
 use super::aim::{Aim, Course, Shot};
-use super::least_squares::solve;
+use crate::least_squares::solve;
 use crate::linear::norm;
 
 /// Largest number of steps.

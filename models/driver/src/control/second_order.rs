@@ -6,7 +6,7 @@
 //! `S_xx - S_xx' (S_x'x' + K)^-1 S_x'x`. Given components of the end do not vary. This is the Riccati equation in
 //! steps, in which nothing becomes infinite before a focal point, and impacts are parts of stretches.
 
-use crate::connect::least_squares::solve;
+use crate::least_squares::solve;
 
 /// The result of the second-order test.
 #[derive(Debug, Clone, Copy, PartialEq)]

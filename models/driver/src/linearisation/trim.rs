@@ -5,7 +5,7 @@ use dalembert::contract::Variational;
 
 use super::sample::{Plant, Sample};
 use super::{Unlinear, largest};
-use crate::connect::least_squares::solve;
+use crate::least_squares::solve;
 use crate::linear::norm;
 
 /// Largest number of steps.

@@ -6,27 +6,16 @@ use dalembert_driver::accuracy::Sample;
 use serde_json::{Value, json};
 
 use super::Finished;
-use crate::json::{Document, named, number};
+use crate::json::{Document, number};
 
 /// Writes the document.
 ///
 /// # Errors
 /// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
-    let description = finished.model.description();
-    let names = description
-        .parameters
-        .iter()
-        .map(|parameter| parameter.name);
-    let values: Vec<f64> = (0..description.parameters.len())
-        .map(|index| finished.model.parameter(index))
-        .collect();
     let study = &finished.study;
 
-    let mut document = Document::begin(output)?;
-    document.field("model", description.name)?;
-    document.field("scene", finished.scene)?;
-    document.field("parameters", named(names, &values))?;
+    let mut document = Document::of_model(output, finished.model, finished.scene)?;
     document.field("form", finished.settings.form.name())?;
     document.field("until", number(study.until))?;
     let reference = json!({

@@ -14,14 +14,7 @@ use crate::names;
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let (model, boundary) = (finished.model, &finished.boundary);
     let (description, connected) = (model.description(), &finished.connected);
-    let parameters = description.parameters.iter();
-    let values: Vec<f64> = (0..parameters.len())
-        .map(|index| model.parameter(index))
-        .collect();
-    let mut document = Document::begin(output)?;
-    document.field("model", description.name)?;
-    document.field("scene", finished.scene)?;
-    document.field("parameters", named(parameters.map(|it| it.name), &values))?;
+    let mut document = Document::of_model(output, model, finished.scene)?;
     document.field(
         "from",
         named(names::coordinates(description), &boundary.from),

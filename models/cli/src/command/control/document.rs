@@ -13,15 +13,8 @@ use crate::names;
 /// Writes the document.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let (model, task) = (finished.model, &finished.task);
-    let (description, controlled) = (finished.description(), &finished.controlled);
-    let parameters = description.parameters.iter();
-    let values: Vec<f64> = (0..parameters.len())
-        .map(|index| model.parameter(index))
-        .collect();
-    let mut document = Document::begin(output)?;
-    document.field("model", description.name)?;
-    document.field("scene", finished.scene)?;
-    document.field("parameters", named(parameters.map(|it| it.name), &values))?;
+    let controlled = &finished.controlled;
+    let mut document = Document::of_model(output, model, finished.scene)?;
     document.field("from", named(finished.states(), &task.from))?;
     let to = finished.states().zip(&task.to);
     let to = to.filter_map(|(name, to)| to.map(|to| (name.to_owned(), number(to))));

@@ -12,14 +12,7 @@ use crate::json::{Document, named, number, vector};
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let model = finished.model;
     let description = model.description();
-    let parameters = description.parameters.iter();
-    let values: Vec<f64> = (0..parameters.len())
-        .map(|index| model.parameter(index))
-        .collect();
-    let mut document = Document::begin(output)?;
-    document.field("model", description.name)?;
-    document.field("scene", finished.scene)?;
-    document.field("parameters", named(parameters.map(|it| it.name), &values))?;
+    let mut document = Document::of_model(output, model, finished.scene)?;
     match &finished.found {
         Ok(found) => {
             document.field("outcome", json!({ "kind": "done" }))?;

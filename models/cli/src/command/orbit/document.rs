@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::Finished;
 use super::summary::components;
-use crate::json::{Document, matrix, named, number, vector};
+use crate::json::{Document, matrix, number, vector};
 use crate::outcome;
 
 /// Writes the document.
@@ -46,17 +46,7 @@ pub(super) fn begin<'a, T>(
 ) -> io::Result<Document<'a>> {
     let (model, search) = (finished.model, &finished.search);
     let description = model.description();
-    let values: Vec<f64> = (0..description.parameters.len())
-        .map(|index| model.parameter(index))
-        .collect();
-    let names = description
-        .parameters
-        .iter()
-        .map(|parameter| parameter.name);
-    let mut document = Document::begin(output)?;
-    document.field("model", description.name)?;
-    document.field("scene", finished.scene)?;
-    document.field("parameters", named(names, &values))?;
+    let mut document = Document::of_model(output, model, finished.scene)?;
     document.field("surface", description.surfaces[search.surface].name)?;
     document.field("returns", search.returns)?;
     document.field("tol", number(search.tolerance.relative()))?;

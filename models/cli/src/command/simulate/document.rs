@@ -71,18 +71,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
         ..
     } = finished;
     let description = model.description();
-    let values: Vec<f64> = (0..description.parameters.len())
-        .map(|index| model.parameter(index))
-        .collect();
-    let names = description
-        .parameters
-        .iter()
-        .map(|parameter| parameter.name);
-
-    let mut document = Document::begin(output)?;
-    document.field("model", description.name)?;
-    document.field("scene", *scene)?;
-    document.field("parameters", named(names, &values))?;
+    let mut document = Document::of_model(output, *model, scene)?;
     if !model.inputs().is_empty() {
         let table = finished.inputs.as_ref();
         let is_held = |index: &usize| table.is_none_or(|table| !table.has(*index));
@@ -90,7 +79,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
         let names = held.iter().map(|&index| model.inputs()[index]);
         let held = held
             .iter()
-            .map(|index| model.parameter(values.len() + index));
+            .map(|index| model.parameter(description.parameters.len() + index));
         document.field("inputs", named(names, &held.collect::<Vec<f64>>()))?;
     }
     document.field("form", settings.form.name())?;
