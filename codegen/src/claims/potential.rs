@@ -1,6 +1,6 @@
 //! Logarithm of a density in closed form: its possible terms, and its notation.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
+use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId, Verdict};
 
 use super::problem::Problem;
 use crate::model::{Coordinate, Topology};
@@ -95,7 +95,9 @@ impl Candidates {
         // The logarithm of an exponential is among the plain ones.
         let is_exponential = |id: &ExprId| matches!(pool.node(*id), Node::Call(Function::Exp, _));
         let arguments = calls.iter().filter(|id| !is_exponential(id)).chain(&sums);
-        for id in arguments.chain(&lines) {
+        // A sum may cancel: its logarithm would have a value nowhere, and the others with it.
+        let is_zero = |id: &ExprId| pool.zero_test(*id) == Verdict::Proved;
+        for id in arguments.chain(&lines).filter(|id| !is_zero(id)) {
             let kind = match pool.sign(*id).is_nonzero() {
                 true => &mut regular,
                 false => &mut singular,
