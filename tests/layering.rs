@@ -306,3 +306,48 @@ fn the_arguments_of_generated_functions_have_one_list() {
     assert!(used.len() > 20, "{used:?}");
     assert_eq!(used, hidden);
 }
+
+/// Names that a crate gives at its root.
+fn names_at_root(path: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(root().join(path)).expect("a crate");
+    let uses = text.split("pub use ").skip(1);
+    let listed = uses.flat_map(|rest| {
+        let names = rest.split(';').next().unwrap_or_default();
+        names.split(|c: char| !c.is_alphanumeric() && c != '_')
+    });
+    listed.map(str::to_owned).collect()
+}
+
+/// The name of a public trait that a line declares.
+fn declared_trait(line: &str) -> Option<&str> {
+    let name = line.strip_prefix("pub trait ")?;
+    name.split(|c: char| !c.is_alphanumeric()).next()
+}
+
+#[test]
+fn every_trait_that_users_meet_has_an_example() {
+    let crates = [
+        ("runtime/src", "runtime/src/lib.rs"),
+        ("runtime/numbers/src", "runtime/numbers/src/lib.rs"),
+    ];
+    let mut found = 0;
+    for (folder, root) in crates {
+        let names = names_at_root(root);
+        for (path, text) in sources(folder) {
+            let lines: Vec<&str> = text.lines().collect();
+            for (k, line) in lines.iter().enumerate() {
+                let Some(name) =
+                    declared_trait(line).filter(|name| names.iter().any(|it| it == name))
+                else {
+                    continue;
+                };
+                let above = lines[..k].iter().rev();
+                let documentation = above.take_while(|line| !line.is_empty());
+                let has_example = documentation.clone().any(|line| *line == "/// # Examples");
+                assert!(has_example, "{}: `{name}` has no example", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 20, "{found} traits");
+}

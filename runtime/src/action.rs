@@ -30,6 +30,27 @@ pub fn lagrangian<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> Resu
 
 /// Integrates the Lagrangian along the run that it observes, with 16 Gauss-Legendre nodes in each panel of a step of
 /// the dense output.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Action, Dop853, Simulation, System, Tolerance};
+///
+/// dalembert::model! {
+///     pub Projectile {
+///         coordinates { y; }
+///         lagrangian = dot(y)^2/2 - y;
+///     }
+/// }
+///
+/// // y = t - t^2/2: L = (1 - t)^2/2 - y, and the action of the flight is -1/3.
+/// let projectile = Projectile::default();
+/// let state = projectile.state(0.0, &[0.0].into(), &[1.0].into())?;
+/// let mut action = Action::new(&projectile);
+/// Simulation::new(&projectile, Dop853::new(Tolerance::new(1e-12)?), ()).run(0.0, state, 2.0, &mut action)?;
+/// assert!((action.value()? + 1.0 / 3.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Action<'a, Sys> {
     system: &'a Sys,

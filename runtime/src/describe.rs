@@ -12,6 +12,28 @@ use crate::effects::Scene;
 use crate::error::Fault;
 
 /// A declared model with values for its parameters. Describes itself and its states to tools.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::Instance;
+///
+/// dalembert::model! {
+///     pub Pendulum {
+///         coordinates { theta: angle; }
+///         parameters { l > 0 = 2; }
+///         lagrangian = l^2*dot(theta)^2/2 + l*cos(theta);
+///         initial { theta = 1/4; until = 10; }
+///         outputs { height: -l*cos(theta); }
+///     }
+/// }
+///
+/// let mut pendulum = Pendulum::default();
+/// pendulum.set_parameter(0, 3.0);
+/// assert_eq!(pendulum.l, 3.0);
+/// let initial = pendulum.initial();
+/// assert_eq!((initial.q[0], initial.until), (0.25, Some(10.0)));
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a model declared with `dalembert::model!`"
 )]
@@ -90,6 +112,33 @@ pub trait Instance: System + Clone {
 }
 
 /// Receives a system whose runs can be varied, in its own type (see [`Instance::visit_variational`]).
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::describe::VariationalVisitor;
+/// use dalembert::{Instance, Scene, Variational};
+///
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// /// The number of directions that first variations of a state have.
+/// struct Directions;
+///
+/// impl VariationalVisitor for Directions {
+///     type Output = usize;
+///
+///     fn visit<S: Instance + Scene + Variational>(self, _system: &S) -> usize {
+///         S::tangents().as_ref().len()
+///     }
+/// }
+///
+/// assert_eq!(Pendulum::default().visit_variational(Directions), Some(2));
+/// ```
 pub trait VariationalVisitor {
     /// Result of the visit.
     type Output;
@@ -114,6 +163,42 @@ pub struct Initial<V> {
 }
 
 /// Receives named quantities. Names are those of the command line's `eval`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::describe::Report;
+/// use dalembert::{Instance, System};
+///
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// #[derive(Default)]
+/// struct Names(Vec<String>);
+///
+/// impl Report for Names {
+///     fn scalar(&mut self, name: &str, _value: f64) {
+///         self.0.push(name.to_owned());
+///     }
+///     fn vector(&mut self, name: &str, _values: &[f64]) {
+///         self.0.push(name.to_owned());
+///     }
+///     fn matrix(&mut self, name: &str, _rows: usize, _columns: usize, _values: &[f64]) {
+///         self.0.push(name.to_owned());
+///     }
+/// }
+///
+/// let pendulum = Pendulum::default();
+/// let state = pendulum.state(0.0, &[0.5].into(), &[1.0].into())?;
+/// let mut names = Names::default();
+/// pendulum.inspect(0.0, &state, &mut names)?;
+/// assert!(names.0.iter().any(|name| name == "acceleration"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Report {
     /// A number.
     fn scalar(&mut self, name: &str, value: f64);

@@ -139,6 +139,40 @@ impl Change {
 }
 
 /// Acts on a run besides its smooth motion. An `Err` from any hook ends the run with that outcome.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::effects::{Change, Moment};
+/// use dalembert::{Dop853, Effect, NoForces, Outcome, Simulation, System, Tolerance};
+///
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// /// Counts the steps at whose end the pendulum stands above its pivot.
+/// struct Above(u32);
+///
+/// impl Effect<Pendulum> for Above {
+///     type Forces = NoForces;
+///
+///     fn settle(&mut self, now: &mut Moment<'_, Pendulum>, _cut: bool) -> Result<Change, Outcome> {
+///         let theta = now.system.position(now.state)[0];
+///         self.0 += u32::from(theta.cos() < 0.0);
+///         Ok(Change::Kept)
+///     }
+/// }
+///
+/// let pendulum = Pendulum::default();
+/// let state = pendulum.state(0.0, &[0.0].into(), &[3.0].into())?;
+/// let mut simulation = Simulation::new(&pendulum, Dop853::new(Tolerance::new(1e-9)?), Above(0));
+/// simulation.run(0.0, state, 10.0, &mut ())?;
+/// assert!(simulation.effects().0 > 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Effect<Sys: System> {
     /// The forces it may add to the motion; [`NoForces`] if it never does.
     type Forces: Forces<Sys>;
@@ -201,6 +235,31 @@ pub trait Effect<Sys: System> {
 
 /// Settings of a scene's effects that a caller may choose at run time. An effect ignores the settings that it does
 /// not know.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Dop853, Law, Policies, Rest, Scene, SceneEffects, Simulation, System, Tolerance};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// let ball = Ball::default();
+/// let mut effects = ball.effects();
+/// effects.set_law(0, Law::Restitution(0.5));
+/// effects.set_policies(Policies { rest: Rest::Contact, ..Policies::default() });
+///
+/// let state = ball.state(0.0, &[1.0].into(), &[0.0].into())?;
+/// let run = Simulation::new(&ball, Dop853::new(Tolerance::new(1e-10)?), effects).run(0.0, state, 20.0, &mut ())?;
+/// assert!(ball.position(&run.state)[0].abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait SceneEffects<Sys: System>: Effect<Sys> {
     /// Replaces the law of a surface.
     fn set_law(&mut self, surface: usize, law: Law) {
@@ -237,6 +296,30 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
 }
 
 /// A system with the effects its declaration asks for.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Dop853, Scene, Simulation, System, Tolerance};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// // The effects of the model itself: impacts on its floor.
+/// let ball = Ball::default();
+/// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let integrator = Dop853::new(Tolerance::new(1e-12)?);
+/// let run = Simulation::new(&ball, integrator, ball.effects()).run(0.0, state, 2.0, &mut ())?;
+/// assert_eq!(run.counters.impacts, 1);
+/// assert!((ball.position(&run.state)[0] - 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Scene: System + Sized {
     /// Type of the effects.
     type Effects: SceneEffects<Self>;

@@ -7,6 +7,44 @@ use crate::integrate::{Counters, Instant, Series, StepFailure, Stepper, Toleranc
 use crate::jet::LENGTH;
 
 /// Forces on a system.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Fault, Forces, VectorField, System};
+///
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// /// A torque about the pivot.
+/// #[derive(Clone, Copy, PartialEq)]
+/// struct Torque(f64);
+///
+/// impl Forces<Pendulum> for Torque {
+///     fn add(
+///         &self,
+///         system: &Pendulum,
+///         _t: f64,
+///         _state: &<Pendulum as VectorField>::State,
+///         rate: &mut <Pendulum as VectorField>::State,
+///     ) -> Result<(), Fault> {
+///         system.kick(rate, self.0, &[1.0].into());
+///         Ok(())
+///     }
+/// }
+///
+/// let pendulum = Pendulum::default();
+/// let state = pendulum.state(0.0, &[0.0].into(), &[0.0].into())?;
+/// let mut rate = pendulum.zero_state();
+/// pendulum.rate(0.0, &state, &mut rate)?;
+/// Torque(0.5).add(&pendulum, 0.0, &state, &mut rate)?;
+/// assert_eq!(rate[1], 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Forces<Sys: System>: Copy + PartialEq {
     /// Adds the forces to `rate`, the rate of `state` without them.
     ///

@@ -9,6 +9,30 @@ use crate::numbers::{Bent, ComplexInterval, TaylorModel};
 
 /// A system whose declared `inputs` the caller supplies. It stores their values like parameters; they are 0 until
 /// they are set.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Actuated, System, VectorField};
+///
+/// dalembert::model! {
+///     pub Cart {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2;
+///         inputs { u; }
+///         forces { push: u*d(x); }
+///     }
+/// }
+///
+/// // A spring by feedback.
+/// let cart = Cart::default();
+/// let steered = cart.with_inputs(|_t, state| [-4.0 * state[0]]);
+/// let state = steered.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let mut rate = steered.zero_state();
+/// steered.rate(0.0, &state, &mut rate)?;
+/// assert_eq!(rate[1], -2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no inputs: declare `inputs {{ u; }}` in its `model!`"
 )]

@@ -5,6 +5,15 @@ pub use crate::numbers::{INVERSES, LENGTH};
 pub use dalembert_numbers::tables::Work;
 
 /// Storage for the coefficients of several series.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::jet::Jets;
+///
+/// // Three coefficients of each of two series.
+/// assert_eq!(<[[f64; 2]; 3] as Jets>::ZERO, [[0.0; 2]; 3]);
+/// ```
 pub trait Jets: Copy {
     /// Storage with all coefficients zero.
     const ZERO: Self;

@@ -46,6 +46,25 @@ pub struct Blow<V> {
 }
 
 /// Quantities of an impact at a state from which every law is evaluated. Derived and emitted for each surface.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Contact, Law};
+/// use nalgebra::SVector;
+///
+/// // A ball of mass 2 that meets a wall across its path at speed 3: h = x.
+/// let contact = Contact {
+///     gap_rate: -3.0,
+///     constrained_rate: -3.0,
+///     surface_rate: 0.0,
+///     constrained_compliance: 0.5,
+///     free_compliance: 0.5,
+///     direction: SVector::from([1.0]),
+/// };
+/// assert_eq!(contact.impulse(Law::Elastic), 12.0);
+/// assert_eq!(contact.gap_rate_after(contact.impulse(Law::Newton(0.5))), 1.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact<V> {
     /// `dh(qdot) + d_t h` before the impact; negative at an impact.

@@ -2,6 +2,15 @@
 //! reason.
 
 /// The policies of a run.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Policies, Rest};
+///
+/// let policies = Policies { rest: Rest::Contact, ..Policies::default() };
+/// assert_ne!(policies, Policies::default());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Policies {
     /// For a surface that the motion presses into.

@@ -25,6 +25,29 @@ const THRESHOLD: f64 = 1.0 / (1_u64 << 44) as f64;
 const NEWTON_STEPS: u32 = 8;
 
 /// Projects to the constraints after every step that needs it.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Constrained, Dop853, Instance, Projection, Simulation, System, Tolerance};
+///
+/// dalembert::model! {
+///     pub Bead {
+///         coordinates { x; y; }
+///         lagrangian = (dot(x)^2 + dot(y)^2)/2;
+///         constraints { circle: x*dot(x) + y*dot(y) = 0; }
+///     }
+/// }
+///
+/// // The form on all of T*Q, whose states may leave the constraints.
+/// let bead = Bead::default().global();
+/// let state = bead.state(0.0, &[1.0, 0.0].into(), &[0.0, 1.0].into())?;
+/// let integrator = Dop853::new(Tolerance::new(1e-6)?);
+/// let run = Simulation::new(&bead, integrator, Projection::new()).run(0.0, state, 10.0, &mut ())?;
+/// let (q, qdot) = (bead.position(&run.state), bead.velocity(run.t, &run.state)?);
+/// assert!(bead.residuals(run.t, &q, &qdot).0[0].abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Projection<Sys: Constrained> {
     on: bool,

@@ -121,6 +121,46 @@ impl<S: Copy> Segment<'_, S> {
 
 /// Observes a run. Every hook may stop the run by returning [`ControlFlow::Break`]; it then ends with
 /// [`Outcome::Stopped`](crate::Outcome::Stopped).
+///
+/// # Examples
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use dalembert::{Dop853, Event, Observer, Outcome, Scene, Simulation, System, Tolerance, VectorField};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// /// Stops the run at its third impact.
+/// #[derive(Default)]
+/// struct Third(u32);
+///
+/// impl Observer<Ball> for Third {
+///     fn event(&mut self, _event: &Event<<Ball as VectorField>::State>) -> ControlFlow<()> {
+///         self.0 += 1;
+///         match self.0 {
+///             3 => ControlFlow::Break(()),
+///             _ => ControlFlow::Continue(()),
+///         }
+///     }
+/// }
+///
+/// // The fall from 1/2 takes the time 1.
+/// let ball = Ball::default();
+/// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let mut simulation = Simulation::new(&ball, Dop853::new(Tolerance::new(1e-12)?), ball.effects());
+/// let run = simulation.run(0.0, state, 100.0, &mut Third::default())?;
+/// assert_eq!(run.outcome, Outcome::Stopped);
+/// assert!((run.t - 5.0).abs() < 1e-10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Observer<Sys: System> {
     /// Called after a stretch of smooth motion. Stretches follow each other without gap; impacts lie between them.
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
@@ -177,6 +217,29 @@ impl<Sys: System, A: Observer<Sys>, B: Observer<Sys>> Observer<Sys> for (A, B) {
 }
 
 /// Keeps the first `CAP` impacts of a run, and counts all of them.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Dop853, EventLog, Scene, Simulation, System, Tolerance};
+///
+/// # dalembert::model! {
+/// #     pub Ball {
+/// #         coordinates { x; }
+/// #         lagrangian = dot(x)^2/2 - x;
+/// #         impacts { floor: x >= 0; }
+/// #         initial { x = 1; }
+/// #     }
+/// # }
+///
+/// let ball = Ball::default();
+/// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let mut log = EventLog::<_, 2>::new();
+/// let integrator = Dop853::new(Tolerance::new(1e-12)?);
+/// Simulation::new(&ball, integrator, ball.effects()).run(0.0, state, 6.0, &mut log)?;
+/// assert_eq!((log.iter().count(), log.seen()), (2, 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct EventLog<S, const CAP: usize> {
     events: [Option<Event<S>>; CAP],

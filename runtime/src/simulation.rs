@@ -33,6 +33,28 @@ const AHEAD: f64 = 1.0 / 8.0;
 const SHORTER: f64 = 0.3;
 
 /// A system with an integrator and effects.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Outcome, Scene, Simulation, System, Taylor, Tolerance};
+///
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// let pendulum = Pendulum::default();
+/// let state = pendulum.state(0.0, &[1.0].into(), &[0.0].into())?;
+/// let integrator = Taylor::new(Tolerance::new(1e-12)?);
+/// let mut simulation = Simulation::new(&pendulum, integrator, pendulum.effects());
+/// let run = simulation.run(0.0, state, 20.0, &mut ())?;
+/// assert_eq!(run.outcome, Outcome::Done);
+/// assert!((pendulum.energy(run.t, &run.state)? + 1.0_f64.cos()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Simulation<'a, Sys, Step, Effects> {
     system: &'a Sys,

@@ -10,6 +10,17 @@ use nalgebra::SVector;
 /// Implemented by nalgebra's `SVector<f64, D>` for every `D`, zero included, whose number of components is part of
 /// its type. Other vectors have a fixed capacity and use as many components as the system declares
 /// ([`VectorField::state_len`](crate::VectorField::state_len) and its relatives).
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::StateVector;
+/// use nalgebra::SVector;
+///
+/// let state = SVector::<f64, 3>::zeros();
+/// assert_eq!(<SVector<f64, 3> as StateVector>::CAPACITY, 3);
+/// assert!(StateVector::is_finite(&state));
+/// ```
 pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Largest number of components; for a vector of fixed size, their number.
     const CAPACITY: usize;

@@ -14,6 +14,29 @@ use crate::state::StateVector;
 ///
 /// Powers are integrated over each stretch by the Gauss-Legendre rule of 16 points on the dense output, which every
 /// step then computes. To observe with another observer as well, give a run the pair of them.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Dop853, Simulation, System, Tolerance, Work};
+///
+/// dalembert::model! {
+///     pub Cart {
+///         coordinates { x; }
+///         parameters { c > 0 = 1/2; }
+///         lagrangian = dot(x)^2/2;
+///         forces { drag: -c*dot(x)*d(x); }
+///     }
+/// }
+///
+/// let cart = Cart::default();
+/// let state = cart.state(0.0, &[0.0].into(), &[2.0].into())?;
+/// let mut work = Work::of(&cart);
+/// let run = Simulation::new(&cart, Dop853::new(Tolerance::new(1e-10)?), ()).run(0.0, state, 3.0, &mut work)?;
+/// let lost = cart.energy(0.0, &state)? - cart.energy(run.t, &run.state)?;
+/// assert!((work.total() + lost).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Work<'a, Sys: Powered> {
     system: &'a Sys,

@@ -23,6 +23,17 @@ const CALL: f64 = 4.0 * ULP;
 const FAR: f64 = 1e9;
 
 /// All numbers from `lo` to `hi`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert_numbers::{Interval, Numbers};
+///
+/// let x = Interval::new(1.0, 2.0);
+/// let product = x * x - Interval::point(5.0);
+/// assert!(product.contains(Interval::new(-4.0, -1.0)) && product.excludes_zero());
+/// assert!(x.sin().contains(Interval::point(1.5_f64.sin())));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// The lower end.

@@ -37,6 +37,21 @@ pub const INVERSES: [f64; LENGTH] = {
 };
 
 /// One number, or one of each of several lanes.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert_numbers::{Extended, Interval, Numbers};
+///
+/// /// `x^2 - 2`, over any kind of number.
+/// fn gap<L: Numbers>(x: L) -> L {
+///     x * x - L::of(2.0)
+/// }
+///
+/// assert_eq!(gap(1.5), 0.25);
+/// assert!(gap(Interval::new(1.0, 1.25)).excludes_zero());
+/// assert_eq!(gap(Extended::<2>::from(1.5)).nearest(), 0.25);
+/// ```
 pub trait Numbers:
     Copy
     + Debug
@@ -303,6 +318,15 @@ impl Numbers for f64 {
 }
 
 /// [`Numbers`] in a row on the stack. Implemented by arrays, whose number of entries is part of their type.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert_numbers::numbers::Row;
+///
+/// let row: [f64; 3] = Row::zeros(3);
+/// assert_eq!(Row::<f64>::as_slice(&row), [0.0; 3]);
+/// ```
 pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
     /// The largest number of entries; of a row of fixed length, their number.
     const CAPACITY: usize;

@@ -5,6 +5,16 @@ use crate::interval::Interval;
 use crate::numbers::Numbers;
 
 /// A number at which functions are differentiated: a double, or an interval that holds all arguments.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert_numbers::Interval;
+/// use dalembert_numbers::smooth::Smooth;
+///
+/// assert_eq!(Smooth::reciprocal(4.0), 0.25);
+/// assert!(Smooth::reciprocal(Interval::new(2.0, 4.0)).contains(Interval::new(0.25, 0.5)));
+/// ```
 pub trait Smooth: Numbers {
     /// `1 / x`
     #[must_use]

@@ -6,6 +6,30 @@ use crate::state::StateVector;
 
 /// A system with constraints `eta^a(qdot) + eta^a_0 = 0`, or with constraints `phi^a(t, q, qdot) = 0` that are
 /// nonlinear in the velocities: there `eta^a = dphi^a/dqdot`, and `phi^a` replaces `eta^a(qdot) + eta^a_0`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Constrained, System};
+///
+/// dalembert::model! {
+///     pub Skate {
+///         coordinates { x; y; theta: angle; }
+///         lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2;
+///         constraints { edge: cos(theta)*dot(y) - sin(theta)*dot(x) = 0; }
+///     }
+/// }
+///
+/// // Along x at speed 2, turning at rate 3: the edge pushes across with the force m v omega.
+/// let skate = Skate::default();
+/// let state = skate.state(0.0, &[0.0, 0.0, 0.0].into(), &[2.0, 0.0, 3.0].into())?;
+/// assert!((skate.multipliers(0.0, &state)?[0] - 6.0).abs() < 1e-15);
+///
+/// // A velocity across the edge is no motion of the skate.
+/// let (residuals, _) = skate.residuals(0.0, &[0.0; 3].into(), &[0.0, 1.0, 0.0].into());
+/// assert_eq!(residuals[0], 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"
 )]

@@ -6,6 +6,34 @@ use crate::numbers::{Numbers, Rated, Row};
 use crate::state::StateVector;
 
 /// A first-order system of ordinary differential equations on a state of fixed size.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Fault, VectorField};
+/// use nalgebra::SVector;
+///
+/// /// Van der Pol's oscillator.
+/// struct VanDerPol {
+///     mu: f64,
+/// }
+///
+/// impl VectorField for VanDerPol {
+///     type State = SVector<f64, 2>;
+///
+///     fn rate(&self, _t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault> {
+///         let [x, v] = [state[0], state[1]];
+///         *rate = SVector::from([v, self.mu * (1.0 - x * x) * v - x]);
+///         Ok(())
+///     }
+/// }
+///
+/// let field = VanDerPol { mu: 2.0 };
+/// let mut rate = field.zero_state();
+/// field.rate(0.0, &SVector::from([2.0, 1.0]), &mut rate)?;
+/// assert_eq!(rate, SVector::from([1.0, -8.0]));
+/// # Ok::<(), dalembert::Fault>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no vector field: declare it with `dalembert::model!`"
 )]
@@ -67,6 +95,39 @@ pub trait VectorField {
 ///
 /// Series are computed over [`Numbers`]: `f64` for one motion, SIMD lanes for several at once. [`TaylorField::begin`]
 /// computes the quantities at one moment, [`TaylorField::advance`] the higher coefficients.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::jet::{Jets, LENGTH};
+/// use dalembert::numbers::Row;
+/// use dalembert::{StateVector, System, TaylorField};
+///
+/// dalembert::model! {
+///     pub Oscillator {
+///         coordinates { x; }
+///         lagrangian = (dot(x)^2 - x^2)/2;
+///     }
+/// }
+///
+/// type State = <Oscillator as TaylorField>::Row<f64>;
+///
+/// let system = Oscillator::default();
+/// let start = system.state(0.0, &[1.0].into(), &[0.0].into())?;
+/// let parameters = system.parameters();
+/// let mut coefficients = [State::zeros(2); LENGTH];
+/// coefficients[0].as_mut_slice().copy_from_slice(start.as_slice());
+/// let mut firsts = <Oscillator as TaylorField>::Firsts::<f64>::zeros(system.firsts_len());
+/// system.begin(&parameters, 0.0, &coefficients[0], &mut firsts)?;
+/// let mut gaps = [<Oscillator as TaylorField>::Gaps::<f64>::zeros(0); LENGTH];
+/// let mut jets = <Oscillator as TaylorField>::Jets::<f64>::ZERO;
+/// system.advance(&parameters, 1.0, 4, &firsts, &mut coefficients, &mut gaps, &mut jets);
+///
+/// // x = cos t = 1 - t^2/2 + t^4/24 - ..
+/// let of_x = coefficients.map(|state| state.as_slice()[0]);
+/// assert!((of_x[2] + 1.0 / 2.0).abs() < 1e-16 && (of_x[4] - 1.0 / 24.0).abs() < 1e-16);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "the Taylor coefficients of `{Self}` are not known: declare it with `dalembert::model!`"
 )]

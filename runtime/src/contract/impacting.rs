@@ -12,6 +12,31 @@ use crate::state::StateVector;
 pub type Along<'a> = (TaylorModel, &'a dyn Fn(usize) -> TaylorModel);
 
 /// A system with impact surfaces `h_s >= 0`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Impacting, Law, System};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// let ball = Ball::default();
+/// let falling = ball.state(0.0, &[0.5].into(), &[-2.0].into())?;
+/// assert_eq!(ball.gaps(0.0, &falling)[0], 0.5);
+/// assert_eq!(ball.gap_rates(0.0, &falling)?[0], -2.0);
+///
+/// // The impulse of an elastic impact reverses the velocity of a mass of 1.
+/// let contact = ball.contact(0, 0.0, &falling)?;
+/// assert_eq!(contact.impulse(Law::Elastic), 4.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no impact surfaces: declare `impacts {{ .. }}` in its `model!`"
 )]

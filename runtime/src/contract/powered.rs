@@ -5,6 +5,27 @@ use crate::error::Fault;
 use crate::state::StateVector;
 
 /// A system with named forces, and the power of each cause that changes its energy.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Powered, System};
+///
+/// dalembert::model! {
+///     pub Cart {
+///         coordinates { x; }
+///         parameters { c > 0 = 1/2; }
+///         lagrangian = dot(x)^2/2;
+///         forces { drag: -c*dot(x)*d(x); }
+///     }
+/// }
+///
+/// let cart = Cart::default();
+/// let state = cart.state(0.0, &[0.0].into(), &[2.0].into())?;
+/// assert_eq!(Cart::POWERS, ["drag"]);
+/// assert_eq!(cart.powers(0.0, &state)?[0], -2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no named forces: declare `forces {{ .. }}` in its `model!`"
 )]

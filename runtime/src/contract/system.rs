@@ -15,6 +15,28 @@ pub enum Keep {
 }
 
 /// A mechanical system: a state with positions, velocities, momenta and an energy.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::System;
+///
+/// dalembert::model! {
+///     pub Pendulum {
+///         coordinates { theta: angle; }
+///         parameters { m > 0 = 2; l > 0 = 1/2; g = 10; }
+///         lagrangian = m*l^2*dot(theta)^2/2 + m*g*l*cos(theta);
+///     }
+/// }
+///
+/// let pendulum = Pendulum::default();
+/// let state = pendulum.state(0.0, &[0.0].into(), &[3.0].into())?;
+/// assert_eq!(pendulum.position(&state)[0], 0.0);
+/// assert_eq!(pendulum.velocity(0.0, &state)?[0], 3.0);
+/// assert_eq!(pendulum.momentum(0.0, &state)?[0], 1.5);
+/// assert_eq!(pendulum.energy(0.0, &state)?, 2.25 - 10.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a mechanical system: declare a `lagrangian` in its `model!`"
 )]
@@ -326,6 +348,22 @@ pub struct RankDrop {
 ///
 /// A discrete principle combines these terms in its own way and cannot recover them from the rate of the state.
 /// Positions, velocities and momenta are N numbers each, in every form of the state.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::Lagrangian;
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// let pendulum = Pendulum::default();
+/// let force = pendulum.force(0.0, &[1.0].into(), &[0.0].into());
+/// assert_eq!(force[0], -1.0_f64.sin());
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not give the parts of its equations: declare it with `dalembert::model!`"
 )]

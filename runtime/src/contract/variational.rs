@@ -10,6 +10,38 @@ use crate::numbers::{Interval, Numbers, Row};
 ///
 /// Parameters are passed as numbers too, in the order of [`TaylorField::parameters`]. Every function here equals one
 /// of the system's own up to rounding, and is generic over `L`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::numbers::Row;
+/// use dalembert::variations::Dual;
+/// use dalembert::{StateVector, System, TaylorField, Variational};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// let ball = Ball::default();
+/// let state = ball.state(0.0, &[0.5].into(), &[-2.0].into())?;
+/// let mut row = <Ball as TaylorField>::Row::<Dual>::zeros(2);
+/// for (k, (dual, value)) in row.as_mut_slice().iter_mut().zip(state.as_slice()).enumerate() {
+///     let mut slopes = [0.0; 4];
+///     slopes[k] = 1.0;
+///     *dual = Dual::new(*value, slopes);
+/// }
+///
+/// // The gap and its derivatives by position and momentum.
+/// let parameters = Row::zeros(0);
+/// let gap = ball.clearances(&parameters, Dual::constant(0.0), &row)?.as_slice()[0];
+/// assert_eq!((gap.value, gap.slopes()[0], gap.slopes()[1]), (0.5, 1.0, 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "the variations of `{Self}` are not known: add `variations` to the scene in its `model!`"
 )]

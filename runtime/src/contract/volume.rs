@@ -4,6 +4,26 @@ use super::System;
 use crate::error::Fault;
 
 /// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::Divergence;
+///
+/// dalembert::model! {
+///     pub Particle {
+///         coordinates { x; y; z; }
+///         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+///         constraints { c: dot(z) - y*dot(x) = 0; }
+///         claims { density: exact; }
+///     }
+/// }
+///
+/// // theta = y/(1 + y^2) dy: the logarithm of the density has this gradient.
+/// let theta = Particle::default().density_form(0.0, &[0.0, 1.0, 0.0].into())?;
+/// assert!((theta[1] - 0.5).abs() < 1e-15);
+/// # Ok::<(), dalembert::Fault>(())
+/// ```
 #[diagnostic::on_unimplemented(message = "the divergence of `{Self}` was not derived")]
 pub trait Divergence: System {
     /// Divergence of the motion on D* with respect to `mu_C` (the Leray quotient of the Liouville volume).
@@ -38,6 +58,27 @@ pub trait Divergence: System {
 ///
 /// At given parameters both logarithms are determined up to a constant: only their differences between configurations
 /// are meaningful. `G` depends on the choice of the constraint forms, the volume does not.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::InvariantVolume;
+///
+/// dalembert::model! {
+///     pub Particle {
+///         coordinates { x; y; z; }
+///         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+///         constraints { c: dot(z) - y*dot(x) = 0; }
+///         claims { density: exact; }
+///     }
+/// }
+///
+/// // The density relative to mu_C is sqrt(1 + y^2), up to a constant factor.
+/// let particle = Particle::default();
+/// let [low, high] = [0.0, 1.0].map(|y| particle.log_density(0.0, &[0.0, y, 0.0].into()));
+/// assert!((high? - low? - 2.0_f64.ln() / 2.0).abs() < 1e-15);
+/// # Ok::<(), dalembert::Fault>(())
+/// ```
 ///
 /// # References
 /// W. Clark and A. Bloch, *Invariant forms in hybrid and impact systems and a taming of Zeno*, Theorem 2.8: with linear

@@ -11,6 +11,26 @@ use crate::erased::{Form, Shared};
 use crate::kernels::{Documentation, Documented, Given, Tables};
 
 /// A declared model. Implemented by `model!` for every model.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::Described;
+///
+/// dalembert::model! {
+///     /// A pendulum in a plane.
+///     pub Pendulum {
+///         coordinates { theta: angle; }
+///         parameters { l > 0 = 2; }
+///         lagrangian = l^2*dot(theta)^2/2 + l*cos(theta);
+///     }
+/// }
+///
+/// let description = Pendulum::DESCRIPTION;
+/// assert_eq!(description.name, "pendulum");
+/// assert_eq!(description.coordinates[0].name, "theta");
+/// assert_eq!(Pendulum::with_defaults().l, 2.0);
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a model declared with `dalembert::model!`"
 )]
@@ -34,6 +54,39 @@ pub trait Described: Instance {
 }
 
 /// Receives the types of a model's scenes (see [`Described::visit_scenes`]).
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::declaration::SceneVisitor;
+/// use dalembert::{Described, Lagrangian, Scene, TaylorField};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         scenes { free; }
+///     }
+/// }
+///
+/// struct Names(Vec<&'static str>);
+///
+/// impl SceneVisitor for Names {
+///     fn visit<S>(&mut self, name: &'static str)
+///     where
+///         S: Described<Global: TaylorField + Lagrangian> + Scene + TaylorField + Lagrangian + 'static,
+///     {
+///         self.0.push(name);
+///     }
+/// }
+///
+/// fn main() {
+///     let mut names = Names(Vec::new());
+///     Ball::visit_scenes(&mut names);
+///     assert_eq!(names.0, ["free"]);
+/// }
+/// ```
 pub trait SceneVisitor {
     /// Visits a scene of this name: the model with the effects that the scene keeps, and the parameters of the model.
     fn visit<S>(&mut self, name: &'static str)

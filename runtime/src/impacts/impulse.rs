@@ -43,6 +43,30 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// A surface with the law [`Law::Reset`] has no forbidden side. It acts whenever its gap falls through 0 from above;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
 /// reset of positions, a surface at hand acts if it is approached. Such a surface does not hold the motion.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Dop853, Impacts, Law, Simulation, System, Tolerance};
+///
+/// # dalembert::model! {
+/// #     pub Ball {
+/// #         coordinates { x; }
+/// #         lagrangian = dot(x)^2/2 - x;
+/// #         impacts { floor: x >= 0; }
+/// #         initial { x = 1; }
+/// #     }
+/// # }
+///
+/// let ball = Ball::default();
+/// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let effects = Impacts::declared(&ball).with_law(0, Law::Restitution(0.8));
+/// let run = Simulation::new(&ball, Dop853::new(Tolerance::new(1e-12)?), effects).run(0.0, state, 1.5, &mut ())?;
+///
+/// // The first impact leaves the energy 0.8^2 of 1/2.
+/// assert!((ball.energy(run.t, &run.state)? - 0.32).abs() < 1e-11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Impacts<Sys: Impacting> {
     overrides: PerSurface<Option<Law>, Sys::Gaps>,

@@ -15,6 +15,39 @@ use crate::outcome::Outcome;
 /// After [`Stepper::start`], every [`Stepper::step`] makes one accepted step from the end of the last one. Both ends
 /// of the step stay readable until the next. [`Stepper::interpolate`] gives states between them, after
 /// [`Stepper::prepare_dense`].
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::integrate::{Counters, Instant};
+/// use dalembert::{Dop853, Gauss4, Stepper, System, Tolerance, VectorField};
+/// # dalembert::model! {
+/// #     pub Pendulum {
+/// #         coordinates { theta: angle; }
+/// #         lagrangian = dot(theta)^2/2 + cos(theta);
+/// #     }
+/// # }
+///
+/// type State = <Pendulum as VectorField>::State;
+///
+/// /// The state after a time of 1.
+/// fn after_one(pendulum: &Pendulum, mut stepper: impl Stepper<Pendulum>, start: &State) -> State {
+///     let mut counters = Counters::default();
+///     stepper.start(pendulum, Instant::new(0.0), start, 1.0, &mut counters).expect("a rate");
+///     while stepper.t_end() < 1.0 {
+///         stepper.step(pendulum, 1.0, &mut counters).expect("a step");
+///     }
+///     *stepper.end_state()
+/// }
+///
+/// let pendulum = Pendulum::default();
+/// let start = pendulum.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let tolerance = Tolerance::new(1e-10)?;
+/// let explicit = after_one(&pendulum, Dop853::new(tolerance), &start);
+/// let implicit = after_one(&pendulum, Gauss4::new(tolerance), &start);
+/// assert!((explicit[0] - implicit[0]).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Stepper<F: VectorField> {
     /// Name, as written by the command line.
     fn name(&self) -> &'static str;

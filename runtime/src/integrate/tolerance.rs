@@ -4,6 +4,16 @@ use core::fmt;
 
 /// Error allowed in a step: `absolute * scale_i + relative * |y_i|` in each component `i`, where `scale` is
 /// [`VectorField::scale`](crate::VectorField::scale).
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::Tolerance;
+///
+/// assert!(Tolerance::new(1e-10).is_ok());
+/// assert!(Tolerance::of(1e-10, 1e-14).is_ok());
+/// assert!(Tolerance::new(0.0).is_err());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     relative: f64,

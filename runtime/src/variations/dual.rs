@@ -15,6 +15,20 @@ pub const DIRECTIONS: usize = 4;
 /// Every operation of [`Numbers`] propagates the derivatives by its differentiation rule, so that a function written
 /// over [`Numbers`] gives its value and its differential, exact to rounding. The value has the same bits as with
 /// `f64`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::numbers::Numbers;
+/// use dalembert::variations::Dual;
+///
+/// // x sin(y) at (2, 0): its derivatives by x and y are 0 and 2.
+/// let x = Dual::new(2.0, [1.0, 0.0, 0.0, 0.0]);
+/// let y = Dual::new(0.0, [0.0, 1.0, 0.0, 0.0]);
+/// let product = x * y.sin();
+/// assert_eq!(product.value, 0.0);
+/// assert_eq!(product.slopes()[..2], [0.0, 2.0]);
+/// ```
 // NOTE: a vector, not an array: loops or single numbers in each operation of a long series take minutes to compile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual {

@@ -33,6 +33,38 @@ const SAME: f64 = 1e-3;
 const TOUCHING: f64 = 1e-9;
 
 /// A group of symmetries of a system, which acts on positions and, by its derivative, on velocities.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::numbers::Numbers;
+/// use dalembert::variations::group::GENERATORS;
+/// use dalembert::variations::{Dual, Group};
+///
+/// /// Rotations of a plane about its origin, on positions (x, y).
+/// struct Rotations;
+///
+/// impl Group for Rotations {
+///     fn dimension(&self) -> usize {
+///         1
+///     }
+///
+///     fn act(&self, element: &[Dual; GENERATORS], q: &mut [Dual], qdot: &mut [Dual]) {
+///         let (sine, cosine) = (element[0].sin(), element[0].cos());
+///         for vector in [q, qdot] {
+///             let [x, y] = [vector[0], vector[1]];
+///             vector[0] = x * cosine - y * sine;
+///             vector[1] = x * sine + y * cosine;
+///         }
+///     }
+/// }
+///
+/// let mut element = [Dual::constant(0.0); GENERATORS];
+/// element[0] = Dual::constant(std::f64::consts::FRAC_PI_2);
+/// let [mut q, mut qdot] = [[1.0, 0.0], [0.0, 1.0]].map(|vector| vector.map(Dual::constant));
+/// Rotations.act(&element, &mut q, &mut qdot);
+/// assert!((q[1].value - 1.0).abs() < 1e-15 && (qdot[0].value + 1.0).abs() < 1e-15);
+/// ```
 pub trait Group {
     /// Number of generators, at most [`GENERATORS`].
     fn dimension(&self) -> usize;

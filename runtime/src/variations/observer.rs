@@ -14,6 +14,38 @@ use crate::record::{Event, Hold, Observer, Segment};
 /// The caller provides the directions: any number of them, each with variations of state and parameters. Observe one
 /// run, then call [`Variations::tangents`]. Any integrator may be used; derivatives are those of the motion from the
 /// states that it gives.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Dop853, Scene, Simulation, StateVector, System, Tolerance, Variational, Variations};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// // Columns: derivatives of the end by each component of the start.
+/// let ball = Ball::default();
+/// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let mut directions = Ball::tangents();
+/// for (k, direction) in directions.as_mut().iter_mut().enumerate() {
+///     direction.state.as_mut_slice()[k] = 1.0;
+/// }
+/// let mut variations = Variations::new(&ball, directions.as_mut());
+/// let integrator = Dop853::new(Tolerance::new(1e-12)?);
+/// Simulation::new(&ball, integrator, ball.effects()).run(0.0, state, 1.5, &mut variations)?;
+///
+/// // Flow and impact keep the area of phase space.
+/// let tangents = variations.tangents()?;
+/// let [a, b] = [tangents[0].state, tangents[1].state];
+/// assert!((a[0] * b[1] - a[1] * b[0] - 1.0).abs() < 1e-10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Variations<'a, Sys: Variational> {
     system: &'a Sys,
     tangents: &'a mut [Tangent<Sys>],

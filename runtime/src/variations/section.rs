@@ -19,6 +19,31 @@ use crate::simulation::Simulation;
 /// A point of the section is a state *at* the surface *before* the transition there. The map carries it through the
 /// transition and on to the requested return to the surface; other surfaces may be met on the way. For a section that
 /// is not a wall, declare a surface with the law `reset { }`.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Scene, Section, System, Taylor, Tolerance};
+///
+/// dalembert::model! {
+///     pub Ball {
+///         coordinates { x; }
+///         lagrangian = dot(x)^2/2 - x;
+///         impacts { floor: x >= 0; }
+///         initial { x = 1; }
+///     }
+/// }
+///
+/// // From a height of 1/2 the ball is back on the floor after 2.
+/// let ball = Ball::default();
+/// let start = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
+/// let integrator = Taylor::new(Tolerance::new(1e-13)?);
+/// let mut section = Section::new(&ball, integrator, ball.effects(), 0, 10.0);
+/// let first = section.arrive(&start, &mut [])?;
+/// let second = section.next(&first.before, &mut [])?;
+/// assert!((first.time - 1.0).abs() < 1e-12 && (second.time - 2.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Section<'a, Sys: Variational, Step, Effects> {
     pub(super) system: &'a Sys,
     simulation: Simulation<'a, Sys, Step, Effects>,

@@ -68,6 +68,26 @@ const DEFECT: f64 = 1024.0;
 const NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// Integrator by generated Taylor series.
+///
+/// # Examples
+///
+/// ```
+/// use dalembert::{Simulation, System, Taylor, Tolerance};
+///
+/// dalembert::model! {
+///     pub Oscillator {
+///         coordinates { x; }
+///         lagrangian = (dot(x)^2 - x^2)/2;
+///     }
+/// }
+///
+/// let system = Oscillator::default();
+/// let start = system.state(0.0, &[1.0].into(), &[0.0].into())?;
+/// let integrator = Taylor::new(Tolerance::new(1e-15)?);
+/// let run = Simulation::new(&system, integrator, ()).run(0.0, start, 10.0, &mut ())?;
+/// assert!((run.state[0] - 10.0_f64.cos()).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Taylor<F: TaylorField> {
     tolerance: Tolerance,
     /// The order of the series, once a run has begun.
