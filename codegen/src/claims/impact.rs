@@ -10,6 +10,7 @@ use super::dynamics::Number;
 use super::evidence::{Evidence, Wording};
 use super::examine::explicit;
 use super::finding::Verdict;
+use super::focusing::{TURNED, leaves_gap_rate};
 use super::hybrid::Surroundings;
 use super::passage::Passage;
 use super::wall::Wall;
@@ -99,16 +100,14 @@ pub(super) fn changes_at(
 ) -> Result<Changes, String> {
     let declared = &model.surfaces[surface];
     let name = declared.name.display.clone();
-    if !declared.instantaneous.is_empty() {
-        return Err(format!(
-            "what impacts at `{name}` with their instantaneous constraints do to a quantity is not examined"
-        ));
-    }
     let enters = declared
         .transition
         .as_ref()
         .map(|transition| transition.enters);
     let wall = Wall::of(model, around.derivation, surface, around.others);
+    if !leaves_gap_rate(model, around, surface, &wall) {
+        return Err(format!("of impacts at `{name}`: {TURNED}"));
+    }
     let entered = enters.and_then(|enters| around.others.get(enters)).copied();
     let value = explicit(model, quantity);
     let after = match &wall.passage {

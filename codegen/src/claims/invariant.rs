@@ -12,6 +12,7 @@ use super::conserved::jump;
 use super::evidence::{Evidence, Vanishing, Wording, evidence};
 use super::expansion::{CHANCE, Part, Tangents, choices, is_too_large};
 use super::finding::{Certificate, Verdict, Witness};
+use super::focusing::{TURNED, leaves_gap_rate};
 use super::hybrid::Surroundings;
 use super::lie::Lie;
 use super::passage::{Open, Passage};
@@ -158,16 +159,15 @@ pub(super) fn kept_at_surface(
     surface: usize,
 ) -> Verdict {
     let declared = &model.surfaces[surface];
-    if !declared.instantaneous.is_empty() {
-        let text = "instantaneous constraints are not examined";
-        return Verdict::Undecided(text.to_owned());
-    }
     let enters = declared
         .transition
         .as_ref()
         .map(|transition| transition.enters);
     let entered = enters.and_then(|enters| around.others.get(enters)).copied();
     let wall = Wall::of(model, around.derivation, surface, around.others);
+    if !leaves_gap_rate(model, around, surface, &wall) {
+        return Verdict::Undecided(TURNED.to_owned());
+    }
     match &wall.passage {
         None if enters.is_some() => {
             return Verdict::Undecided("the mode that it leads to is not at hand".to_owned());

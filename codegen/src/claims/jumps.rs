@@ -63,14 +63,20 @@ fn at_surface(
     }
 }
 
-/// The verdict, in words, on the claim that the flow keeps a surface with a law; empty for resets and transitions.
+/// True if a surface gives an impulse along `pi_D^* dh` and nothing else.
+fn is_impulse(model: &Model, surface: usize) -> bool {
+    let declared = &model.surfaces[surface];
+    declared.instantaneous.is_empty() && !matches!(declared.law, Law::Reset | Law::Transition)
+}
+
+/// The verdict, in words, on the claim that the flow keeps a surface with a law; empty for other maps.
 fn surface_is_kept(
     model: &mut Model,
     around: &Surroundings<'_>,
     surface: usize,
     field: &[ExprId],
 ) -> &'static str {
-    if matches!(model.surfaces[surface].law, Law::Reset | Law::Transition) {
+    if !is_impulse(model, surface) {
         return "";
     }
     let wall = Wall::of(model, around.derivation, surface, around.others);
@@ -100,7 +106,7 @@ fn along(model: &mut Model, form: &[ExprId], field: &[ExprId]) -> ExprId {
 
 /// The size of the change, of an impulse.
 fn jump(model: &mut Model, around: &Surroundings<'_>, surface: usize, field: &[ExprId]) -> String {
-    if matches!(model.surfaces[surface].law, Law::Reset | Law::Transition) {
+    if !is_impulse(model, surface) {
         return String::new();
     }
     let forms: Vec<Vec<ExprId>> = model

@@ -16,7 +16,7 @@
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `equivariance.rs` | symmetries of motion, surfaces and their maps together |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
-//! | `wall.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
+//! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
 //! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs` | forms on vectors of one time, along the motion and through surfaces |
@@ -57,6 +57,7 @@ mod expansion;
 mod factor;
 mod finding;
 mod fit;
+mod focusing;
 mod frame;
 mod gauge;
 mod geometry;
@@ -66,6 +67,7 @@ mod growth;
 mod hybrid;
 mod hypersurfaces;
 mod impact;
+mod impulse;
 mod integrable;
 mod invariant;
 mod involution;

@@ -7,31 +7,36 @@
 //!
 //! Without constraints the motion keeps the form iff `F_i dq^i` is closed. With them the form on D is not kept where
 //! `lambda_a deta^a(X, Y)` differs from 0 for two fields of D: `deta^a(X, Y)` is the value of `d(lambda_a eta^a)` on their lifts, as
-//! both are annihilated by `eta^a`. An impulse along `dh` keeps the form iff it keeps the volume.
+//! both are annihilated by `eta^a`. Where that is 0 the form on all states of D decides, as `invariant` does; where D has leaves it can prove the
+//! claim alone. An impulse along `dh` keeps the form iff it keeps the volume.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
 
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
+use super::exactness::decide_local;
 use super::expansion::Tangents;
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Surroundings, effects};
-use super::invariant::kept_at_surface;
+use super::invariant::{check_invariant, kept_at_surface};
 use super::passage::{Passage, Velocities};
+use super::problem::Problem;
 use super::side::Side;
 use super::undecided::Undecided;
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
 const KEPT: &str = "the motion of a Lagrangian without constraints keeps the symplectic form";
+const LEAVES: &str =
+    "the form on D may be kept on the leaves of integrable constraints, which are not examined";
 
 /// The verdict on `symplectic`.
 pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
-    let motion = match model.constraints.is_empty() {
-        true => forces_are_closed(model, around),
-        false => constraints_are_seen(model, around),
-    };
+    if !model.constraints.is_empty() {
+        return on_constraints(model, around);
+    }
+    let motion = forces_are_closed(model, around);
     let mut all = match motion {
         Verdict::Proved(certificate) => certificate,
         other => return other,
@@ -128,8 +133,28 @@ fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: Stri
     evidence(model, &question, around.seed).verdict(true, wording, around.seed)
 }
 
-/// The verdict on constraints: never proved, as nothing is said of leaves.
-fn constraints_are_seen(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
+/// The verdict on constraints: that on two fields of D, else that on all states of D.
+fn on_constraints(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
+    if let Some(refuted) = changed_on_fields(model, around) {
+        return refuted;
+    }
+    let (form, written) = symplectic_form(model);
+    match check_invariant(model, around, &form, &written) {
+        // A vector off the leaves of integrable constraints says nothing of them.
+        Verdict::Refuted(_) if !connects(model, around) => Verdict::Undecided(LEAVES.to_owned()),
+        decided => decided,
+    }
+}
+
+/// True if brackets of fields of D span all directions: there are no leaves.
+fn connects(model: &mut Model, around: &Surroundings<'_>) -> bool {
+    let problem = Problem::of(model, around.derivation);
+    let found = decide_local(&model.pool, &problem, around.seed);
+    found.is_ok_and(|local| local.rank == problem.components())
+}
+
+/// The refutation by two fields of D, between which constraint forces change the form.
+fn changed_on_fields(model: &mut Model, around: &Surroundings<'_>) -> Option<Verdict> {
     let n = model.coordinates.len();
     let q: Vec<SymbolId> = model
         .coordinates
@@ -174,14 +199,11 @@ fn constraints_are_seen(model: &mut Model, around: &Surroundings<'_>) -> Verdict
             };
             let found = evidence(model, &question, around.seed);
             if let verdict @ Verdict::Refuted(_) = found.verdict(true, wording, around.seed) {
-                return verdict;
+                return Some(verdict);
             }
         }
     }
-    Verdict::Undecided(
-        "the form on D may be kept on the leaves of integrable constraints, which are not examined"
-            .to_owned(),
-    )
+    None
 }
 
 /// The verdict on a declared map of velocities without constraints.

@@ -9,7 +9,7 @@
 //! totally plastic          eps = -rho G/dh(pi_D grad h)
 //! ```
 //!
-//! Resets and transitions ([`super::passage`]) have maps of their own.
+//! Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous constraints come before the law ([`super::focusing`]).
 //!
 //! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
 //! through the surface, `-G+/G-`. The determinant is the factor by which G is multiplied with the other sign, except for
@@ -24,7 +24,7 @@ use dalembert_expr::{
 
 use super::dynamics::{Dynamics, Number};
 use super::evidence::in_arguments;
-use super::linear::{Matrix, dot, solve};
+use super::impulse::Parts;
 use super::passage::Passage;
 use super::sample::{Sample, sample, uses, with_velocities};
 use crate::mechanics::Derivation;
@@ -36,7 +36,7 @@ const STEPS: usize = 4;
 /// An impact surface with everything that its map is made of.
 #[derive(Debug)]
 pub(super) struct Wall {
-    /// Metric (N N), forms (M N), dh (N), d_t h, coefficient.
+    /// Metric (N N), forms of the constraints and of the K instantaneous ones ((M + K) N), dh (N), psi_0 (K), d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,
     /// The map of a reset or of a transition.
@@ -49,61 +49,13 @@ pub(super) struct Wall {
     rate: ExprId,
     coordinates: Vec<SymbolId>,
     velocities: Vec<SymbolId>,
-    constraints: usize,
+    /// Numbers of constraints, M and K.
+    constraints: [usize; 2],
     /// Functions that are positive where the surface counts.
     margins: Vec<ExprId>,
     /// Number of margins of the wall, and numbers of margins of each other surface that must not count.
     lists: (usize, Vec<usize>),
     polynomials: Vec<Polynomial>,
-}
-
-/// `grad h` and `pi_D grad h` at a point.
-struct Normal<A: Arithmetic> {
-    gradient: Vec<Series<A>>,
-    projected: Vec<Series<A>>,
-}
-
-impl<A: Arithmetic> Normal<A> {
-    /// Geometry of a metric, the forms of the constraints and `dh`; `None` where the metric or the constraints are
-    /// singular.
-    fn of(
-        jets: &Jets<'_, A>,
-        metric: &Matrix<A>,
-        forms: &Matrix<A>,
-        slope: &[Series<A>],
-    ) -> Option<Self> {
-        let m = forms.len();
-        let right = (0..slope.len())
-            .map(|i| {
-                let mut row: Vec<_> = forms.iter().map(|form| form[i].clone()).collect();
-                row.push(slope[i].clone());
-                row
-            })
-            .collect();
-        let raised = solve(jets, metric.clone(), right)?.unknowns;
-        let column = |j: usize| -> Vec<_> { raised.iter().map(|row| row[j].clone()).collect() };
-        let gradient = column(m);
-        let duals: Vec<Vec<_>> = (0..m).map(column).collect();
-        let mass = forms
-            .iter()
-            .map(|form| duals.iter().map(|dual| dot(jets, form, dual)).collect())
-            .collect();
-        let along = forms
-            .iter()
-            .map(|form| vec![dot(jets, form, &gradient)])
-            .collect();
-        let share = solve(jets, mass, along)?.unknowns;
-        let mut projected = gradient.clone();
-        for (part, dual) in share.iter().zip(&duals) {
-            for (entry, w) in projected.iter_mut().zip(dual) {
-                *entry = jets.sub(entry, &jets.mul(&part[0], w));
-            }
-        }
-        Some(Self {
-            gradient,
-            projected,
-        })
-    }
 }
 
 /// Position of a state.
@@ -149,7 +101,10 @@ impl Wall {
                 .iter()
                 .flat_map(|constraint| &constraint.form),
         );
+        let added = &derived.instantaneous;
+        roots.extend(added.iter().flat_map(|constraint| &constraint.form));
         roots.extend(&derived.form);
+        roots.extend(added.iter().map(|constraint| constraint.affine));
         roots.extend([derived.rate, coefficient]);
         let coordinates: Vec<_> = model
             .coordinates
@@ -177,7 +132,7 @@ impl Wall {
                 .iter()
                 .map(|coordinate| coordinate.qdot)
                 .collect(),
-            constraints: derivation.constraints.len(),
+            constraints: [derivation.constraints.len(), added.len()],
         }
     }
 
@@ -200,6 +155,37 @@ impl Wall {
         if let Some(passage) = &self.passage {
             return passage.velocities_after(model, point);
         }
+        self.at_point(model, point, |jets, series, velocity| {
+            self.struck(jets, series, velocity)
+        })
+    }
+
+    /// The gap rate before an impact, and that before its law.
+    pub(super) fn gap_rates<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<[Number<P>; 2]> {
+        let found = self.at_point(model, point, |jets, series, velocity| {
+            let parts = self.parts(series)?;
+            let focused = parts.focused(jets, velocity)?;
+            let rates = [velocity, &focused].map(|velocity| parts.gap_rate(jets, velocity));
+            Some(rates.to_vec())
+        })?;
+        found.try_into().ok()
+    }
+
+    /// Values at a point of series that are made of the velocities there.
+    fn at_point<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        made: impl FnOnce(
+            &Jets<'_, P::Field>,
+            &dyn Fn(ExprId) -> Series<P::Field>,
+            &[Series<P::Field>],
+        ) -> Option<Vec<Series<P::Field>>>,
+    ) -> Option<Vec<Number<P>>> {
         let values = point.values(&model.pool, &model.pool.reachable(&self.roots))?;
         let space = JetSpace::new(0, 0, 1)?;
         let jets = Jets::new(point.field(), &space);
@@ -208,8 +194,29 @@ impl Wall {
             .iter()
             .map(|velocity| jets.constant(point.symbol(&model.pool, *velocity)))
             .collect();
-        let after = self.struck(&jets, &|id| jets.constant(values[id.index()]), &velocity)?;
-        Some(after.iter().map(|entry| jets.value(entry)).collect())
+        let found = made(&jets, &|id| jets.constant(values[id.index()]), &velocity)?;
+        Some(found.iter().map(|entry| jets.value(entry)).collect())
+    }
+
+    /// Series of the roots.
+    fn parts<A: Arithmetic>(&self, series: &dyn Fn(ExprId) -> Series<A>) -> Option<Parts<A>> {
+        let (n, [m, k]) = (self.coordinates.len(), self.constraints);
+        let mut entries = self.roots.iter().map(|root| series(*root));
+        let mut rows = |count: usize| -> Vec<Vec<_>> {
+            (0..count)
+                .map(|_| entries.by_ref().take(n).collect())
+                .collect()
+        };
+        let (metric, forms, slope) = (rows(n), rows(m + k), rows(1).pop()?);
+        let affine = entries.by_ref().take(k).collect();
+        Some(Parts {
+            metric,
+            forms,
+            slope,
+            affine,
+            rate: entries.next()?,
+            coefficient: entries.next()?,
+        })
     }
 
     /// The velocities after an impulse as series, given the series of expressions and of the velocities before it.
@@ -219,47 +226,7 @@ impl Wall {
         series: &dyn Fn(ExprId) -> Series<A>,
         velocity: &[Series<A>],
     ) -> Option<Vec<Series<A>>> {
-        let (n, m) = (self.coordinates.len(), self.constraints);
-        let mut entries = self.roots.iter().map(|root| series(*root));
-        let mut rows = |count: usize| -> Vec<Vec<_>> {
-            (0..count)
-                .map(|_| entries.by_ref().take(n).collect())
-                .collect()
-        };
-        let (metric, forms, slope) = (rows(n), rows(m), rows(1).pop()?);
-        let rest: Vec<_> = entries.collect();
-        let [rate, coefficient] = rest.as_slice() else {
-            return None;
-        };
-        let Normal {
-            gradient,
-            projected,
-        } = Normal::of(jets, &metric, &forms, &slope)?;
-        let steep = dot(jets, &slope, &projected);
-        let gap_rate = jets.add(&dot(jets, &slope, velocity), rate);
-        let lowered: Vec<_> = metric
-            .iter()
-            .map(|row| dot(jets, row, &projected))
-            .collect();
-        let momentum = jets.add(&dot(jets, velocity, &lowered), rate);
-        let ratio = || Some(jets.mul(&steep, &jets.inverse(&dot(jets, &slope, &gradient))?));
-        let elastic = jets.add(&jets.constant(jets.field.integer(1)), coefficient);
-        let factor = match self.law {
-            Law::Elastic | Law::Restitution(_) => jets.mul(&elastic, &momentum),
-            Law::Newton(_) => jets.mul(&elastic, &gap_rate),
-            Law::NonholonomicPlastic => {
-                let twice = jets.scale(jets.field.integer(2), &ratio()?);
-                jets.mul(&twice, &gap_rate)
-            }
-            Law::ImpactPlastic => gap_rate,
-            Law::TotallyPlastic => jets.mul(&ratio()?, &gap_rate),
-            Law::Reset | Law::Transition => return None,
-        };
-        let impulse = jets.mul(&factor, &jets.inverse(&steep)?);
-        let after = |(before, along): (&Series<A>, &Series<A>)| {
-            jets.sub(before, &jets.mul(&impulse, along))
-        };
-        Some(velocity.iter().zip(&projected).map(after).collect())
+        self.parts(series)?.struck(jets, self.law, velocity)
     }
 
     /// Factor by which the map and the flux through the surface multiply `mu_C`, given the velocities after the impact.

@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
+//! | `instantaneous.rs` | forms and quantities behind instantaneous constraints |
+//! | `shipped.rs` | the shipped models |
 //! | `brackets.rs`, `involution.rs`, `integrable.rs` | brackets by differences and as they are printed; claims about functions |
 //! | `reduction.rs` | reduction by groups: equations against the full motion, connections and jumps against their definitions |
 //! | `values.rs` | numbers of a model at a state |
@@ -19,12 +21,14 @@ mod differences;
 mod energy;
 mod factor;
 mod forms;
+mod instantaneous;
 mod integrable;
 mod involution;
 mod momenta;
 mod qualified;
 mod quantities;
 mod reduction;
+mod shipped;
 mod symmetries;
 mod symplectic;
 mod systems;

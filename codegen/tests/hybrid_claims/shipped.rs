@@ -1,0 +1,118 @@
+//! Claims of the shipped models.
+
+use dalembert_codegen::claims::{Finding, Verdict};
+use dalembert_codegen::model::{self, Law, Model, Surface};
+use dalembert_codegen::read;
+use dalembert_codegen::spec::Declaration;
+use dalembert_texts::TEXTS;
+
+use crate::findings;
+
+/// A declaration without its claims.
+fn unclaimed(text: &str) -> String {
+    let mut kept = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find("claims ") {
+        let (before, from) = rest.split_at(start);
+        kept += before;
+        let end = from.find('}').expect("the end of the claims");
+        rest = &from[end + 1..];
+    }
+    kept + rest
+}
+
+/// A declaration with these claims in place of its own.
+fn claiming(text: &str, claims: &str) -> String {
+    let text = unclaimed(text);
+    let end = text.rfind('}').expect("a declaration");
+    format!("{} claims {{ {claims} }} }}", &text[..end])
+}
+
+/// What a declaration is to the symplectic form.
+#[derive(Debug, PartialEq, Eq)]
+enum Kind {
+    /// A first-order system, or constraints that are not linear in the velocities.
+    Other,
+    /// Without constraints and forces, with elastic impacts and refractions alone.
+    Elastic,
+    /// With forces or maps that are declared.
+    Changed,
+    /// With linear constraints in some mode.
+    Constrained,
+}
+
+/// The modes of a declaration, or the model in one piece.
+fn modes(text: &str) -> Vec<Model> {
+    match read(unclaimed(text).parse().expect("tokens")).expect("syntax") {
+        Declaration::Model(spec) => vec![model::check(&spec).expect("a model")],
+        Declaration::Modes(modes) => {
+            let graph = model::check_modes(&modes).expect("modes");
+            graph.modes.into_iter().map(|mode| mode.model).collect()
+        }
+    }
+}
+
+fn kind(modes: &[Model]) -> Kind {
+    let is_other = |mode: &Model| mode.is_first_order() || mode.is_nonlinear();
+    let is_elastic = |surface: &Surface| match surface.law {
+        Law::Elastic => true,
+        Law::Transition => surface
+            .transition
+            .as_ref()
+            .is_some_and(|transition| transition.map.is_none()),
+        _ => false,
+    };
+    let is_changed =
+        |mode: &Model| !mode.forces.is_empty() || !mode.surfaces.iter().all(is_elastic);
+    if modes.iter().any(is_other) {
+        Kind::Other
+    } else if modes.iter().any(|mode| !mode.constraints.is_empty()) {
+        Kind::Constrained
+    } else if modes.iter().any(is_changed) {
+        Kind::Changed
+    } else {
+        Kind::Elastic
+    }
+}
+
+/// Models whose constraints hold the positions on leaves.
+const ON_LEAVES: [&str; 4] = [
+    "holonomic_bead_on_ellipses",
+    "spring_mass_walker",
+    "two_wheels_arrested",
+    "two_wheels_rod",
+];
+
+#[test]
+fn elastic_models_without_constraints_alone_are_symplectic() {
+    let mut seen = [0; 4];
+    for (name, text) in TEXTS {
+        let kind = kind(&modes(text));
+        if kind == Kind::Other {
+            continue;
+        }
+        let found = findings(&claiming(text, "symplectic;"));
+        let is_proved = |finding: &Finding| matches!(finding.verdict, Verdict::Proved(_));
+        let has_point = |finding: &Finding| match &finding.verdict {
+            // States of other dimensions need no point.
+            Verdict::Refuted(witness) => {
+                witness.sample.is_some() || witness.reason.contains("dimensions")
+            }
+            _ => false,
+        };
+        let (holds, counted) = match kind {
+            Kind::Elastic => (found.iter().all(is_proved), 0),
+            Kind::Constrained if ON_LEAVES.contains(name) => {
+                let is_open = |finding: &Finding| matches!(&finding.verdict, Verdict::Undecided(reason) if reason.contains("leaves"));
+                (found.iter().any(is_open), 1)
+            }
+            Kind::Constrained => (found.iter().any(has_point), 2),
+            _ => (found.iter().all(has_point), 3),
+        };
+        let notes = found.iter().map(Finding::note).collect::<Vec<_>>();
+        assert!(holds, "{name}, {kind:?}: {notes:?}");
+        seen[counted] += 1;
+    }
+    // Elastic ones, on leaves, nonholonomic ones, with forces or declared maps.
+    assert_eq!(seen, [11, 4, 8, 4]);
+}
