@@ -1,6 +1,6 @@
 //! `density under s: factor = e`.
 
-use crate::Expected::{False, Open, Shown, True};
+use crate::Expected::{Barred, False, Open, Shown, True};
 use crate::check;
 use crate::systems::{ball, crossing, disk, field, grooves, media, particle, spokes, walker};
 
@@ -155,7 +155,7 @@ fn maps_between_states_of_other_dimensions_have_no_factor() {
     check(
         modes,
         "density under enter: factor = 1",
-        False("states of 4 dimensions to states of 3"),
+        Barred("states of 4 dimensions to states of 3"),
     );
 }
 
@@ -183,6 +183,6 @@ fn instantaneous_constraints_map_volumes_to_0() {
     check(
         &wall,
         "density under wall: factor = 1",
-        False("volumes become 0"),
+        Barred("volumes become 0"),
     );
 }

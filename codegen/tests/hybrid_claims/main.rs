@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
+//! | `densities.rs`, `conserved.rs` | densities of the motion; quantities, under impulses and resets too, and symmetries |
 //! | `instantaneous.rs` | forms and quantities behind instantaneous constraints |
 //! | `shipped.rs` | the shipped models |
 //! | `brackets.rs`, `involution.rs`, `integrable.rs` | brackets by differences and as they are printed; claims about functions |
@@ -16,7 +17,9 @@
 
 mod brackets;
 mod carried;
+mod conserved;
 mod corollaries;
+mod densities;
 mod differences;
 mod energy;
 mod factor;
@@ -44,8 +47,10 @@ use dalembert_codegen::{mechanics, model, read, spec};
 enum Expected {
     /// Proved.
     True,
-    /// Refuted, with this in the message.
+    /// Refuted at a state, with this in the message.
     False(&'static str),
+    /// Refuted by a reason that needs no state, with this in it.
+    Barred(&'static str),
     /// Refuted with a value of this name, which is this number.
     Shown(&'static str, f64),
     /// Open, with this in the reason.
@@ -85,15 +90,19 @@ fn findings(source: &str) -> Vec<Finding> {
 #[track_caller]
 fn check(declaration: &str, claim: &str, expected: Expected) {
     let source = declaration.replace("CLAIM", &format!("claims {{ {claim}; }}"));
-    // Densities are stated for other claims.
+    // Beside other claims densities are stated for them.
+    let is_density = |claim: &str| claim.starts_with("density = ") && !claim.contains(';');
     let mut found = findings(&source);
-    found.retain(|finding| !finding.claim.starts_with("density = "));
+    found.retain(|finding| is_density(claim) || !is_density(&finding.claim));
     assert!(!found.is_empty(), "{source}");
     for finding in found {
         let matches = match (&finding.verdict, expected) {
             (Verdict::Proved(_), Expected::True) => true,
             (Verdict::Refuted(witness), Expected::False(text)) => {
-                witness.to_string().contains(text)
+                witness.sample.is_some() && witness.to_string().contains(text)
+            }
+            (Verdict::Refuted(witness), Expected::Barred(text)) => {
+                witness.sample.is_none() && witness.to_string().contains(text)
             }
             (Verdict::Refuted(witness), Expected::Shown(name, value)) => {
                 let mut values = witness.values.iter();
