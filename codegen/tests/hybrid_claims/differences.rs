@@ -32,7 +32,7 @@ fn step(rate: &dyn Fn(&[f64]) -> State, z: &[f64], h: f64) -> State {
     sum.collect()
 }
 
-fn run(rate: &dyn Fn(&[f64]) -> State, z: &[f64], time: f64) -> State {
+pub(super) fn run(rate: &dyn Fn(&[f64]) -> State, z: &[f64], time: f64) -> State {
     let h = time / STEPS as f64;
     (0..STEPS).fold(z.to_vec(), |z, _| step(rate, &z, h))
 }
@@ -76,13 +76,13 @@ impl Hybrid<'_> {
     }
 
     /// By how much the volume is multiplied.
-    fn factor(&self, start: &[f64], time: f64) -> f64 {
+    pub(super) fn factor(&self, start: &[f64], time: f64) -> f64 {
         let [before, after] = self.densities;
         determinant(self.columns(start, time)).abs() * after(&self.end(start, time)) / before(start)
     }
 }
 
-fn determinant(mut rows: Vec<State>) -> f64 {
+pub(super) fn determinant(mut rows: Vec<State>) -> f64 {
     let n = rows.len();
     let mut product = 1.0;
     for k in 0..n {

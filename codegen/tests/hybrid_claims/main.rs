@@ -13,6 +13,7 @@
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `symmetries.rs` | symmetries of motion, surfaces and their maps together; of first-order systems |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
+//! | `numbers.rs` | numbers of the sources: returns of a walker, an impact off D, the matrix of a ball |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
 
 mod brackets;
@@ -28,6 +29,7 @@ mod instantaneous;
 mod integrable;
 mod involution;
 mod momenta;
+mod numbers;
 mod qualified;
 mod quantities;
 mod reduction;

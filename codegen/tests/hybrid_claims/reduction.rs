@@ -387,6 +387,37 @@ fn momenta_jump_at_impacts_as_they_do() {
     assert_eq!(start.len(), 2);
 }
 
+/// An elastic impact at a wall with these slopes, from `dot(theta) = 3`, `dot(phi) = -3/4`. W. Clark's thesis has in (6.27) and (6.28) a wrong second
+/// momentum; these values come from the impulse in 30 digits.
+#[test]
+fn a_disk_turns_at_a_wall_with_right_momenta() {
+    let wall = "wall: 1 - 0.771650550527029756*(x + R*cos(phi)) - 0.301545095525314786*(y + R*sin(phi)) >= 0;";
+    let case = case(&disk(wall), ROLLING);
+    let (radius, inertia, inertia_phi) = (3.0 / 8.0, 2.0 / 9.0, 1.0 / 7.0);
+    let q = [0.0, 0.0, 0.0, 0.6];
+    let rolling = |theta: f64, phi: f64| {
+        let speed = radius * theta;
+        [speed * 0.6_f64.cos(), speed * 0.6_f64.sin(), theta, phi]
+    };
+    let before = rolling(3.0, -0.75);
+    let after = rolling(
+        -0.552_229_998_281_975_83 / inertia,
+        0.424_960_437_215_408_2 / inertia_phi,
+    );
+    let momenta = |v: &[f64]| {
+        let at = moving(&case.model, &q, v);
+        values(&case.model, &case.reduction.momenta_on_d, &at)
+    };
+    let at = moving(&case.model, &q, &before);
+    let jump = case.reduction.impacts[0].as_ref().expect("an impulse");
+    let impulse = value(&case.model, jump.impulse.expect("its size"), &at);
+    let slopes = values(&case.model, &jump.slopes, &at);
+    for ((start, end), slope) in momenta(&before).iter().zip(momenta(&after)).zip(slopes) {
+        let found = start + impulse * slope;
+        assert!((found - end).abs() < 1e-14, "{found} instead of {end}");
+    }
+}
+
 /// The laws by their effect on the gap rate: `1 - c` times itself, c = 1 + e, 1, and the part of dh that D leaves.
 #[test]
 fn laws_have_their_impulses() {

@@ -22,7 +22,7 @@ fn unclaimed(text: &str) -> String {
 }
 
 /// A declaration with these claims in place of its own.
-fn claiming(text: &str, claims: &str) -> String {
+pub(super) fn claiming(text: &str, claims: &str) -> String {
     let text = unclaimed(text);
     let end = text.rfind('}').expect("a declaration");
     format!("{} claims {{ {claims} }} }}", &text[..end])
