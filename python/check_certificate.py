@@ -33,6 +33,7 @@ import json
 import random
 import re
 import sys
+from copy import copy
 from decimal import (
     ROUND_CEILING, ROUND_FLOOR, Context, Decimal, DivisionByZero, InvalidOperation, Overflow, localcontext,
 )
@@ -418,6 +419,15 @@ class Model:
             return None, self.names.compile(entry["nonlinear"])
         form = [self.names.compile(item) for item in entry["form"]]
         return form, self.names.compile(entry["affine"])
+
+    def within(self, surface):
+        """The model with the instantaneous constraints of a surface beside its own."""
+        added = surface.get("instantaneous")
+        if not added:
+            return self
+        found = copy(self)
+        found.constraints = self.constraints + [self.constraint(item) for item in added]
+        return found
 
     # Places of a state.
     def positions(self, state):
@@ -820,8 +830,6 @@ def across(model, surface, text, state):
 def arrived(model, surface, state):
     """A state near this one that comes to the surface, with the slope of the gap and its rate."""
     gap = model.names.compile(surface["gap"])
-    if surface["instantaneous"]:
-        raise NotChecked("instantaneous constraints are checked for the factor of a volume alone")
     gradient = lambda s: [model.derivative(gap, s, model.along(s, 0, model.axis(i))) for i in range(model.n)]
     for _ in range(60):
         value, slope = gap(state), gradient(state)
@@ -933,14 +941,19 @@ def projected_normal(model, slope, state):
 
 
 def struck(model, surface, slope, rate, state):
-    """The state after an impulse along the projected gradient of the gap."""
-    normal = projected_normal(model, slope, state)
+    """The state after an impulse along the projected gradient of the gap, within the instantaneous constraints."""
+    within, moving = model.within(surface), rate - dot(slope, model.velocities(state))
+    if within is not model:
+        state = nearest(within, state)
+        rate = moving + dot(slope, model.velocities(state))
+        if rate >= 0:
+            return state
+    normal = projected_normal(within, slope, state)
     steep = dot(slope, normal)
     e = Decimal(1) if surface["coefficient"] is None else model.names.compile(surface["coefficient"])(state)
     law, velocities = surface["law"], model.velocities(state)
     if law in ("elastic", "restitution"):
         # The impulse of an elastic impact changes the energy by its work on the surface, which moves at the rate -dh/dt.
-        moving = rate - dot(slope, velocities)
         push = dot([dot(row, normal) for row in model.metric_at(state)], velocities)
         size = -(1 + e) * (push + moving) / steep
     elif law == "newton":
@@ -1100,9 +1113,12 @@ def check_kept(model, claim, source):
 
 
 def check_symplectic(model, claim, source):
-    """The forces are closed, and all that happens at surfaces keeps `dp dq - dH dt`."""
-    if model.rates is not None or model.constraints:
-        raise NotChecked("the symplectic form belongs to mechanical systems without constraints")
+    """The forces are closed, and all that happens at surfaces keeps `dp dq - dH dt`; with constraints `dp dq` as a form on their states."""
+    if model.rates is not None or model.is_nonlinear:
+        raise NotChecked("the symplectic form belongs to mechanical systems with linear constraints")
+    if model.constraints:
+        terms = [{"coefficient": "1", "differentials": [f"momentum({name})", name]} for name in model.q]
+        return check_form(model, {"terms": terms}, source)
     total = lambda state: [sum((item[i](state) for item in model.forces), Decimal(0)) for i in range(model.n)]
 
     def defects(state):

@@ -191,6 +191,24 @@ const FORMS: &str = "
         }
         transitions { leftward: right -> left when x <= 0; }
         claims { invariant: d(y); }
+    }
+    pub Roller {
+        coordinates { x; y; theta; }
+        parameters { k > 0 = 1/2; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + k*dot(theta)^2)/2 - y;
+        impacts { wall: x >= 0 => elastic, instantaneous { no_slip: dot(y) = dot(theta) + x + 3; }; }
+        claims {
+            invariant: d(momentum(x))^d(x);
+            conserved under wall: momentum(y) + momentum(theta);
+            conserved under wall: dot(x)^2;
+            not conserved under wall: dot(y);
+        }
+    }
+    pub Groove {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - x;
+        constraints { groove: dot(y) = 2*dot(x); }
+        claims { symplectic; }
     }";
 
 /// Brackets: of canonical momenta beside a magnetic field, beside affine constraints, and integrable systems with walls.
@@ -282,6 +300,8 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "forms:damped",
         "forms:media",
         "forms:turned",
+        "forms:roller",
+        "forms:groove",
         "brackets:charged",
         "brackets:belt",
         "brackets:table",
@@ -383,6 +403,8 @@ fn a_certificate_that_was_tampered_with_fails() {
         ),
         (
             "forms:turned",
+        "forms:roller",
+        "forms:groove",
             "/1/content/motion/rates/1",
             json!("1 + 1/1000000000"),
         ),

@@ -30,7 +30,7 @@ const SNAKEBOARD: &str = "pub Snakeboard { coordinates { x; y; theta: angle; psi
     } CLAIM }";
 
 /// A ball that rolls on a plane, in Euler angles.
-const BALL: &str = "pub Ball { coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; } parameters { r > 0 = 1; k > 0 = 2/3; }
+pub(super) const BALL: &str = "pub Ball { coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; } parameters { r > 0 = 1; k > 0 = 2/3; }
     let wx = dot(theta)*cos(psi) + dot(phi)*sin(psi)*sin(theta);
     let wy = dot(theta)*sin(psi) - dot(phi)*cos(psi)*sin(theta);
     let wz = dot(psi) + dot(phi)*cos(theta);

@@ -116,3 +116,16 @@ fn elastic_models_without_constraints_alone_are_symplectic() {
     // Elastic ones, on leaves, nonholonomic ones, with forces or declared maps.
     assert_eq!(seen, [11, 4, 8, 4]);
 }
+
+/// Every shipped model claims something, and all of it is proved.
+#[test]
+fn claims_of_shipped_models_are_proved() {
+    for (name, text) in TEXTS {
+        let found = findings(text);
+        assert!(!found.is_empty(), "{name}");
+        for finding in found {
+            let is_proved = matches!(finding.verdict, Verdict::Proved(_));
+            assert!(is_proved, "{name}: {}", finding.note());
+        }
+    }
+}

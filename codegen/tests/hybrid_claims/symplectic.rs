@@ -2,7 +2,8 @@
 
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;
-use crate::systems::{ball, disk, media, particle, spokes};
+use crate::reduction::BALL;
+use crate::systems::{ball, disk, grooves, media, particle, spokes};
 
 const CLAIM: &str = "symplectic";
 
@@ -104,6 +105,27 @@ fn near_misses_are_refuted() {
         CLAIM,
         Shown("curl of the force in x and y", 1e-9),
     );
+}
+
+/// The constraint forces of a homogeneous ball and of a straight groove are 0, and the form on D is kept; walls change it on D.
+#[test]
+fn constraints_without_forces_keep_the_form_on_d() {
+    check(BALL, CLAIM, True);
+    let wall = BALL.replace("CLAIM", "impacts { wall: x >= 0; } CLAIM");
+    check(&wall, CLAIM, False("`wall` changes"));
+    let sticky =
+        "impacts { wall: x >= 0 => elastic, instantaneous { no_slip: dot(y) = r*wz; }; } CLAIM";
+    check(
+        &BALL.replace("CLAIM", sticky),
+        CLAIM,
+        False("`wall` changes"),
+    );
+    check(&grooves("dot(y) = dot(x)", "dot(y) = dot(x)"), CLAIM, True);
+    // A slope of 1e-9 is nonholonomic, and its forces are not 0.
+    let slope =
+        "pub Slope { coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+        constraints { slope: dot(z) = 1e-9*y*dot(x); } CLAIM }";
+    check(slope, CLAIM, False("lambda_a deta^a(X, Y)"));
 }
 
 #[test]
