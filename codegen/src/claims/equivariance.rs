@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A transition is a reset with the field of the mode that is entered on the right. An impulse along `pi_D^* dh` is taken to another one
-//! where metric, D and the surface are kept.
+//! where metric, D and the surface are kept, and a refraction without constraints where both Lagrangians are.
 
 use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
 
@@ -22,7 +22,7 @@ use super::hybrid::Surroundings;
 use super::impact::{Wanted, changes_at};
 use super::passage::{Passage, Velocities};
 use super::side::imported;
-use super::symmetry::{check_forces, check_symmetry, lifted};
+use super::symmetry::{check_forces, check_symmetry, keeps_lagrangian, lifted};
 use super::wall::Wall;
 use crate::mechanics::Derivation;
 use crate::model::{Law, Model};
@@ -142,6 +142,7 @@ fn check_surface(
             (mode, surface),
             passage,
             &directions,
+            around.seed,
         )?);
     }
     for (name, change) in changes {
@@ -173,11 +174,9 @@ fn of_passage(
     (mode, surface): (usize, usize),
     passage: &Passage,
     directions: &[(SymbolId, ExprId)],
+    seed: u64,
 ) -> Result<Vec<(String, ExprId)>, String> {
-    let place = &model.surfaces[surface].name.display;
-    if passage.is_refracted() {
-        return Err(format!("surface `{place}`: a refraction is not examined"));
-    }
+    let place = model.surfaces[surface].name.display.clone();
     let unknown = format!("surface `{place}`: the field is not known in the mode that is entered");
     let velocities = match &passage.velocities {
         Velocities::Declared(values, _) => values.clone(),
@@ -189,6 +188,11 @@ fn of_passage(
         Some(entered) => (*entered).clone(),
         None => model.clone(),
     };
+    if passage.is_refracted() {
+        let fields = [&all.fields[mode], &all.fields[enters]];
+        check_refraction(model, &mut entered, fields, seed)
+            .map_err(|reason| format!("surface `{place}`: {reason}"))?;
+    }
     let names: Vec<String> = (entered.coordinates.iter())
         .map(|coordinate| coordinate.name.display.clone())
         .collect();
@@ -222,10 +226,26 @@ fn of_passage(
     Ok(changes)
 }
 
+/// Checks that a refraction is kept: it is the momentum `p + c dh` at which the energies differ by `-c d_t h`, and goes on.
+fn check_refraction(
+    model: &mut Model,
+    entered: &mut Model,
+    [field, behind]: [&Vec<ExprId>; 2],
+    seed: u64,
+) -> Result<(), String> {
+    if !model.constraints.is_empty() || !entered.constraints.is_empty() {
+        return Err("a refraction within constraints is not examined".to_owned());
+    }
+    match keeps_lagrangian(model, field, seed) && keeps_lagrangian(entered, behind, seed) {
+        true => Ok(()),
+        false => Err("a refraction is not shown to be kept: one of its Lagrangians changes along the flow, if only by a total derivative".to_owned()),
+    }
+}
+
 /// The function whose total derivative the Lagrangian gains along the flow of a symmetry: 0, or a polynomial of the
 /// positions.
 fn gained(model: &mut Model, field: &[ExprId], seed: u64) -> Option<ExprId> {
-    if super::keeps_lagrangian(model, field, seed) {
+    if keeps_lagrangian(model, field, seed) {
         return Some(model.pool.zero());
     }
     let directions = lifted(model, field);

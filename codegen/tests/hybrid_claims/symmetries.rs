@@ -218,6 +218,53 @@ fn modes_take_the_terms_of_their_coordinates() {
     );
 }
 
+/// A disk of another medium, entered and left by refraction.
+fn lens(outside: &str, inside: &str, radius: &str) -> String {
+    format!(
+        "Lens {{ coordinates {{ x; y; }} parameters {{ k = 1; }} let kinetic = (dot(x)^2 + dot(y)^2)/2;
+        modes {{ air {{ lagrangian = {outside}; }} glass {{ lagrangian = {inside}; }} }}
+        transitions {{ enter: air -> glass when {radius} <= 1; leave: glass -> air when {radius} >= 1; }} }}"
+    )
+}
+
+#[test]
+fn refractions_are_kept_where_both_lagrangians_are() {
+    let turn = "x*partial(y) - y*partial(x)";
+    let round = lens("kinetic", "2*kinetic + k", "x^2 + y^2");
+    let [found] = accept(&round, turn).try_into().expect("one");
+    assert!(found.keeps_momentum);
+    let oval = lens("kinetic", "2*kinetic + k", "x^2 + (1 + 1/10^9)*y^2");
+    refuse(
+        &oval,
+        turn,
+        &["surface `enter`", "rate of the gap along its flow"],
+    );
+    refuse(
+        &round,
+        "partial(x)",
+        &["surface `enter`", "rate of the gap along its flow"],
+    );
+    let graded = lens("kinetic", "kinetic + k*x/10^9", "x^2 + y^2");
+    refuse(
+        &graded,
+        turn,
+        &["surface `enter`", "one of its Lagrangians changes"],
+    );
+    // Both media are turned into themselves, the momenta of one by a gauge only.
+    let charged = lens("kinetic", "2*kinetic + k*x*dot(y)", "x^2 + y^2");
+    refuse(
+        &charged,
+        turn,
+        &["surface `enter`", "if only by a total derivative"],
+    );
+    let charged = lens(
+        "kinetic",
+        "2*kinetic + k*(x*dot(y) - y*dot(x))",
+        "x^2 + y^2",
+    );
+    accept(&charged, turn);
+}
+
 #[test]
 fn flows_that_are_not_affine_are_refused() {
     let text = "Curved { coordinates { r; s; } lagrangian = (dot(r)^2 + cosh(r)^2*dot(s)^2)/2; }";

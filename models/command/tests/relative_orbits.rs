@@ -39,6 +39,24 @@ const ROUND: &str = "
         initial { x = 0; y = 1; dot(x) = 3; dot(y) = 0; }
     }";
 
+/// A lens in the middle of a round table.
+const LENS: &str = "
+    Lens {
+        coordinates { x; y; }
+        parameters { V = -1; }
+        let square = x^2 + y^2;
+        let kinetic = (dot(x)^2 + dot(y)^2)/2;
+        modes {
+            air {
+                lagrangian = kinetic;
+                impacts { rim: square <= 4; }
+                initial { x = -1.9; y = 0.3; dot(x) = 1; dot(y) = 0; until = 20; }
+            }
+            glass { lagrangian = kinetic - V; }
+        }
+        transitions { enter: air -> glass when square <= 1; leave: glass -> air when square >= 1; }
+    }";
+
 /// A charge in a magnetic field and an electric field across it: it drifts by `2 pi E/B^2` in each turn.
 const CROSSED: &str = "
     Crossed {
@@ -335,6 +353,38 @@ fn chords_of_a_round_table_turn_by_their_angle() {
             .contains("conserved    the momentum of x*partial(y) - y*partial(x): a multiplier 1"),
         "{}",
         told.output
+    );
+}
+
+/// A point in a round table with a round lens in its middle: outside it goes at the speed v, inside at v' with v'^2 = v^2 + 2, and the angular momentum
+/// p v = p' v' is kept across the refraction.
+#[test]
+fn rays_through_a_lens_turn_by_their_angle() {
+    let words = [
+        "orbit",
+        "-",
+        "--surface",
+        "rim",
+        "--modulo",
+        "x*partial(y) - y*partial(x)",
+    ];
+    let orbit = document(LENS, &words);
+    let (p, v): (f64, f64) = (0.3, 1.0);
+    let inside = (v * v + 2.0).sqrt();
+    let deep = p * v / inside;
+    let angle = 2.0 * ((p / 2.0).acos() - p.acos() + deep.acos());
+    let half = |distance: f64, radius: f64| (radius * radius - distance * distance).sqrt();
+    let time = 2.0 * ((half(p, 2.0) - half(p, 1.0)) / v + half(deep, 1.0) / inside);
+    assert_near(number(&orbit["period"]), time, 1e-12);
+    // Along y = 0.3 to the right it runs round the middle clockwise.
+    assert_near(advance(&orbit, 0).cos(), angle.cos(), 1e-12);
+    assert_near(advance(&orbit, 0).sin(), -angle.sin(), 1e-12);
+    assert_eq!(orbit["modulo"][0]["conserves_momentum"], true);
+    let found = multipliers(&orbit);
+    assert_eq!(found.len(), 2);
+    assert!(
+        found.iter().all(|[re, im]| (re - 1.0).hypot(*im) < 1e-6),
+        "{found:?}"
     );
 }
 
