@@ -180,6 +180,39 @@ fn what_impulses_and_resets_keep_and_change() {
     );
 }
 
+/// The momentum of a field of D that depends on the position (W. Clark, thesis, 5.2), with its equation and its jump at a wall.
+#[test]
+fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
+    let along = |factor: &str| {
+        format!("({factor})*R*cos(phi)*momentum(x) + R*sin(phi)*momentum(y) + momentum(theta)")
+    };
+    let free = disk("");
+    check(&free, &format!("conserved: {}", along("1")), True);
+    check(
+        &free,
+        &format!("conserved: {}", along("1 + 1e-9")),
+        False("changes along the motion"),
+    );
+    check(
+        &free,
+        "conserved: momentum(x)",
+        False("changes along the motion"),
+    );
+    let wall = disk("wall: 1 - x >= 0;");
+    check(
+        &wall,
+        &format!("not conserved under wall: {}", along("1")),
+        True,
+    );
+    // A stop of the direction alone does not.
+    let stop = disk("stop: 1/2 - cos(phi) >= 0;");
+    check(
+        &stop,
+        &format!("conserved under stop: {}", along("1")),
+        True,
+    );
+}
+
 #[test]
 fn symmetries_of_lagrangians_are_proved_and_others_refuted() {
     let disk = disk("");
