@@ -1,15 +1,15 @@
-//! Consequences of a volume that motion and impacts keep, with their hypotheses.
+//! Consequences of a volume that motion and impacts keep, with their hypotheses, and of one that they do not.
 //!
 //! Impacts accumulate for almost no start where the volume is smooth and each impulse vanishes with the gap rate (W. Clark, thesis, Theorem
 //! VII.17). Almost every start comes back arbitrarily near where energy levels are compact besides (Theorem VII.21): the energy is kept, and
 //! surfaces bound all coordinates that are no angles.
 
-use dalembert_expr::{ExprId, Pool, Sign, SymbolId};
+use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
 
 use super::conserved::check_conserved;
 use super::examine::explicit;
 use super::finding::Verdict;
-use super::hybrid::{Density, Surroundings};
+use super::hybrid::{Density, Effect, Surroundings};
 use super::impact::{Wanted, changes_at};
 use crate::model::{Beside, Law, Model, Topology};
 
@@ -45,6 +45,31 @@ pub(super) fn corollaries(
         ));
     }
     found
+}
+
+/// Consequence of a volume that impacts do not keep.
+const OPEN: &str = "accumulation of impacts is not excluded";
+
+/// The sentence beside a proved factor that is not 1.
+pub(super) fn of_factor(model: &mut Model, verdict: &Verdict, factor: ExprId) -> Vec<String> {
+    let one = model.pool.one();
+    let excess = model.pool.sub(factor, one);
+    let is_one = model.pool.zero_test(excess) == Zero::Proved;
+    let says = matches!(verdict, Verdict::Proved(_)) && !is_one;
+    says.then(|| format!("{OPEN}: the surface does not keep the volume"))
+        .into_iter()
+        .collect()
+}
+
+/// The sentence beside the effects of surfaces on a volume.
+pub(super) fn of_effects(model: &Model, effects: &[Effect]) -> Option<String> {
+    let changed = effects
+        .iter()
+        .filter(|effect| matches!(effect.verdict, Verdict::Refuted(_)));
+    let names: Vec<&str> = changed
+        .map(|effect| model.surfaces[effect.surface].name.display.as_str())
+        .collect();
+    (!names.is_empty()).then(|| format!("{OPEN}: the volume is not kept at {}", names.join(", ")))
 }
 
 /// True if a density is positive and smooth everywhere.

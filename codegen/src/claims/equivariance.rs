@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A transition is a reset with the field of the mode that is entered on the right. An impulse along `pi_D^* dh` is taken to another one
-//! where metric, D and the surface are kept, and a refraction without constraints where both Lagrangians are.
+//! where metric, D with the instantaneous constraints and the surface are kept, and a refraction without constraints where both Lagrangians are.
 
 use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
 
@@ -22,9 +22,9 @@ use super::hybrid::Surroundings;
 use super::impact::{Wanted, changes_at};
 use super::passage::{Passage, Velocities};
 use super::side::imported;
-use super::symmetry::{check_forces, check_symmetry, keeps_lagrangian, lifted};
+use super::symmetry::{check_constraints, check_forces, check_symmetry, keeps_lagrangian, lifted};
 use super::wall::Wall;
-use crate::mechanics::Derivation;
+use crate::mechanics::{Derivation, derive};
 use crate::model::{Law, Model};
 
 /// A vector field on each mode of a model, in order; one of a model without modes.
@@ -112,16 +112,13 @@ fn check_surface(
 ) -> Result<(), String> {
     let declared = &model.surfaces[surface];
     let place = format!("surface `{}`", declared.name.display);
-    if !declared.instantaneous.is_empty() {
-        return Err(format!(
-            "{place}: its instantaneous constraints are not examined"
-        ));
-    }
     let coefficient = match declared.law {
         Law::Restitution(e) | Law::Newton(e) => Some(e),
         _ => None,
     };
     let field = &all.fields[mode];
+    check_instantaneous(model, surface, field, around.seed)
+        .map_err(|reason| format!("{place}: {reason}"))?;
     let directions = lifted(model, field);
     let wall = Wall::of(model, around.derivation, surface, around.others);
     let derived = &around.derivation.surfaces[surface];
@@ -165,6 +162,28 @@ fn check_surface(
         expect(&place, found.verdict(true, wording, around.seed))?;
     }
     Ok(())
+}
+
+/// Checks that the flow keeps the constraints of the model and the instantaneous ones of a surface together, as those of a model
+/// with both.
+fn check_instantaneous(
+    model: &Model,
+    surface: usize,
+    field: &[ExprId],
+    seed: u64,
+) -> Result<(), String> {
+    let added = &model.surfaces[surface].instantaneous;
+    if added.is_empty() {
+        return Ok(());
+    }
+    let mut within = model.clone();
+    within.constraints.extend(added.iter().cloned());
+    within.surfaces.clear();
+    within.frame.clear();
+    let derivation = derive(&mut within);
+    let dynamics = Dynamics::of(&mut within, &derivation);
+    let verdict = check_constraints(&mut within, &dynamics, field, seed);
+    expect("its instantaneous constraints", verdict)
 }
 
 /// The difference between the image of the field and the field at the image, of a reset or a transition.

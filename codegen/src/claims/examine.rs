@@ -15,8 +15,8 @@ use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
 use super::{
-    alternatives, conserved, density, energy, equivariance, impact, integrable, invariant,
-    involution, jumps, kept, symmetry, symplectic,
+    alternatives, conserved, corollaries, density, energy, equivariance, impact, integrable,
+    invariant, involution, jumps, kept, symmetry, symplectic,
 };
 use crate::mechanics::Derivation;
 use crate::mechanics::energy::total_energy;
@@ -232,7 +232,8 @@ impl<'e> Examiner<'e> {
                 let value = explicit(self.model, *value);
                 let (model, around) = self.around();
                 let verdict = kept::check_factor(model, &around, *under, (value, written));
-                (verdict, Vec::new())
+                let remarks = corollaries::of_factor(model, &verdict, value);
+                (verdict, remarks)
             }
             Statement::Symplectic => {
                 let (model, around) = self.around();
@@ -337,6 +338,7 @@ impl<'e> Examiner<'e> {
                 effects = self.effects(&density);
             }
             remarks.extend(self.sentences(&effects));
+            remarks.extend(corollaries::of_effects(self.model, &effects));
         }
         self.decision = Some(Ok(exactness));
         (self.qualified(verdict, &effects), remarks)

@@ -72,6 +72,21 @@ pub(crate) fn check_symmetry(
     (Verdict::Proved(certificate), remarks)
 }
 
+/// The verdict on the claim that a flow keeps the constraints.
+pub(super) fn check_constraints(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    field: &[ExprId],
+    seed: u64,
+) -> Verdict {
+    let directions = lifted(model, field);
+    let changes = of_constraints(model, dynamics, &directions);
+    match proved_together(model, &changes, seed) {
+        Ok(certificate) => Verdict::Proved(certificate),
+        Err(verdict) => verdict,
+    }
+}
+
 /// The verdict on the claim that a flow keeps the forces.
 pub(super) fn check_forces(
     model: &mut Model,

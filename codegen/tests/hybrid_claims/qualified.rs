@@ -46,3 +46,18 @@ fn a_step_that_moves_the_state_has_its_factor_in_closed_form() {
         "{found}"
     );
 }
+
+#[test]
+fn impacts_that_contract_do_not_exclude_that_they_accumulate() {
+    let open = "accumulation of impacts is not excluded";
+    let says = |law: &str, claim: &str| note(&ball(law), claim).contains(open);
+    for claim in ["density: exact", "density under floor: factor = c^2"] {
+        assert!(says("restitution(c)", claim), "{claim}");
+    }
+    for claim in ["density: exact", "density under floor: factor = 1"] {
+        assert!(!says("elastic", claim), "{claim}");
+    }
+    assert!(
+        note(&ball("restitution(c)"), "density: exact").contains("the volume is not kept at floor")
+    );
+}

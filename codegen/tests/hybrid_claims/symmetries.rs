@@ -218,6 +218,36 @@ fn modes_take_the_terms_of_their_coordinates() {
     );
 }
 
+#[test]
+fn instantaneous_constraints_are_kept() {
+    let roller = |psi: &str| {
+        format!(
+            "Roller {{ coordinates {{ x; y; theta; }} parameters {{ k = 1; }}
+            lagrangian = (dot(x)^2 + dot(y)^2 + k*dot(theta)^2)/2;
+            impacts {{ wall: x >= 0 => elastic, instantaneous {{ no_slip: {psi}; }}; }} }}"
+        )
+    };
+    let [along, turned] = accept(&roller("dot(y) = dot(theta)"), "partial(y), partial(theta)")
+        .try_into()
+        .expect("two");
+    // The impulse along the wall changes the momentum along it, and that of the turn.
+    assert!(!along.keeps_momentum && !turned.keeps_momentum);
+    let [rolled] = accept(
+        &roller("dot(y) = dot(theta)"),
+        "partial(y) + partial(theta)",
+    )
+    .try_into()
+    .expect("one");
+    assert!(rolled.keeps_momentum);
+    let belt = roller("dot(y) = dot(theta) + k*y/10^9");
+    refuse(
+        &belt,
+        "partial(y)",
+        &["surface `wall`", "instantaneous constraints"],
+    );
+    accept(&belt, "partial(theta)");
+}
+
 /// A disk of another medium, entered and left by refraction.
 fn lens(outside: &str, inside: &str, radius: &str) -> String {
     format!(
