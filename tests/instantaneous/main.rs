@@ -385,15 +385,15 @@ fn told(claims: &str) -> Result<Vec<String>, Vec<String>> {
 }
 
 #[test]
-fn claims_about_such_impacts_stay_open() {
-    let refused = told("conserved under w: x;").expect_err("undecided");
+fn claims_about_such_impacts_are_decided() {
+    let refused = told("conserved under w: dot(x);").expect_err("refuted");
     assert!(
-        refused[0]
-            .contains("is undecided: what impacts at `w` with their instantaneous constraints"),
+        refused[0].contains("is refuted") && refused[0].contains("dot(x) after = 0\n"),
         "{refused:?}"
     );
-    assert!(told("not conserved under w: energy;").is_err());
-    let notes = told("density: exact; assume conserved under w: x;").expect("accepted");
+    assert!(told("conserved under w: energy;").is_err());
+    let claims = "density: exact; conserved under w: dot(y)^2; not conserved under w: energy;";
+    let notes = told(claims).expect("accepted");
     let volume = notes
         .iter()
         .find(|note| note.contains("density: exact"))
