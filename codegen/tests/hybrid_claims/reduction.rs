@@ -401,7 +401,7 @@ fn a_disk_turns_at_a_wall_with_right_momenta() {
     };
     let before = rolling(3.0, -0.75);
     let after = rolling(
-        -0.552_229_998_281_975_83 / inertia,
+        -0.552_229_998_281_975_8 / inertia,
         0.424_960_437_215_408_2 / inertia_phi,
     );
     let momenta = |v: &[f64]| {
