@@ -403,8 +403,6 @@ fn a_certificate_that_was_tampered_with_fails() {
         ),
         (
             "forms:turned",
-            "forms:roller",
-            "forms:groove",
             "/1/content/motion/rates/1",
             json!("1 + 1/1000000000"),
         ),
