@@ -149,29 +149,71 @@ pub fn compile_control(
     compile_checked(spec, model, claims::examine)
 }
 
+/// A model with a cost whose inputs are held, in one of its scenes, as a first-order model after all stages: see
+/// [`mechanics::control::Held`].
+#[derive(Debug)]
+pub struct CompiledHeld {
+    /// The first-order model.
+    pub compiled: Compiled,
+    /// Number of inputs.
+    pub inputs: usize,
+    /// True if nothing between start and end depends on time.
+    pub is_autonomous: bool,
+}
+
+/// All stages of a model whose inputs are held. The scene `None` is the model itself.
+///
+/// # Errors
+/// Same as [`compile_control`].
+pub fn compile_held(
+    spec: &spec::Spec,
+    scene: Option<&str>,
+) -> Result<CompiledHeld, diagnostics::Diagnostics> {
+    let held = mechanics::control::held_model(in_scene(spec, scene)?);
+    let held = held.map_err(|refused| uncontrolled(spec, refused))?;
+    refuse_exhausted(spec, &held.model)?;
+    Ok(CompiledHeld {
+        compiled: compile_checked(spec, held.model, claims::examine)?,
+        inputs: held.inputs,
+        is_autonomous: held.is_autonomous,
+    })
+}
+
 /// A model in one of its scenes, with its maximum principle.
 fn derive_control(
     spec: &spec::Spec,
     scene: Option<&str>,
 ) -> Result<(model::Model, mechanics::control::Extremals), diagnostics::Diagnostics> {
-    let model = model::check_within(spec, spec::STEPS)?;
-    let named = model.scenes.iter().position(|it| Some(&*it.name) == scene);
-    let mut model = match named {
-        Some(scene) => model.in_scene(scene),
-        None => model,
-    };
+    let mut model = in_scene(spec, scene)?;
     let derived = mechanics::control::derive_extremals(&mut model);
     refuse_exhausted(spec, &model)?;
     derived
         .map(|extremals| (model, extremals))
-        .map_err(|refused| {
-            let mut mistakes = diagnostics::Diagnostics::new();
-            let at = refused
-                .item
-                .map_or(spec.name.at, |item| spec.location(item));
-            mistakes.error(at, refused.text).help(refused.help);
-            mistakes
-        })
+        .map_err(|refused| uncontrolled(spec, refused))
+}
+
+fn in_scene(
+    spec: &spec::Spec,
+    scene: Option<&str>,
+) -> Result<model::Model, diagnostics::Diagnostics> {
+    let model = model::check_within(spec, spec::STEPS)?;
+    let named = model.scenes.iter().position(|it| Some(&*it.name) == scene);
+    Ok(match named {
+        Some(scene) => model.in_scene(scene),
+        None => model,
+    })
+}
+
+fn uncontrolled(
+    spec: &spec::Spec,
+    refused: mechanics::control::Uncontrolled,
+) -> diagnostics::Diagnostics {
+    let mut mistakes = diagnostics::Diagnostics::new();
+    let at = refused
+        .item
+        .map_or(spec.name.at, |item| spec.location(item));
+    mistakes.error(at, refused.text).help(refused.help);
+    mistakes
 }
 
 /// The stages after the first two, of a model or of one of its scenes.

@@ -100,16 +100,47 @@ pub fn load_control(name: &str, text: &str, scene: Option<&str>) -> Result<Vec<L
     })
 }
 
+/// A model with a cost whose inputs are held.
+#[derive(Debug)]
+pub struct LoadedHeld {
+    /// The first-order model: state, inputs, cost so far.
+    pub loaded: Loaded,
+    /// Number of inputs.
+    pub inputs: usize,
+    /// True if nothing between start and end depends on time.
+    pub is_autonomous: bool,
+}
+
+/// A model with a cost whose inputs are held, in a scene or, with `None`, the model itself, as a first-order model:
+/// [`compile_held`](codegen::compile_held). Models with modes are left out.
+///
+/// # Errors
+/// Same as [`load_control`].
+pub fn load_held(name: &str, text: &str, scene: Option<&str>) -> Result<Vec<LoadedHeld>, Refused> {
+    let loaded = load_by(name, text, |declaration| match declaration {
+        Declaration::Model(spec) => {
+            let held = codegen::compile_held(&spec, scene)?;
+            Ok(Some(LoadedHeld {
+                loaded: loaded(spec.name.text.clone(), &held.compiled),
+                inputs: held.inputs,
+                is_autonomous: held.is_autonomous,
+            }))
+        }
+        Declaration::Modes(_) => Ok(None),
+    })?;
+    Ok(loaded.into_iter().flatten().collect())
+}
+
 /// Stack size of the thread that loads, in bytes.
 const STACK: usize = 64 << 20;
 
 /// Loads in a thread of its own: with it goes the copy of the text that `proc_macro2` keeps for places, and its stack has
 /// room for the deepest nesting that is accepted.
-fn load_by(
+fn load_by<T: Send>(
     name: &str,
     text: &str,
-    build: impl Fn(Declaration) -> Result<Loaded, Diagnostics> + Send + Sync,
-) -> Result<Vec<Loaded>, Refused> {
+    build: impl Fn(Declaration) -> Result<T, Diagnostics> + Send + Sync,
+) -> Result<Vec<T>, Refused> {
     thread::scope(|scope| {
         let work = || load_here(name, text, &build);
         let thread = thread::Builder::new().stack_size(STACK);
@@ -121,11 +152,11 @@ fn load_by(
     })
 }
 
-fn load_here(
+fn load_here<T>(
     name: &str,
     text: &str,
-    build: &dyn Fn(Declaration) -> Result<Loaded, Diagnostics>,
-) -> Result<Vec<Loaded>, Refused> {
+    build: &dyn Fn(Declaration) -> Result<T, Diagnostics>,
+) -> Result<Vec<T>, Refused> {
     let mut refused = Refused::new(name, text);
     let mut loaded = Vec::new();
     for tokens in source::models(&mut refused)? {

@@ -12,6 +12,7 @@
 //! | `connect/` | motions between two configurations |
 //! | `linearisation/` | equilibria, and linearised equations with inputs and outputs |
 //! | `control/` | extremals of models with a cost |
+//! | `dynamic/` | dynamic programming of models with a cost |
 //! | `modulo.rs` | groups up to which orbits close |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
@@ -32,6 +33,7 @@ mod continuation;
 mod control;
 pub mod course;
 pub mod drift;
+mod dynamic;
 mod grid;
 mod integrator;
 mod least_squares;
@@ -53,6 +55,7 @@ pub use certify::{Certification, Certified, Ranges, Strike};
 pub use connect::{Bounce, Boundary, Conjugate, Connected, Connection, Stage, Unjoined};
 pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
 pub use control::{Controlled, Extremal, Kick, Moment, SecondOrder, Task, Unsought};
+pub use dynamic::{Axis, Choice, Hit, Landing, Lattice, Leg, Move, choose};
 pub use grid::Grid;
 pub use integrator::{Form, Integrator};
 pub use linearisation::{

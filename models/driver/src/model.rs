@@ -9,6 +9,7 @@ use crate::certify::{Certification, Certified, Strike};
 use crate::connect::{Boundary, Connected, Stage, Unjoined};
 use crate::continuation::{Branch, Continuation, Member};
 use crate::control::{Controlled, Task, Unsought};
+use crate::dynamic::{Landing, Leg};
 use crate::linearisation::{Linearisation, Place, Unlinear};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
@@ -272,6 +273,16 @@ pub trait Runs {
         task: &Task,
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal>;
+    /// Makes motions over a step from these states, with each of the inputs, of a model with held inputs; `None` for a scene
+    /// without variations. A motion is `None` if it does not get to the end of the step.
+    ///
+    /// # Errors
+    /// [`Refusal`] for parameters that the declaration rules out.
+    fn legs(
+        &self,
+        leg: &Leg<'_>,
+        from: &[[f64; 2]],
+    ) -> Result<Option<Vec<Option<Landing>>>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

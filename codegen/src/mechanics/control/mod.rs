@@ -15,7 +15,9 @@
 //! | `principle.rs` | `H*`, `u*`, the field of the costate |
 //! | `jump.rs` | the costate after an impact |
 //! | `model.rs` | all of it as a first-order model, for the ordinary stages |
+//! | `held.rs` | a first-order model with inputs that stay, for dynamic programming |
 
+mod held;
 mod jump;
 mod model;
 mod principle;
@@ -26,6 +28,7 @@ use dalembert_expr::{ExprId, SymbolId};
 use crate::model::Model;
 use crate::spec::ItemId;
 
+pub use held::{Held, held_model};
 pub use model::{ENERGY, TERMINAL, extremal_model};
 
 /// A component of the state with its costate.
@@ -88,6 +91,14 @@ pub struct Uncontrolled {
 }
 
 impl Uncontrolled {
+    fn without_cost(model: &Model) -> Self {
+        Self {
+            item: None,
+            text: format!("`{}` declares no `cost`", model.name),
+            help: "write `cost { running = u^2/2; terminal = (x - 1)^2; }`".to_owned(),
+        }
+    }
+
     fn at(item: ItemId, text: impl Into<String>, help: &str) -> Self {
         Self {
             item: Some(item),
@@ -103,11 +114,7 @@ impl Uncontrolled {
 /// The first declaration that is in the way.
 pub fn derive_extremals(model: &mut Model) -> Result<Extremals, Uncontrolled> {
     let Some(cost) = model.cost else {
-        return Err(Uncontrolled {
-            item: None,
-            text: format!("`{}` declares no `cost`", model.name),
-            help: "write `cost { running = u^2/2; terminal = (x - 1)^2; }`".to_owned(),
-        });
+        return Err(Uncontrolled::without_cost(model));
     };
     let system = system::of(model)?;
     let principle = principle::derive(model, &system, cost)?;

@@ -2,7 +2,7 @@
 
 use dalembert_expr::{Assumption as Known, ExprId, SymbolId};
 
-use super::{Extremals, Jump};
+use super::Extremals;
 use crate::model::{
     Coordinate, DerivedSymbols, Extras, Initial, Lagrangian, Law, Model, Name, Output, Reset,
     Surface, Topology,
@@ -23,59 +23,106 @@ const COST: &str = "cost";
 /// gradient of that by the state, the rows of its second derivative, and the minors that are positive where the optimal inputs are a
 /// minimum.
 pub fn extremal_model(mut model: Model, extremals: &Extremals) -> Model {
-    let item = model.cost.map_or(model.lagrangian.item, |cost| cost.item);
-    let coordinates = coordinates(&mut model, extremals, item);
-    let count = coordinates.len();
+    let item = item_of(&model);
     let components = extremals.components.iter();
     let mut rates: Vec<ExprId> = components.clone().map(|it| it.rate).collect();
     rates.extend(components.map(|it| it.costate_rate));
     rates.push(extremals.running);
-    let surfaces = surfaces(&mut model, extremals, count, item);
+    let components = entries(&mut model, extremals);
+    let resets = resets(&mut model, extremals);
     let outputs = outputs(&mut model, extremals, item);
-    let lagrangian = euclidean(&model, count, item);
-    let initial = initial(&model, count);
-    let derived = DerivedSymbols {
-        momenta: momenta(&mut model, &coordinates),
-        multipliers: Vec::new(),
-        ..model.derived
-    };
-    let parameters = model.parameters.iter().filter(|it| !it.is_input);
-    Model {
-        parameters: parameters.cloned().collect(),
-        extras: Extras {
-            variations: true,
-            ..Extras::default()
-        },
-        coordinates,
-        derived,
-        lagrangian,
-        field: Some(rates),
-        constraints: Vec::new(),
-        cost: None,
-        forces: Vec::new(),
-        frame: Vec::new(),
-        surfaces,
-        initial,
+    Parts {
+        components,
+        rates,
+        resets,
         outputs,
-        scenes: Vec::new(),
-        claims: Vec::new(),
-        notes: Vec::new(),
-        ..model
+    }
+    .assembled(model)
+}
+
+/// Place of what is derived: the cost.
+pub(super) fn item_of(model: &Model) -> ItemId {
+    model.cost.map_or(model.lagrangian.item, |cost| cost.item)
+}
+
+/// A component of a first-order model: its name and symbol.
+pub(super) type Entry = (String, SymbolId, Topology);
+
+/// The component with the cost so far.
+pub(super) fn cost(model: &mut Model) -> Entry {
+    let symbol = model.pool.symbol(COST, "J", Known::None);
+    (COST.to_owned(), symbol, Topology::Line)
+}
+
+/// The parts of a first-order model that is made of another one.
+pub(super) struct Parts {
+    /// The components of the state.
+    pub components: Vec<Entry>,
+    /// Their rates.
+    pub rates: Vec<ExprId>,
+    /// One for each surface: the components after an impact, `None` for those that stay.
+    pub resets: Vec<Vec<Option<ExprId>>>,
+    /// The outputs.
+    pub outputs: Vec<Output>,
+}
+
+impl Parts {
+    /// The first-order model, in the pool of the other one.
+    pub fn assembled(self, mut model: Model) -> Model {
+        let item = item_of(&model);
+        let coordinates = coordinates(&mut model, self.components, item);
+        let count = coordinates.len();
+        let derived = DerivedSymbols {
+            momenta: momenta(&mut model, &coordinates),
+            multipliers: Vec::new(),
+            ..model.derived
+        };
+        let parameters = model.parameters.iter().filter(|it| !it.is_input);
+        Model {
+            parameters: parameters.cloned().collect(),
+            extras: Extras {
+                variations: true,
+                ..Extras::default()
+            },
+            lagrangian: euclidean(&model, count, item),
+            initial: initial(&model, count),
+            surfaces: surfaces(&model, self.resets, count, item),
+            coordinates,
+            derived,
+            field: Some(self.rates),
+            constraints: Vec::new(),
+            cost: None,
+            forces: Vec::new(),
+            frame: Vec::new(),
+            outputs: self.outputs,
+            scenes: Vec::new(),
+            claims: Vec::new(),
+            notes: Vec::new(),
+            ..model
+        }
     }
 }
 
-fn coordinates(model: &mut Model, extremals: &Extremals, item: ItemId) -> Vec<Coordinate> {
+/// State, costate and cost so far.
+fn entries(model: &mut Model, extremals: &Extremals) -> Vec<Entry> {
     let components = extremals.components.iter();
-    let declared = model.coordinates.iter().map(|it| it.topology);
-    let topologies = declared.chain(core::iter::repeat(Topology::Line));
-    let states = components.clone().zip(topologies);
+    let states = components.clone().zip(topologies(model));
     let states = states.map(|(it, topology)| (it.name.clone(), it.state, topology));
     let costates =
         components.map(|it| (format!("costate_{}", it.name), it.costate, Topology::Line));
-    let mut entries: Vec<(String, SymbolId, Topology)> = states.chain(costates).collect();
-    let cost = model.pool.symbol(COST, "J", Known::None);
-    entries.push((COST.to_owned(), cost, Topology::Line));
-    let coordinate = |(display, q, topology): (String, SymbolId, Topology)| {
+    let mut entries: Vec<Entry> = states.chain(costates).collect();
+    entries.push(cost(model));
+    entries
+}
+
+/// The topologies of coordinates, and of what follows them.
+pub(super) fn topologies(model: &Model) -> impl Iterator<Item = Topology> {
+    let declared = model.coordinates.iter().map(|it| it.topology);
+    declared.chain(core::iter::repeat(Topology::Line))
+}
+
+fn coordinates(model: &mut Model, entries: Vec<Entry>, item: ItemId) -> Vec<Coordinate> {
+    let coordinate = |(display, q, topology): Entry| {
         let rate = format!("dot({display})");
         let latex = format!("\\dot{{{}}}", model.pool.symbol_latex(q));
         Coordinate {
@@ -101,7 +148,7 @@ fn momenta(model: &mut Model, coordinates: &[Coordinate]) -> Vec<SymbolId> {
 }
 
 /// The name of a coordinate or an output by itself.
-fn plain(display: String) -> Name {
+pub(super) fn plain(display: String) -> Name {
     Name {
         field: display.replace('.', "_"),
         display,
@@ -109,32 +156,52 @@ fn plain(display: String) -> Name {
     }
 }
 
-/// The surfaces of the model, each with a reset of state and costate.
-fn surfaces(model: &mut Model, extremals: &Extremals, count: usize, item: ItemId) -> Vec<Surface> {
-    let declared = model.surfaces.clone();
-    let pairs = declared.into_iter().zip(&extremals.jumps);
-    let reset = |(surface, jump): (Surface, &Jump)| {
+/// State and costate after the impacts.
+fn resets(model: &mut Model, extremals: &Extremals) -> Vec<Vec<Option<ExprId>>> {
+    let states: Vec<SymbolId> = extremals.components.iter().map(|it| it.state).collect();
+    let mut resets = Vec::new();
+    for jump in &extremals.jumps {
         let multiplier = [(jump.multiplier, jump.epsilon)];
         let costate = model.pool.substitute_all(&jump.costate, &multiplier);
-        let mut after: Vec<Option<ExprId>> = Vec::new();
-        for (component, value) in extremals.components.iter().zip(&jump.state) {
-            let is_kept = *value == model.pool.variable(component.state);
-            after.push((!is_kept).then_some(*value));
-        }
+        let mut after = changes(model, &states, &jump.state);
         after.extend(costate.into_iter().map(Some));
         after.push(None);
-        Surface {
-            law: Law::Reset,
-            reset: Some(Reset {
-                q: after,
-                qdot: vec![None; count],
-                item,
-            }),
-            instantaneous: Vec::new(),
-            ..surface
-        }
+        resets.push(after);
+    }
+    resets
+}
+
+/// The components after an impact, `None` for those that stay.
+pub(super) fn changes(
+    model: &mut Model,
+    states: &[SymbolId],
+    after: &[ExprId],
+) -> Vec<Option<ExprId>> {
+    let pairs = states.iter().zip(after);
+    pairs
+        .map(|(state, value)| (*value != model.pool.variable(*state)).then_some(*value))
+        .collect()
+}
+
+/// The surfaces of the model, each with a reset.
+fn surfaces(
+    model: &Model,
+    resets: Vec<Vec<Option<ExprId>>>,
+    count: usize,
+    item: ItemId,
+) -> Vec<Surface> {
+    let declared = model.surfaces.iter().cloned();
+    let reset = |(surface, after): (Surface, Vec<Option<ExprId>>)| Surface {
+        law: Law::Reset,
+        reset: Some(Reset {
+            q: after,
+            qdot: vec![None; count],
+            item,
+        }),
+        instantaneous: Vec::new(),
+        ..surface
     };
-    pairs.map(reset).collect()
+    declared.zip(resets).map(reset).collect()
 }
 
 fn outputs(model: &mut Model, extremals: &Extremals, item: ItemId) -> Vec<Output> {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::ValueParser;
 
-use super::{ModelArgs, SearchArgs};
+use super::{DynamicArgs, ModelArgs, SearchArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
@@ -21,6 +21,12 @@ exhaustive: extremals may be missed. They are listed by their cost; each is one 
 The second-order test says whether the cost of neighbouring motions with the same sequence of impacts is larger: `minimum`; `fails`
 near a focal point; `open` where inputs do not control all directions of the state.
 
+With --dp the least cost is computed backwards in --steps steps on a grid of the state, for models whose state has two
+components and with one input, which is held in each step and chosen among those of its axis and between them. Motions that leave the grid
+have no cost. A path of least cost is a motion with these inputs; it is compared with the cheapest extremal that has --impacts. --csv has
+a row for each node at --at (state, cost, input, number of impacts), --inputs the first path. --plot is a map of --show with
+the paths on top or, with --axes, the paths over t, the state, the input, cost.
+
 Bounds on inputs and states, constraints, and laws that forget the state before, such as plastic ones, are refused.
 
 Exit status: 0 extremals were found, 1 none was found, 2 bad flags or input.
@@ -28,7 +34,8 @@ Exit status: 0 extremals were found, 1 none was found, 2 bad flags or input.
 More examples:
   dalembert control controlled_ball --initial x=2 --impacts 0..2 --plot balls.svg
   dalembert control controlled_ball --initial x=1 --end x=1,y=0 --impacts 0..1 --set e=0.8
-  dalembert control controlled_ball --impacts 2 --inputs best.csv --json -";
+  dalembert control controlled_ball --impacts 2 --inputs best.csv --json -
+  dalembert control controlled_ball --impacts 0..2 --dp x=0..3:61,y=-6..6:61,u=-4..4:17 --plot cost.svg";
 
 /// `control`
 #[derive(Debug, Args)]
@@ -48,6 +55,9 @@ pub struct ControlArgs {
     /// The search.
     #[command(flatten)]
     pub search: SearchArgs,
+    /// Dynamic programming.
+    #[command(flatten)]
+    pub dynamic: DynamicArgs,
     /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.
     #[arg(long, value_name = "X", default_value = "1e-14", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::tolerance))]
     pub tol: f64,

@@ -1,13 +1,16 @@
 //! `control`: extremals of a model with a cost, as a summary, tables, a document and a picture.
 
 mod document;
+mod dynamic;
 mod film;
 mod spreadsheet;
 mod summary;
 
 use dalembert::Tolerance;
 use dalembert::describe::Description;
-use dalembert_driver::{AnyModel, Controlled, Form, Integrator, Settings, Task, Unsought};
+use dalembert_driver::{
+    AnyModel, Controlled, Extremal, Form, Integrator, Settings, Task, Unsought,
+};
 
 use crate::args::{ControlArgs, ModelArgs};
 use crate::entry::Entry;
@@ -76,6 +79,9 @@ pub fn run(
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     run_request::check_outputs([&args.csv, &args.json, &args.inputs, &args.plot])?;
+    if args.dynamic.is_wanted() {
+        return dynamic::run(models, args, streams);
+    }
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
     quantity::check("--axes", args.axes.as_deref(), model.description())?;
@@ -115,6 +121,9 @@ pub fn run(
 /// # Errors
 /// The errors of [`run`] except those of files.
 pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
+    if args.dynamic.is_wanted() {
+        return dynamic::draw(models, args);
+    }
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
     quantity::check("--axes", args.axes.as_deref(), model.description())?;
@@ -127,13 +136,8 @@ pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
 
 /// The first-order model of the extremals, with the parameters of the flags.
 fn model_of_extremals(models: &[Entry], args: &ControlArgs) -> Result<Box<dyn AnyModel>, CliError> {
-    let entry = find_model(models, &args.model.model)?;
+    let (entry, part) = declared(models, args)?;
     let description = entry.description();
-    if !description.modes.is_empty() || args.model.mode.is_some() {
-        return Err(CliError::Usage("control: a model with modes has no `cost`"));
-    }
-    let scene = names::find("--scene", "scene", &args.model.scene, entry.scenes())?;
-    let part = (scene > 0).then_some(args.model.scene.as_str());
     let loaded = dalembert_jit::load_control(description.name, &description.source, part);
     let loaded = loaded.map_err(CliError::Declaration)?;
     let extremals: Vec<Entry> = loaded.iter().map(Entry::loaded).collect();
@@ -146,6 +150,71 @@ fn model_of_extremals(models: &[Entry], args: &ControlArgs) -> Result<Box<dyn An
         mode: None,
     };
     build_model(&extremals, &args)
+}
+
+/// The declared model, and its scene if one is asked for.
+fn declared<'a>(
+    models: &'a [Entry],
+    args: &'a ControlArgs,
+) -> Result<(&'a Entry, Option<&'a str>), CliError> {
+    let entry = find_model(models, &args.model.model)?;
+    if !entry.description().modes.is_empty() || args.model.mode.is_some() {
+        return Err(CliError::Usage("control: a model with modes has no `cost`"));
+    }
+    let scene = names::find("--scene", "scene", &args.model.scene, entry.scenes())?;
+    Ok((entry, (scene > 0).then_some(args.model.scene.as_str())))
+}
+
+/// The first-order model of state, held inputs and cost.
+struct Held {
+    entry: Entry,
+    /// Number of inputs.
+    inputs: usize,
+    /// True if nothing between start and end depends on time.
+    is_autonomous: bool,
+}
+
+fn held(models: &[Entry], args: &ControlArgs) -> Result<Held, CliError> {
+    let (entry, part) = declared(models, args)?;
+    let description = entry.description();
+    let loaded = dalembert_jit::load_held(description.name, &description.source, part);
+    let loaded = loaded.map_err(CliError::Declaration)?;
+    let held = loaded.iter().map(|held| Held {
+        entry: Entry::loaded(&held.loaded),
+        inputs: held.inputs,
+        is_autonomous: held.is_autonomous,
+    });
+    let mut named = held.filter(|held| held.entry.name() == description.name);
+    named
+        .next()
+        .ok_or(CliError::Usage("control: the model is not in its text"))
+}
+
+/// The extremal of least cost from a state, or the reason for which there is none.
+///
+/// # Errors
+/// Invalid flags.
+fn cheapest(
+    models: &[Entry],
+    args: &ControlArgs,
+    from: [f64; 2],
+) -> Result<Result<Extremal, String>, CliError> {
+    let model = match model_of_extremals(models, args) {
+        Ok(model) => model,
+        Err(CliError::Declaration(_)) => {
+            return Ok(Err("the maximum principle is not derived".to_owned()));
+        }
+        Err(error) => return Err(error),
+    };
+    let mut task = task(model.as_ref(), args)?;
+    task.from = from.to_vec();
+    Ok(match find(model.as_ref(), args, task, false) {
+        Ok(finished) => {
+            let first = finished.controlled.extremals.into_iter().next();
+            first.ok_or_else(|| "no extremal with these numbers of impacts was found".to_owned())
+        }
+        Err(error) => Err(error.to_string()),
+    })
 }
 
 /// The request of the flags.

@@ -329,9 +329,9 @@ fn class_colour(index: usize) -> RGBColor {
 }
 
 /// A colour bar over a legend.
-struct Top<'a> {
-    bar: Option<&'a Bar<'a>>,
-    items: Vec<Item>,
+pub(super) struct Top<'a> {
+    pub bar: Option<&'a Bar<'a>>,
+    pub items: Vec<Item>,
 }
 
 impl Head for Top<'_> {

@@ -8,6 +8,7 @@ pub mod cloud;
 mod colours;
 pub mod contour;
 pub mod density;
+pub mod field;
 pub mod film;
 pub mod heat;
 mod history;

@@ -1,0 +1,157 @@
+//! Pictures of dynamic programming: a map with paths on it, or paths over time.
+
+use dalembert_driver::Axis;
+
+use super::path::{Moment, Path};
+use super::problem::Problem;
+use super::{Finished, summary};
+use crate::args::{ControlArgs, Shown};
+use crate::error::CliError;
+use crate::plot::contour::Window;
+use crate::plot::field::{self, Field, Meaning};
+use crate::plot::paths::{self, Sheet};
+use crate::{names, symbols};
+
+/// Checks the flags of the picture.
+///
+/// # Errors
+/// An unknown quantity of --axes.
+pub(super) fn check(problem: &Problem, args: &ControlArgs) -> Result<(), CliError> {
+    quantities(problem, args).map(drop)
+}
+
+/// The picture.
+///
+/// # Errors
+/// An error of the drawing library.
+pub(super) fn draw(finished: &Finished, args: &ControlArgs) -> Result<String, CliError> {
+    let quantities = quantities(&finished.problem, args)?;
+    let drawn = match quantities {
+        Some(quantities) => draw_paths(finished, args, &quantities),
+        None => draw_map(finished, args),
+    };
+    drawn.map_err(|reason| CliError::picture(&args.plot, reason))
+}
+
+/// The places of the quantities of --axes among time, state, input and cost.
+fn quantities(problem: &Problem, args: &ControlArgs) -> Result<Option<Vec<usize>>, CliError> {
+    let Some(axes) = &args.axes else {
+        return Ok(None);
+    };
+    let accepted = ["t"].into_iter().chain(problem.names());
+    let find = |name: &str| names::find("--axes", "quantity", name.trim(), accepted.clone());
+    let found: Vec<usize> = axes.split(',').map(find).collect::<Result<_, CliError>>()?;
+    match found.len() {
+        0 | 1 => Err(CliError::value(
+            "--axes",
+            axes,
+            "an abscissa and at least one ordinate, such as t,cost",
+        )),
+        _ => Ok(Some(found)),
+    }
+}
+
+fn values(moment: &Moment) -> [f64; 5] {
+    let [x, y] = moment.state;
+    [moment.t, x, y, moment.input, moment.cost]
+}
+
+fn draw_paths(
+    finished: &Finished,
+    args: &ControlArgs,
+    quantities: &[usize],
+) -> Result<String, String> {
+    let problem = &finished.problem;
+    let of = |moment: &Moment| -> Vec<f64> {
+        let values = values(moment);
+        quantities.iter().map(|&index| values[index]).collect()
+    };
+    let mut drawn: Vec<paths::Path> = Vec::new();
+    for path in &finished.paths {
+        let moments = film(path);
+        let corners = moments.iter().filter(|(is_corner, _)| *is_corner);
+        drawn.push(paths::Path {
+            impacts: path.hits.len(),
+            corners: corners.map(|(_, moment)| of(moment)).collect(),
+            points: moments.iter().map(|(_, moment)| of(moment)).collect(),
+        });
+    }
+    drawn.sort_by_key(|path| path.impacts);
+    let names: Vec<&str> = ["t"].into_iter().chain(problem.names()).collect();
+    paths::draw(&Sheet {
+        title: &summary::title(problem),
+        subtitle: &summary::grid(problem),
+        names: quantities
+            .iter()
+            .map(|&it| symbols::text(names[it]))
+            .collect(),
+        width: f64::from(args.plot_width),
+        paths: &drawn,
+        envelope: &[],
+    })
+}
+
+/// The moments of a path with both sides of its impacts; true for those before an impact.
+fn film(path: &Path) -> Vec<(bool, Moment)> {
+    let mut film = Vec::new();
+    let mut hits = path.hits.iter().peekable();
+    for pair in path.moments.chunks(2) {
+        let [first, last] = pair else { continue };
+        film.push((false, *first));
+        while let Some(hit) = hits.next_if(|hit| hit.t <= last.t) {
+            let share = (hit.t - first.t) / (last.t - first.t);
+            let side = |state| Moment {
+                t: hit.t,
+                state,
+                input: first.input,
+                cost: first.cost + share * (last.cost - first.cost),
+            };
+            film.push((true, side(hit.states[0])));
+            film.push((false, side(hit.states[1])));
+        }
+        film.push((false, *last));
+    }
+    film
+}
+
+fn draw_map(finished: &Finished, args: &ControlArgs) -> Result<String, String> {
+    let (problem, solution) = (&finished.problem, &finished.solution);
+    let [x, y, input, _] = problem.names();
+    let (values, meaning) = match args.dynamic.show {
+        Shown::Cost => (solution.shown(), Meaning::Number("least cost")),
+        Shown::Input => (&*solution.inputs, Meaning::Number(input)),
+        Shown::Impacts => (&*solution.impacts, Meaning::Impacts),
+    };
+    let stretches = finished.paths.iter().map(|path| {
+        let mut stretches = vec![Vec::new()];
+        for (is_corner, moment) in film(path) {
+            if let Some(stretch) = stretches.last_mut() {
+                stretch.push(moment.state);
+            }
+            if is_corner {
+                stretches.push(Vec::new());
+            }
+        }
+        stretches
+    });
+    let [columns, rows] = problem.lattice.axes;
+    let half = |axis: Axis| {
+        let half = 0.5 * axis.step();
+        [axis.ends[0] - half, axis.ends[1] + half]
+    };
+    let time = problem.at(solution.step);
+    field::draw(&Field {
+        title: &format!("{} at t = {time}", summary::title(problem)),
+        subtitle: &summary::grid(problem),
+        names: [x, y].map(symbols::text),
+        width: f64::from(args.plot_width),
+        window: Window {
+            x: half(columns),
+            y: half(rows),
+        },
+        counts: [columns.count, rows.count],
+        values,
+        meaning,
+        paths: &stretches.collect::<Vec<_>>(),
+    })
+}

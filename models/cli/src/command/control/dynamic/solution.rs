@@ -1,0 +1,144 @@
+//! The least cost at all nodes, backwards in time; threads share the nodes.
+
+use std::convert::Infallible;
+use std::ops::Range;
+
+use dalembert_driver::{AnyModel, Choice, Move, choose};
+
+use super::problem::{Problem, moved};
+use crate::ensemble::pool::{Division, in_order};
+use crate::error::CliError;
+use crate::progress::Stages;
+
+/// Largest number of nodes that a thread takes at once.
+const BLOCK: u64 = 64;
+
+/// The least cost, and what is known at one time besides.
+pub struct Solution {
+    /// The least cost at the nodes at the start of each step, and at the end.
+    pub costs: Vec<Vec<f64>>,
+    /// The step whose nodes are shown.
+    pub step: usize,
+    /// The best input at its nodes.
+    pub inputs: Vec<f64>,
+    /// The number of impacts of the best motion from its nodes.
+    pub impacts: Vec<f64>,
+    /// Number of motions over a step that were made, and of those that do not get to its end.
+    pub motions: [usize; 2],
+}
+
+impl Solution {
+    /// Solves a problem; the nodes at the time `shown` are kept.
+    ///
+    /// # Errors
+    /// A time outside of the steps.
+    pub fn of(problem: &Problem, shown: Option<f64>, terminal: bool) -> Result<Self, CliError> {
+        let step = shown_step(problem, shown)?;
+        let count = problem.lattice.count();
+        let mut costs = vec![Vec::new(); problem.steps + 1];
+        costs[problem.steps] = (0..count)
+            .map(|node| problem.terminal(problem.lattice.node(node)))
+            .collect();
+        let mut solution = Self {
+            costs,
+            step,
+            inputs: vec![f64::NAN; count],
+            impacts: vec![0.0; count],
+            motions: [0; 2],
+        };
+        let mut stages = Stages::new(terminal);
+        let (mut moves, mut impacts) = (Vec::new(), vec![0.0; count]);
+        for k in (0..problem.steps).rev() {
+            let done = problem.steps - 1 - k;
+            stages.at(done, problem.steps, &format!("t = {:.4}", problem.at(k)));
+            if moves.is_empty() || !problem.is_autonomous {
+                moves = motions(problem, k);
+                let lost = moves.iter().filter(|it| it.cost.is_nan()).count();
+                solution.motions[0] += moves.len();
+                solution.motions[1] += lost;
+            }
+            let chosen = backwards(problem, &moves, &solution.costs[k + 1], &impacts);
+            solution.costs[k] = chosen.iter().map(|it| it.cost).collect();
+            impacts = chosen.iter().map(|it| it.impacts).collect();
+            if k == step {
+                solution.impacts.clone_from(&impacts);
+                let inputs = chosen.iter().map(|it| match it.place.is_nan() {
+                    true => f64::NAN,
+                    false => problem.input(it.place),
+                });
+                solution.inputs = inputs.collect();
+            }
+        }
+        stages.finish();
+        Ok(solution)
+    }
+
+    /// The costs that are shown.
+    pub fn shown(&self) -> &[f64] {
+        &self.costs[self.step]
+    }
+}
+
+fn shown_step(problem: &Problem, shown: Option<f64>) -> Result<usize, CliError> {
+    let time = shown.unwrap_or(0.0);
+    match (0.0..=problem.time).contains(&time) {
+        true => Ok((time / problem.time * problem.steps as f64).round() as usize),
+        false => Err(CliError::value(
+            "--at",
+            time.to_string(),
+            format!("a time from 0 to {}", problem.time),
+        )),
+    }
+}
+
+/// The motions over a step from all nodes, with all inputs.
+fn motions(problem: &Problem, step: usize) -> Vec<Move> {
+    let inputs = problem.input_values();
+    let leg = problem.leg(step, &inputs);
+    let (builder, lattice) = (&problem.builder, problem.lattice);
+    let work = |model: &mut Option<Box<dyn AnyModel>>, nodes: Range<u64>| {
+        let from: Vec<[f64; 2]> = nodes.map(|node| lattice.node(node as usize)).collect();
+        let landings = model
+            .as_ref()
+            .and_then(|model| model.legs(&leg, &from).ok()?);
+        match landings {
+            Some(landings) => landings
+                .chunks(inputs.len())
+                .map(|of_node| of_node.iter().map(|it| moved(it.as_ref())).collect())
+                .collect(),
+            None => vec![vec![Move::NOWHERE; inputs.len()]; from.len()],
+        }
+    };
+    shared(problem, || builder.built().ok(), work).concat()
+}
+
+/// A step backwards.
+fn backwards(problem: &Problem, moves: &[Move], costs: &[f64], impacts: &[f64]) -> Vec<Choice> {
+    let (inputs, lattice) = (problem.inputs.count, problem.lattice);
+    let work = |(): &mut (), nodes: Range<u64>| {
+        let chosen = nodes.map(|node| {
+            let first = node as usize * inputs;
+            choose(&moves[first..first + inputs], &lattice, costs, impacts)
+        });
+        chosen.collect()
+    };
+    shared(problem, || (), work)
+}
+
+/// The results of all nodes, in their order.
+fn shared<W, T: Send>(
+    problem: &Problem,
+    prepare: impl Fn() -> W + Sync,
+    work: impl Fn(&mut W, Range<u64>) -> Vec<T> + Sync,
+) -> Vec<T> {
+    let nodes = problem.lattice.count() as u64;
+    let mut all = Vec::with_capacity(nodes as usize);
+    let division = Division::new(nodes, problem.threads, BLOCK);
+    let done = in_order(0..nodes, division, prepare, work, |_, some| {
+        all.extend(some);
+        Ok::<(), Infallible>(())
+    });
+    match done {
+        Ok(()) => all,
+    }
+}

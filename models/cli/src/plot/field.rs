@@ -1,0 +1,174 @@
+//! Numbers at the nodes of a rectangle as colours, with paths on top.
+
+use plotters::style::RGBColor;
+
+use super::bar::{self, Bar};
+use super::contour::Window;
+use super::image;
+use super::legend::{Item, Symbol};
+use super::map::Top;
+use super::plane::{self, Plane, Words};
+use super::style;
+
+/// Fraction of the numbers up to the last colour; larger ones share it.
+const SHOWN: f64 = 0.95;
+
+/// Largest number of impacts with a colour of its own.
+const MOST: usize = 12;
+
+/// Meaning of the numbers.
+#[derive(Debug, Clone, Copy)]
+pub enum Meaning<'a> {
+    /// A quantity of this name.
+    Number(&'a str),
+    /// Numbers of impacts, of which a fraction is rounded.
+    Impacts,
+}
+
+/// Stretches of a path between its jumps.
+pub type Stretches = Vec<Vec<[f64; 2]>>;
+
+/// Content of a picture.
+pub struct Field<'a> {
+    /// First line of the title.
+    pub title: &'a str,
+    /// Second line of the title.
+    pub subtitle: &'a str,
+    /// The names of the axes.
+    pub names: [String; 2],
+    /// Its width, in pixels.
+    pub width: f64,
+    /// The rectangle with the cells of all nodes.
+    pub window: Window,
+    /// Number of nodes along each axis.
+    pub counts: [usize; 2],
+    /// A number for each node, those along the second axis first; NaN is unknown.
+    pub values: &'a [f64],
+    /// Their meaning.
+    pub meaning: Meaning<'a>,
+    /// The paths.
+    pub paths: &'a [Stretches],
+}
+
+/// Draws the picture.
+///
+/// # Errors
+/// An error of the drawing library.
+pub fn draw(field: &Field<'_>) -> Result<String, String> {
+    let painted = field.painted();
+    let top = Top {
+        bar: painted.bar.as_ref(),
+        items: painted.items,
+    };
+    let plane = Plane::free_scales(field.window, field.width);
+    let words = Words {
+        title: field.title,
+        subtitle: field.subtitle,
+        axes: field.names.each_ref().map(String::as_str),
+        head: &top,
+    };
+    let svg = plane.sheet(
+        &words,
+        |_| Ok(()),
+        |chart| {
+            image::draw_place(chart, field.window)?;
+            for stretches in field.paths {
+                for stretch in stretches.iter().filter(|it| it.len() > 1) {
+                    plane.path(chart, stretch.iter().copied(), style::INK)?;
+                }
+                let jumps = stretches.windows(2);
+                let jumps = jumps.filter_map(|pair| Some([*pair[0].last()?, *pair[1].first()?]));
+                plane::dashes(chart, jumps, style::INK)?;
+                let points = stretches.iter().flatten();
+                if let (Some(first), Some(last)) = (points.clone().next(), points.last()) {
+                    plane::ends(chart, *first, *last)?;
+                }
+            }
+            Ok(())
+        },
+    )?;
+    let [columns, rows] = field.counts;
+    let indices = (0..rows)
+        .rev()
+        .flat_map(|j| (0..columns).map(move |i| i * rows + j));
+    let pixels: Vec<u8> = indices
+        .map(|index| (painted.shade)(field.values[index]))
+        .collect();
+    image::put(
+        &svg,
+        &image::data_address(columns, &painted.palette, &pixels)?,
+    )
+}
+
+/// The colours of the numbers.
+struct Painted<'a> {
+    palette: Vec<RGBColor>,
+    shade: Box<dyn Fn(f64) -> u8 + 'a>,
+    bar: Option<Bar<'a>>,
+    items: Vec<Item>,
+}
+
+impl Field<'_> {
+    fn painted(&self) -> Painted<'_> {
+        let mut painted = match self.meaning {
+            Meaning::Number(name) => self.by_number(name),
+            Meaning::Impacts => self.by_impacts(),
+        };
+        if !self.paths.is_empty() {
+            let ways = [
+                Item::new(Symbol::Line, style::INK, "path of least cost"),
+                Item::new(Symbol::Ring, style::INK, "start"),
+                Item::new(Symbol::Square, style::INK, "end"),
+            ];
+            painted.items.extend(ways);
+        }
+        painted
+    }
+
+    fn by_number<'s>(&'s self, name: &'s str) -> Painted<'s> {
+        let known = self.values.iter().copied().filter(|it| it.is_finite());
+        let mut sorted: Vec<f64> = known.collect();
+        sorted.sort_by(f64::total_cmp);
+        let last = (SHOWN * sorted.len().saturating_sub(1) as f64) as usize;
+        let ends = [sorted.first(), sorted.get(last)].map(|it| it.copied().unwrap_or(0.0));
+        let range = match ends[0] < ends[1] {
+            true => ends,
+            false => style::padded(ends.into_iter(), 0.0),
+        };
+        let shade = move |value: f64| match value.is_nan() {
+            true => 0,
+            false => Bar { name: "", range }.shade(value),
+        };
+        Painted {
+            palette: bar::palette(),
+            shade: Box::new(shade),
+            bar: Some(Bar { name, range }),
+            items: Vec::new(),
+        }
+    }
+
+    fn by_impacts(&self) -> Painted<'_> {
+        let shade = |value: f64| match value.is_nan() {
+            true => 0,
+            false => 1 + (value.round() as usize).min(MOST) as u8,
+        };
+        let mut palette = vec![RGBColor(255, 255, 255)];
+        palette.extend((0..=MOST).map(style::curve));
+        let mut counts = vec![0; MOST + 2];
+        let shades = self.values.iter().map(|value| shade(*value));
+        shades.for_each(|shade| counts[usize::from(shade)] += 1);
+        let known = (0..=MOST).filter(|impacts| counts[1 + impacts] > 0);
+        let items = known.map(|impacts| {
+            let plural = if impacts == 1 { "" } else { "s" };
+            let more = if impacts == MOST { " or more" } else { "" };
+            let label = format!("{impacts} impact{plural}{more}");
+            Item::new(Symbol::Square, style::curve(impacts), label)
+        });
+        Painted {
+            items: items.collect(),
+            palette,
+            shade: Box::new(shade),
+            bar: None,
+        }
+    }
+}

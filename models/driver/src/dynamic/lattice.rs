@@ -1,0 +1,210 @@
+//! A rectangle of nodes, and values between them.
+//!
+//! Values are interpolated by weighted parabolas (WENO of fourth order; Carlini, Ferretti, Russo 2005): between two nodes the parabolas
+//! through the node before and the node after have weights that make a cubic of smooth values, and leave out the parabola across an edge. A least
+//! cost has edges where two ways are equally good.
+
+/// Added to squares of second differences, as a fraction of their sum.
+const FLOOR: f64 = 1e-6;
+
+/// Equally spaced values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// The first and the last value.
+    pub ends: [f64; 2],
+    /// Number of values, at least 2.
+    pub count: usize,
+}
+
+impl Axis {
+    /// The value of an index.
+    pub fn value(&self, index: usize) -> f64 {
+        let [first, last] = self.ends;
+        match index + 1 == self.count {
+            true => last,
+            false => first + (last - first) * (index as f64 / (self.count - 1) as f64),
+        }
+    }
+
+    /// The distance of two values.
+    pub fn step(&self) -> f64 {
+        (self.ends[1] - self.ends[0]) / (self.count - 1) as f64
+    }
+
+    /// The index below a value and the fraction of a step above it; `None` outside.
+    fn place(&self, value: f64) -> Option<(usize, f64)> {
+        let [first, last] = self.ends;
+        // Rounding at an end leaves nothing outside.
+        let margin = 1e-9 * (last - first);
+        if !(first - margin <= value && value <= last + margin) {
+            return None;
+        }
+        let steps = ((value - first) / self.step()).clamp(0.0, (self.count - 1) as f64);
+        let index = (steps as usize).min(self.count - 2);
+        Some((index, steps - index as f64))
+    }
+}
+
+/// Nodes of a rectangle, those of the second axis first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// Both axes.
+    pub axes: [Axis; 2],
+}
+
+impl Lattice {
+    /// Number of nodes.
+    pub fn count(&self) -> usize {
+        self.axes[0].count * self.axes[1].count
+    }
+
+    /// The place of a node.
+    pub fn node(&self, index: usize) -> [f64; 2] {
+        let rows = self.axes[1].count;
+        [
+            self.axes[0].value(index / rows),
+            self.axes[1].value(index % rows),
+        ]
+    }
+
+    /// The value at a place, from those of the nodes; NaN outside, and where the nearest node has none.
+    pub fn between(&self, values: &[f64], at: [f64; 2]) -> f64 {
+        self.combined(values, at, parabolas)
+    }
+
+    /// Same as [`between`](Self::between), on lines.
+    pub fn linear(&self, values: &[f64], at: [f64; 2]) -> f64 {
+        self.combined(values, at, line)
+    }
+
+    fn combined(&self, values: &[f64], at: [f64; 2], along: impl Fn([f64; 4], f64) -> f64) -> f64 {
+        let [Some((i, a)), Some((j, b))] = [self.axes[0].place(at[0]), self.axes[1].place(at[1])]
+        else {
+            return f64::NAN;
+        };
+        let [columns, rows] = self.axes.map(|axis| axis.count);
+        // Indices are one ahead, so that none is negative.
+        let value = |i: usize, j: usize| match (1..=columns).contains(&i) && (1..=rows).contains(&j)
+        {
+            true => values[(i - 1) * rows + j - 1],
+            false => f64::NAN,
+        };
+        let column = |i: usize| {
+            let four = [0, 1, 2, 3].map(|k| value(i, j + k));
+            along(four, b)
+        };
+        along([0, 1, 2, 3].map(|k| column(i + k)), a)
+    }
+}
+
+/// The value at a fraction between the second and the third of four; NaN are unknown.
+fn parabolas(values: [f64; 4], s: f64) -> f64 {
+    let [before, first, last, after] = values;
+    if first.is_nan() || last.is_nan() {
+        return nearest(first, last, s);
+    }
+    let bend = [before - 2.0 * first + last, first - 2.0 * last + after];
+    let r = s - 1.0;
+    let left = first + 0.5 * s * (last - before + s * bend[0]);
+    let right = last + 0.5 * r * (after - first + r * bend[1]);
+    match bend.map(f64::is_nan) {
+        [true, true] => first + s * (last - first),
+        [true, false] => right,
+        [false, true] => left,
+        [false, false] => {
+            let squares = bend.map(|it| it * it);
+            let floor = FLOOR * (squares[0] + squares[1]) + f64::MIN_POSITIVE;
+            let [small, large] = squares.map(|it| {
+                let it = it + floor;
+                it * it
+            });
+            // Weights (2 - s)/small and (1 + s)/large, without their common factor.
+            let weights = [(2.0 - s) * large, (1.0 + s) * small];
+            let sum = weights[0] + weights[1];
+            match sum > 0.0 {
+                true => (weights[0] * left + weights[1] * right) / sum,
+                // Both parabolas are lines.
+                false => 0.5 * (left + right),
+            }
+        }
+    }
+}
+
+fn line([_, first, last, _]: [f64; 4], s: f64) -> f64 {
+    match first.is_nan() || last.is_nan() {
+        true => nearest(first, last, s),
+        false => first + s * (last - first),
+    }
+}
+
+fn nearest(first: f64, last: f64, s: f64) -> f64 {
+    if s < 0.5 { first } else { last }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lattice(count: usize) -> Lattice {
+        let axis = |ends| Axis { ends, count };
+        Lattice {
+            axes: [axis([0.0, 2.0]), axis([-1.0, 1.0])],
+        }
+    }
+
+    fn sampled(lattice: &Lattice, f: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
+        (0..lattice.count()).map(|it| f(lattice.node(it))).collect()
+    }
+
+    /// Largest error on a fine set of places within the lattice.
+    fn error(count: usize, f: impl Fn([f64; 2]) -> f64 + Copy) -> f64 {
+        let lattice = lattice(count);
+        let values = sampled(&lattice, f);
+        let places = (0..400).map(|k| {
+            let t = f64::from(k) / 400.0;
+            [0.3 + 1.4 * t, -0.7 + 1.4 * (7.3 * t).fract()]
+        });
+        places.fold(0.0, |most: f64, at| {
+            most.max((lattice.between(&values, at) - f(at)).abs())
+        })
+    }
+
+    #[test]
+    fn parabolas_are_met_and_smooth_values_are_of_fourth_order() {
+        let parabola = |[x, y]: [f64; 2]| 3.0 * x * x - x * y + 2.0 * y * y - 1.0;
+        assert!(error(9, parabola) < 1e-13);
+        let wave = |[x, y]: [f64; 2]| (1.0 + x).exp() * (0.5 * y).cos();
+        let errors = [21, 41, 81].map(|count| error(count, wave));
+        for pair in errors.windows(2) {
+            let order = (pair[0] / pair[1]).log2();
+            assert!(order > 3.5, "{errors:?}");
+        }
+    }
+
+    #[test]
+    fn an_edge_does_not_reach_further_than_its_cell() {
+        let edge = |[x, _]: [f64; 2]| (1.03 - x).abs();
+        let lattice = lattice(21);
+        let values = sampled(&lattice, edge);
+        for x in [0.85, 0.97, 0.995, 1.105, 1.19] {
+            let found = lattice.between(&values, [x, 0.013]);
+            assert!((found - edge([x, 0.0])).abs() < 1e-6, "{x}: {found}");
+        }
+    }
+
+    #[test]
+    fn unknown_values_stay_where_they_are_nearest() {
+        let lattice = lattice(5);
+        let mut values = vec![1.0; lattice.count()];
+        values[12] = f64::NAN;
+        let [x, y] = lattice.node(12);
+        assert!(lattice.between(&values, [x + 0.1, y - 0.1]).is_nan());
+        for at in [[x + 0.3, y], [x, y - 0.3], [x + 0.3, y + 0.3]] {
+            assert_eq!(lattice.between(&values, at), 1.0);
+        }
+        for outside in [[-0.1, 0.0], [1.0, 1.1]] {
+            assert!(lattice.between(&values, outside).is_nan());
+        }
+        assert_eq!(lattice.linear(&values, [2.0, 1.0]), 1.0);
+    }
+}
