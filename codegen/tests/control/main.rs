@@ -10,7 +10,7 @@ use dalembert_codegen::claims::{self, Verdict};
 use dalembert_codegen::mechanics::control::{Extremals, derive_extremals, extremal_model};
 use dalembert_codegen::mechanics::derive;
 use dalembert_codegen::model::{Claim, Model, Statement, Topology, check};
-use dalembert_codegen::{compile_control, spec};
+use dalembert_codegen::{compile_control, compile_held, spec};
 use dalembert_expr::{ExprId, SymbolId};
 
 const BALL: &str = "Ball {
@@ -339,6 +339,31 @@ fn the_model_of_extremals_passes_every_stage() {
         assert_eq!(names.len() % 2, 1, "{names:?}");
         assert_eq!(*names.last().unwrap(), "cost");
         assert_eq!(model.inputs().count(), 0);
+    }
+}
+
+#[test]
+fn held_inputs_are_components_between_the_state_and_the_cost() {
+    let held = |source: &str| {
+        let spec = spec::parse(source.parse().unwrap()).unwrap();
+        compile_held(&spec, None).unwrap_or_else(|errors| panic!("{errors:?}"))
+    };
+    let ball = held(BALL_OF_LAGRANGE);
+    let model = &ball.compiled.model;
+    let names = model.coordinates.iter().map(|it| &*it.name.display);
+    assert_eq!(names.collect::<Vec<_>>(), ["x", "x_dot", "u", "cost"]);
+    assert_eq!((ball.inputs, ball.is_autonomous), (1, true));
+    assert_eq!((model.outputs.len(), model.inputs().count()), (1, 0));
+    // The law changes the velocity alone.
+    let reset = model.surfaces[0].reset.as_ref().unwrap();
+    let changed: Vec<bool> = reset.q.iter().map(Option::is_some).collect();
+    assert_eq!(changed, [false, true, false, false]);
+    let of_time = [
+        BALL_OF_LAGRANGE.replace("u^2/2", "(1 + t)*u^2/2"),
+        BALL_OF_LAGRANGE.replace("x >= 0", "x - t >= 0"),
+    ];
+    for source in of_time {
+        assert!(!held(&source).is_autonomous, "{source}");
     }
 }
 

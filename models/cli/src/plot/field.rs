@@ -7,7 +7,7 @@ use super::contour::Window;
 use super::image;
 use super::legend::{Item, Symbol};
 use super::map::Top;
-use super::plane::{self, Plane, Words};
+use super::plane::{self, Chart, Plane, Words};
 use super::style;
 
 /// Fraction of the numbers up to the last colour; larger ones share it.
@@ -15,6 +15,12 @@ const SHOWN: f64 = 0.95;
 
 /// Largest number of impacts with a colour of its own.
 const MOST: usize = 12;
+
+/// A path over colours of numbers.
+const BRIGHT: RGBColor = RGBColor(255, 110, 60);
+
+/// Behind the ends of a path.
+const HALO: RGBColor = RGBColor(250, 250, 250);
 
 /// Meaning of the numbers.
 #[derive(Debug, Clone, Copy)]
@@ -72,19 +78,8 @@ pub fn draw(field: &Field<'_>) -> Result<String, String> {
         |_| Ok(()),
         |chart| {
             image::draw_place(chart, field.window)?;
-            for stretches in field.paths {
-                for stretch in stretches.iter().filter(|it| it.len() > 1) {
-                    plane.path(chart, stretch.iter().copied(), style::INK)?;
-                }
-                let jumps = stretches.windows(2);
-                let jumps = jumps.filter_map(|pair| Some([*pair[0].last()?, *pair[1].first()?]));
-                plane::dashes(chart, jumps, style::INK)?;
-                let points = stretches.iter().flatten();
-                if let (Some(first), Some(last)) = (points.clone().next(), points.last()) {
-                    plane::ends(chart, *first, *last)?;
-                }
-            }
-            Ok(())
+            let mut paths = field.paths.iter();
+            paths.try_for_each(|stretches| draw_path(chart, &plane, stretches, field.ink()))
         },
     )?;
     let [columns, rows] = field.counts;
@@ -100,6 +95,28 @@ pub fn draw(field: &Field<'_>) -> Result<String, String> {
     )
 }
 
+/// Draws a path, its jumps and its ends.
+fn draw_path(
+    chart: &mut Chart<'_, '_>,
+    plane: &Plane,
+    stretches: &Stretches,
+    ink: RGBColor,
+) -> Result<(), String> {
+    for stretch in stretches.iter().filter(|it| it.len() > 1) {
+        plane.path(chart, stretch.iter().copied(), ink)?;
+    }
+    let jumps = stretches.windows(2);
+    let jumps = jumps.filter_map(|pair| Some([*pair[0].last()?, *pair[1].first()?]));
+    plane::dashes(chart, jumps, ink)?;
+    let points = stretches.iter().flatten();
+    let (Some(first), Some(last)) = (points.clone().next(), points.last()) else {
+        return Ok(());
+    };
+    let halo = [*first, *last].into_iter().map(|at| (at, HALO));
+    plane::dots(chart, halo, 6.5)?;
+    plane::ends(chart, *first, *last)
+}
+
 /// The colours of the numbers.
 struct Painted<'a> {
     palette: Vec<RGBColor>,
@@ -109,6 +126,14 @@ struct Painted<'a> {
 }
 
 impl Field<'_> {
+    /// The colour of paths.
+    fn ink(&self) -> RGBColor {
+        match self.meaning {
+            Meaning::Number(_) => BRIGHT,
+            Meaning::Impacts => style::INK,
+        }
+    }
+
     fn painted(&self) -> Painted<'_> {
         let mut painted = match self.meaning {
             Meaning::Number(name) => self.by_number(name),
@@ -116,7 +141,7 @@ impl Field<'_> {
         };
         if !self.paths.is_empty() {
             let ways = [
-                Item::new(Symbol::Line, style::INK, "path of least cost"),
+                Item::new(Symbol::Line, self.ink(), "path of least cost"),
                 Item::new(Symbol::Ring, style::INK, "start"),
                 Item::new(Symbol::Square, style::INK, "end"),
             ];

@@ -23,9 +23,9 @@ const QUARTER: &str = "--plot-width 400";
 pub fn all() -> Vec<Figure> {
     let mut figures = walker::figures();
     figures.extend(rolling_disk::figures());
+    figures.push(connections::bouncing_ball());
+    figures.extend(control::figures());
     figures.extend([
-        connections::bouncing_ball(),
-        control::controlled_ball(),
         zeno::bouncing_ball(),
         density::of_the_sleigh(),
         density::of_the_disk(),

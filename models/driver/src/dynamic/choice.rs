@@ -35,60 +35,90 @@ pub struct Choice {
 
 /// Chooses among motions with equally spaced inputs. `costs` and `impacts` are those after the step.
 ///
-/// The sum is least at a place between two inputs: it is that of the parabola through the best input and its neighbours, if
-/// their motions have the same number of impacts.
+/// The sum may be least between two inputs. If the motions of the best one and its neighbours have the same number of impacts, the motion at
+/// the least value of the parabola through their sums is tried too; it is interpolated.
 pub fn choose(moves: &[Move], lattice: &Lattice, costs: &[f64], impacts: &[f64]) -> Choice {
-    let sum = |it: &Move| it.cost + lattice.between(costs, it.state);
-    let mut best: Option<(usize, f64)> = None;
-    let mut sums = [f64::NAN; 3];
-    let mut before = f64::NAN;
-    let mut is_next = false;
-    for (index, it) in moves.iter().enumerate() {
-        let value = match it.cost.is_nan() {
-            true => f64::NAN,
-            false => sum(it),
-        };
-        if is_next {
-            sums[2] = value;
-            is_next = false;
-        }
-        if !value.is_nan() && best.is_none_or(|(_, least)| value < least) {
-            best = Some((index, value));
-            sums = [before, value, f64::NAN];
-            is_next = true;
-        }
-        before = value;
-    }
-    let Some((index, value)) = best else {
+    let sum = |it: &Move| match it.cost.is_nan() {
+        true => f64::NAN,
+        false => it.cost + lattice.between(costs, it.state),
+    };
+    let Some(Best { index, sums }) = Best::of(moves.iter().map(sum)) else {
         return Choice {
             cost: f64::NAN,
             place: f64::NAN,
             impacts: f64::NAN,
         };
     };
+    let best = &moves[index];
+    let choice = |cost, place| Choice {
+        cost,
+        place,
+        impacts: f64::from(best.impacts) + lattice.linear(impacts, best.state),
+    };
     let around = index
         .checked_sub(1)
         .and_then(|from| moves.get(from..from + 3));
-    let is_alike = around.is_some_and(|it| it.iter().all(|it| it.impacts == moves[index].impacts));
-    let [shift, gain] = match is_alike {
-        true => vertex(sums),
-        false => [0.0, 0.0],
-    };
-    let after = lattice.linear(impacts, moves[index].state);
-    Choice {
-        cost: value - gain,
-        place: index as f64 + shift,
-        impacts: f64::from(moves[index].impacts) + after,
+    let is_alike = |around: &&[Move]| around.iter().all(|it| it.impacts == best.impacts);
+    let shift = vertex(sums);
+    let between = around.filter(is_alike).map(|it| between(it, shift));
+    match between.map(|it| sum(&it)).filter(|cost| *cost < sums[1]) {
+        Some(cost) => choice(cost, index as f64 + shift),
+        None => choice(sums[1], index as f64),
     }
 }
 
-/// The place of the least value of a parabola through three equally spaced values, of which the middle one is least, and how
-/// much it lies below that.
-fn vertex([before, middle, after]: [f64; 3]) -> [f64; 2] {
-    let (bend, slope) = (before - 2.0 * middle + after, 0.5 * (after - before));
+/// The least of some numbers and those beside it.
+struct Best {
+    index: usize,
+    sums: [f64; 3],
+}
+
+impl Best {
+    /// `None` if all are unknown.
+    fn of(numbers: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut best: Option<Self> = None;
+        let mut before = f64::NAN;
+        for (index, number) in numbers.enumerate() {
+            match &mut best {
+                Some(best) if number >= best.sums[1] || number.is_nan() => {
+                    if index == best.index + 1 {
+                        best.sums[2] = number;
+                    }
+                }
+                None if number.is_nan() => {}
+                _ => {
+                    best = Some(Self {
+                        index,
+                        sums: [before, number, f64::NAN],
+                    });
+                }
+            }
+            before = number;
+        }
+        best
+    }
+}
+
+/// The place of the least value of a parabola through three equally spaced values, from the middle one; 0 if there is none.
+fn vertex([before, middle, after]: [f64; 3]) -> f64 {
+    let bend = before - 2.0 * middle + after;
     match bend > 0.0 {
-        true => [-slope / bend, 0.5 * slope * slope / bend],
-        false => [0.0, 0.0],
+        true => 0.5 * (before - after) / bend,
+        false => 0.0,
+    }
+}
+
+/// A motion between three with equally spaced inputs.
+fn between(moves: &[Move], shift: f64) -> Move {
+    let at = |value: &dyn Fn(&Move) -> f64| {
+        let [before, middle, after] = [0, 1, 2].map(|index| value(&moves[index]));
+        let bend = before - 2.0 * middle + after;
+        middle + 0.5 * shift * (after - before + shift * bend)
+    };
+    Move {
+        state: [0, 1].map(|index| at(&|it| it.state[index])),
+        cost: at(&|it| it.cost),
+        impacts: moves[1].impacts,
     }
 }
 
@@ -129,6 +159,16 @@ mod tests {
             assert!((chosen.cost - 2.0 * x * x).abs() < 1e-12, "{chosen:?}");
             assert_eq!(chosen.impacts, 1.0);
         }
+    }
+
+    #[test]
+    fn a_cost_that_is_flat_beside_a_steep_one_gives_nothing_below_it() {
+        let lattice = lattice();
+        let costs: Vec<f64> = (0..lattice.count())
+            .map(|it| 1e6 * lattice.node(it)[0].min(0.0).powi(2))
+            .collect();
+        let chosen = choose(&moves(0.0), &lattice, &costs, &costs);
+        assert_eq!((chosen.cost, chosen.place), (0.0, 2.0));
     }
 
     #[test]

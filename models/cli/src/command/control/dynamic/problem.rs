@@ -56,6 +56,8 @@ pub struct Problem {
     pub steps: usize,
     /// The time of the end.
     pub time: f64,
+    /// The numbers of impacts of extremals that paths are compared with.
+    pub impacts: String,
     /// Number of threads.
     pub threads: u64,
     tolerance: Tolerance,
@@ -98,6 +100,7 @@ impl Problem {
             time: until.filter(|time| *time > 0.0).ok_or(CliError::Usage(
                 "--until is needed: the model declares no `until`",
             ))?,
+            impacts: args.search.impacts.clone(),
             threads: args.dynamic.thread_count(),
             tolerance,
         };

@@ -95,8 +95,8 @@ fn write_path(
             let more = path.cost - extremal.cost;
             writeln!(
                 output,
-                "    extremal  {:?}, {impacts}; the path costs {more:.3e} more",
-                extremal.cost
+                "    extremal  {:?}, {impacts}: the cheapest of --impacts {}; the path costs {more:.1e} more",
+                extremal.cost, problem.impacts
             )
         }
     }
