@@ -48,6 +48,18 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
             "bouncing_ball-connections-paths" => "7 motions: 1 with 0 impacts",
             "bouncing_ball-connections-bounds" => "6 motions: 2 with 1 impact",
             "controlled_ball-optimal-fixed" => "4 extremals: 1 with 0 impacts, 3 with 1 impact",
+            "controlled_ball-optimal-grid" | "controlled_ball-impacts" => {
+                "2 paths: 2 impacts, 1 impact"
+            }
+            _ if name.starts_with("controlled_ball-weak") => {
+                "6 paths: 2 impacts, 2 impacts, 2 impacts, 1 impact, 1 impact, 1 impact"
+            }
+            _ if name.starts_with("controlled_ball-least") => "1 path: 2 impacts",
+            "controlled_ball-loss-e07" => "2 extremals: 1 with 1 impact, 1 with 2 impacts",
+            "controlled_ball-loss-e09" => "3 extremals: 2 with 1 impact, 1 with 2 impacts",
+            _ if name.starts_with("controlled_ball-loss") => {
+                "4 extremals: 3 with 1 impact, 1 with 2 impacts"
+            }
             _ if name.starts_with("controlled_ball-optimal") => "3 extremals: 1 with 0 impacts",
             "compass_walker-doubling-one" => "flip at gamma = 0.015088438",
             "compass_walker-doubling-two" => "flip at gamma = 0.017669375",

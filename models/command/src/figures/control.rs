@@ -95,7 +95,8 @@ fn restitution() -> Figure {
     let with = |e: &str| {
         let name = format!("e{}", e.replace('.', ""));
         let title = format!("Coefficient of restitution {e}");
-        let flags = format!("--initial x=1 --end x=1,y=0 --impacts 1..2 --starts 24 --set e={e} {QUARTER}");
+        let flags =
+            format!("--initial x=1 --end x=1,y=0 --impacts 1..2 --starts 24 --set e={e} {QUARTER}");
         panel(&name, &title, flags)
     };
     Figure {

@@ -81,7 +81,7 @@ pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
     let finished = solve(problem, args, false)?;
     Ok(Drawn {
         svg: picture::draw(&finished, args)?,
-        outcome: summary::grid(&finished.problem),
+        outcome: summary::outcome(&finished),
     })
 }
 

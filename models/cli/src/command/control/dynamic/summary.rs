@@ -55,6 +55,17 @@ pub(super) fn grid(problem: &Problem) -> String {
     format!("{}; {steps} to t = {}", axes.join(", "), problem.time)
 }
 
+/// The numbers of impacts of the paths.
+pub(super) fn outcome(finished: &Finished) -> String {
+    let paths = finished.paths.iter();
+    let ends = paths.map(|path| match path.left {
+        Some(_) => "left the grid".to_owned(),
+        None => counted(path.hits.len(), "impact"),
+    });
+    let ends: Vec<String> = ends.collect();
+    format!("{}: {}", counted(ends.len(), "path"), ends.join(", "))
+}
+
 /// A state.
 pub(super) fn state(problem: &Problem, state: [f64; 2]) -> String {
     let [x, y, ..] = problem.names();
