@@ -179,7 +179,7 @@ impl Field<'_> {
         };
         let mut palette = vec![RGBColor(255, 255, 255)];
         palette.extend((0..=MOST).map(style::curve));
-        let mut counts = vec![0; MOST + 2];
+        let mut counts = [0; MOST + 2];
         let shades = self.values.iter().map(|value| shade(*value));
         shades.for_each(|shade| counts[usize::from(shade)] += 1);
         let known = (0..=MOST).filter(|impacts| counts[1 + impacts] > 0);

@@ -177,6 +177,11 @@ mod tests {
         let costs = vec![0.0; lattice.count()];
         let mut some = moves(0.3);
         some[1].impacts = 1;
+        let parabola: Vec<f64> = (0..lattice.count())
+            .map(|it| 4.0 * lattice.node(it)[0].powi(2))
+            .collect();
+        let chosen = choose(&some, &lattice, &parabola, &costs);
+        assert_eq!(chosen.place, 2.0);
         let chosen = choose(&some, &lattice, &costs, &costs);
         assert_eq!((chosen.place, chosen.cost), (2.0, 0.0));
         some[2] = Move::NOWHERE;
