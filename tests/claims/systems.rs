@@ -221,22 +221,6 @@ fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     assert!(potential.contains("ln|det A_dep|"), "{potential}");
 }
 
-/// The logarithm of a sum that cancels has a value nowhere: it takes no part in the search.
-#[test]
-fn a_sum_that_cancels_hides_no_closed_form() {
-    let pair = "Pair { coordinates { x; y; z; w; }
-        let hidden = sin(x + y) - sin(x)*cos(y) - cos(x)*sin(y);
-        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2 + hidden*z;
-        constraints {
-            first: (2 + x^2*y^2)*(d(z) - x*d(x)) + (1 + y^2)*(d(w) - y*d(y)) = 0;
-            second: -x^2*(d(z) - x*d(x)) + (3 + x^4 + hidden)*(d(w) - y*d(y)) = 0;
-        }
-    }";
-    let decided = Decided::of(pair);
-    let potential = decided.potential().expect("a closed form");
-    assert!(potential.contains("ln|det A_dep|"), "{potential}");
-}
-
 /// Without constraints the volume of phase space is kept, for every metric.
 #[test]
 fn free_systems_keep_the_volume_of_phase_space() {

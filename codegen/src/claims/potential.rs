@@ -204,6 +204,8 @@ fn term_text(pool: &Pool, term: Term) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::claims::fit::has_points;
+    use crate::{mechanics, model, spec};
     use dalembert_expr::Assumption;
 
     #[test]
@@ -225,5 +227,41 @@ mod tests {
         };
         let text = potential_text(&pool, &potential);
         assert_eq!(text, "1/2*ln(det m) - z - k*z - ln|z|");
+    }
+
+    /// The logarithm of a sum that cancels has a value nowhere: the search would find no point.
+    #[test]
+    fn a_sum_that_cancels_is_no_candidate() {
+        let source = "Pair { coordinates { x; y; z; }
+            let hidden = sin(x)*(sin(x)*y + cos(x)*z) + cos(x)*(cos(x)*y - sin(x)*z) - y;
+            lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
+            constraints { c: (2 + hidden*z)*dot(z) = (x + y)*dot(x); } }";
+        let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
+        let mut model = model::check(&spec).expect("a model");
+        let derivation = mechanics::derive(&mut model);
+        let problem = Problem::of(&mut model, &derivation);
+        let is_zero = |pool: &Pool, id: ExprId| pool.zero_test(id) == Verdict::Proved;
+        let parts = model.pool.reachable(&problem.roots());
+        let is_hidden = |id: &ExprId| {
+            matches!(model.pool.node(*id), Node::Sum { .. }) && is_zero(&model.pool, *id)
+        };
+        assert!(parts.iter().any(is_hidden), "a sum that cancels");
+        let candidates = Candidates::of(&mut model.pool, &problem, &model.coordinates);
+        let terms = candidates.allowed(Allowed::All);
+        let mut logarithms = 0;
+        for term in terms {
+            if let Term::Logarithm(f) = term {
+                assert!(!is_zero(&model.pool, f), "{}", model.pool.text(f));
+                logarithms += 1;
+            }
+        }
+        assert!(logarithms > 1);
+        assert!(has_points(
+            &model.pool,
+            &problem,
+            &candidates,
+            Allowed::All,
+            1
+        ));
     }
 }
