@@ -280,7 +280,7 @@ fn axis(name: &str, text: &str) -> Result<Axis, CliError> {
     let Some((first, (last, count))) = parts else {
         return Err(refuse("A..B:COUNT, such as 0..3:61"));
     };
-    let number = |text: &str| scalar::parse(text).map_err(|expected| refuse(expected));
+    let number = |text: &str| scalar::parse(text).map_err(&refuse);
     let ends = [number(first)?, number(last)?];
     let count = count.trim().parse().ok();
     let count = count.filter(|count| (2..=MOST).contains(count));
