@@ -279,6 +279,27 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     assert!(lossy.iter().all(|it| count(it) == 1));
 }
 
+/// Without an input the ball has two impacts, and small costates change nothing: the search goes on to large ones. Held at its height the
+/// ball costs `T (m g)^2/2`; one impact costs more the more is lost.
+#[test]
+fn motions_with_fewer_impacts_than_without_an_input_are_found() {
+    let mut last = 3.466699139518846;
+    for e in ["0.95", "0.9", "0.89", "0.85"] {
+        let line = format!("controlled_ball --initial x=1 --end x=1,y=0 --set e={e}");
+        let found = extremals_on("", &format!("{line} --impacts 0..1"));
+        let (held, struck): (Vec<&Value>, Vec<&Value>) =
+            found.iter().partition(|it| count(it) == 0);
+        assert_eq!(held.len(), 1, "e = {e}");
+        assert_near(number(&held[0]["cost"]), 10.0, 1e-12);
+        let cheapest = number(&struck[0]["cost"]);
+        assert!(
+            last < cheapest && cheapest < 3.5840520919982643,
+            "e = {e}: {cheapest}"
+        );
+        last = cheapest;
+    }
+}
+
 /// The costate of the velocity is `m` times that of the momentum.
 #[test]
 fn a_lagrangian_and_a_field_have_the_same_extremals() {

@@ -101,10 +101,9 @@ pub(super) fn ray(
             }
         }
         let (before, made) = ray.samples.split_at(begin);
-        let reaches = |it: &Sample| matches!(it.shot.course, Course::Reached(_));
         let is_last = !made.iter().any(reaches);
         ray.is_bounded = is_last && count(made) == 0;
-        if is_last {
+        if is_last && (before.iter().any(reaches) || doublings.are_in_vain()) {
             break;
         }
         doublings.note(before, made);
@@ -113,14 +112,25 @@ pub(super) fn ray(
     ray
 }
 
+/// True for a motion that gets to the end with few enough impacts.
+fn reaches(sample: &Sample) -> bool {
+    matches!(sample.shot.course, Course::Reached(_))
+}
+
 /// Number of quiet doublings after which faster starts lead away from the end.
 const QUIET: u32 = 5;
+
+/// Number of doublings without a motion to the end after which a ray without any is given up. Slow starts may have too many
+/// impacts where fast ones have few.
+const VAIN: u32 = 5;
 
 /// Record of the last doublings of the speed of a ray.
 #[derive(Debug, Default)]
 struct Doublings {
     /// Number of the last of them along which the sequence of impacts stayed and the miss grew.
     quiet: u32,
+    /// Number of all of them.
+    made: u32,
     /// True once the sequence of impacts has changed.
     has_changed: bool,
 }
@@ -133,6 +143,12 @@ impl Doublings {
         let differs = |pair: &[Sample]| pair[0].shot.course != pair[1].shot.course;
         self.has_changed |= !stays || before.windows(2).any(differs);
         self.quiet = if stays && grows { self.quiet + 1 } else { 0 };
+        self.made += 1;
+    }
+
+    /// True if a ray without a motion to the end was followed far enough.
+    fn are_in_vain(&self) -> bool {
+        self.made >= VAIN
     }
 
     /// True if faster starts lead away from the end.
@@ -198,8 +214,8 @@ pub(super) fn windows(samples: &[Sample], least: usize) -> impl Iterator<Item = 
 mod tests {
     use super::*;
 
-    /// Motions that reach the end up to a speed of 1, and end in this way beyond.
-    struct Ends(Course);
+    /// Motions that reach the end between two speeds, and end in this way elsewhere.
+    struct Ends(Course, [f64; 2]);
 
     impl Aim for Ends {
         fn steps(&self) -> u64 {
@@ -207,9 +223,9 @@ mod tests {
         }
 
         fn shoot(&mut self, w: &[f64], _with_slopes: bool) -> Shot {
-            let is_slow = w[0] < 1.0;
+            let [from, to] = self.1;
             Shot {
-                course: match is_slow {
+                course: match (from..to).contains(&w[0]) {
                     true => Course::Reached(Vec::new()),
                     false => self.0.clone(),
                 },
@@ -219,7 +235,7 @@ mod tests {
         }
     }
 
-    fn scanned(beyond: Course) -> Ray {
+    fn scanned(beyond: Course, between: [f64; 2]) -> Ray {
         let density = Density {
             first: 4,
             doubling: 4,
@@ -231,15 +247,24 @@ mod tests {
             most: 64.0,
             is_open: true,
         };
-        ray(&mut Ends(beyond), &[1.0], &[1.0], density, speeds)
+        ray(&mut Ends(beyond, between), &[1.0], &[1.0], density, speeds)
+    }
+
+    #[test]
+    fn a_ray_goes_on_where_slow_starts_have_too_many_impacts() {
+        let found = scanned(Course::Beyond, [9.0, 20.0]);
+        assert!(found.samples.iter().any(reaches));
+        assert!(found.is_bounded);
+        let none = scanned(Course::Beyond, [1e6, 2e6]);
+        assert!(!none.samples.iter().any(reaches) && none.samples.len() < 40);
     }
 
     #[test]
     fn a_ray_is_bounded_only_if_no_motion_was_given_up() {
-        let bounded = scanned(Course::Beyond);
+        let bounded = scanned(Course::Beyond, [0.0, 1.0]);
         assert!(bounded.is_bounded);
         assert_eq!(bounded.given_up(), 0);
-        let open = scanned(Course::GivenUp);
+        let open = scanned(Course::GivenUp, [0.0, 1.0]);
         assert!(!open.is_bounded);
         assert!(open.given_up() > 4, "{}", open.given_up());
         let speeds = open.samples.iter().map(|sample| sample.speed);
