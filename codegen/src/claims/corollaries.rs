@@ -54,8 +54,9 @@ const OPEN: &str = "accumulation of impacts is not excluded";
 pub(super) fn of_factor(model: &mut Model, verdict: &Verdict, factor: ExprId) -> Vec<String> {
     let one = model.pool.one();
     let excess = model.pool.sub(factor, one);
-    let is_one = model.pool.zero_test(excess) == Zero::Proved;
-    let says = matches!(verdict, Verdict::Proved(_)) && !is_one;
+    // An undecided factor says nothing: it may be 1.
+    let differs = model.pool.zero_test(excess) == Zero::Refuted;
+    let says = matches!(verdict, Verdict::Proved(_)) && differs;
     says.then(|| format!("{OPEN}: the surface does not keep the volume"))
         .into_iter()
         .collect()

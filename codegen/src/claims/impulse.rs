@@ -5,7 +5,7 @@ use dalembert_expr::{Arithmetic, Jets, Series};
 use super::linear::{Matrix, dot, solve};
 use crate::model::Law;
 
-/// What the map of an impulse is made of.
+/// Parts of the map of an impulse.
 pub(super) struct Parts<A: Arithmetic> {
     pub(super) metric: Matrix<A>,
     /// `eta`, then `psi`.

@@ -72,6 +72,14 @@ pub(crate) fn check_symmetry(
     (Verdict::Proved(certificate), remarks)
 }
 
+/// The verdict of changes that are proved together, or of the first that is not.
+fn verdict(together: Result<Certificate, Verdict>) -> Verdict {
+    match together {
+        Ok(certificate) => Verdict::Proved(certificate),
+        Err(verdict) => verdict,
+    }
+}
+
 /// The verdict on the claim that a flow keeps the constraints.
 pub(super) fn check_constraints(
     model: &mut Model,
@@ -81,10 +89,7 @@ pub(super) fn check_constraints(
 ) -> Verdict {
     let directions = lifted(model, field);
     let changes = of_constraints(model, dynamics, &directions);
-    match proved_together(model, &changes, seed) {
-        Ok(certificate) => Verdict::Proved(certificate),
-        Err(verdict) => verdict,
-    }
+    verdict(proved_together(model, &changes, seed))
 }
 
 /// The verdict on the claim that a flow keeps the forces.
@@ -96,10 +101,7 @@ pub(super) fn check_forces(
 ) -> Verdict {
     let directions = lifted(model, field);
     let changes = of_forces(model, dynamics, field, &directions);
-    match proved_together(model, &changes, seed) {
-        Ok(certificate) => Verdict::Proved(certificate),
-        Err(verdict) => verdict,
-    }
+    verdict(proved_together(model, &changes, seed))
 }
 
 /// The verdict on a symmetry of a first-order system: its flow takes motions to motions where both fields commute.

@@ -28,7 +28,7 @@ pub(super) fn claiming(text: &str, claims: &str) -> String {
     format!("{} claims {{ {claims} }} }}", &text[..end])
 }
 
-/// What a declaration is to the symplectic form.
+/// Relation of a declaration to the symplectic form.
 #[derive(Debug, PartialEq, Eq)]
 enum Kind {
     /// A first-order system, or constraints that are not linear in the velocities.

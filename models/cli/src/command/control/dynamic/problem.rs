@@ -38,7 +38,7 @@ impl Builder {
     }
 }
 
-/// What dynamic programming solves.
+/// A problem of dynamic programming.
 pub struct Problem {
     /// The builder of further models, for threads.
     pub builder: Builder,
