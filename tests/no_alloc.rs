@@ -1,5 +1,6 @@
 //! A run allocates nothing, the same run gives the same bits twice, and its memory and stack do not depend on its length.
 
+use dalembert::integrate::Chosen;
 use dalembert::{
     Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Rk4, Scene, Section, Simulation, Stepper, System,
     Taylor, Tolerance,
@@ -20,12 +21,13 @@ fn state_of<S: dalembert::Described>(system: &S) -> S::State {
 }
 
 /// The bits of a run's end, and the allocations it made.
-fn run<S, Step>(system: &S, stepper: Step, until: f64) -> (Vec<u64>, u64)
+fn run<S, Step>(system: &S, mut stepper: Step, until: f64) -> (Vec<u64>, u64)
 where
     S: dalembert::Described + Scene,
     Step: Stepper<S>,
 {
     let state = state_of(system);
+    let stepper = Chosen::new(&mut stepper);
     let mut simulation = Simulation::new(system, stepper, system.effects());
     let mut end = None;
     let count = allocations(|| end = simulation.run(0.0, state, until, &mut ()).ok());

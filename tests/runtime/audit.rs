@@ -3,64 +3,39 @@
 
 use dalembert::audit::{Audit, Finding};
 use dalembert::effects::{Moment, StepView};
-use dalembert::integrate::Chosen;
 use dalembert::{
-    Dla2, Dop853, DormandPrince5, Effect, Event, EventLog, Gauss4, Gauss6, Impacting, Impacts,
-    Lagrangian, Law, NoForces, Observer, Outcome, Policies, Rest, Rk4, Simulation, StateVector,
-    Stepper, Taylor, TaylorField, Tolerance,
+    Effect, Event, EventLog, Law, NoForces, Observer, Outcome, Policies, Rest, Simulation, Stepper,
+    System, Taylor, Tolerance, VectorField,
 };
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, vector};
+use dalembert_stability::text::{Model, Text, shipped};
 
-dalembert::model! {
-    /// Two wheels joined by a rod of variable length.
-    pub TwoWheelsRod {
-        coordinates { x1; x2; theta1; theta2; }
-        parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
-        let length = sqrt((r2 - r1)^2 + (x2 - x1)^2);
-        lagrangian = 1/2*(dot(x1)^2 + dot(x2)^2 + dot(theta1)^2 + dot(theta2)^2);
-        constraints { wheel1: d(x1) - r1*d(theta1) = 0; wheel2: d(x2) - r2*d(theta2) = 0; }
-        impacts { rod_max: b - length >= 0; rod_min: length - a >= 0; }
-    }
-}
+type State = <Model as VectorField>::State;
 
-dalembert::model! {
-    /// The same with a rod that is arrested at its extreme lengths.
-    pub TwoWheelsArrested {
-        coordinates { x1; x2; theta1; theta2; }
-        parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
-        let length = sqrt((r2 - r1)^2 + (x2 - x1)^2);
-        lagrangian = 1/2*(dot(x1)^2 + dot(x2)^2 + dot(theta1)^2 + dot(theta2)^2);
-        constraints { wheel1: d(x1) - r1*d(theta1) = 0; wheel2: d(x2) - r2*d(theta2) = 0; }
-        modes { sliding { initial { x2 = 2; } } arrested { constraints { rod: d(x2 - x1) = 0; } } }
-        transitions {
-            longest: sliding -> arrested when length >= b;
-            shortest: sliding -> arrested when length <= a;
-        }
-    }
-}
-
-dalembert::model! {
-    /// A point over a bump.
-    pub Bump {
+/// A point over a bump.
+static BUMP: Text = Text::new(
+    "Bump {
         coordinates { x; y; }
         parameters { s > 0 = 0.1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: y - exp(-(x/s)^2) >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that falls on a peg.
-    pub Peg {
+/// A point that falls on a peg.
+static PEG: Text = Text::new(
+    "Peg {
         coordinates { x; y; }
         parameters { r > 0 = 0.5826313654547983; g > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - g*y;
         impacts { peg: sqrt(x^2 + y^2) - r >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point among walls that count only in places, and a line that carries it back.
-    pub Course {
+/// A point among walls that count only in places, and a line that carries it back.
+static COURSE: Text = Text::new(
+    "Course {
         coordinates { x; y; }
         parameters { g >= 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - g*y;
@@ -69,8 +44,8 @@ dalembert::model! {
             ground: y + 1 >= 0;
             far: 4 - x >= 0 => reset { x = x - 4; };
         }
-    }
-}
+    }",
+);
 
 /// A start: positions, velocities and the end.
 #[derive(Clone, Copy)]
@@ -84,7 +59,8 @@ struct Start<'a> {
 #[derive(Debug)]
 #[allow(dead_code, reason = "printed where a test fails")]
 struct Audited {
-    integrator: &'static str,
+    integrator: Integrator,
+    tol: f64,
     finding: Option<Finding>,
     outcome: Outcome,
     /// Time and surface of the first impact, and the number of impacts.
@@ -92,72 +68,54 @@ struct Audited {
     impacts: usize,
 }
 
-fn vector<V: StateVector>(components: &[f64]) -> V {
-    V::of(components)
-}
-
-/// Runs a system with effects, under an audit of its surfaces.
-fn audited<Sys: Impacting, E: Effect<Sys>>(
-    system: &Sys,
-    stepper: &mut impl Stepper<Sys>,
-    effects: E,
+/// The same run with every integrator, each under an audit of the surfaces.
+fn with_every_integrator(
+    model: &Model,
     Start { q, v, until }: Start<'_>,
-) -> Audited {
-    let integrator = stepper.name();
-    let state = system.state(0.0, &vector(q), &vector(v)).unwrap();
-    let mut seen = (Audit::new(system), EventLog::<Sys::State, 1>::new());
-    let run = Simulation::new(system, Chosen::new(stepper), effects)
-        .run(0.0, state, until, &mut seen)
-        .unwrap();
-    Audited {
-        integrator,
-        finding: seen.0.finding(),
-        outcome: run.outcome,
-        first: seen.1.iter().next().map(|event| (event.t, event.surface)),
-        impacts: seen.1.seen(),
-    }
-}
-
-/// The same with every integrator.
-fn with_every_integrator<Sys: Impacting + TaylorField + Lagrangian, E: Effect<Sys>>(
-    system: &Sys,
-    effects: impl Fn() -> E,
-    start: Start<'_>,
+    set: impl Fn(Course<'static, Model>) -> Course<'static, Model>,
 ) -> Vec<Audited> {
-    let tolerance = |tol| Tolerance::new(tol).unwrap();
-    macro_rules! runs {
-        ($($stepper:expr),+) => { vec![$(audited(system, &mut $stepper, effects(), start)),+] };
-    }
-    let step = start.until / 512.0;
-    runs![
-        Dop853::new(tolerance(1e-12)),
-        Dop853::new(tolerance(1e-5)),
-        DormandPrince5::new(tolerance(1e-8)),
-        Taylor::new(tolerance(1e-15)),
-        Taylor::new(tolerance(1e-6)),
-        Rk4::new(tolerance(1e-9)).with_step(step),
-        Gauss4::new(tolerance(1e-9)).with_step(step),
-        Gauss6::new(tolerance(1e-9)).with_step(step),
-        Dla2::new(tolerance(1e-9)).with_step(step)
-    ]
-    .into_iter()
+    // NOTE: a course borrows its model for as long as the settings may.
+    let model: &'static Model = Box::leak(Box::new(*model));
+    let settings = Integrator::every().iter().flat_map(|&integrator| {
+        let tolerances: &[f64] = match integrator {
+            Integrator::Dop853 => &[1e-12, 1e-5],
+            Integrator::Dopri5 => &[1e-8],
+            Integrator::Taylor => &[1e-15, 1e-6],
+            _ => &[1e-9],
+        };
+        tolerances.iter().map(move |&tol| (integrator, tol))
+    });
+    let run = |(integrator, tol): (Integrator, f64)| {
+        let course = set(Course::new(model, q, v, until).tol(tol));
+        let course = match integrator.is_adaptive() {
+            true => course,
+            false => course.step(until / 512.0),
+        };
+        let mut seen = (Audit::new(model), EventLog::<State, 1>::new());
+        let run = course.observed(integrator, &mut seen);
+        Audited {
+            integrator,
+            tol,
+            finding: seen.0.finding(),
+            outcome: run.outcome,
+            first: seen.1.iter().next().map(|event| (event.t, event.surface)),
+            impacts: seen.1.seen(),
+        }
+    };
+    let runs = settings.map(run);
     // Discrete principles do not run systems with modes.
-    .filter(|run| run.outcome != Outcome::SeveralModes)
-    .collect()
+    runs.filter(|run| run.outcome != Outcome::SeveralModes)
+        .collect()
 }
 
 /// Shows that the first impact is met, that the audit confirms it, and that it finds it in a run without impacts.
-fn first_impact_is_audited<Sys: Impacting + TaylorField + Lagrangian>(
-    system: &Sys,
-    start: Start<'_>,
-    (time, surface): (f64, usize),
-) {
-    for run in with_every_integrator(system, || Impacts::declared(system), start) {
+fn first_impact_is_audited(model: &Model, start: Start<'_>, (time, surface): (f64, usize)) {
+    for run in with_every_integrator(model, start, |course| course) {
         assert_eq!(run.finding, None, "{run:?}");
         let (t, met) = run.first.unwrap_or_else(|| panic!("{run:?}"));
         assert!((t - time).abs() < 1e-3 && met == surface, "{run:?}");
     }
-    for run in with_every_integrator(system, || (), start) {
+    for run in with_every_integrator(model, start, Course::alone) {
         assert_eq!((run.outcome, run.impacts), (Outcome::Done, 0), "{run:?}");
         match run.finding {
             Some(Finding::MayBeMet { surface: met, t }) => {
@@ -175,7 +133,7 @@ fn the_shortest_rod_is_not_passed() {
         v: &[0.5, -0.25, 1.0, -0.25],
         until: 500.0,
     };
-    first_impact_is_audited(&TwoWheelsRod::default(), start, (1.512, 1));
+    first_impact_is_audited(&shipped("two_wheels_rod").model(), start, (1.512, 1));
 }
 
 #[test]
@@ -185,7 +143,7 @@ fn an_arrest_is_not_passed() {
         v: &[0.5, -0.25, 1.0, -0.25],
         until: 1000.0,
     };
-    let wheels = TwoWheelsArrested::default();
+    let wheels = shipped("two_wheels_arrested").model();
     let shortest = 1;
     first_impact_is_audited(&wheels, start, (1.512, shortest));
 }
@@ -197,10 +155,7 @@ fn an_impact_after_a_long_flight_is_not_passed() {
         v: &[0.5, -0.25, 1.0, -0.25],
         until: 2000.0,
     };
-    let wheels = TwoWheelsRod {
-        b: 1e7,
-        ..TwoWheelsRod::default()
-    };
+    let wheels = shipped("two_wheels_rod").with([("b", 1e7)]);
     first_impact_is_audited(&wheels, start, (665.512, 1));
 }
 
@@ -211,12 +166,12 @@ fn a_narrow_bump_is_not_passed() {
         v: &[1.0, 0.0],
         until: 2.0,
     };
-    first_impact_is_audited(&Bump::default(), start, (0.91674, 0));
+    first_impact_is_audited(&BUMP.model(), start, (0.91674, 0));
     let flat = Start {
         q: &[-1.0, 1.5],
         ..start
     };
-    for run in with_every_integrator(&Bump::default(), || (), flat) {
+    for run in with_every_integrator(&BUMP.model(), flat, Course::alone) {
         assert_eq!(run.finding, None, "{run:?}");
     }
 }
@@ -228,19 +183,19 @@ fn a_peg_is_not_passed() {
         v: &[0.0, 0.0],
         until: 7.7,
     };
-    first_impact_is_audited(&Peg::default(), start, (5.616, 0));
+    first_impact_is_audited(&PEG.model(), start, (5.616, 0));
 }
 
 #[test]
 fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
-    let course = Course::default();
+    let course = COURSE.model();
     // Over the edge of the ledge, onto the ground, and carried back twice, the second time under the ledge.
     let start = Start {
         q: &[0.0, 1.0],
         v: &[1.0, 0.0],
         until: 5.0,
     };
-    for run in with_every_integrator(&course, || Impacts::declared(&course), start) {
+    for run in with_every_integrator(&course, start, |course| course) {
         assert_eq!(run.finding, None, "{run:?}");
     }
     // The surface that counts is found: only the reset, on the way through the ledge beyond its edge.
@@ -249,8 +204,8 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
         v: &[1.0, 0.0],
         until: 2.5,
     };
-    let slow = Course { g: 0.1 };
-    for run in with_every_integrator(&slow, || (), beyond) {
+    let slow = COURSE.with([("g", 0.1)]);
+    for run in with_every_integrator(&slow, beyond, Course::alone) {
         match run.finding {
             Some(Finding::MayBeMet { surface: 2, t }) => assert!((t - 2.0).abs() < 1e-6),
             _ => panic!("{run:?}"),
@@ -260,7 +215,7 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
 
 #[test]
 fn hops_that_accumulate_and_rest_are_confirmed() {
-    let course = Course::default();
+    let course = COURSE.model();
     let start = Start {
         q: &[0.0, 1.0],
         v: &[0.0, 0.0],
@@ -270,12 +225,8 @@ fn hops_that_accumulate_and_rest_are_confirmed() {
         rest: Rest::Contact,
         ..Policies::default()
     };
-    let effects = || {
-        Impacts::declared(&course)
-            .with_law(0, Law::Restitution(0.5))
-            .with_policies(policies)
-    };
-    for run in with_every_integrator(&course, effects, start) {
+    let set = |run: Course<'static, Model>| run.law(0, Law::Restitution(0.5)).policies(policies);
+    for run in with_every_integrator(&course, start, set) {
         assert_eq!((run.outcome, run.finding), (Outcome::Done, None), "{run:?}");
         assert!(run.impacts > 10, "{run:?}");
     }
@@ -284,20 +235,20 @@ fn hops_that_accumulate_and_rest_are_confirmed() {
 /// Records an impact in the middle of every step.
 struct Invented;
 
-impl Effect<Peg> for Invented {
+impl Effect<Model> for Invented {
     type Forces = NoForces;
 
-    fn propose<Step: Stepper<Peg>>(
+    fn propose<Step: Stepper<Model>>(
         &mut self,
-        _: &mut StepView<'_, Peg, Step>,
+        _: &mut StepView<'_, Model, Step>,
     ) -> Result<Option<f64>, Outcome> {
         Ok(Some(0.5))
     }
 
-    fn act<O: Observer<Peg>>(
+    fn act<O: Observer<Model>>(
         &mut self,
         _: f64,
-        now: &mut Moment<'_, Peg>,
+        now: &mut Moment<'_, Model>,
         observer: &mut O,
     ) -> Result<(), Outcome> {
         let _ = observer.event(&Event {
@@ -315,13 +266,15 @@ impl Effect<Peg> for Invented {
 
 #[test]
 fn an_impact_away_from_its_surface_is_found() {
-    let start = Start {
-        q: &[0.0, 2.0],
-        v: &[0.0, 0.0],
-        until: 1.0,
-    };
-    for run in with_every_integrator(&Peg::default(), || Invented, start) {
-        let is_found = matches!(run.finding, Some(Finding::Misplaced { surface: 0, .. }));
-        assert!(is_found, "{run:?}");
-    }
+    let peg = PEG.model();
+    let [q, v] = [[0.0, 2.0], [0.0, 0.0]].map(|pair| vector(&pair));
+    let state = peg.state(0.0, &q, &v).unwrap();
+    let mut audit = Audit::new(&peg);
+    let stepper = Taylor::new(Tolerance::new(1e-12).unwrap());
+    Simulation::new(&peg, stepper, Invented)
+        .run(0.0, state, 1.0, &mut audit)
+        .unwrap();
+    let finding = audit.finding();
+    let is_found = matches!(finding, Some(Finding::Misplaced { surface: 0, .. }));
+    assert!(is_found, "{finding:?}");
 }

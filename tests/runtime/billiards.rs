@@ -1,10 +1,9 @@
 //! Billiards with known counts, orders and places of impacts.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use dalembert::{Dop853, Event, Impacts, Observer, Outcome, Simulation, Tolerance};
-use support::*;
+use dalembert::{Event, Impacts, Observer, Outcome};
+use dalembert_tests::gap;
+use dalembert_tests::particle::*;
 
 /// In coordinates in which the metric is the identity: a small mass at `u`, a block of mass `M` at `v / sqrt(M)`.
 fn block<const ROOT: u64>() -> Gap {
@@ -83,7 +82,7 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
         worst: f64,
     }
     const TURN: f64 = core::f64::consts::PI - 0.6;
-    impl Observer<Particle<1>> for Watch {
+    impl Observer<Particle> for Watch {
         fn event(&mut self, event: &Event<State>) -> core::ops::ControlFlow<()> {
             self.bounces += 1.0;
             let (y, x) = (self.bounces * TURN).sin_cos();
@@ -99,11 +98,8 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
         worst: 0.0,
     };
     let (vy, vx) = 0.3_f64.sin_cos();
-    let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
     let effects = Impacts::declared(&table).with_budget(1000);
-    let run = Simulation::new(&table, stepper, effects)
-        .run(0.0, at(1.0, 0.0, -vx, vy), 1e6, &mut watch)
-        .unwrap();
+    let run = observed(&table, effects, (at(1.0, 0.0, -vx, vy), 1e6), &mut watch);
     assert_eq!(
         (run.outcome, watch.bounces),
         (Outcome::ImpactBudget, 1000.0)

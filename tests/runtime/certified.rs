@@ -1,18 +1,23 @@
 //! Certified motion contains the motion, with boxes that stay narrow, and reports where it loses the motion.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
+use dalembert::Described;
 use dalembert::certified::CertifiedFlow;
 use dalembert::extended::{At, ExtendedSimulation};
 use dalembert::numbers::Interval;
-use dalembert::{StateVector, System, Variational};
+use dalembert::{StateVector, Variational, VectorField};
+use dalembert_stability::text::{Model, Text};
+use dalembert_tests::certified::{self, state};
 
-dalembert::model! {
-    /// A point on a spring.
-    pub Oscillator {
+type State = <Model as VectorField>::State;
+
+/// A point on a spring.
+static OSCILLATOR: Text = Text::new(
+    "Oscillator {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x^2/2;
-    }
-}
+    }",
+);
 
 dalembert::model! {
     /// Two bars of length 1 with bobs of mass 1.
@@ -23,22 +28,25 @@ dalembert::model! {
     }
 }
 
-dalembert::model! {
-    /// A rate that grows without end: `x = 1/(1 - t)`.
-    pub Burst {
+/// The pendulum, loaded.
+static DOUBLE_PENDULUM: Text = Text::new(DoublePendulum::DESCRIPTION.source.value());
+
+/// A rate that grows without end: `x = 1/(1 - t)`.
+static BURST: Text = Text::new(
+    "Burst {
         coordinates { x; }
         field { dot(x) = x^2; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A force with a kink at 0.
-    pub Kinked {
+/// A force with a kink at 0.
+static KINKED: Text = Text::new(
+    "Kinked {
         coordinates { x; }
         lagrangian = dot(x)^2/2;
         forces { pull: -(x + abs(x)/3)*d(x); }
-    }
-}
+    }",
+);
 
 dalembert::model! {
     /// A swing whose spring is driven, with functions of several kinds.
@@ -48,21 +56,17 @@ dalembert::model! {
     }
 }
 
-fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let vector = |values: &[f64]| S::Vector::of(values);
-    system
-        .state_unchecked(0.0, &vector(q), &vector(qdot))
-        .unwrap()
-}
+/// The swing, loaded.
+static DRIVEN: Text = Text::new(Driven::DESCRIPTION.source.value());
 
-fn from_point<'a, S: Variational>(system: &'a S, start: &S::State) -> CertifiedFlow<'a, S> {
+fn from_point<'a>(system: &'a Model, start: &State) -> CertifiedFlow<'a, Model> {
     let start = *start;
     CertifiedFlow::new(system, 0.0, move |i| Interval::point(start.as_slice()[i]))
 }
 
 /// The state by a run with 32 digits.
-fn digits<S: Variational>(system: &S, start: &S::State, until: f64) -> S::State {
-    let start = At::<_, 2>::of(0.0, start);
+fn digits<S: Variational>(system: &S, start: &[f64], until: f64) -> S::State {
+    let start = At::<_, 2>::of(0.0, &S::State::of(start));
     let run = ExtendedSimulation::new(system, ())
         .run(start, until, |_| core::ops::ControlFlow::Continue(()))
         .unwrap();
@@ -72,9 +76,10 @@ fn digits<S: Variational>(system: &S, start: &S::State, until: f64) -> S::State 
 
 #[test]
 fn a_spring_is_held_for_a_thousand_units_of_time() {
-    let mut flow = from_point(&Oscillator {}, &state(&Oscillator {}, &[1.0], &[0.0]));
+    let system = OSCILLATOR.model();
+    let mut flow = from_point(&system, &state(&system, &[1.0], &[0.0]));
     for t in [1.0, 10.0, 100.0, 1000.0] {
-        flow.run(t).unwrap();
+        certified::flow(&mut flow, t).unwrap();
         let [x, v] = [0, 1].map(|i| flow.component(i));
         let wide = 4.0 * f64::EPSILON;
         assert!(
@@ -96,12 +101,12 @@ fn a_spring_is_held_for_a_thousand_units_of_time() {
 
 #[test]
 fn a_double_pendulum_is_held_for_ten_seconds() {
-    let system = DoublePendulum::default();
+    let system = DOUBLE_PENDULUM.model();
     let start = state(&system, &[1.0, 2.0], &[0.0, 0.0]);
     let mut flow = from_point(&system, &start);
     for t in [1.0, 5.0, 10.0] {
-        flow.run(t).unwrap();
-        let exact = digits(&system, &start, t);
+        certified::flow(&mut flow, t).unwrap();
+        let exact = digits(&DoublePendulum::default(), start.as_slice(), t);
         for i in 0..4 {
             let (range, value) = (flow.component(i), exact.as_slice()[i]);
             assert!(
@@ -120,13 +125,13 @@ fn a_double_pendulum_is_held_for_ten_seconds() {
 
 #[test]
 fn long_steps_are_held_with_their_remainders() {
-    let system = DoublePendulum::default();
+    let system = DOUBLE_PENDULUM.model();
     let start = state(&system, &[1.0, 2.0], &[0.0, 0.0]);
     let [mut fine, mut coarse] =
         [f64::EPSILON, 1e-6].map(|part| from_point(&system, &start).with_remainder(part));
-    let exact = digits(&system, &start, 1.0);
+    let exact = digits(&DoublePendulum::default(), start.as_slice(), 1.0);
     for flow in [&mut fine, &mut coarse] {
-        flow.run(1.0).unwrap();
+        certified::flow(flow, 1.0).unwrap();
         for i in 0..4 {
             let (range, value) = (flow.component(i), exact.as_slice()[i]);
             assert!(
@@ -141,13 +146,13 @@ fn long_steps_are_held_with_their_remainders() {
 
 #[test]
 fn every_motion_from_a_box_is_held() {
-    let system = Driven {};
+    let system = DRIVEN.model();
     let centre = state(&system, &[0.3, -0.2], &[0.1, 0.4]);
     const RADIUS: f64 = 1e-3;
     let mut flow = CertifiedFlow::new(&system, 0.0, |i| {
         Interval::point(centre.as_slice()[i]).widened(RADIUS)
     });
-    flow.run(5.0).unwrap();
+    certified::flow(&mut flow, 5.0).unwrap();
     for corner in 0..16 {
         let mut start = centre;
         for (i, entry) in start.as_mut_slice().iter_mut().enumerate() {
@@ -157,7 +162,7 @@ fn every_motion_from_a_box_is_held() {
                 RADIUS
             };
         }
-        let exact = digits(&system, &start, 5.0);
+        let exact = digits(&Driven {}, start.as_slice(), 5.0);
         for i in 0..4 {
             let (range, value) = (flow.component(i), exact.as_slice()[i]);
             assert!(
@@ -171,8 +176,9 @@ fn every_motion_from_a_box_is_held() {
 
 #[test]
 fn a_motion_that_ends_is_lost_before_its_end() {
-    let mut flow = CertifiedFlow::new(&Burst {}, 0.0, |_| Interval::point(1.0));
-    let lost = flow.run(2.0).unwrap_err();
+    let system = BURST.model();
+    let mut flow = CertifiedFlow::new(&system, 0.0, |_| Interval::point(1.0));
+    let lost = certified::flow(&mut flow, 2.0).unwrap_err();
     assert!(lost.t < 1.0 && lost.t > 0.9, "{lost}");
     let (x, exact) = (flow.component(0), 1.0 / (1.0 - lost.t));
     assert!(
@@ -184,9 +190,9 @@ fn a_motion_that_ends_is_lost_before_its_end() {
 
 #[test]
 fn a_kink_is_not_stepped_over() {
-    let system = Kinked {};
+    let system = KINKED.model();
     let mut flow = from_point(&system, &state(&system, &[1.0], &[0.0]));
-    let lost = flow.run(3.0).unwrap_err();
+    let lost = certified::flow(&mut flow, 3.0).unwrap_err();
     // It passes 0 after a quarter of a period.
     let kink = core::f64::consts::FRAC_PI_2 / (4.0_f64 / 3.0).sqrt();
     assert!(lost.t <= kink && lost.t > 0.99 * kink, "{lost}, {kink}");

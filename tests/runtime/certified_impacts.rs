@@ -6,10 +6,14 @@
 use core::ops::ControlFlow;
 use std::time::Instant;
 
+use dalembert::Described;
 use dalembert::certified::CertifiedRun;
 use dalembert::extended::{At, Extended, ExtendedSimulation, Impact};
 use dalembert::numbers::{Interval, Numbers, Row};
 use dalembert::{Impacting, Scene, StateVector, System, Variational};
+use dalembert_stability::course::vector;
+use dalembert_stability::text::{Model, Text};
+use dalembert_tests::certified::follow;
 use dalembert_tests::reference::read;
 use serde_json::Value;
 
@@ -22,6 +26,9 @@ dalembert::model! {
         impacts { floor: x >= 0 => newton(e); }
     }
 }
+
+/// The ball, loaded.
+static BALL: Text = Text::new(Ball::DESCRIPTION.source.value());
 
 dalembert::model! {
     /// A disk that rolls upright on an elliptical table (W. Clark, thesis, section 6.4).
@@ -39,9 +46,12 @@ dalembert::model! {
     }
 }
 
-dalembert::model! {
-    /// A sleigh on a blade, between the edges of an elliptical table (W. Clark, thesis, section 7.5).
-    pub Sleigh {
+/// The disk, loaded.
+static ROLLING_DISK: Text = Text::new(RollingDisk::DESCRIPTION.source.value());
+
+/// A sleigh on a blade, between the edges of an elliptical table (W. Clark, thesis, section 7.5).
+static SLEIGH: Text = Text::new(
+    "Sleigh {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 1; I > 0 = 1; a = 1/5; len > 0 = 1/4; ta > 0 = 2; tb > 0 = 1; }
         let table(u, v) = 1 - u^2/ta^2 - v^2/tb^2;
@@ -53,8 +63,8 @@ dalembert::model! {
             front_tip: table(x + len*cos(theta), y + len*sin(theta)) >= 0;
             back_tip: table(x - len*cos(theta), y - len*sin(theta)) >= 0;
         }
-    }
-}
+    }",
+);
 
 dalembert::model! {
     /// A point on a spring between a floor, which takes a third of its speed, and a wall that swings.
@@ -66,9 +76,12 @@ dalembert::model! {
     }
 }
 
-dalembert::model! {
-    /// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
-    pub Walker {
+/// The swing, loaded.
+static SWING: Text = Text::new(Swing::DESCRIPTION.source.value());
+
+/// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
+static WALKER: Text = Text::new(
+    "Walker {
         coordinates { theta; xi; eta; }
         parameters { mu > 0 = 5/2; eps > 0 = 1/2; alpha = 2/5; delta > 0 = 2/5; }
         let foot = eta + xi*cos(theta);
@@ -85,8 +98,8 @@ dalembert::model! {
                 eta = eta + cos(delta)*(1 - cos(2*delta))*xi;
             };
         }
-    }
-}
+    }",
+);
 
 dalembert::model! {
     /// Point mass that walks on spring legs (H. Geyer, A. Seyfarth and R. Blickhan, 2006).
@@ -209,14 +222,10 @@ struct Reference {
 }
 
 /// Follows a run along a reference. Returns the width of the widest enclosure of a time or of a component.
-fn follow<S: Variational + Impacting>(
-    mut run: CertifiedRun<'_, S>,
-    references: &[Reference],
-    name: &str,
-) -> f64 {
+fn along(mut run: CertifiedRun<'_, Model>, references: &[Reference], name: &str) -> f64 {
     let begun = Instant::now();
     let (mut count, mut widest) = (0, 0.0_f64);
-    let ended = run.run(1e3, |impact| {
+    let ended = follow(&mut run, 1e3, &mut |impact| {
         let reference = &references[count];
         count += 1;
         assert_eq!(impact.surface, reference.surface, "{name}: impact {count}");
@@ -242,14 +251,8 @@ fn follow<S: Variational + Impacting>(
 }
 
 fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let vector = |values: &[f64]| {
-        let mut vector = S::Vector::zeros(S::Vector::CAPACITY);
-        vector.as_mut_slice()[..values.len()].copy_from_slice(values);
-        vector
-    };
-    system
-        .state_unchecked(0.0, &vector(q), &vector(qdot))
-        .unwrap()
+    let state = system.state_unchecked(0.0, &vector(q), &vector(qdot));
+    state.unwrap()
 }
 
 /// Impacts in numbers of 48 digits.
@@ -264,8 +267,10 @@ fn impacts<S: Variational + Scene>(system: &S, start: &S::State, t_end: f64) -> 
     impacts
 }
 
-/// Follows a start beside a run in numbers of 48 digits. Returns the width of the widest component at the end.
-fn beside<S: Variational + Scene + Impacting>(
+/// Follows a start of a loaded model beside a run of its compiled type in numbers of 48 digits. Returns the width of the
+/// widest component at the end.
+fn beside<S: Variational + Scene>(
+    loaded: &(impl Variational + Impacting),
     system: &S,
     start: &S::State,
     t_end: f64,
@@ -273,7 +278,8 @@ fn beside<S: Variational + Scene + Impacting>(
 ) -> f64 {
     let exact = impacts(system, start, t_end);
     let begun = Instant::now();
-    let mut run = CertifiedRun::new(system, 0.0, |i| point(start.as_slice()[i]));
+    let start = start.as_slice();
+    let mut run = CertifiedRun::new(loaded, 0.0, |i| point(start[i]));
     let mut count = 0;
     let mut late = 0.0_f64;
     let ended = run.run(t_end, |impact| {
@@ -286,7 +292,7 @@ fn beside<S: Variational + Scene + Impacting>(
             impact.time
         );
         late = late.max(impact.time.width());
-        for i in 0..S::State::CAPACITY {
+        for i in 0..start.len() {
             let ranges = [impact.before(i), impact.after(i)];
             let values = [exact.before, exact.after].map(|row| row.as_slice()[i]);
             assert!(
@@ -330,12 +336,12 @@ fn bounces(g: f64, e: f64, count: usize) -> Vec<Extended<3>> {
 
 #[test]
 fn a_ball_is_held_to_its_hundredth_bounce() {
-    let ball = Ball { g: 9.81, e: 0.9 };
-    let exact = bounces(ball.g, ball.e, 100);
+    let ball = BALL.with([("g", 9.81), ("e", 0.9)]);
+    let exact = bounces(9.81, 0.9, 100);
     let begun = Instant::now();
     let mut run = CertifiedRun::new(&ball, 0.0, |i| point([1.0, 0.0][i]));
     let (mut count, mut width) = (0, 0.0);
-    let ended = run.run(20.0, |impact| {
+    let ended = follow(&mut run, 20.0, &mut |impact| {
         assert!(
             holds(impact.time, exact[count]),
             "{count}: {:?}",
@@ -360,20 +366,28 @@ fn a_ball_is_held_to_its_hundredth_bounce() {
 
 #[test]
 fn bounces_lie_in_their_enclosures() {
-    let ball = Ball::default();
+    let ball = BALL.model();
     let run = CertifiedRun::new(&ball, 0.0, |i| point([1.0, 0.0][i]));
-    assert!(follow(run, &bouncing_ball(), "ball of 3/4") < 1e-12);
+    assert!(along(run, &bouncing_ball(), "ball of 3/4") < 1e-12);
 }
 
 #[test]
 fn a_ball_that_starts_at_the_floor_leaves_it() {
     let ball = Ball::default();
-    assert!(beside(&ball, &state(&ball, &[0.0], &[1.0]), 5.0, "thrown ball") < 1e-12);
+    assert!(
+        beside(
+            &BALL.model(),
+            &ball,
+            &state(&ball, &[0.0], &[1.0]),
+            5.0,
+            "thrown ball"
+        ) < 1e-12
+    );
 }
 
 #[test]
 fn a_rolling_disk_is_held_over_twenty_impacts() {
-    let disk = RollingDisk::default();
+    let disk = ROLLING_DISK.model();
     let start = [
         point(0.0),
         point(0.0),
@@ -387,7 +401,7 @@ fn a_rolling_disk_is_held_over_twenty_impacts() {
     for (i, range) in ranges.into_iter().enumerate() {
         run = run.with_parameter(i, about(range));
     }
-    assert!(follow(run, &disk_on_an_ellipse(), "disk") < 1e-4);
+    assert!(along(run, &disk_on_an_ellipse(), "disk") < 1e-4);
 }
 
 #[test]
@@ -395,49 +409,65 @@ fn a_disk_lies_beside_a_run_of_48_digits() {
     let disk = RollingDisk::default();
     let phi = core::f64::consts::FRAC_PI_2;
     let start = state(&disk, &[0.0, 0.0, 0.0, phi], &[0.0, 0.1, 10.0, 0.2]);
-    assert!(beside(&disk, &start, 23.9, "disk of doubles") < 1e-4);
+    assert!(
+        beside(
+            &ROLLING_DISK.model(),
+            &disk,
+            &start,
+            23.9,
+            "disk of doubles"
+        ) < 1e-4
+    );
 }
 
 #[test]
 fn a_sleigh_is_held_over_twenty_impacts() {
-    let sleigh = Sleigh::default();
+    let sleigh = SLEIGH.model();
     let start = [0.0, 0.0, 0.5, 1.0, 0.5];
     let run = CertifiedRun::new(&sleigh, 0.0, |i| point(start[i])).with_parameter(2, about("0.2"));
-    assert!(follow(run, &sleigh_billiard(), "sleigh") < 1e-6);
+    assert!(along(run, &sleigh_billiard(), "sleigh") < 1e-6);
 }
 
 #[test]
 fn a_walker_is_held_over_twelve_steps() {
-    let walker = Walker::default();
+    let walker = WALKER.model();
     let start = ["0.4", "-1.0148146300837202625", "0.9913083699240868"];
     let mut run = CertifiedRun::new(&walker, 0.0, |i| about(start[i]));
     for i in [2, 3] {
         run = run.with_parameter(i, about("0.4"));
     }
-    assert!(follow(run, &walker_transient(), "walker") < 1e-11);
+    assert!(along(run, &walker_transient(), "walker") < 1e-11);
 }
 
 #[test]
 fn a_walker_on_springs_is_held_over_five_steps() {
     let walker = SpringWalker::default();
     let start = state(&walker, &[0.0, 0.97], &[0.351, 0.0]);
-    assert!(beside(&walker, &start, 8.0, "walker on springs") < 1e-9);
+    assert!(beside(&walker, &walker, &start, 8.0, "walker on springs") < 1e-9);
 }
 
 #[test]
 fn a_wall_that_moves_is_met_in_its_enclosure() {
     let swing = Swing::default();
-    assert!(beside(&swing, &state(&swing, &[0.5], &[1.3]), 20.0, "swing") < 1e-11);
+    assert!(
+        beside(
+            &SWING.model(),
+            &swing,
+            &state(&swing, &[0.5], &[1.3]),
+            20.0,
+            "swing"
+        ) < 1e-11
+    );
 }
 
 #[test]
 fn every_motion_from_a_box_is_held_across_impacts() {
     const RADIUS: f64 = 1e-9;
-    let disk = RollingDisk::default();
+    let disk = ROLLING_DISK.model();
     let centre = [0.01, -0.02, 0.0, 1.5, 10.0, 0.2];
     let mut run = CertifiedRun::new(&disk, 0.0, |i| point(centre[i]).widened(RADIUS));
     let mut enclosures = Vec::new();
-    run.run(7.3, |impact| {
+    follow(&mut run, 7.3, &mut |impact| {
         enclosures.push((
             impact.time,
             core::array::from_fn::<_, 6, _>(|i| impact.after(i)),
@@ -456,7 +486,7 @@ fn every_motion_from_a_box_is_held_across_impacts() {
                     RADIUS
                 }
         });
-        let exact = impacts(&disk, &start.into(), 7.3);
+        let exact = impacts(&RollingDisk::default(), &start.into(), 7.3);
         assert_eq!(exact.len(), enclosures.len());
         for (exact, (time, after)) in exact.iter().zip(&enclosures) {
             assert!(holds(*time, exact.t), "{corner}: {time:?}");
@@ -484,13 +514,13 @@ fn every_motion_from_a_box_is_held_across_impacts() {
 
 #[test]
 fn every_parameter_of_a_range_is_held() {
-    let ball = Ball::default();
+    let ball = BALL.model();
     let [g, e] = [Interval::new(0.999, 1.001), Interval::new(0.749, 0.751)];
     let mut run = CertifiedRun::new(&ball, 0.0, |i| point([1.0, 0.0][i]))
         .with_parameter(0, g)
         .with_parameter(1, e);
     let mut times = Vec::new();
-    run.run(5.0, |impact| {
+    follow(&mut run, 5.0, &mut |impact| {
         times.push(impact.time);
         ControlFlow::Continue(())
     })

@@ -6,10 +6,12 @@ use std::time::Instant;
 use dalembert::certified::{CertifiedSection, NotProved};
 use dalembert::extended::Extended;
 use dalembert::numbers::Interval;
+use dalembert_stability::text::Text;
+use dalembert_tests::certified::periodic;
 
-dalembert::model! {
-    /// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
-    pub Walker {
+/// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
+static WALKER: Text = Text::new(
+    "Walker {
         coordinates { theta; xi; eta; }
         parameters { mu > 0 = 5/2; eps > 0 = 1/2; alpha = 2/5; delta > 0 = 2/5; }
         let foot = eta + xi*cos(theta);
@@ -26,27 +28,27 @@ dalembert::model! {
                 eta = eta + cos(delta)*(1 - cos(2*delta))*xi;
             };
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A conveyor: `x` falls from 1 to 0 in one unit of time, while `y` grows by the factor `e^k`.
-    pub Conveyor {
+/// A conveyor: `x` falls from 1 to 0 in one unit of time, while `y` grows by the factor `e^k`.
+static CONVEYOR: Text = Text::new(
+    "Conveyor {
         coordinates { x; y; }
         parameters { k = 1/2; }
         field { dot(x) = -1; dot(y) = k*y; }
         impacts { end: x >= 0 => reset { x = 1; y = y; }; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// The same, driven.
-    pub Driven {
+/// The same, driven.
+static DRIVEN: Text = Text::new(
+    "Driven {
         coordinates { x; y; }
         field { dot(x) = -1; dot(y) = sin(t) - y/2; }
         impacts { end: x >= 0 => reset { x = 1; y = y; }; }
-    }
-}
+    }",
+);
 
 /// True if a number of many digits lies between the ends of an interval.
 fn holds(range: Interval, digits: &str) -> bool {
@@ -75,14 +77,14 @@ const MULTIPLIER: f64 = 0.520_683_714_448_936_2;
 
 #[test]
 fn a_walkers_cycle_exists_and_attracts() {
-    let walker = Walker::default();
+    let walker = WALKER.model();
     let near = POINT.map(|digits| digits.parse::<f64>().unwrap());
     for radius in [1e-4, 1e-6, 1e-10] {
         let begun = Instant::now();
         let section = CertifiedSection::new(&walker, 0, 10.0)
             .with_parameter(2, about("0.4"))
             .with_parameter(3, about("0.4"));
-        let orbit = section.periodic(&near.into(), radius).unwrap();
+        let orbit = periodic(&section, &near, radius).unwrap();
         let width = (0..3).map(|i| orbit.point(i).width()).fold(0.0, f64::max);
         println!(
             "radius {radius}: width {width:.1e}, period {:?}, multipliers below {} in {:.1?}",
@@ -107,9 +109,9 @@ fn a_walkers_cycle_exists_and_attracts() {
 
 #[test]
 fn there_is_no_orbit_elsewhere() {
-    let walker = Walker::default();
+    let walker = WALKER.model();
     let section = CertifiedSection::new(&walker, 0, 10.0);
-    let Err(error) = section.periodic(&[0.4, -0.95, 1.05].into(), 1e-4) else {
+    let Err(error) = periodic(&section, &[0.4, -0.95, 1.05], 1e-4) else {
         panic!("an orbit that is not there");
     };
     assert_eq!(error, NotProved::NotContained);
@@ -117,11 +119,11 @@ fn there_is_no_orbit_elsewhere() {
 
 #[test]
 fn a_cycle_of_two_returns_is_one_of_one() {
-    let walker = Walker::default();
+    let walker = WALKER.model();
     let near = POINT.map(|digits| digits.parse::<f64>().unwrap());
     let [once, twice] = [1, 2].map(|returns| {
         let section = CertifiedSection::new(&walker, 0, 10.0).with_returns(returns);
-        section.periodic(&near.into(), 1e-8).unwrap()
+        periodic(&section, &near, 1e-8).unwrap()
     });
     assert!(
         twice
@@ -133,16 +135,17 @@ fn a_cycle_of_two_returns_is_one_of_one() {
 
 #[test]
 fn motion_that_depends_on_time_has_no_cycle() {
-    let found = CertifiedSection::new(&Driven {}, 0, 20.0).periodic(&[1.0, 0.0].into(), 1e-3);
+    let driven = DRIVEN.model();
+    let found = periodic(&CertifiedSection::new(&driven, 0, 20.0), &[1.0, 0.0], 1e-3);
     assert_eq!(found.err(), Some(NotProved::DependsOnTime));
 }
 
 #[test]
 fn multipliers_of_a_cycle_are_bounded_whether_it_attracts_or_not() {
     for k in [-0.5_f64, 0.5] {
-        let conveyor = Conveyor { k };
+        let conveyor = CONVEYOR.with([("k", k)]);
         let section = CertifiedSection::new(&conveyor, 0, 20.0);
-        let orbit = section.periodic(&[1.0, 1e-4].into(), 1e-3).unwrap();
+        let orbit = periodic(&section, &[1.0, 1e-4], 1e-3).unwrap();
         assert!(orbit.point(1).contains(Interval::point(0.0)) && orbit.point(1).width() < 1e-12);
         assert!(orbit.period.contains(Interval::point(1.0)) && orbit.period.width() < 1e-12);
         let exact = k.exp();
@@ -159,15 +162,19 @@ fn multipliers_of_a_cycle_are_bounded_whether_it_attracts_or_not() {
         );
     }
     // With k = 0 every y belongs to a cycle.
-    let conveyor = Conveyor { k: 0.0 };
-    let found = CertifiedSection::new(&conveyor, 0, 20.0).periodic(&[1.0, 0.0].into(), 1e-3);
+    let conveyor = CONVEYOR.with([("k", 0.0)]);
+    let found = periodic(
+        &CertifiedSection::new(&conveyor, 0, 20.0),
+        &[1.0, 0.0],
+        1e-3,
+    );
     assert_eq!(found.err(), Some(NotProved::Singular));
 }
 
 #[test]
 fn a_section_that_is_not_met_again_proves_nothing() {
-    let conveyor = Conveyor::default();
+    let conveyor = CONVEYOR.model();
     let section = CertifiedSection::new(&conveyor, 0, 0.5);
-    let found = section.periodic(&[1.0, 0.0].into(), 1e-3);
+    let found = periodic(&section, &[1.0, 0.0], 1e-3);
     assert_eq!(found.err(), Some(NotProved::NotMet));
 }

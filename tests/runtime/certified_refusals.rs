@@ -6,60 +6,61 @@ use core::ops::ControlFlow;
 use dalembert::certified::{CertifiedRun, Lost, Reason};
 use dalembert::law::Law;
 use dalembert::numbers::Interval;
-use dalembert::{Impacting, Variational};
+use dalembert_stability::text::{Model, Text};
+use dalembert_tests::certified::follow;
 
-dalembert::model! {
-    /// A point that rises from a parabola's lowest place, over a floor.
-    pub Skimmer {
+/// A point that rises from a parabola's lowest place, over a floor.
+static SKIMMER: Text = Text::new(
+    "Skimmer {
         coordinates { x; }
         parameters { depth = 0; }
         lagrangian = dot(x)^2/2 + x;
         impacts { floor: x >= -depth; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point between two walls.
-    pub Corner {
+/// A point between two walls.
+static CORNER: Text = Text::new(
+    "Corner {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { right: x <= 1; upper: y <= 1; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A ball over a ledge that ends at `x = 1`, and a floor.
-    pub Ledge {
+/// A ball over a ledge that ends at `x = 1`, and a floor.
+static LEDGE: Text = Text::new(
+    "Ledge {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
         impacts {
             ledge: y >= 0 when x <= 1;
             floor: y >= -1;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A ball over a floor.
-    pub Ball {
+/// A ball over a floor.
+static BALL: Text = Text::new(
+    "Ball {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x;
         impacts { floor: x >= 0 => newton(1/2); }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that is stopped where it passes 1.
-    pub Section {
+/// A point that is stopped where it passes 1.
+static SECTION: Text = Text::new(
+    "Section {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x^2/2;
         impacts { stop: x <= 1 => reset { dot(x) = dot(x); }; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// Light and heavy halves of a line, which are passed at a price.
-    pub Halves {
+/// Light and heavy halves of a line, which are passed at a price.
+static HALVES: Text = Text::new(
+    "Halves {
         coordinates { x; }
         modes {
             left { lagrangian = dot(x)^2/2; }
@@ -69,12 +70,12 @@ dalembert::model! {
             to_right: left -> right when x >= 0;
             to_left: right -> left when x <= -1/2;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point that goes faster above 0, or back there.
-    pub Relay {
+/// A point that goes faster above 0, or back there.
+static RELAY: Text = Text::new(
+    "Relay {
         parameters { speed = 2; }
         coordinates { x; }
         modes {
@@ -85,27 +86,23 @@ dalembert::model! {
             up: below -> above when x >= 0;
             down: above -> below when x <= 0;
         }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point under a wall, which is put back where it passes 1.
-    pub Treadmill {
+/// A point under a wall, which is put back where it passes 1.
+static TREADMILL: Text = Text::new(
+    "Treadmill {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { end: x <= 1 => reset { x = -1; y = -1; }; upper: y <= 1; }
-    }
-}
+    }",
+);
 
 /// Impacts until the end, and the reason of the end.
-fn run<S: Variational + Impacting>(
-    system: &S,
-    start: &[Interval],
-    t_end: f64,
-) -> (Vec<usize>, Result<(), Lost>) {
+fn run(system: &Model, start: &[Interval], t_end: f64) -> (Vec<usize>, Result<(), Lost>) {
     let mut surfaces = Vec::new();
     let mut run = CertifiedRun::new(system, 0.0, |i| start[i]);
-    let ended = run.run(t_end, |impact| {
+    let ended = follow(&mut run, t_end, &mut |impact| {
         surfaces.push(impact.surface);
         ControlFlow::Continue(())
     });
@@ -129,7 +126,7 @@ fn lost(ended: Result<(), Lost>) -> Lost {
 fn a_graze_is_refused_before_it_comes() {
     // `x = (1 - t)^2/2` touches 0 at the time 1.
     let start = points([0.5, -1.0]);
-    let (surfaces, ended) = run(&Skimmer { depth: 0.0 }, &start, 3.0);
+    let (surfaces, ended) = run(&SKIMMER.with([("depth", 0.0)]), &start, 3.0);
     let lost = lost(ended);
     assert_eq!(lost.reason, Reason::MayGraze { surface: 0 });
     assert!(
@@ -137,16 +134,16 @@ fn a_graze_is_refused_before_it_comes() {
         "{lost}"
     );
     // A little lower it passes, and the floor a little higher is met.
-    let (surfaces, ended) = run(&Skimmer { depth: 1e-9 }, &start, 3.0);
+    let (surfaces, ended) = run(&SKIMMER.with([("depth", 1e-9)]), &start, 3.0);
     assert!(surfaces.is_empty() && ended.is_ok(), "{ended:?}");
-    let (surfaces, _) = run(&Skimmer { depth: -1e-9 }, &start, 1.0);
+    let (surfaces, _) = run(&SKIMMER.with([("depth", -1e-9)]), &start, 1.0);
     assert_eq!(surfaces, [0]);
 }
 
 #[test]
 fn a_box_of_which_a_part_misses_is_refused() {
     let start = [Interval::new(0.49, 0.51), Interval::point(-1.0)];
-    let (surfaces, ended) = run(&Skimmer { depth: 0.0 }, &start, 3.0);
+    let (surfaces, ended) = run(&SKIMMER.with([("depth", 0.0)]), &start, 3.0);
     let lost = lost(ended);
     assert_eq!(lost.reason, Reason::MayGraze { surface: 0 });
     assert!(surfaces.is_empty() && lost.t < 1.0, "{lost}");
@@ -155,7 +152,7 @@ fn a_box_of_which_a_part_misses_is_refused() {
 #[test]
 fn two_walls_at_one_time_are_refused() {
     let start = points([0.0, 0.0, 1.0, 1.0]);
-    let (surfaces, ended) = run(&Corner {}, &start, 3.0);
+    let (surfaces, ended) = run(&CORNER.model(), &start, 3.0);
     let lost = lost(ended);
     assert!(
         matches!(lost.reason, Reason::MayMeetTogether { .. }),
@@ -164,7 +161,7 @@ fn two_walls_at_one_time_are_refused() {
     assert!(surfaces.is_empty() && lost.t <= 1.0, "{lost}");
     // One after the other, whichever comes first.
     for (place, order) in [(1e-9, [0, 1]), (-1e-9, [1, 0])] {
-        let (surfaces, ended) = run(&Corner {}, &points([place, 0.0, 1.0, 1.0]), 2.5);
+        let (surfaces, ended) = run(&CORNER.model(), &points([place, 0.0, 1.0, 1.0]), 2.5);
         assert!(
             surfaces == order && ended.is_ok(),
             "{surfaces:?}, {ended:?}"
@@ -177,19 +174,19 @@ fn two_walls_at_one_time_are_refused() {
         Interval::point(1.0),
         Interval::point(1.0),
     ];
-    assert!(run(&Corner {}, &start, 2.5).1.is_err());
+    assert!(run(&CORNER.model(), &start, 2.5).1.is_err());
 }
 
 #[test]
 fn a_surface_that_may_be_met_before_a_reset_is_not_forgotten() {
-    let (surfaces, ended) = run(&Treadmill {}, &points([0.0, 0.0, 1.0, 1.0]), 2.0);
+    let (surfaces, ended) = run(&TREADMILL.model(), &points([0.0, 0.0, 1.0, 1.0]), 2.0);
     let lost = lost(ended);
     assert!(surfaces.is_empty() && lost.t <= 1.0, "{surfaces:?}, {lost}");
     assert!(
         matches!(lost.reason, Reason::MayMeetTogether { .. }),
         "{lost}"
     );
-    let (surfaces, ended) = run(&Treadmill {}, &points([1e-9, 0.0, 1.0, 1.0]), 2.0);
+    let (surfaces, ended) = run(&TREADMILL.model(), &points([1e-9, 0.0, 1.0, 1.0]), 2.0);
     assert!(surfaces == [0] && ended.is_ok(), "{surfaces:?}, {ended:?}");
 }
 
@@ -206,16 +203,16 @@ fn a_condition_that_is_not_certain_is_refused() {
         ]
     };
     let edge = 1.0 - core::f64::consts::SQRT_2 / 2.0;
-    let (surfaces, ended) = run(&Ledge {}, &falling(edge, 1e-6), 1.5);
+    let (surfaces, ended) = run(&LEDGE.model(), &falling(edge, 1e-6), 1.5);
     let lost = lost(ended);
     assert_eq!(lost.reason, Reason::UnsureCondition { surface: 0 });
     assert!(
         surfaces.is_empty() && lost.t < core::f64::consts::SQRT_2,
         "{lost}"
     );
-    let (surfaces, ended) = run(&Ledge {}, &falling(edge - 2e-6, 1e-6), 1.5);
+    let (surfaces, ended) = run(&LEDGE.model(), &falling(edge - 2e-6, 1e-6), 1.5);
     assert!(surfaces == [0] && ended.is_ok(), "{surfaces:?}, {ended:?}");
-    let (surfaces, ended) = run(&Ledge {}, &falling(edge + 2e-6, 1e-6), 2.1);
+    let (surfaces, ended) = run(&LEDGE.model(), &falling(edge + 2e-6, 1e-6), 2.1);
     assert!(surfaces == [1] && ended.is_ok(), "{surfaces:?}, {ended:?}");
 }
 
@@ -223,7 +220,7 @@ fn a_condition_that_is_not_certain_is_refused() {
 fn motion_behind_a_surface_that_begins_to_count_is_refused() {
     // Below the ledge, beyond its end, and back.
     let start = points([2.0, -0.5, -1.0, 0.0]);
-    let (surfaces, ended) = run(&Ledge {}, &start, 5.0);
+    let (surfaces, ended) = run(&LEDGE.model(), &start, 5.0);
     let lost = lost(ended);
     // It meets the floor at the time 1, at x = 1, on its way to the ledge.
     assert!(surfaces.len() <= 1 && lost.t <= 1.0, "{surfaces:?}, {lost}");
@@ -231,7 +228,7 @@ fn motion_behind_a_surface_that_begins_to_count_is_refused() {
 
 #[test]
 fn a_start_inside_a_wall_is_refused() {
-    let (_, ended) = run(&Ball {}, &points([-0.1, 1.0]), 1.0);
+    let (_, ended) = run(&BALL.model(), &points([-0.1, 1.0]), 1.0);
     assert_eq!(
         lost(ended),
         Lost {
@@ -239,9 +236,9 @@ fn a_start_inside_a_wall_is_refused() {
             reason: Reason::MayBeBehind { surface: 0 }
         }
     );
-    let (_, ended) = run(&Ball {}, &points([0.0, -1.0]), 1.0);
+    let (_, ended) = run(&BALL.model(), &points([0.0, -1.0]), 1.0);
     assert_eq!(lost(ended).t, 0.0);
-    let (_, ended) = run(&Ball {}, &[Interval::WHOLE, Interval::point(0.0)], 1.0);
+    let (_, ended) = run(&BALL.model(), &[Interval::WHOLE, Interval::point(0.0)], 1.0);
     assert_eq!(
         lost(ended),
         Lost {
@@ -253,7 +250,7 @@ fn a_start_inside_a_wall_is_refused() {
 
 #[test]
 fn impacts_that_accumulate_are_followed_until_they_cannot_be_told() {
-    let (surfaces, ended) = run(&Ball {}, &points([0.5, 0.0]), 4.0);
+    let (surfaces, ended) = run(&BALL.model(), &points([0.5, 0.0]), 4.0);
     let lost = lost(ended);
     assert!(
         surfaces.len() > 20 && lost.t < 3.0 && lost.t > 2.9999,
@@ -263,22 +260,23 @@ fn impacts_that_accumulate_are_followed_until_they_cannot_be_told() {
 
 #[test]
 fn a_law_that_leaves_the_motion_at_the_surface_is_refused() {
+    let ball = BALL.model();
     for law in [Law::ImpactPlastic, Law::Newton(0.0)] {
         let start = points([0.5, 0.0]);
-        let mut run = CertifiedRun::new(&Ball {}, 0.0, |i| start[i]).with_law(0, law);
+        let mut run = CertifiedRun::new(&ball, 0.0, |i| start[i]).with_law(0, law);
         let lost = lost(run.next_impact(2.0).map(|_| ()));
         assert_eq!(lost.reason, Reason::MayStay { surface: 0 });
         assert!(lost.t <= 1.0, "{lost}");
     }
     let start = points([0.5, 0.0]);
-    let mut run = CertifiedRun::new(&Ball {}, 0.0, |i| start[i]).with_law(0, Law::Elastic);
+    let mut run = CertifiedRun::new(&ball, 0.0, |i| start[i]).with_law(0, Law::Elastic);
     let impact = run.next_impact(2.0).unwrap().unwrap();
     let after = impact.after(1);
     assert!(
         after.contains(Interval::point(1.0)) && after.width() < 1e-13,
         "{after:?}"
     );
-    let mut run = CertifiedRun::new(&Ball {}, 0.0, |i| start[i]).with_law(0, Law::Reset);
+    let mut run = CertifiedRun::new(&ball, 0.0, |i| start[i]).with_law(0, Law::Reset);
     let lost = lost(run.next_impact(2.0).map(|_| ()));
     assert_eq!(lost.reason, Reason::UnsureLaw { surface: 0 });
 }
@@ -286,19 +284,19 @@ fn a_law_that_leaves_the_motion_at_the_surface_is_refused() {
 #[test]
 fn an_end_within_the_times_of_an_impact_is_refused() {
     let start = [Interval::new(0.45, 0.55), Interval::point(0.0)];
-    let (surfaces, ended) = run(&Ball {}, &start, 1.0);
+    let (surfaces, ended) = run(&BALL.model(), &start, 1.0);
     let lost = lost(ended);
     assert_eq!(lost.reason, Reason::EndsAtImpact { surface: 0 });
     assert!(surfaces.is_empty() && lost.t < 0.95, "{lost}");
-    let (surfaces, ended) = run(&Ball {}, &start, 0.94);
+    let (surfaces, ended) = run(&BALL.model(), &start, 0.94);
     assert!(surfaces.is_empty() && ended.is_ok(), "{ended:?}");
-    let (surfaces, ended) = run(&Ball {}, &start, 1.06);
+    let (surfaces, ended) = run(&BALL.model(), &start, 1.06);
     assert!(surfaces == [0] && ended.is_ok(), "{ended:?}");
 }
 
 #[test]
 fn a_reset_that_stays_at_its_surface_is_refused() {
-    let (_, ended) = run(&Section {}, &points([0.0, 2.0]), 3.0);
+    let (_, ended) = run(&SECTION.model(), &points([0.0, 2.0]), 3.0);
     let lost = lost(ended);
     assert!(lost.t < core::f64::consts::FRAC_PI_6, "{lost}");
 }
@@ -308,7 +306,7 @@ fn refraction_and_reflection_are_told_apart() {
     // Energies of both modes are enclosed by themselves: ranges of speeds are narrow compared with their difference.
     let mode = |speed: Interval| {
         let start = [Interval::point(-1.0), speed, Interval::point(0.0)];
-        let halves = Halves::default();
+        let halves = HALVES.model();
         let mut run = CertifiedRun::new(&halves, 0.0, |i| start[i]);
         let impact = run.next_impact(3.0).map_err(|lost| lost.reason)?;
         Ok(impact.map(|_| run.component(2).middle().round()))
@@ -328,20 +326,17 @@ fn refraction_and_reflection_are_told_apart() {
 #[test]
 fn modes_that_meet_are_passed_and_sliding_is_refused() {
     let start = points([-1.0, 0.0]);
-    let relay = Relay::default();
+    let relay = RELAY.model();
     let mut run = CertifiedRun::new(&relay, 0.0, |i| start[i]);
-    run.run(2.0, |_| ControlFlow::Continue(())).unwrap();
+    follow(&mut run, 2.0, &mut |_| ControlFlow::Continue(())).unwrap();
     let x = run.component(0);
     assert!(
         run.impacts() == 1 && x.contains(Interval::point(2.0)) && x.width() < 1e-14,
         "{x:?}"
     );
-    let relay = Relay {
-        speed: -1.0,
-        ..Relay::default()
-    };
+    let relay = RELAY.with([("speed", -1.0)]);
     let mut run = CertifiedRun::new(&relay, 0.0, |i| start[i]);
-    let lost = lost(run.run(2.0, |_| ControlFlow::Continue(())));
+    let lost = lost(follow(&mut run, 2.0, &mut |_| ControlFlow::Continue(())));
     assert!(
         matches!(lost.reason, Reason::MayMeetTogether { .. }) && lost.t <= 1.0,
         "{lost}"

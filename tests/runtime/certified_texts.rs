@@ -4,7 +4,9 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use dalembert::certified::{CertifiedFlow, CertifiedRun, Reason};
+#[cfg(feature = "every_model")]
+use dalembert::certified::CertifiedFlow;
+use dalembert::certified::{CertifiedRun, Reason};
 use dalembert::declaration::Described;
 use dalembert::erased::{Erased, Form};
 use dalembert::numbers::Interval;
@@ -15,10 +17,12 @@ mod ball {
     dalembert::model_file!("../models/src/bouncing_ball.dal");
 }
 
+#[cfg(feature = "every_model")]
 mod billiard {
     dalembert::model_file!("../models/src/point_billiard.dal");
 }
 
+#[cfg(feature = "every_model")]
 mod pendulum {
     dalembert::model_file!("../models/src/double_pendulum.dal");
 }
@@ -123,6 +127,7 @@ fn a_bouncing_ball_has_the_same_enclosures() {
     assert_same(&ball, &[], 1e-6, (20.0, 3));
 }
 
+#[cfg(feature = "every_model")]
 #[test]
 fn a_circular_billiard_has_the_same_enclosures() {
     let table = billiard::PointBilliard {
@@ -142,6 +147,7 @@ fn a_walker_with_modes_has_the_same_enclosures() {
     assert_same(&walker::SpringMassWalker::default(), &[], 0.0, (3.0, 4));
 }
 
+#[cfg(feature = "every_model")]
 #[test]
 fn a_double_pendulum_has_the_same_enclosures() {
     fn end<Sys: Variational>(system: &Sys, start: &[f64]) -> Vec<Interval> {

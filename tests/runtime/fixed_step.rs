@@ -1,17 +1,15 @@
 //! Invariants of methods of fixed step, their work, and their behaviour where a step cannot be made.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
 use core::ops::ControlFlow;
 
 use dalembert::integrate::{ClassicalRungeKutta, FixedStep, Gauss, Method};
 use dalembert::{
-    Counters, EventLog, Fault, Gauss4, Gauss6, Impacts, Law, Observer, Outcome, Rk4, Segment,
-    Simulation, Stepper, System, Tolerance,
+    Counters, Fault, Gauss4, Gauss6, Law, Observer, Outcome, Rk4, Segment, Simulation, Stepper,
+    System, Tolerance,
 };
-use support::line::{Line, Plane, soliton, soliton_at};
-use support::{FLOOR, Particle, at};
+use dalembert_tests::line::{Line, Plane, soliton, soliton_at};
+use dalembert_tests::particle::{FLOOR, Log, Particle, at, run_with};
 
 fn tolerance() -> Tolerance {
     Tolerance::new(1e-10).unwrap()
@@ -230,10 +228,8 @@ fn a_fault_ahead_is_reached_before_it_is_reported() {
 fn steps_grow_back_after_hops_and_accumulations_are_found() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_law(Law::Restitution(0.5));
     let stepper = Gauss4::new(tolerance()).with_step(0.5);
-    let mut log = EventLog::<_, 256>::new();
-    let run = Simulation::new(&ball, stepper, Impacts::declared(&ball))
-        .run(0.0, at(0.0, 0.0, 1.0, 0.0), 10.0, &mut log)
-        .unwrap();
+    let mut log = Log::new();
+    let run = run_with(&ball, stepper, at(0.0, 0.0, 1.0, 0.0), 10.0, &mut log);
     assert!(
         matches!(run.outcome, Outcome::Zeno { t, .. } if (t - 4.0).abs() < 1e-9),
         "{}",
@@ -241,9 +237,7 @@ fn steps_grow_back_after_hops_and_accumulations_are_found() {
     );
     // A corner: one short flight, then a long one, over which steps are those of the run again.
     let ball = Particle::new([-1.0, 0.0], [FLOOR]);
-    let run = Simulation::new(&ball, stepper, Impacts::declared(&ball))
-        .run(0.0, at(1e-6, 0.0, 30.0, 0.0), 50.0, &mut log)
-        .unwrap();
+    let run = run_with(&ball, stepper, at(1e-6, 0.0, 30.0, 0.0), 50.0, &mut log);
     assert_eq!(run.outcome, Outcome::Done);
     assert!(run.counters.accepted < 110, "{:?}", run.counters);
     assert!((ball.energy(run.t, &run.state).unwrap() - 450.000001).abs() < 1e-10);

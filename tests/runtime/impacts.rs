@@ -1,10 +1,9 @@
 //! Impacts found at the times of closed forms, and carried out once.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use dalembert::{Dop853, Impacts, Law, Outcome, Simulation, Tolerance};
-use support::*;
+use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
+use dalembert_tests::gap;
+use dalembert_tests::particle::*;
 
 const U: f64 = f64::EPSILON / 2.0;
 
@@ -133,7 +132,7 @@ fn a11_a_thin_slab_is_not_passed_at_high_speed() {
 fn a12_ten_thousand_impacts_in_a_channel() {
     let channel = Particle::new([0.0, 0.0], [FLOOR, CEILING]);
     struct Watch(u64, f64);
-    impl dalembert::Observer<Particle<2>> for Watch {
+    impl dalembert::Observer<Particle> for Watch {
         fn event(&mut self, event: &dalembert::Event<State>) -> core::ops::ControlFlow<()> {
             self.0 += 1;
             self.1 = self.1.max((event.t - self.0 as f64 / 1e4).abs());
@@ -141,11 +140,13 @@ fn a12_ten_thousand_impacts_in_a_channel() {
         }
     }
     let mut watch = Watch(0, 0.0);
-    let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
-    let mut simulation = Simulation::new(&channel, stepper, Impacts::declared(&channel));
-    let run = simulation
-        .run(0.0, at(0.0, 0.0, 1e4, 0.0), 1.0, &mut watch)
-        .unwrap();
+    let start = at(0.0, 0.0, 1e4, 0.0);
+    let run = observed(
+        &channel,
+        Impacts::declared(&channel),
+        (start, 1.0),
+        &mut watch,
+    );
     assert_done(&run, "channel");
     assert_eq!((watch.0, run.counters.impacts), (10_000, 10_000));
     assert!(watch.1 <= 16.0 * U, "{:e}", watch.1);
@@ -202,13 +203,8 @@ fn a15_a16_an_event_at_the_end_belongs_to_the_step_that_ends_there() {
             return;
         }
         assert_times(log, &[1.0], tolerance, case);
-        let mut simulation = Simulation::new(
-            &particle,
-            Dop853::new(Tolerance::new(1e-12).unwrap()),
-            Impacts::declared(&particle),
-        );
         let mut more = Log::new();
-        let on = simulation.run(run.t, run.state, 2.0, &mut more).unwrap();
+        let on = run_on(&particle, run.t, run.state, 2.0, &mut more);
         assert_done(&on, case);
         assert_eq!(more.seen(), 0, "{case}");
         assert!((on.state[0] - 1.0).abs() < 1e-12, "{case}");
@@ -357,12 +353,9 @@ fn c06_a_corner_missed_by_little_has_the_same_limit() {
 #[test]
 fn c20_the_impact_budget_leaves_a_usable_state() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]);
-    let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
     let effects = Impacts::declared(&ball).with_budget(3);
     let mut log = Log::new();
-    let run = Simulation::new(&ball, stepper, effects)
-        .run(0.0, at(0.0, 0.0, 1.0, 0.0), 1e3, &mut log)
-        .unwrap();
+    let run = observed(&ball, effects, (at(0.0, 0.0, 1.0, 0.0), 1e3), &mut log);
     assert_eq!((run.outcome, log.seen()), (Outcome::ImpactBudget, 3));
     assert!((run.t - 6.0).abs() < 1e-13 && (run.state[2] - 1.0).abs() < 1e-13);
 }

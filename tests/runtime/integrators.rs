@@ -3,8 +3,6 @@
 
 use core::ops::ControlFlow;
 
-mod support;
-
 use dalembert::integrate::{
     ClassicalRungeKutta, Dop853Scheme, DormandPrince5Scheme, Embedded, FixedStep, Gauss,
 };
@@ -12,7 +10,7 @@ use dalembert::{
     Dop853, DormandPrince5, Fault, Gauss4, Observer, Outcome, Rk4, Segment, Simulation, StartError,
     Stepper, Tolerance,
 };
-use support::line::{Line, Plane, soliton, soliton_at};
+use dalembert_tests::line::{Line, Plane, soliton, soliton_at};
 
 /// Largest errors at the ends of `count` equal steps, and inside them.
 fn errors<Step: Stepper<Line>>(count: u32, stepper: impl Fn(f64) -> Step) -> [f64; 2] {

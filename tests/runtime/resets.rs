@@ -1,10 +1,9 @@
 //! Surfaces with a reset: crossed or bounced off, met once each time the gap falls through zero.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use dalembert::{Dop853, Impacts, Law, Outcome, Simulation, Tolerance};
-use support::*;
+use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
+use dalembert_tests::gap;
+use dalembert_tests::particle::*;
 
 /// A wave along x with period 2 pi, as a gap that falls through 0 at `pi/2 + 2 pi n`.
 const WAVE: Gap = gap!(c | x, y | Numbers::cos(x), [-x.sin(), 0.0]);
@@ -144,10 +143,7 @@ fn a_reset_into_a_wall_is_named() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR, RAISED_FLOOR])
         .with_reset(|_, s| at(-1.0, s[1], s[2], s[3]));
     let effects = Impacts::declared(&ball).with_law(0, Law::Elastic);
-    let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
-    let run = Simulation::new(&ball, stepper, effects)
-        .run(0.0, at(2.0, 0.0, 0.0, 0.0), 9.0, &mut ())
-        .unwrap();
+    let run = observed(&ball, effects, (at(2.0, 0.0, 0.0, 0.0), 9.0), &mut ());
     assert!(
         matches!(run.outcome, Outcome::StartsInside { surface: 0, gap } if gap == -1.0),
         "{:?}",
@@ -159,10 +155,7 @@ fn a_reset_into_a_wall_is_named() {
 fn a_reset_that_is_not_declared_is_refused_at_the_start() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let effects = Impacts::declared(&ball).with_law(0, Law::Reset);
-    let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
-    let run = Simulation::new(&ball, stepper, effects)
-        .run(0.0, at(1.0, 0.0, 0.0, 0.0), 9.0, &mut ())
-        .unwrap();
+    let run = observed(&ball, effects, (at(1.0, 0.0, 0.0, 0.0), 9.0), &mut ());
     assert_eq!((run.outcome, run.t), (Outcome::NoReset { surface: 0 }, 0.0));
 }
 
@@ -170,11 +163,8 @@ fn a_reset_that_is_not_declared_is_refused_at_the_start() {
 fn another_law_may_stand_for_a_reset() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, state| state);
     let effects = Impacts::declared(&ball).with_law(0, Law::Elastic);
-    let stepper = Dop853::new(Tolerance::new(1e-12).unwrap());
     let mut log = Log::new();
-    let run = Simulation::new(&ball, stepper, effects)
-        .run(0.0, at(0.0, 0.0, 1.0, 0.0), 5.0, &mut log)
-        .unwrap();
+    let run = observed(&ball, effects, (at(0.0, 0.0, 1.0, 0.0), 5.0), &mut log);
     assert_eq!((run.outcome, log.seen()), (Outcome::Done, 2));
 }
 

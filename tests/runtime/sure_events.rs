@@ -3,50 +3,50 @@
 //! surface.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use dalembert::{
-    Dla2, Dop853, DormandPrince5, EventLog, Gauss4, Gauss6, Impacting, Impacts, Lagrangian,
-    Outcome, Rk4, Simulation, Stepper, Taylor, TaylorField, Tolerance, VectorField,
-};
+use dalembert::{EventLog, Outcome, System, VectorField};
+use dalembert_cli::Integrator;
+use dalembert_stability::course::{Course, vector};
+use dalembert_stability::text::{Model, Text};
 
-dalembert::model! {
-    /// A point over a bump that is narrow for small `s`.
-    pub Bump {
+/// A point over a bump that is narrow for small `s`.
+static BUMP: Text = Text::new(
+    "Bump {
         coordinates { x; y; }
         parameters { s > 0 = 0.1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { wall: y - exp(-(x/s)^2) >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point among three pegs, in a box, falling with `g`.
-    pub Pegs {
+/// A point among three pegs, in a box, falling with `g`.
+static PEGS: Text = Text::new(
+    "Pegs {
         coordinates { x; y; }
         parameters { a[3] = [0, 1, 2]; b[3] = [0, 0, 0]; r[3] > 0 = [1, 1, 1]; g >= 0 = 0; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - g*y;
         impacts { peg[i in 1..=3]: sqrt((x - a[i])^2 + (y - b[i])^2) - r[i] >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point beside a slab and under a roof of absolute values.
-    pub Slab {
+/// A point beside a slab and under a roof of absolute values.
+static SLAB: Text = Text::new(
+    "Slab {
         coordinates { x; y; }
         parameters { a = 0; w > 0 = 1; h > 0 = 1; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { slab: abs(x - a) - w >= 0; roof: h - y + abs(x - 2*a)/4 >= 0; }
-    }
-}
+    }",
+);
 
-dalembert::model! {
-    /// A point and the tip of a needle that turns about the origin.
-    pub Needle {
+/// A point and the tip of a needle that turns about the origin.
+static NEEDLE: Text = Text::new(
+    "Needle {
         coordinates { x; y; }
         parameters { l > 0 = 1; rho > 0 = 0.01; w = 3; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { tip: sqrt((x - l*cos(w*t))^2 + (y - l*sin(w*t))^2) - rho >= 0; }
-    }
-}
+    }",
+);
 
 /// A start in the plane.
 #[derive(Debug, Clone, Copy)]
@@ -71,15 +71,52 @@ impl Flight {
     }
 }
 
-/// Gaps in closed form, with bounds of their rates: for each unit of speed, and at rest.
-trait Family: Impacting + TaylorField + Lagrangian {
+/// A model with values for its parameters, and its gaps in closed form.
+trait Family: core::fmt::Debug {
+    fn model(&self) -> Model;
+
     fn distances(&self, t: f64, point: [f64; 2]) -> Vec<f64>;
 
     /// Bound of the rate of every gap at this speed.
     fn fastest(&self, speed: f64) -> f64;
 }
 
+/// See [`BUMP`].
+#[derive(Debug)]
+struct Bump {
+    s: f64,
+}
+
+/// See [`PEGS`].
+#[derive(Debug)]
+struct Pegs {
+    a: [f64; 3],
+    b: [f64; 3],
+    r: [f64; 3],
+    g: f64,
+}
+
+/// See [`SLAB`].
+#[derive(Debug)]
+struct Slab {
+    a: f64,
+    w: f64,
+    h: f64,
+}
+
+/// See [`NEEDLE`].
+#[derive(Debug)]
+struct Needle {
+    l: f64,
+    rho: f64,
+    w: f64,
+}
+
 impl Family for Bump {
+    fn model(&self) -> Model {
+        BUMP.with([("s", self.s)])
+    }
+
     fn distances(&self, _: f64, [x, y]: [f64; 2]) -> Vec<f64> {
         vec![y - (-(x / self.s).powi(2)).exp()]
     }
@@ -91,6 +128,22 @@ impl Family for Bump {
 }
 
 impl Family for Pegs {
+    fn model(&self) -> Model {
+        let [a, b, r] = [self.a, self.b, self.r];
+        PEGS.with([
+            ("a.1", a[0]),
+            ("a.2", a[1]),
+            ("a.3", a[2]),
+            ("b.1", b[0]),
+            ("b.2", b[1]),
+            ("b.3", b[2]),
+            ("r.1", r[0]),
+            ("r.2", r[1]),
+            ("r.3", r[2]),
+            ("g", self.g),
+        ])
+    }
+
     fn distances(&self, _: f64, [x, y]: [f64; 2]) -> Vec<f64> {
         (0..3)
             .map(|i| (x - self.a[i]).hypot(y - self.b[i]) - self.r[i])
@@ -103,6 +156,10 @@ impl Family for Pegs {
 }
 
 impl Family for Slab {
+    fn model(&self) -> Model {
+        SLAB.with([("a", self.a), ("w", self.w), ("h", self.h)])
+    }
+
     fn distances(&self, _: f64, [x, y]: [f64; 2]) -> Vec<f64> {
         vec![
             (x - self.a).abs() - self.w,
@@ -116,6 +173,10 @@ impl Family for Slab {
 }
 
 impl Family for Needle {
+    fn model(&self) -> Model {
+        NEEDLE.with([("l", self.l), ("rho", self.rho), ("w", self.w)])
+    }
+
     fn distances(&self, t: f64, [x, y]: [f64; 2]) -> Vec<f64> {
         let (sine, cosine) = (self.w * t).sin_cos();
         vec![(x - self.l * cosine).hypot(y - self.l * sine) - self.rho]
@@ -142,7 +203,7 @@ enum Exact {
 const SHALLOW: f64 = 1e-3;
 
 /// The first impact, by conservative advancement.
-fn exact<F: Family>(family: &F, flight: &Flight, until: f64) -> Exact {
+fn exact(family: &dyn Family, flight: &Flight, until: f64) -> Exact {
     let fastest = family.fastest(flight.speed(until));
     let scale = 1.0 + flight.q[0].abs() + flight.q[1].abs() + flight.speed(until) * until;
     let close = 64.0 * f64::EPSILON * scale;
@@ -185,22 +246,23 @@ struct Tally {
 }
 
 /// Compares the first impact of a run with the exact one.
-fn compare<F, S>(family: &F, stepper: S, flight: &Flight, until: f64, exact: Exact, name: &str)
-where
-    F: Family + core::fmt::Debug,
-    S: Stepper<F>,
-    F::Vector: From<[f64; 2]>,
-{
-    let [q, v] = [flight.q, flight.v].map(F::Vector::from);
-    let state = family.state_unchecked(0.0, &q, &v).unwrap();
-    let mut log = EventLog::<<F as VectorField>::State, 1>::new();
-    let effects = Impacts::declared(family).with_budget(1);
-    let run = Simulation::new(family, stepper, effects).run(0.0, state, until, &mut log);
-    let run = run.unwrap();
+fn compare(family: &dyn Family, run: Runs<'_>, flight: &Flight, until: f64, exact: Exact) {
+    let Runs {
+        model,
+        integrator,
+        tol,
+        step,
+    } = run;
+    let [q, v] = [flight.q, flight.v].map(|pair| vector(&pair));
+    let state = model.state_unchecked(0.0, &q, &v).unwrap();
+    let mut log = EventLog::<<Model as VectorField>::State, 1>::new();
+    let course = Course::from_state(model, state, until).tol(tol).impacts(1);
+    let run = course.step(step).observed(integrator, &mut log);
     let first = log.iter().next().copied();
     let case = || {
         format!(
-            "{name}: {family:?} {flight:?} until {until}: {exact:?}, but {} {first:?}",
+            "{}: {family:?} {flight:?} until {until}: {exact:?}, but {} {first:?}",
+            integrator.name(),
             run.outcome
         )
     };
@@ -221,12 +283,17 @@ where
     }
 }
 
+/// A model, and how it is run.
+#[derive(Clone, Copy)]
+struct Runs<'a> {
+    model: &'a Model,
+    integrator: Integrator,
+    tol: f64,
+    step: f64,
+}
+
 /// Runs a flight with every integrator.
-fn with_every_integrator<F>(family: &F, flight: &Flight, until: f64, tally: &mut Tally)
-where
-    F: Family + core::fmt::Debug,
-    F::Vector: From<[f64; 2]>,
-{
+fn with_every_integrator(family: &dyn Family, flight: &Flight, until: f64, tally: &mut Tally) {
     let start = family.distances(0.0, flight.q);
     if start.iter().any(|gap| *gap <= 1e-6) {
         return;
@@ -234,70 +301,22 @@ where
     let exact = exact(family, flight, until);
     tally.hits += u64::from(matches!(exact, Exact::Hits { .. }));
     tally.grazes += u64::from(exact == Exact::Grazes);
-    for tolerance in [1e-3, 1e-8, 1e-13] {
-        let tolerance = Tolerance::new(tolerance).unwrap();
-        compare(
-            family,
-            Dop853::new(tolerance),
-            flight,
-            until,
-            exact,
-            "dop853",
-        );
-        compare(
-            family,
-            DormandPrince5::new(tolerance),
-            flight,
-            until,
-            exact,
-            "dopri5",
-        );
-        compare(
-            family,
-            Taylor::new(tolerance),
-            flight,
-            until,
-            exact,
-            "taylor",
-        );
-        tally.runs += 3;
-    }
-    let tolerance = Tolerance::new(1e-10).unwrap();
-    for parts in [1.0, 7.0, 64.0] {
-        let step = until / parts;
-        compare(
-            family,
-            Rk4::new(tolerance).with_step(step),
-            flight,
-            until,
-            exact,
-            "rk4",
-        );
-        compare(
-            family,
-            Gauss4::new(tolerance).with_step(step),
-            flight,
-            until,
-            exact,
-            "gauss4",
-        );
-        compare(
-            family,
-            Gauss6::new(tolerance).with_step(step),
-            flight,
-            until,
-            exact,
-            "gauss6",
-        );
-        compare(
-            family,
-            Dla2::new(tolerance).with_step(step),
-            flight,
-            until,
-            exact,
-            "dla2",
-        );
-        tally.runs += 4;
+    let model = &family.model();
+    let mut run = |integrator, tol, step| {
+        let runs = Runs {
+            model,
+            integrator,
+            tol,
+            step,
+        };
+        compare(family, runs, flight, until, exact);
+        tally.runs += 1;
+    };
+    for &integrator in Integrator::every() {
+        match integrator.is_adaptive() {
+            true => [1e-3, 1e-8, 1e-13].map(|tol| run(integrator, tol, f64::INFINITY)),
+            false => [1.0, 7.0, 64.0].map(|parts| run(integrator, 1e-10, until / parts)),
+        };
     }
 }
 

@@ -8,6 +8,7 @@ struct LanguageReference;
 
 pub mod allocation;
 pub mod bodies;
+pub mod certified;
 pub mod claim;
 pub mod command;
 pub mod curvature;
@@ -17,8 +18,10 @@ pub mod flow;
 pub mod formula;
 pub mod golden;
 pub mod interpreted;
+pub mod line;
 pub mod numeric;
 pub mod obstruction;
+pub mod particle;
 pub mod reference;
 pub mod sampling;
 pub mod symbolic;

@@ -1,23 +1,27 @@
-//! A point of mass 1 in the plane, under a constant force, between surfaces given as functions.
-#![allow(dead_code, missing_docs, reason = "each test uses its part")]
+//! A point of mass 1 in the plane, under a constant force, between surfaces given as functions. Its runs are compiled
+//! here, once.
 
-pub mod line;
-
+use dalembert::erased::Bounded;
+use dalembert::integrate::Chosen;
 pub use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Contact, Dop853, DormandPrince5, Event, EventLog, Fault, Gauss4, Gauss6, Impacting, Impacts,
-    Jump, Law, Outcome, ParameterError, Rk4, Run, Simulation, Stepper, System, Taylor, TaylorField,
-    Tolerance, VectorField, jet::LENGTH,
+    Jump, Law, Observer, Outcome, ParameterError, Rk4, Run, Simulation, StateVector, Stepper,
+    System, Taylor, TaylorField, Tolerance, VectorField, jet::LENGTH,
 };
 use nalgebra::SVector;
 
+/// A position, or a velocity.
 pub type Vector = SVector<f64, 2>;
+/// A position and a velocity.
 pub type State = SVector<f64, 4>;
 
 /// A surface: its gap and gradient at a point, and its gap along a stretch.
 #[derive(Clone, Copy)]
 pub struct Gap {
+    /// Gap and gradient at a point.
     pub at: fn([f64; 2]) -> (f64, [f64; 2]),
+    /// The gap along a stretch of motion.
     pub along: fn([TaylorModel; 2]) -> TaylorModel,
 }
 
@@ -31,18 +35,25 @@ macro_rules! gap {
             ($gap, $gradient)
         }
         #[allow(unused_variables)]
-        fn along([$x, $y]: [TaylorModel; 2]) -> TaylorModel {
-            let $c = <TaylorModel as Numbers>::of;
+        fn along([$x, $y]: [$crate::particle::TaylorModel; 2]) -> $crate::particle::TaylorModel {
+            let $c = <$crate::particle::TaylorModel as $crate::particle::Numbers>::of;
             $gap
         }
-        Gap { at, along }
+        $crate::particle::Gap { at, along }
     }};
 }
 
+/// Surfaces of a [`Particle`], at most.
+pub const MOST_SURFACES: usize = 8;
+
+/// The point, between its surfaces.
 #[derive(Clone)]
-pub struct Particle<const S: usize> {
+pub struct Particle {
+    /// The force.
     pub force: [f64; 2],
-    pub surfaces: [Gap; S],
+    /// The surfaces.
+    pub surfaces: Vec<Gap>,
+    /// The law of every surface.
     pub law: Law,
     /// True where a surface counts.
     pub active: fn(usize, [f64; 2]) -> bool,
@@ -50,11 +61,12 @@ pub struct Particle<const S: usize> {
     pub reset: fn(usize, State) -> State,
 }
 
-impl<const S: usize> Particle<S> {
-    pub fn new(force: [f64; 2], surfaces: [Gap; S]) -> Self {
+impl Particle {
+    /// The point under a force, between elastic surfaces that count everywhere.
+    pub fn new<const S: usize>(force: [f64; 2], surfaces: [Gap; S]) -> Self {
         Self {
             force,
-            surfaces,
+            surfaces: surfaces.to_vec(),
             law: Law::Elastic,
             active: |_, _| true,
             reset: |_, state| state,
@@ -68,9 +80,18 @@ impl<const S: usize> Particle<S> {
         self
     }
 
+    /// Sets the law of every surface.
     pub fn with_law(mut self, law: Law) -> Self {
         self.law = law;
         self
+    }
+
+    fn of_surfaces(&self, value: impl Fn(&Gap) -> f64) -> Bounded<f64, MOST_SURFACES> {
+        let mut values = self.zero_gaps();
+        for (place, gap) in values.as_mut_slice().iter_mut().zip(&self.surfaces) {
+            *place = value(gap);
+        }
+        values
     }
 }
 
@@ -78,7 +99,7 @@ fn point(state: &State) -> [f64; 2] {
     [state[0], state[1]]
 }
 
-impl<const S: usize> VectorField for Particle<S> {
+impl VectorField for Particle {
     type State = State;
 
     #[inline]
@@ -88,7 +109,7 @@ impl<const S: usize> VectorField for Particle<S> {
     }
 }
 
-impl<const S: usize> TaylorField for Particle<S> {
+impl TaylorField for Particle {
     type Parameters<L: Numbers> = [L; 2];
     type Row<L: Numbers> = [L; 4];
     type Gaps<L: Numbers> = [L; 0];
@@ -128,7 +149,7 @@ impl<const S: usize> TaylorField for Particle<S> {
     }
 }
 
-impl<const S: usize> System for Particle<S> {
+impl System for Particle {
     type Vector = Vector;
     type Impulse = Vector;
 
@@ -166,11 +187,19 @@ impl<const S: usize> System for Particle<S> {
     }
 }
 
-impl<const S: usize> Impacting for Particle<S> {
-    type Gaps = SVector<f64, S>;
+impl Impacting for Particle {
+    type Gaps = Bounded<f64, MOST_SURFACES>;
+
+    fn surface_count(&self) -> usize {
+        self.surfaces.len()
+    }
+
+    fn zero_gaps(&self) -> Self::Gaps {
+        Bounded::all(self.surfaces.len(), 0.0)
+    }
 
     fn gaps(&self, _: f64, state: &State) -> Self::Gaps {
-        SVector::from_fn(|s, _| (self.surfaces[s].at)(point(state)).0)
+        self.of_surfaces(|gap| (gap.at)(point(state)).0)
     }
 
     fn gap_along(
@@ -183,8 +212,8 @@ impl<const S: usize> Impacting for Particle<S> {
     }
 
     fn gap_rates(&self, _: f64, state: &State) -> Result<Self::Gaps, Fault> {
-        Ok(SVector::from_fn(|s, _| {
-            let gradient = (self.surfaces[s].at)(point(state)).1;
+        Ok(self.of_surfaces(|gap| {
+            let gradient = (gap.at)(point(state)).1;
             gradient[0] * state[2] + gradient[1] * state[3]
         }))
     }
@@ -226,27 +255,40 @@ impl<const S: usize> Impacting for Particle<S> {
     }
 }
 
+/// A floor at 0.
 pub const FLOOR: Gap = gap!(c | x, y | x, [1.0, 0.0]);
 
+/// A ceiling at 1.
 pub const CEILING: Gap = gap!(c | x, y | c(1.0) - x, [-1.0, 0.0]);
 
 /// A floor away from zero, where the gap rounds.
 pub const RAISED_FLOOR: Gap = gap!(c | x, y | x - c(1.0), [1.0, 0.0]);
 
+/// The last impacts of a run.
 pub type Log = EventLog<State, 256>;
 
+/// A state.
 pub fn at(x: f64, y: f64, vx: f64, vy: f64) -> State {
     State::new(x, y, vx, vy)
 }
 
 /// Runs with every integrator and several sizes of step; each result goes to `check` with its events.
-pub fn with_every_integrator<const S: usize>(
-    particle: &Particle<S>,
+pub fn with_every_integrator(
+    particle: &Particle,
     state: State,
     t_end: f64,
     mut check: impl FnMut(&Run<State>, &Log, &str),
 ) {
-    let tolerance = Tolerance::new(1e-12).unwrap();
+    each_run(particle, state, t_end, &mut check);
+}
+
+fn each_run(
+    particle: &Particle,
+    state: State,
+    t_end: f64,
+    check: &mut dyn FnMut(&Run<State>, &Log, &str),
+) {
+    let tolerance = Tolerance::new(1e-12).expect("a valid setting");
     macro_rules! check {
         ($name:literal, $stepper:expr) => {
             let mut log = Log::new();
@@ -257,17 +299,21 @@ pub fn with_every_integrator<const S: usize>(
     for max_step in [f64::INFINITY, 0.25, 1e-3] {
         check!(
             "dop853",
-            Dop853::new(tolerance).with_max_step(max_step).unwrap()
+            Dop853::new(tolerance)
+                .with_max_step(max_step)
+                .expect("a valid setting")
         );
         check!(
             "dopri5",
             DormandPrince5::new(tolerance)
                 .with_max_step(max_step)
-                .unwrap()
+                .expect("a valid setting")
         );
         check!(
             "taylor",
-            Taylor::new(tolerance).with_max_step(max_step).unwrap()
+            Taylor::new(tolerance)
+                .with_max_step(max_step)
+                .expect("a valid setting")
         );
     }
     for step in [0.25, 1e-3] {
@@ -277,41 +323,83 @@ pub fn with_every_integrator<const S: usize>(
     }
 }
 
-pub fn run_with<const S: usize>(
-    particle: &Particle<S>,
-    stepper: impl Stepper<Particle<S>>,
+/// A run with an integrator.
+pub fn run_with(
+    particle: &Particle,
+    mut stepper: impl Stepper<Particle>,
     state: State,
     t_end: f64,
     log: &mut Log,
 ) -> Run<State> {
-    Simulation::new(particle, stepper, Impacts::declared(particle))
-        .run(0.0, state, t_end, log)
-        .unwrap()
-}
-
-pub fn run<const S: usize>(
-    particle: &Particle<S>,
-    state: State,
-    t_end: f64,
-    log: &mut Log,
-) -> Run<State> {
-    run_with(
+    let effects = Impacts::declared(particle);
+    drive(
         particle,
-        Dop853::new(Tolerance::new(1e-12).unwrap()),
-        state,
-        t_end,
+        Chosen::new(&mut stepper),
+        effects,
+        (0.0, state, t_end),
         log,
     )
 }
 
+/// A run by Dormand and Prince's method of order 8.
+pub fn run(particle: &Particle, state: State, t_end: f64, log: &mut Log) -> Run<State> {
+    observed(particle, Impacts::declared(particle), (state, t_end), log)
+}
+
+/// The same from a time to another.
+pub fn run_on(particle: &Particle, t: f64, state: State, t_end: f64, log: &mut Log) -> Run<State> {
+    let mut stepper = Dop853::new(Tolerance::new(1e-12).expect("a valid setting"));
+    let effects = Impacts::declared(particle);
+    let stepper = Chosen::new(&mut stepper);
+    drive(particle, stepper, effects, (t, state, t_end), log)
+}
+
+/// The same with effects and an observer.
+pub fn observed(
+    particle: &Particle,
+    effects: Impacts<Particle>,
+    (state, t_end): (State, f64),
+    observer: &mut dyn Observer<Particle>,
+) -> Run<State> {
+    let mut stepper = Dop853::new(Tolerance::new(1e-12).expect("a valid setting"));
+    drive(
+        particle,
+        Chosen::new(&mut stepper),
+        effects,
+        (0.0, state, t_end),
+        observer,
+    )
+}
+
+fn drive(
+    particle: &Particle,
+    stepper: Chosen<'_, Particle>,
+    effects: Impacts<Particle>,
+    (t, state, t_end): (f64, State, f64),
+    mut observer: &mut dyn Observer<Particle>,
+) -> Run<State> {
+    Simulation::new(particle, stepper, effects)
+        .run(t, state, t_end, &mut observer)
+        .expect("a start")
+}
+
+/// The times of impacts.
 pub fn times(log: &Log) -> Vec<f64> {
     log.iter().map(|event: &Event<State>| event.t).collect()
 }
 
+/// Asserts that a run reached its end.
+///
+/// # Panics
+/// Otherwise.
 pub fn assert_done(run: &Run<State>, case: &str) {
     assert_eq!(run.outcome, Outcome::Done, "{case} at t = {}", run.t);
 }
 
+/// Asserts that impacts have these times.
+///
+/// # Panics
+/// Otherwise.
 #[track_caller]
 pub fn assert_times(log: &Log, exact: &[f64], tolerance: f64, case: &str) {
     let times = times(log);

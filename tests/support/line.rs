@@ -3,20 +3,26 @@
 use dalembert::{Fault, ParameterError, System, VectorField, describe::Assumption};
 use nalgebra::SVector;
 
+/// A position, or a velocity.
 pub type Scalar = SVector<f64, 1>;
+/// A position and a velocity.
 pub type Plane = SVector<f64, 2>;
 
 /// `x'' = force(t, x, v)` on a line.
 #[derive(Clone, Copy)]
 pub struct Line {
+    /// The force at a time, a position and a velocity.
     pub force: fn(f64, f64, f64) -> Result<f64, Fault>,
     /// The potential, where a test uses one.
     pub potential: fn(f64) -> f64,
+    /// The chart ends at this position.
     pub chart: f64,
+    /// A parameter that must be positive; the motion does not depend on it.
     pub mass: f64,
 }
 
 impl Line {
+    /// A motion under a force alone.
     pub fn new(force: fn(f64, f64, f64) -> Result<f64, Fault>) -> Self {
         Self {
             force,
@@ -93,6 +99,7 @@ fn sech(t: f64) -> f64 {
     1.0 / t.cosh()
 }
 
+/// The state of [`soliton`] at a time.
 pub fn soliton_at(t: f64) -> Plane {
     Plane::new(sech(t), -sech(t) * t.tanh())
 }
