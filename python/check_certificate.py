@@ -14,7 +14,8 @@ digits as that takes, and every claim that was proved is tested at random states
   symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints, or commutes with the rates
   volume_kept        the density satisfies Liouville's equation, and the motion through each surface has the derivative that keeps it
   factor             the determinant of the derivative of the motion through the surface, times the densities
-  symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt
+  symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt; with constraints dp dq, on all states
+                     or on the leaves of integrable ones
   invariant_form     the form is the same on vectors that the motion carries along, between surfaces and through each of them
   involution         the Poisson bracket of functions that are made constant along the constraint forces is 0 on D
   integrable         the same, each function is conserved between surfaces and through each of them, and their differentials are
@@ -607,6 +608,8 @@ class Model:
     def completed(self, state, u, dependent):
         """The state with these independent velocities and the dependent ones that follow."""
         independent = [i for i in range(self.n) if i not in dependent]
+        if self.is_nonlinear:
+            return self.reached(state, dict(zip(independent, u)), dependent)
         v = [Decimal(0)] * self.n
         for place, value in zip(independent, u):
             v[place] = value
@@ -617,6 +620,21 @@ class Model:
             for place, value in zip(dependent, solve(matrix, right)):
                 v[place] = value
         return self.with_velocities(state, v)
+
+    def reached(self, state, given, dependent):
+        """The state near by with the given velocities that satisfies constraints that are not linear (Newton's method)."""
+        v = [given.get(i, item) for i, item in enumerate(self.velocities(state))]
+        state = self.with_velocities(state, v)
+        for _ in range(40):
+            residuals = self.residuals_at(state)
+            if all(is_small(item, 1, self.precision.digits - 10) for item in residuals):
+                return state
+            minor = [[form[j] for j in dependent] for form in self.forms_at(state)]
+            v = list(self.velocities(state))
+            for place, value in zip(dependent, solve(minor, residuals)):
+                v[place] -= value
+            state = self.with_velocities(state, v)
+        raise Unsuitable("the constraints were not reached")
 
     def weight(self, state, dependent):
         minor = [[form[j] for j in dependent] for form in self.forms_at(state)]
@@ -1113,12 +1131,15 @@ def check_kept(model, claim, source):
 
 
 def check_symplectic(model, claim, source):
-    """The forces are closed, and all that happens at surfaces keeps `dp dq - dH dt`; with constraints `dp dq` as a form on their states."""
-    if model.rates is not None or model.is_nonlinear:
-        raise NotChecked("the symplectic form belongs to mechanical systems with linear constraints")
+    """The forces are closed, and all that happens at surfaces keeps `dp dq - dH dt`; with constraints `dp dq` as a form on their states, or
+    on the leaves of constraints that are integrable."""
+    if model.rates is not None:
+        raise NotChecked("the symplectic form belongs to mechanical systems")
     if model.constraints:
-        terms = [{"coefficient": "1", "differentials": [f"momentum({name})", name]} for name in model.q]
-        return check_form(model, {"terms": terms}, source)
+        holds, text = kept_form(model, symplectic_terms, source)
+        if not holds and are_integrable(model, source):
+            return kept_form(model, symplectic_terms, source, True)
+        return holds, text
     total = lambda state: [sum((item[i](state) for item in model.forces), Decimal(0)) for i in range(model.n)]
 
     def defects(state):
@@ -1176,19 +1197,72 @@ class Chart:
         return total
 
 
+def symplectic_terms(model):
+    """`dp dq` of a mode."""
+    return [(lambda state: Decimal(1), [model.claimed(f"momentum({name})"), model.claimed(name)]) for name in model.q]
+
+
+def are_integrable(model, source):
+    """Whether the derivatives of `eta + eta_0 dt` vanish on all pairs of fields that these forms annihilate (Frobenius)."""
+    if model.is_nonlinear:
+        return False
+
+    def curls(state):
+        n, rows, fields = model.n, range(len(model.constraints)), []
+        whole = lambda s: [item for form, rest in model.constraints for item in (*(part(s) for part in form), rest(s))]
+        axes = [model.along(state, 0, model.axis(i)) for i in range(n)] + [model.along(state, 1)]
+        slopes = [model.derivative(whole, state, axis) for axis in axes]
+        dependent, forms = model.dependent(state), model.forms_at(state)
+        minor = [[form[j] for j in dependent] for form in forms]
+        for place in (i for i in range(n) if i not in dependent):
+            field = [Decimal(int(i == place)) for i in range(n)] + [Decimal(0)]
+            for j, value in zip(dependent, solve(minor, [-form[place] for form in forms])):
+                field[j] = value
+            fields.append(field)
+        fields.append([*model.velocities(state), Decimal(1)])
+        curl = lambda a, i, j: slopes[i][a * (n + 1) + j] - slopes[j][a * (n + 1) + i]
+        pairs = [(x, y) for k, x in enumerate(fields) for y in fields[:k]]
+        size = range(n + 1)
+        return [sum(curl(a, i, j) * x[i] * y[j] for i in size for j in size) for a in rows for x, y in pairs] or [Decimal(0)]
+    return all(is_small(item, 1, 20) for row in states(model, source, curls) for item in row)
+
+
 def check_form(model, claim, source):
     """The form on vectors that the motion carries along, between surfaces and through each of them."""
     def terms_of(mode):
         return [(mode.claimed(item["coefficient"]), [mode.claimed(f) for f in item["differentials"]]) for item in claim["terms"]]
-    terms = terms_of(model)
-    degree = len(claim["terms"][0]["differentials"])
+    return kept_form(model, terms_of, source)
 
-    def vectors(size):
-        return [[Decimal(0), *(model.number(source, Decimal(-1), Decimal(1)) for _ in range(size - 1))] for _ in range(degree)]
+
+def along_leaves(chart, vectors):
+    """The vectors of a chart with other positions, so that all constraint forms vanish on these."""
+    if not chart.dependent:
+        return vectors
+    forms, found = chart.model.forms_at(chart.state), []
+    minor = [[form[j] for j in chart.dependent] for form in forms]
+    for vector in vectors:
+        vector = list(vector)
+        for j in chart.dependent:
+            vector[1 + j] = Decimal(0)
+        for j, value in zip(chart.dependent, solve(minor, [-dot(form, vector[1:1 + chart.model.n]) for form in forms])):
+            vector[1 + j] = value
+        found.append(vector)
+    return found
+
+
+def kept_form(model, terms_of, source, is_along_leaves=False):
+    """The form of a mode on vectors that the motion carries along; if asked, along leaves of the constraints alone."""
+    terms = terms_of(model)
+    degree = len(terms[0][1])
+    on_leaves = {}
+
+    def vectors(chart):
+        given = [[Decimal(0), *(model.number(source, Decimal(-1), Decimal(1)) for _ in range(chart.size - 1))] for _ in range(degree)]
+        return along_leaves(chart, given) if is_along_leaves else given
 
     def rate(state):
         chart = Chart(model, state)
-        z, given, h, ends = chart.coordinates(), vectors(chart.size), model.precision.h, []
+        z, given, h, ends = chart.coordinates(), vectors(chart), model.precision.h, []
         drift = chart.motion(z)
         spread = [model.derivative(chart.motion, z, item) for item in given]
         for step in (h, -h):
@@ -1196,19 +1270,37 @@ def check_form(model, claim, source):
             ends.append(chart.form(terms, moved(z, drift, step), carried))
         return (ends[0] - ends[1]) / (2 * h)
 
+    def needs_leaves(entered):
+        """Whether the motion of a mode keeps the form on the leaves of its constraints alone."""
+        if entered is model:
+            return is_along_leaves
+        if terms_of is not symplectic_terms or not entered.constraints:
+            return False
+        if entered not in on_leaves:
+            free = copy(entered)
+            free.surfaces = []
+            on_leaves[entered] = are_integrable(entered, source) and not kept_form(free, terms_of, source)[0]
+        return on_leaves[entered]
+
     def change(surface):
         def of(state):
             crossing = Crossing(model, surface, state)
             entered = crossing.models[1]
             before, after = (Chart(*item) for item in zip(crossing.models, (crossing.before, crossing.after), crossing.dependent))
-            given = vectors(before.size)
+            given = vectors(before)
             carried = [[dot(item, row) for row in zip(*crossing.columns)] for item in given]
             start = before.form(terms, before.coordinates(), given)
-            return after.form(terms_of(entered), after.coordinates(), carried) - start
+            found = [after.form(terms_of(entered), after.coordinates(), carried) - start]
+            if needs_leaves(entered):
+                forms = entered.forms_at(crossing.after)
+                found += [dot(form, vector[1:1 + entered.n]) for form in forms for vector in carried]
+            return found
         return of
+    if model.is_nonlinear and model.surfaces:
+        raise NotChecked("resets beside constraints that are not linear are not checked")
     found = states(model, source, rate)
     for surface in model.surfaces:
-        found += states(model, source, change(surface), 2)
+        found += [item for row in states(model, source, change(surface), 2) for item in row]
     return all(is_small(item, 1, 18) for item in found), f"largest change {float(max(map(abs, found))):.1e}"
 
 

@@ -242,6 +242,47 @@ const BRACKETS: &str = "
         claims { integrable: momentum(theta), momentum(phi); }
     }";
 
+/// The symplectic form on leaves of integrable constraints, from one mode to leaves of another, and forms beside constraints that are not linear.
+const LEAVES: &str = "
+    pub Hoop {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        constraints { wire: x^2 + y^2 = 1 + t^2; }
+        impacts { wall: x >= 0 => newton(1); }
+        claims { symplectic; }
+    }
+    pub Slope {
+        coordinates { x; y; z; }
+        lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - y*z^2;
+        constraints { held: exp(x*y)*(dot(z) - x*dot(x)) = 0; }
+        claims { symplectic; }
+    }
+    pub Step {
+        coordinates { x; y; }
+        modes {
+            near { lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints { groove: dot(y) = dot(x); } }
+            far {
+                coordinates { z; }
+                lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - x*z;
+                constraints { groove: dot(y) = dot(x); shelf: dot(z) = 0; }
+            }
+        }
+        transitions { go: near -> far when x <= 0 => reset { z = x - y; dot(z) = 0; }; }
+        claims { symplectic; }
+    }
+    pub Speed {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        constraints { speed: dot(x)^2 + dot(y)^2 = 4; }
+        claims { invariant: d(dot(x)*exp(-y/4)); }
+    }
+    pub Free {
+        coordinates { x; y; }
+        lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        constraints { speed: dot(x)^2 + dot(y)^2 = 4; }
+        claims { symplectic; }
+    }";
+
 /// A folder for certificates.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -249,12 +290,12 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes the certificate of a model, one of [`FORMS`] or [`BRACKETS`] if it is so named, and gives its path.
+/// Writes the certificate of a model, one of [`FORMS`], [`BRACKETS`] or [`LEAVES`] if it is so named, and gives its path.
 fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{}.json", model.replace(':', "_")));
     let place = path.to_str().expect("a path");
     let mut model = model.to_owned();
-    for (prefix, text) in [("forms", FORMS), ("brackets", BRACKETS)] {
+    for (prefix, text) in [("forms", FORMS), ("brackets", BRACKETS), ("leaves", LEAVES)] {
         let texts = folder.join(format!("{prefix}.dal"));
         std::fs::write(&texts, text).expect("a file");
         if let Some((_, name)) = model.split_once(&format!("{prefix}:")) {
@@ -306,6 +347,11 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "brackets:belt",
         "brackets:table",
         "brackets:disk",
+        "leaves:hoop",
+        "leaves:slope",
+        "leaves:step",
+        "leaves:speed",
+        "leaves:free",
     ];
     let names = names.iter().chain(&others);
     let files: Vec<PathBuf> = names.map(|name| certificate(name, &folder)).collect();
@@ -426,6 +472,32 @@ fn a_certificate_that_was_tampered_with_fails() {
             "brackets:disk",
             "/0/content/claims/0/values/0",
             json!("dot(phi)^2"),
+        ),
+        // Constraints that are not integrable with time, or in space; a step across leaves, a form and a force.
+        (
+            "leaves:hoop",
+            "/0/content/constraints/0/affine",
+            json!("-2*t - x/1000000000"),
+        ),
+        (
+            "leaves:slope",
+            "/0/content/constraints/0/form/0",
+            json!("-x*exp(x*y)*(1 + y/1000000000)"),
+        ),
+        (
+            "leaves:step",
+            "/0/content/surfaces/0/transition/state/q/2",
+            json!("x - y + dot(x)/1000000000"),
+        ),
+        (
+            "leaves:speed",
+            "/0/content/claims/0/terms/0/differentials/0",
+            json!("dot(x)*exp(-y/4*1000000001/1000000000)"),
+        ),
+        (
+            "leaves:free",
+            "/0/content/motion/potential",
+            json!("y/1000000000"),
         ),
     ];
     for (model, place, value) in cases {

@@ -15,11 +15,14 @@ use super::collision::{AtImpact, with_difference};
 use super::dynamics::{Dynamics, Number};
 use super::examine::explicit;
 use super::expansion::{
-    CHANCE, Expansions, Part, Products, Tangents, accelerations, constants, inner, written_out,
+    CHANCE, Expansions, Part, Products, Tangents, accelerations, constants, inner, weight,
+    written_out,
 };
 use super::hybrid::Surroundings;
+use super::invariant::Stated;
 use super::passage::{Passage, Velocities};
 use super::side::{imported, named_in, velocities_of};
+use super::symplectic::symplectic_form;
 use super::wall::Wall;
 use crate::mechanics::derive;
 use crate::model::{ExteriorForm, Model};
@@ -38,6 +41,15 @@ struct Behind {
 /// The products of a form after and before, and the motion after.
 type Sides<S> = ([Products<S>; 2], Vec<S>);
 
+/// Tangent vectors before a surface and what becomes of them, with the values of both sides.
+struct Carry<S> {
+    values: Vec<S>,
+    vectors: Vec<Vec<S>>,
+    behind: Vec<S>,
+    carried: Vec<Vec<S>>,
+    outgoing: Vec<S>,
+}
+
 /// A form at a surface.
 pub(super) struct Carried<'c> {
     wall: &'c Wall,
@@ -50,6 +62,8 @@ pub(super) struct Carried<'c> {
     rates: Option<Vec<ExprId>>,
     positions: Vec<ExprId>,
     behind: Behind,
+    /// The seed of weights if leaves behind it are asked for, not the form.
+    leaves: Option<u64>,
     pub(super) part: Part,
     pub(super) shown: String,
 }
@@ -62,11 +76,11 @@ impl<'c> Carried<'c> {
     pub(super) fn of(
         model: &mut Model,
         around: &Surroundings<'_>,
-        (form, named): (&'c ExteriorForm, &ExteriorForm),
+        (form, stated): (&'c ExteriorForm, Stated<'_>),
         tangents: &'c Tangents,
         (wall, entered): (&'c Wall, Option<&Model>),
     ) -> Result<Self, String> {
-        let behind = Behind::of(model, around, named, wall, entered)
+        let behind = Behind::of(model, around, stated, wall, entered)
             .ok_or("the form is not known behind it")?;
         let positions = positions(model, wall);
         let mut expansions = Expansions::of(model);
@@ -89,6 +103,7 @@ impl<'c> Carried<'c> {
             rates: model.field.clone(),
             positions,
             behind,
+            leaves: None,
             part: Part::All(0),
             shown: String::new(),
         };
@@ -196,12 +211,8 @@ impl<'c> Carried<'c> {
         values
     }
 
-    /// The products that the form is the sum of, after and before, and the motion after.
-    fn products<P: ExpansionPoint>(
-        &self,
-        model: &Model,
-        point: &mut P,
-    ) -> Option<Sides<Number<P>>> {
+    /// What the motion through the surface makes of the tangent vectors.
+    fn carry<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Carry<Number<P>>> {
         let field = point.field();
         let incoming = self.motion_before(model, point)?;
         let roots: Vec<ExprId> = self.expansions.roots().collect();
@@ -232,7 +243,30 @@ impl<'c> Carried<'c> {
                 .map(|(pushed, (to, by))| field.add(pushed, field.mul(share, field.sub(*to, *by))));
             turned.collect()
         });
-        let carried: Vec<Vec<Number<P>>> = carried.collect();
+        let carried = carried.collect();
+        Some(Carry {
+            values,
+            vectors,
+            behind,
+            carried,
+            outgoing,
+        })
+    }
+
+    /// The products that the form is the sum of, after and before, and the motion after.
+    fn products<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<Sides<Number<P>>> {
+        let field = point.field();
+        let Carry {
+            values,
+            vectors,
+            behind,
+            carried,
+            outgoing,
+        } = self.carry(model, point)?;
         let mut after = Products::new();
         for (coefficient, differentials) in &self.behind.terms {
             let row = |slopes: &Vec<ExprId>| {
@@ -254,6 +288,35 @@ impl<'c> Carried<'c> {
             before.push(coefficient, term.differentials.iter().map(row).collect());
         }
         Some(([after, before], outgoing))
+    }
+
+    /// `eta^a(v+)` of the constraints behind the surface, which is 0 on vectors along their leaves, with random weights.
+    fn crossings<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        seed: u64,
+    ) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let carry = self.carry(model, point)?;
+        let n = carry.carried.first()?.len() / 2;
+        let mut found = Vec::new();
+        for vector in &carry.carried {
+            for row in &self.behind.equations[0] {
+                let row = row.iter().map(|id| carry.behind[id.index()]);
+                let weight = field.integer(weight(seed, found.len() as u64));
+                found.push(field.mul(weight, inner(field, row, &vector[..n])));
+            }
+        }
+        Some(found)
+    }
+
+    /// The question whether vectors leave the leaves of the constraints behind the surface.
+    pub(super) fn across_leaves(self, seed: u64) -> Self {
+        Self {
+            leaves: Some(seed),
+            ..self
+        }
     }
 
     fn sizes(&self) -> (usize, usize) {
@@ -299,7 +362,7 @@ impl Behind {
     fn of(
         model: &mut Model,
         around: &Surroundings<'_>,
-        form: &ExteriorForm,
+        stated: Stated<'_>,
         wall: &Wall,
         entered: Option<&Model>,
     ) -> Option<Self> {
@@ -309,7 +372,13 @@ impl Behind {
             None => around.derivation,
         };
         let dynamics = Dynamics::of(&mut there, derivation);
-        let mut form = written_out(form, |id| named_in(model, &mut there, id))?;
+        let mut form = match stated.is_symplectic {
+            true => {
+                let (form, _) = symplectic_form(&mut there);
+                explicit_form(&mut there, &form)
+            }
+            false => written_out(stated.form, |id| named_in(model, &mut there, id))?,
+        };
         if let Some(rates) = there.field.clone() {
             form = with_rates(&mut there, form, &rates);
         }
@@ -441,6 +510,9 @@ impl AtImpact for Carried<'_> {
         _: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
         let field = point.field();
+        if let Some(seed) = self.leaves {
+            return self.crossings(model, point, seed);
+        }
         let ([after, before], _) = self.products(model, point)?;
         let after = after.total(field, &self.part, self.sizes())?;
         let before = before.total(field, &self.part, self.sizes())?;
@@ -448,6 +520,11 @@ impl AtImpact for Carried<'_> {
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, _: &[f64]) -> Option<f64> {
+        if self.leaves.is_some() {
+            let carry = self.carry(model, point)?;
+            let size = |vector: &Vec<f64>| vector.iter().map(|entry| entry.abs()).sum::<f64>();
+            return Some(carry.carried.iter().map(size).sum::<f64>() / CHANCE);
+        }
         let ([after, before], outgoing) = self.products(model, point)?;
         if !self.goes_on(model, point, &outgoing)? {
             return None;
@@ -460,6 +537,9 @@ impl AtImpact for Carried<'_> {
     }
 
     fn shown(&self, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
+        if self.leaves.is_some() {
+            return vec![(self.shown.clone(), sum)];
+        }
         let names = ["after", "before"].map(|when| format!("{} {when}", self.shown));
         with_difference(names, [terms[0], -terms[1]], sum)
     }

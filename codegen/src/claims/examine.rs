@@ -76,10 +76,11 @@ pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model
     Examined { findings, volume }
 }
 
-/// The verdicts on claims beside constraints that are not linear in the velocities: quantities are examined.
+/// The verdicts on claims beside constraints that are not linear in the velocities: quantities and forms are examined.
 fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim]) -> Vec<Finding> {
     let seed = finding::seed_of(&model.snake_name);
-    let parts = Dynamics::of(model, derivation).on_branches(model, derivation);
+    let whole = Dynamics::of(model, derivation);
+    let parts = whole.clone().on_branches(model, derivation);
     let parts = parts.unwrap_or_default();
     let verdict = |claim: &Claim| match &claim.statement {
         Statement::Conserved {
@@ -90,6 +91,24 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
             let written = claim.text.split_once(": ").map_or("", |(_, value)| value);
             let value = explicit(model, *value);
             conserved::check_conserved(model, &parts, (value, written), *holds, seed)
+        }
+        Statement::Symplectic | Statement::Invariant(_) => {
+            let around = Surroundings {
+                derivation,
+                dynamics: &whole,
+                others: &[],
+                seed,
+            };
+            let (form, written) = match &claim.statement {
+                Statement::Invariant(form) => {
+                    let written = claim.text.trim_start_matches("invariant: ");
+                    (form.clone(), written.to_owned())
+                }
+                _ => symplectic::symplectic_form(model),
+            };
+            // No other mode is looked at.
+            let stated = symplectic::stated(&form, &written);
+            invariant::check_on_parts(model, &around, &parts, stated)
         }
         _ => Verdict::Undecided(Undecided::Nonlinear.to_string()),
     };

@@ -13,9 +13,11 @@ use dalembert_expr::{
 
 use super::dynamics::{Dynamics, Number};
 use super::frame::choose_dependent;
+use super::hybrid::Surroundings;
 use super::linear::{Matrix, solve};
 use super::minors::determinant;
 use super::sample::{ATTEMPTS, state_on_d};
+use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
 /// Components of a form beyond which it is not examined, times the products in the determinant of one.
@@ -126,6 +128,8 @@ pub(super) struct Tangents {
     /// The number of coordinates.
     coordinates: usize,
     is_first_order: bool,
+    /// True if vectors stay on the leaves of integrable constraints: `eta^a(v) = 0` for their positions `v`.
+    pub(super) is_along_leaves: bool,
 }
 
 impl Tangents {
@@ -146,22 +150,64 @@ impl Tangents {
         let is_first_order = model.is_first_order();
         let dependent = match is_first_order || model.constraints.is_empty() {
             true => Vec::new(),
-            false => (0..ATTEMPTS).find_map(|attempt| dependent(model, dynamics, attempt))?,
+            false => (0..ATTEMPTS).find_map(|attempt| {
+                let (_, mut point) = state_on_d(model, dynamics, &dynamics.roots(), attempt)?;
+                dependent(model, dynamics, &mut point)
+            })?,
         };
         Some(Self {
             residuals,
             dependent,
             coordinates: model.coordinates.len(),
             is_first_order,
+            is_along_leaves: false,
         })
+    }
+
+    /// The same with velocities that follow from the others at a wall, where others may than elsewhere.
+    pub(super) fn at_wall(&self, model: &Model, around: &Surroundings<'_>, wall: &Wall) -> Self {
+        if self.dependent.is_empty() {
+            return self.clone();
+        }
+        let found = (0..ATTEMPTS).find_map(|attempt| {
+            let roots = around.dynamics.roots();
+            let (_, mut point): (_, RealPoint) =
+                wall.incoming(model, around.dynamics, attempt, roots)?;
+            dependent(model, around.dynamics, &mut point)
+        });
+        Self {
+            dependent: found.unwrap_or_else(|| self.dependent.clone()),
+            ..self.clone()
+        }
+    }
+
+    /// Those of the leaves of integrable constraints: positions depend as velocities do.
+    pub(super) fn along_leaves(&self) -> Self {
+        Self {
+            is_along_leaves: true,
+            ..self.clone()
+        }
+    }
+
+    /// The states that they belong to, in words that follow a form.
+    pub(super) fn place(&self) -> &'static str {
+        match self.is_along_leaves {
+            true => " on the leaves of the constraints",
+            false => "",
+        }
     }
 
     /// The dimension of the states.
     pub(super) fn dimension(&self) -> usize {
         match self.is_first_order {
             true => self.coordinates,
-            false => 2 * self.coordinates - self.dependent.len(),
+            false => self.positions().count() + self.coordinates - self.dependent.len(),
         }
+    }
+
+    /// Positions that are free.
+    fn positions(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.coordinates).filter(|i| !self.is_along_leaves || !self.dependent.contains(i))
     }
 
     fn independent(&self) -> impl Iterator<Item = usize> + '_ {
@@ -171,7 +217,8 @@ impl Tangents {
     /// Names of the vectors.
     pub(super) fn names(&self, model: &Model) -> Vec<String> {
         let name = |i: usize| &model.coordinates[i].name.display;
-        let positions = (0..self.coordinates).map(|i| format!("partial({})", name(i)));
+        let positions = self.positions();
+        let positions = positions.map(|i| format!("partial({})", name(i)));
         let velocities = self
             .independent()
             .map(|i| format!("partial(dot({}))", name(i)));
@@ -187,14 +234,43 @@ impl Tangents {
     ) -> Option<Vec<Vec<A::Scalar>>> {
         let n = self.coordinates;
         let mut vectors = Vec::new();
-        for place in (0..n).chain(self.independent().map(|i| n + i)) {
+        for place in self.positions().chain(self.independent().map(|i| n + i)) {
             let mut vector = vec![field.integer(0); 2 * n + 1];
             vector[place] = field.integer(1);
             vectors.push(vector);
         }
-        if self.dependent.is_empty() {
-            return Some(vectors);
+        if self.is_along_leaves {
+            let forms = |residual: ExprId, vector: &[A::Scalar]| {
+                let entries = expansions.slopes(residual)[n..].iter();
+                inner(
+                    field,
+                    entries.map(|entry| values[entry.index()]),
+                    &vector[..n],
+                )
+            };
+            self.complete(field, expansions, values, &mut vectors, 0, &forms)?;
         }
+        let along = |residual: ExprId, vector: &[A::Scalar]| {
+            expansions.along(field, values, residual, vector)
+        };
+        self.complete(field, expansions, values, &mut vectors, n, &along)?;
+        Some(vectors)
+    }
+
+    /// Sets the dependent positions or velocities of vectors, whose places begin at `first`, so that functions of residuals and vectors become 0.
+    fn complete<A: Arithmetic>(
+        &self,
+        field: A,
+        expansions: &Expansions,
+        values: &[A::Scalar],
+        vectors: &mut [Vec<A::Scalar>],
+        first: usize,
+        along: &dyn Fn(ExprId, &[A::Scalar]) -> A::Scalar,
+    ) -> Option<()> {
+        if self.dependent.is_empty() {
+            return Some(());
+        }
+        let n = self.coordinates;
         let space = JetSpace::new(0, 0, 1)?;
         let jets = Jets::new(field, &space);
         let minor: Matrix<A> = (self.residuals.iter())
@@ -205,28 +281,24 @@ impl Tangents {
             })
             .collect();
         let right = self.residuals.iter().map(|residual| {
-            let along = |vector: &Vec<A::Scalar>| {
-                jets.constant(expansions.along(field, values, *residual, vector))
-            };
-            vectors.iter().map(along).collect()
+            let value = |vector: &Vec<A::Scalar>| jets.constant(along(*residual, vector));
+            vectors.iter().map(value).collect()
         });
         let solved = solve(&jets, minor, right.collect())?.unknowns;
         for (j, row) in self.dependent.iter().zip(&solved) {
             for (vector, entry) in vectors.iter_mut().zip(row) {
-                vector[n + j] = field.neg(jets.value(entry));
+                vector[first + j] = field.neg(jets.value(entry));
             }
         }
-        Some(vectors)
+        Some(())
     }
 }
 
 /// Velocities that follow from the others at a real state.
-fn dependent(model: &Model, dynamics: &Dynamics, attempt: usize) -> Option<Vec<usize>> {
-    let (_, mut point) = state_on_d(model, dynamics, &dynamics.roots(), attempt)?;
+fn dependent(model: &Model, dynamics: &Dynamics, point: &mut RealPoint) -> Option<Vec<usize>> {
     let [forms, _] = dynamics.equations();
     let roots: Vec<ExprId> = forms.iter().flatten().copied().collect();
-    let values: Vec<f64> =
-        RealPoint::values(&mut point, &model.pool, &model.pool.reachable(&roots))?;
+    let values: Vec<f64> = RealPoint::values(point, &model.pool, &model.pool.reachable(&roots))?;
     let space = JetSpace::new(0, 0, 1)?;
     let jets = Jets::new(Reals, &space);
     let row = |row: &Vec<ExprId>| {
@@ -322,7 +394,7 @@ impl Products<f64> {
 pub(super) const CHANCE: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// A random weight below `2^60` (splitmix64).
-fn weight(seed: u64, index: u64) -> i64 {
+pub(super) fn weight(seed: u64, index: u64) -> i64 {
     let mut z = seed.wrapping_add((index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -9,6 +9,7 @@ use super::bounds::is_never_negative;
 use super::carried::{Carried, explicit_form};
 use super::collision::evidence_at_impact;
 use super::conserved::jump;
+use super::dynamics::Dynamics;
 use super::evidence::{Evidence, Vanishing, Wording, evidence};
 use super::expansion::{CHANCE, Part, Tangents, choices, is_too_large};
 use super::finding::{Certificate, Verdict, Witness};
@@ -25,6 +26,29 @@ use crate::model::{ExteriorForm, Law, Model};
 const STATES: usize = 12;
 const COMPONENTS: usize = 32;
 
+/// The reason for which nothing is known of resets beside such constraints.
+const AT_NONLINEAR: &str =
+    "resets beside constraints that are not linear in the velocities are not examined";
+
+/// A form as it is stated, with momenta that have names.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stated<'f> {
+    pub(super) form: &'f ExteriorForm,
+    pub(super) written: &'f str,
+    /// True if that of another mode is its symplectic form, not the one of the same names.
+    pub(super) is_symplectic: bool,
+}
+
+impl<'f> Stated<'f> {
+    fn named(form: &'f ExteriorForm, written: &'f str) -> Self {
+        Self {
+            form,
+            written,
+            is_symplectic: false,
+        }
+    }
+}
+
 /// The verdict on `invariant: form`.
 pub(super) fn check_invariant(
     model: &mut Model,
@@ -32,28 +56,99 @@ pub(super) fn check_invariant(
     form: &ExteriorForm,
     written: &str,
 ) -> Verdict {
-    let Some(tangents) = Tangents::of(model, around.dynamics) else {
-        return Verdict::Undecided(Undecided::Degenerate.to_string());
-    };
-    let dimension = tangents.dimension();
-    if is_too_large(dimension, form.degree) {
-        return Verdict::Undecided(format!(
-            "a form of degree {} on states of {dimension} dimensions has more components than are examined",
-            form.degree
-        ));
+    match Tangents::of(model, around.dynamics) {
+        Some(tangents) => check_on(model, around, &tangents, Stated::named(form, written)),
+        None => Verdict::Undecided(Undecided::Degenerate.to_string()),
+    }
+}
+
+/// The verdict beside constraints that are not linear in the velocities, on each part of D.
+pub(super) fn check_on_parts(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    parts: &[Dynamics],
+    stated: Stated<'_>,
+) -> Verdict {
+    let Stated { form, written, .. } = stated;
+    if parts.is_empty() {
+        return Verdict::Undecided(Undecided::Nonlinear.to_string());
     }
     let explicit = explicit_form(model, form);
-    if let Some(verdict) = vanishes(model, around, &tangents, (&explicit, written)) {
-        return verdict;
+    let shown = format!("the motion keeps `{written}`");
+    let mut together = Together::of(Certificate::without_chance(shown, around.seed));
+    let mut nothing = Vec::new();
+    for dynamics in parts {
+        let around = Surroundings {
+            dynamics,
+            ..*around
+        };
+        let Some(tangents) = Tangents::of(model, dynamics) else {
+            return Verdict::Undecided(Undecided::Degenerate.to_string());
+        };
+        if let Some(open) = too_large(&tangents, form) {
+            return open;
+        }
+        nothing.extend(vanishes(model, &around, &tangents, (&explicit, written)));
+        if let Some(refuted) = together.add(check_kept(model, &around, &tangents, stated)) {
+            return refuted;
+        }
     }
-    let motion = kept_by_motion(model, around, &tangents, (&explicit, written));
+    // A form that is 0 on one part of D alone says something of the others.
+    match nothing.len() == parts.len() {
+        true => nothing.swap_remove(0),
+        false => together.verdict(),
+    }
+}
+
+/// The verdict on a form with too many components.
+fn too_large(tangents: &Tangents, form: &ExteriorForm) -> Option<Verdict> {
+    let (dimension, degree) = (tangents.dimension(), form.degree);
+    is_too_large(dimension, degree).then(|| {
+        Verdict::Undecided(format!(
+            "a form of degree {degree} on states of {dimension} dimensions has more components than are examined",
+        ))
+    })
+}
+
+/// The verdict on a form on these vectors.
+pub(super) fn check_on(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    stated: Stated<'_>,
+) -> Verdict {
+    let Stated { form, written, .. } = stated;
+    if let Some(open) = too_large(tangents, form) {
+        return open;
+    }
+    let explicit = explicit_form(model, form);
+    match vanishes(model, around, tangents, (&explicit, written)) {
+        Some(verdict) => verdict,
+        None => check_kept(model, around, tangents, stated),
+    }
+}
+
+/// The verdict on motion and surfaces, of a form that may be 0.
+fn check_kept(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    stated: Stated<'_>,
+) -> Verdict {
+    let Stated { form, written, .. } = stated;
+    let explicit = explicit_form(model, form);
+    let motion = kept_by_motion(model, around, tangents, (&explicit, written));
     let mut together = match motion {
         Verdict::Proved(certificate) => Together::of(certificate),
         other => return other,
     };
     for surface in 0..model.surfaces.len() {
         let name = model.surfaces[surface].name.display.clone();
-        let verdict = match kept_at_surface(model, around, &tangents, (form, written), surface) {
+        if model.is_nonlinear() {
+            let text = format!("what `{name}` does is not known: {AT_NONLINEAR}");
+            return Verdict::Undecided(text);
+        }
+        let verdict = match kept_at_surface(model, around, tangents, stated, surface) {
             Verdict::Undecided(reason) => {
                 Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
             }
@@ -100,7 +195,7 @@ fn vanishes(
 }
 
 /// The verdict on the motion between surfaces.
-fn kept_by_motion(
+pub(super) fn kept_by_motion(
     model: &mut Model,
     around: &Surroundings<'_>,
     tangents: &Tangents,
@@ -108,9 +203,10 @@ fn kept_by_motion(
 ) -> Verdict {
     let names = tangents.names(model);
     let mut question = Lie::of(model, around.dynamics, tangents, form);
+    let place = tangents.place();
     let wording = || Wording {
-        vanishes: format!("the motion keeps `{written}`"),
-        differs: format!("the motion changes `{written}`"),
+        vanishes: format!("the motion keeps `{written}`{place}"),
+        differs: format!("the motion changes `{written}`{place}"),
         help: ["leave it out".to_owned(), String::new()],
     };
     let ranked = ranked_at_states(model, &question);
@@ -155,7 +251,7 @@ pub(super) fn kept_at_surface(
     model: &mut Model,
     around: &Surroundings<'_>,
     tangents: &Tangents,
-    (form, written): (&ExteriorForm, &str),
+    stated: Stated<'_>,
     surface: usize,
 ) -> Verdict {
     let declared = &model.surfaces[surface];
@@ -177,12 +273,12 @@ pub(super) fn kept_at_surface(
         }
         _ => {}
     }
-    let form = (form, written);
-    let mut verdict = kept_at_wall(model, around, tangents, form, (surface, &wall, entered));
+    let tangents = &tangents.at_wall(model, around, &wall);
+    let mut verdict = kept_at_wall(model, around, tangents, stated, (surface, &wall, entered));
     let is_refracted = wall.passage.as_ref().is_some_and(Passage::is_refracted);
     if let (true, Verdict::Proved(all)) = (is_refracted, &mut verdict) {
         let wall = Wall::reflecting(model, around.derivation, surface);
-        match kept_at_wall(model, around, tangents, form, (surface, &wall, None)) {
+        match kept_at_wall(model, around, tangents, stated, (surface, &wall, None)) {
             Verdict::Proved(part) => all.rest_on(&part),
             Verdict::Undecided(reason) => return Verdict::Undecided(reason),
             // It is not known where there is a reflection.
@@ -192,7 +288,7 @@ pub(super) fn kept_at_surface(
             }
         }
     }
-    let is_volume = form.0.degree == tangents.dimension();
+    let is_volume = stated.form.degree == tangents.dimension();
     let is_sure =
         is_volume && loses_volumes(model, surface) && matches!(verdict, Verdict::Refuted(_));
     if may_hold(model, surface) && !is_sure {
@@ -247,20 +343,22 @@ fn kept_at_wall(
     model: &mut Model,
     around: &Surroundings<'_>,
     tangents: &Tangents,
-    (form, written): (&ExteriorForm, &str),
+    stated: Stated<'_>,
     (surface, wall, entered): (usize, &Wall, Option<&Model>),
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
+    let Stated { form, written, .. } = stated;
     let explicit = explicit_form(model, form);
-    let forms = (&explicit, form);
+    let forms = (&explicit, stated);
     let mut question = match Carried::of(model, around, forms, tangents, (wall, entered)) {
         Ok(question) => question,
         Err(reason) => return Verdict::Undecided(reason),
     };
     let names = tangents.names(model);
+    let place = tangents.place();
     let wording = || Wording {
-        vanishes: format!("`{name}` keeps `{written}`"),
-        differs: format!("`{name}` changes `{written}`"),
+        vanishes: format!("`{name}` keeps `{written}`{place}"),
+        differs: format!("`{name}` changes `{written}`{place}"),
         help: ["leave it out".to_owned(), String::new()],
     };
     let sizes = (tangents.dimension(), form.degree);

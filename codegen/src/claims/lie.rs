@@ -3,12 +3,14 @@
 //!
 //! The motion is that of the whole space: it keeps `eta^a(qdot) + eta^a_0`, so that derivatives and restriction to D commute.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series};
+use dalembert_expr::{
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Reals, Series, SymbolId,
+};
 
 use super::dynamics::{Dynamics, Number};
-use super::evidence::Vanishing;
+use super::evidence::{Vanishing, in_arguments};
 use super::expansion::{Expansions, Part, Products, Tangents, accelerations, inner};
-use crate::model::{ExteriorForm, Model};
+use crate::model::{ExteriorForm, Model, Wedge};
 
 /// A question about a form at all states.
 pub(super) struct Lie<'l> {
@@ -151,6 +153,47 @@ impl<'l> Lie<'l> {
         Some(products)
     }
 
+    /// Size of what the derivative adds up at a real state: rates of large functions may cancel.
+    fn ingredients(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let values = RealPoint::values(point, &model.pool, &model.pool.reachable(&self.roots()))?;
+        let expansions = &self.expansions;
+        let space = JetSpace::new(expansions.size(), 1, usize::MAX)?;
+        let jets = Jets::new(Reals, &space);
+        let motion = self.motion(model, point, &jets, &values)?;
+        let vectors = self.tangents.vectors(Reals, expansions, &values)?;
+        let length = |row: &[f64]| row.iter().map(|entry| entry.abs()).sum::<f64>();
+        let longest = vectors.iter().map(|vector| length(vector));
+        let longest = longest.fold(1.0, f64::max);
+        let slopes = |id: ExprId| expansions.slopes(id).iter();
+        let rate = |id: ExprId| -> f64 {
+            let pairs = slopes(id).zip(&motion);
+            let pairs =
+                pairs.map(|(slope, speed)| values[slope.index()].abs() * jets.value(speed).abs());
+            pairs.sum()
+        };
+        let turned = |id: ExprId| -> f64 {
+            let pairs = slopes(id).zip(&motion);
+            let pairs = pairs.map(|(slope, speed)| {
+                let slope = expansions.series(&jets, &values, *slope);
+                jets.value(&slope).abs() * length(speed) + length(&slope) * jets.value(speed).abs()
+            });
+            pairs.sum()
+        };
+        let row = |id: &ExprId| {
+            let along = slopes(*id).map(|slope| values[slope.index()].abs());
+            (along.sum::<f64>() * longest).max(1.0)
+        };
+        let term = |term: &Wedge| {
+            let rows: Vec<f64> = term.differentials.iter().map(row).collect();
+            let whole: f64 = rows.iter().product();
+            let places = term.differentials.iter().zip(&rows);
+            let carried: f64 = places.map(|(id, row)| turned(*id) * longest / row).sum();
+            let coefficient = expansions.value(&values, term.coefficient).abs();
+            whole * (coefficient * carried + rate(term.coefficient))
+        };
+        Some(self.form.terms.iter().map(term).sum())
+    }
+
     /// The dimension of the states and the degree.
     pub(super) fn sizes(&self) -> (usize, usize) {
         (self.tangents.dimension(), self.form.degree)
@@ -159,7 +202,14 @@ impl<'l> Lie<'l> {
 
 impl Vanishing for Lie<'_> {
     fn roots(&self) -> Vec<ExprId> {
-        self.expansions.roots().collect()
+        let mut roots: Vec<ExprId> = self.expansions.roots().collect();
+        roots.extend(self.dynamics.roots());
+        roots
+    }
+
+    fn hides_relations(&self, model: &Model) -> bool {
+        let solved: Vec<SymbolId> = self.dynamics.roots_of_branches().collect();
+        in_arguments(&model.pool, &self.roots(), &solved)
     }
 
     fn dynamics(&self) -> Option<&Dynamics> {
@@ -173,7 +223,10 @@ impl Vanishing for Lie<'_> {
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
-        let size = self.products(model, point)?.size();
+        let mut size = self.products(model, point)?.size();
+        if !self.is_form {
+            size = size.max(self.ingredients(model, point)?);
+        }
         Some(match self.part {
             Part::One(_) => size,
             Part::All(_) => size / super::expansion::CHANCE,

@@ -19,7 +19,7 @@
 //! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
-//! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs` | forms on vectors of one time, along the motion and through surfaces |
+//! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of one time, along the motion and through surfaces; on leaves of integrable constraints |
 //! | `involution.rs`, `integrable.rs` | brackets of functions; conserved functions that are enough of them |
 //! | `together.rs` | several proofs that are needed together |
 //! | `corollaries.rs` | consequences of a volume that is kept |
@@ -75,6 +75,7 @@ mod jumps;
 mod kept;
 mod landing;
 mod leaf;
+mod leaves;
 mod lie;
 mod linear;
 mod minors;

@@ -7,11 +7,12 @@
 //!
 //! Without constraints the motion keeps the form iff `F_i dq^i` is closed. With them the form on D is not kept where
 //! `lambda_a deta^a(X, Y)` differs from 0 for two fields of D: `deta^a(X, Y)` is the value of `d(lambda_a eta^a)` on their lifts, as
-//! both are annihilated by `eta^a`. Where that is 0 the form on all states of D decides, as `invariant` does; where D has leaves it can prove the
-//! claim alone. An impulse along `dh` keeps the form iff it keeps the volume.
+//! both are annihilated by `eta^a`. Where that is 0 the form on all states of D decides, as `invariant` does. If it is not kept there and the
+//! constraints are integrable, the form on their leaves decides, see `leaves.rs`. An impulse along `dh` keeps the form iff it keeps the volume.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
 
+use super::carried::explicit_form;
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
@@ -19,17 +20,18 @@ use super::exactness::decide_local;
 use super::expansion::Tangents;
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Surroundings, effects};
-use super::invariant::{check_invariant, kept_at_surface};
+use super::invariant::{Stated, check_on, kept_at_surface, kept_by_motion};
+use super::leaves::{are_integrable, check_behind};
 use super::passage::{Passage, Velocities};
 use super::problem::Problem;
 use super::side::Side;
+use super::together::Together;
 use super::undecided::Undecided;
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
 const KEPT: &str = "the motion of a Lagrangian without constraints keeps the symplectic form";
-const LEAVES: &str =
-    "the form on D may be kept on the leaves of integrable constraints, which are not examined";
+const LEAVES: &str = "some constraints are integrable and some are not: the form on all states of D changes, and on the leaves of the integrable ones it is not examined";
 
 /// The verdict on `symplectic`.
 pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
@@ -58,14 +60,19 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
             // What changes volumes does not keep the form.
             true if effect.keeps() => map_keeps(model, around, surface),
             _ => match effect.verdict {
-                Verdict::Refuted(witness) => Verdict::Refuted(Witness {
-                    reason: format!(
-                        "`{name}` does not keep the symplectic form, as volumes are not kept: it {}",
-                        effect.text
-                    ),
-                    help: "leave it out".to_owned(),
-                    ..witness
-                }),
+                Verdict::Refuted(witness) => changed_with_volumes(
+                    model,
+                    around,
+                    surface,
+                    Witness {
+                        reason: format!(
+                            "`{name}` does not keep the symplectic form, as volumes are not kept: it {}",
+                            effect.text
+                        ),
+                        help: "leave it out".to_owned(),
+                        ..witness
+                    },
+                ),
                 other => other,
             },
         };
@@ -84,6 +91,22 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
         Some(reason) => Verdict::Undecided(reason),
         None => Verdict::Proved(all),
     }
+}
+
+/// The refutation at a surface that does not keep volumes; at a state where the form itself shows it, if volumes need none.
+fn changed_with_volumes(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    surface: usize,
+    witness: Witness,
+) -> Verdict {
+    if witness.sample.is_none()
+        && let Verdict::Refuted(mut shown) = map_keeps(model, around, surface)
+    {
+        shown.reason = format!("{}; {}", shown.reason, witness.reason);
+        return Verdict::Refuted(shown);
+    }
+    Verdict::Refuted(witness)
 }
 
 /// The verdict on a motion with forces: `F_i dq^i` is a closed form of the positions.
@@ -133,17 +156,72 @@ fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: Stri
     evidence(model, &question, around.seed).verdict(true, wording, around.seed)
 }
 
-/// The verdict on constraints: that on two fields of D, else that on all states of D.
+/// The verdict on constraints: that on two fields of D, that on all states of D, else that on the leaves of D.
 fn on_constraints(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     if let Some(refuted) = changed_on_fields(model, around) {
         return refuted;
     }
-    let (form, written) = symplectic_form(model);
-    match check_invariant(model, around, &form, &written) {
-        // A vector off the leaves of integrable constraints says nothing of them.
-        Verdict::Refuted(_) if !connects(model, around) => Verdict::Undecided(LEAVES.to_owned()),
-        decided => decided,
+    let Some(tangents) = Tangents::of(model, around.dynamics) else {
+        return Verdict::Undecided(Undecided::Degenerate.to_string());
+    };
+    let (form, written) = &symplectic_form(model);
+    let form = stated(form, written);
+    let on_d = check_on(model, around, &tangents, form);
+    if matches!(on_d, Verdict::Proved(_)) {
+        return with_behind(model, around, &tangents, form, on_d);
     }
+    match are_integrable(model, around.dynamics, around.seed) {
+        Some(integrable) => {
+            let tangents = tangents.along_leaves();
+            let mut verdict = check_on(model, around, &tangents, form);
+            if let Verdict::Proved(all) = &mut verdict {
+                all.rest_on(&integrable);
+                all.shown = format!("{}, and {}", integrable.shown, all.shown);
+            }
+            with_behind(model, around, &tangents, form, verdict)
+        }
+        // A vector off the leaves of integrable constraints says nothing of them.
+        None if matches!(on_d, Verdict::Refuted(_)) && !connects(model, around) => {
+            Verdict::Undecided(LEAVES.to_owned())
+        }
+        None => on_d,
+    }
+}
+
+/// The verdict with that on what surfaces carry vectors to.
+fn with_behind(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    form: Stated<'_>,
+    verdict: Verdict,
+) -> Verdict {
+    let Verdict::Proved(all) = verdict else {
+        return verdict;
+    };
+    let explicit = explicit_form(model, form.form);
+    let mut together = Together::of(all);
+    for surface in 0..model.surfaces.len() {
+        let forms = (&explicit, form);
+        let keeps_all = |there: &mut Model, dynamics: &Dynamics| {
+            let Some(tangents) = Tangents::of(there, dynamics) else {
+                return false;
+            };
+            let around = Surroundings {
+                dynamics,
+                ..*around
+            };
+            let (form, written) = symplectic_form(there);
+            let form = explicit_form(there, &form);
+            let kept = kept_by_motion(there, &around, &tangents, (&form, &written));
+            matches!(kept, Verdict::Proved(_))
+        };
+        let behind = check_behind(model, around, tangents, forms, surface, keeps_all);
+        if let Some(refuted) = together.add(behind) {
+            return refuted;
+        }
+    }
+    together.verdict()
 }
 
 /// True if brackets of fields of D span all directions: there are no leaves.
@@ -211,12 +289,21 @@ fn map_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Ve
     let Some(tangents) = Tangents::of(model, around.dynamics) else {
         return Verdict::Undecided(Undecided::Degenerate.to_string());
     };
-    let (form, written) = symplectic_form(model);
-    kept_at_surface(model, around, &tangents, (&form, &written), surface)
+    let (form, written) = &symplectic_form(model);
+    kept_at_surface(model, around, &tangents, stated(form, written), surface)
+}
+
+/// The symplectic form as one that is stated.
+pub(super) fn stated<'f>(form: &'f ExteriorForm, written: &'f str) -> Stated<'f> {
+    Stated {
+        form,
+        written,
+        is_symplectic: true,
+    }
 }
 
 /// `dp_i ^ dq^i`, and its text.
-fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
+pub(super) fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
     let mut form = ExteriorForm::zero(2);
     let mut texts = Vec::new();
     for i in 0..model.coordinates.len() {

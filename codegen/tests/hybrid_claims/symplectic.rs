@@ -1,6 +1,6 @@
 //! `symplectic`.
 
-use crate::Expected::{False, Open, Shown, True};
+use crate::Expected::{Barred, False, Open, Shown, True};
 use crate::check;
 use crate::reduction::BALL;
 use crate::systems::{ball, disk, grooves, media, particle, spokes};
@@ -128,9 +128,165 @@ fn constraints_without_forces_keep_the_form_on_d() {
     check(slope, CLAIM, False("lambda_a deta^a(X, Y)"));
 }
 
+/// A bead on a wire that is a circle, or grows.
+fn bead(size: &str, rest: &str) -> String {
+    format!(
+        "pub Bead {{ coordinates {{ x; y; }} parameters {{ c > 0 = 1/2; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        constraints {{ wire: x^2 + y^2 = {size}; }} {rest} CLAIM }}"
+    )
+}
+
+/// A particle with one constraint.
+fn held(constraint: &str, rest: &str) -> String {
+    format!(
+        "pub Held {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - y*z^2;
+        constraints {{ held: {constraint}; }} {rest} CLAIM }}"
+    )
+}
+
+/// On a leaf the motion is that of its own Lagrangian.
 #[test]
-fn leaves_of_integrable_constraints_are_not_looked_at() {
-    let bead = "pub Bead { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
-        constraints { wire: x^2 + y^2 = 1; } CLAIM }";
-    check(bead, CLAIM, Open("leaves of integrable constraints"));
+fn integrable_constraints_keep_the_form_on_their_leaves() {
+    let wall = "impacts { wall: x >= 0; }";
+    for declaration in [
+        bead("1", ""),
+        bead("1", wall),
+        bead("1 + t^2", ""),
+        bead("1", "impacts { wall: x >= 0 => newton(1); }"),
+        bead("1", "forces { spring: -x*d(x); }"),
+        held("dot(z) = x*dot(x)", wall),
+        held("exp(x*y)*(dot(z) - x*dot(x)) = 0", ""),
+        held(
+            "dot(z) = 3",
+            "impacts { wall: x + z <= 3 + t => newton(1); }",
+        ),
+        // Integrable with time, and the force of a magnetic field.
+        held("dot(z) = t*dot(x) + x", ""),
+    ] {
+        check(&declaration, CLAIM, True);
+    }
+    // Neither is integrable without the other.
+    let both = "pub Both { coordinates { x; y; z; w; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2 - z*w;
+        constraints { slope: dot(z) = x*dot(y); stop: dot(y) = 0; } CLAIM }";
+    check(both, CLAIM, True);
+}
+
+#[test]
+fn leaves_are_not_kept_by_losses_forces_and_what_is_not_integrable() {
+    // On the circle the form on these vectors is -1 at x = 0, times the factor of the area.
+    let wall = |law: &str| bead("1", &format!("impacts {{ wall: x >= 0 => {law}; }}"));
+    let after = "the form on partial(x), partial(dot(x)) after";
+    check(&wall("newton(c)"), CLAIM, Shown(after, -0.25));
+    check(&wall("impact_plastic"), CLAIM, Shown(after, 0.0));
+    check(
+        &bead("1", "forces { drag: -c*dot(x)*d(x); }"),
+        CLAIM,
+        Shown("rate of the form on partial(x), partial(dot(x))", 0.5),
+    );
+    // Near misses: of the factor, of a force, of integrability in space and with time.
+    check(
+        &wall("newton(1 - 1e-9)"),
+        CLAIM,
+        Shown(after, -(1.0 - 1e-9_f64).powi(2)),
+    );
+    check(
+        &bead("1", "forces { drag: -1e-9*dot(x)*d(x); }"),
+        CLAIM,
+        Shown("rate of the form on partial(x), partial(dot(x))", 1e-9),
+    );
+    let slope = held("dot(z) = x*dot(x) + 1e-9*y*dot(x)", "");
+    check(&slope, CLAIM, False("lambda_a deta^a(X, Y)"));
+    let belt = held("dot(z) = 1e-9*y", "");
+    check(&belt, CLAIM, False("the motion changes"));
+    // An elastic impulse beside an affine constraint turns the rate of the gap into another one.
+    let turned = held("dot(z) = 3", "impacts { wall: x + z <= 3 + t; }");
+    check(&turned, CLAIM, Shown(after, 1.4));
+    // A reset that tears a leaf.
+    let torn = held(
+        "dot(z) = 0",
+        "impacts { wall: x >= 0 => reset { dot(x) = -dot(x); z = z + y; }; }",
+    );
+    check(&torn, CLAIM, False("`wall` changes"));
+}
+
+/// Of two modes each has its form: one behind a transition has the coordinates of its mode.
+#[test]
+fn transitions_lead_from_leaves_to_leaves() {
+    let step = |potential: &str, z: &str| {
+        format!(
+            "pub Step {{ coordinates {{ x; y; }} modes {{
+                near {{ lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints {{ groove: dot(y) = dot(x); }} CLAIM }}
+                far {{ coordinates {{ z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - {potential};
+                    constraints {{ groove: dot(y) = dot(x); shelf: dot(z) = 0; }} }} }}
+            transitions {{ go: near -> far when x <= 0 => reset {{ z = {z}; dot(z) = 0; }}; }} }}"
+        )
+    };
+    // Leaves of the groove have one value of x - y; without forces all states of D keep the form.
+    check(&step("x*z", "x - y"), CLAIM, True);
+    check(&step("0", "x + y"), CLAIM, True);
+    check(
+        &step("x*z", "dot(x)"),
+        CLAIM,
+        Open("across those of the constraints behind it"),
+    );
+    check(
+        &step("x*z", "x - y + 1e-9*dot(x)"),
+        CLAIM,
+        Open("across those"),
+    );
+    let mixed = "pub Mixed { coordinates { x; y; z; turn; } constraints { roll: dot(y) = x*dot(turn); shelf: dot(z) = 0; }
+        lagrangian = (dot(x)^2 + dot(z)^2 + (dot(y) - x*dot(turn))^2 + dot(turn)^2)/2 - z*x; CLAIM }";
+    check(
+        mixed,
+        CLAIM,
+        Open("some constraints are integrable and some are not"),
+    );
+}
+
+/// Along `dot(x)^2 + dot(y)^2 = v^2` the rate is `2 g dot(x)/v^2` on `partial(y)` and `partial(dot(x))`, from `lambda = m g dot(y)/(2 v^2)` and
+/// `-2 dot(y) dlambda - 2 lambda ddot(y)`.
+#[test]
+fn constraints_that_are_not_linear_change_the_form() {
+    let speed = |weight: &str, rest: &str| {
+        format!(
+            "pub Speed {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - {weight};
+            constraints {{ speed: dot(x)^2 + dot(y)^2 = 4; }} {rest} CLAIM }}"
+        )
+    };
+    let rate = "rate of the form on partial(y), partial(dot(x))";
+    let root = 55.0_f64.sqrt();
+    check(&speed("y", ""), CLAIM, Shown(rate, root / 8.0));
+    check(&speed("1e-9*y", ""), CLAIM, Shown(rate, 1e-9 * root / 8.0));
+    check(&speed("0", ""), CLAIM, True);
+    check(&speed("y", ""), "invariant: d(dot(x)*exp(-y/4))", True);
+    check(
+        &speed("y", ""),
+        "invariant: d(dot(x)*exp(-y/4*(1 + 1e-9)))",
+        False("the motion changes"),
+    );
+    check(
+        &speed("y", ""),
+        "invariant: d(dot(x)^2 + dot(y)^2)",
+        Barred("is 0 at all states"),
+    );
+    let wall = "impacts { wall: x >= 0 => reset { dot(x) = -dot(x); }; }";
+    check(
+        &speed("0", wall),
+        CLAIM,
+        Open("resets beside constraints that are not linear"),
+    );
+    // Both roots count: the form is 0 on one of them.
+    let two = "pub Two { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
+        constraints { speeds: (dot(x) - 1)*(dot(x) - 2) = 0; } CLAIM }";
+    check(two, "invariant: (dot(x) - 1)*d(y)^d(dot(y))", True);
+    check(
+        two,
+        "invariant: (dot(x) - 1)*d(y)",
+        False("the motion changes"),
+    );
+    // By hand: -2 dot(y) dlambda - 2 lambda with lambda = -m g/(2 (1 + k^2) dot(z)) = -0.08.
+    let machine = "pub Machine { coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - z;
+        constraints { machine: dot(x)^2 + dot(y)^2 = 4*dot(z)^2; } CLAIM }";
+    let rate = "rate of the form on partial(y), partial(dot(y))";
+    check(machine, CLAIM, Shown(rate, 0.1456));
 }

@@ -39,10 +39,15 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
         }
     }
     for claim in &spec.claims {
-        if !matches!(claim.statement, Statement::Conserved { .. }) {
-            let text = format!("{because}: only conserved quantities are claimed of it");
+        let is_examined = matches!(
+            claim.statement,
+            Statement::Conserved { .. } | Statement::Symplectic | Statement::Invariant(_)
+        );
+        if !is_examined {
+            let text = format!("{because}: only conserved quantities and forms are claimed of it");
             let at = spec.location(claim.item);
-            resolver.refuse::<()>(at, text, "claim `conserved: ..;` or nothing");
+            let help = "claim `conserved: ..;`, `invariant: ..;` or nothing";
+            resolver.refuse::<()>(at, text, help);
         }
     }
 }

@@ -1,0 +1,217 @@
+//! Leaves of integrable constraints: are there any, and do surfaces take vectors along them to such vectors?
+//!
+//! ```text
+//! w^a = eta^a + eta^a_0 dt      dw^a(X, Y) = 0 for all fields X, Y of Q x R that all w^a annihilate (Frobenius)
+//! ```
+//!
+//! A leaf at one time has the vectors with `eta^a(v) = 0`. The motion on it is that of the Lagrangian on the leaf, and keeps its symplectic form.
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
+
+use super::carried::Carried;
+use super::collision::evidence_at_impact;
+use super::dynamics::{Dynamics, Number};
+use super::evidence::{Vanishing, Wording, evidence};
+use super::expansion::{CHANCE, Tangents, weight};
+use super::finding::{Certificate, Verdict};
+use super::hybrid::Surroundings;
+use super::invariant::Stated;
+use super::side::Side;
+use super::wall::Wall;
+use crate::mechanics::derive;
+use crate::model::{ExteriorForm, Model};
+
+/// The proof that the constraints of a model are integrable together; `None` if none is found.
+pub(super) fn are_integrable(
+    model: &mut Model,
+    dynamics: &Dynamics,
+    seed: u64,
+) -> Option<Certificate> {
+    let curls = curls(model);
+    let side = Side::of(model);
+    let question = Involutive {
+        dynamics,
+        curls: &curls,
+        side: &side,
+        seed,
+    };
+    let wording = Wording {
+        vanishes: "the constraints are integrable".to_owned(),
+        ..Wording::default()
+    };
+    match evidence(model, &question, seed).verdict(true, wording, seed) {
+        Verdict::Proved(proof) => Some(Certificate {
+            error: proof.error + CHANCE,
+            ..proof
+        }),
+        _ => None,
+    }
+}
+
+/// `d_i w_j - d_j w_i` of each constraint, time after the coordinates.
+fn curls(model: &mut Model) -> Vec<Vec<Vec<ExprId>>> {
+    let mut variables: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
+    variables.push(model.time);
+    let constraints = model.constraints.clone();
+    let pool = &mut model.pool;
+    let forms = constraints.iter().map(|constraint| {
+        let form: Vec<ExprId> = constraint.expressions().collect();
+        let entry = |i: usize, j: usize, pool: &mut Pool| {
+            let [one, other] = [
+                pool.diff(form[j], variables[i]),
+                pool.diff(form[i], variables[j]),
+            ];
+            pool.sub(one, other)
+        };
+        let all = 0..form.len();
+        let rows = all
+            .clone()
+            .map(|i| all.clone().map(|j| entry(i, j, pool)).collect());
+        rows.collect()
+    });
+    forms.collect()
+}
+
+/// `dw^a` on pairs of fields that are annihilated, all with random weights.
+struct Involutive<'i> {
+    dynamics: &'i Dynamics,
+    curls: &'i [Vec<Vec<ExprId>>],
+    side: &'i Side,
+    seed: u64,
+}
+
+impl Involutive<'_> {
+    /// The values of each curl, on each pair of fields.
+    fn values<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let motion = self.dynamics.motion(&model.pool, point, None)?;
+        let values = point.values(&model.pool, &model.pool.reachable(&self.roots()))?;
+        let basis = self.side.chart(point, &values)?.basis;
+        let free = basis.first().map_or(0, Vec::len);
+        let mut fields: Vec<Vec<Number<P>>> = (0..free)
+            .map(|k| basis.iter().map(|row| row[k]).collect())
+            .collect();
+        fields
+            .iter_mut()
+            .for_each(|vector| vector.push(field.integer(0)));
+        let mut along = motion.qdot;
+        along.push(field.integer(1));
+        fields.push(along);
+        let mut found = Vec::new();
+        for curl in self.curls {
+            for (place, x) in fields.iter().enumerate() {
+                for y in &fields[..place] {
+                    let mut sum = field.integer(0);
+                    for (row, x) in curl.iter().zip(x) {
+                        for (entry, y) in row.iter().zip(y) {
+                            let product = field.mul(*x, *y);
+                            sum = field.add(sum, field.mul(values[entry.index()], product));
+                        }
+                    }
+                    found.push(sum);
+                }
+            }
+        }
+        Some(found)
+    }
+}
+
+impl Vanishing for Involutive<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let mut roots = self.dynamics.roots();
+        roots.extend(self.curls.iter().flatten().flatten());
+        roots.extend(self.side.roots());
+        roots
+    }
+
+    fn dynamics(&self) -> Option<&Dynamics> {
+        Some(self.dynamics)
+    }
+
+    fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>> {
+        let field = point.field();
+        let values = self.values(model, point)?;
+        let weighted = values
+            .into_iter()
+            .enumerate()
+            .map(|(index, value)| field.mul(field.integer(weight(self.seed, index as u64)), value));
+        Some(vec![
+            weighted.fold(field.integer(0), |sum, term| field.add(sum, term)),
+        ])
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
+        let order = model.pool.reachable(&self.roots());
+        let values = RealPoint::values(point, &model.pool, &order)?;
+        let entries = self.curls.iter().flatten().flatten();
+        let size: f64 = entries.map(|entry| values[entry.index()].abs()).sum();
+        Some((1.0 + size) / CHANCE)
+    }
+
+    fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
+        vec![("curls of the constraints".to_owned(), sum)]
+    }
+}
+
+/// The verdict on what a surface carries vectors to: where the constraints of the mode behind it are integrable, the motion there need keep the form on
+/// its leaves only.
+pub(super) fn check_behind(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    (form, stated): (&ExteriorForm, Stated<'_>),
+    surface: usize,
+    keeps_all: impl FnOnce(&mut Model, &Dynamics) -> bool,
+) -> Verdict {
+    let enters = model.surfaces[surface].transition.as_ref();
+    let enters = enters.map(|transition| transition.enters);
+    let entered = enters.and_then(|enters| around.others.get(enters)).copied();
+    let name = model.surfaces[surface].name.display.clone();
+    let shown = format!("`{name}` carries vectors along leaves to such vectors");
+    let nothing = Certificate::without_chance(shown.clone(), around.seed);
+    let is_needed = match entered {
+        Some(mode) => !mode.constraints.is_empty(),
+        None => tangents.is_along_leaves,
+    };
+    if !is_needed {
+        return Verdict::Proved(nothing);
+    }
+    let mut there = entered.unwrap_or(model).clone();
+    let derivation = derive(&mut there);
+    let dynamics = Dynamics::of(&mut there, &derivation);
+    if are_integrable(&mut there, &dynamics, around.seed).is_none() {
+        return Verdict::Proved(nothing);
+    }
+    let wall = Wall::of(model, around.derivation, surface, around.others);
+    let tangents = &tangents.at_wall(model, around, &wall);
+    let landing = match Carried::of(model, around, (form, stated), tangents, (&wall, entered)) {
+        Ok(question) => {
+            let question = question.across_leaves(around.seed);
+            let wording = Wording {
+                vanishes: shown,
+                ..Wording::default()
+            };
+            evidence_at_impact(model, &wall, around.dynamics, &question, around.seed).verdict(
+                true,
+                wording,
+                around.seed,
+            )
+        }
+        Err(reason) => Verdict::Undecided(reason),
+    };
+    match landing {
+        Verdict::Proved(proof) => Verdict::Proved(Certificate {
+            error: proof.error + CHANCE,
+            ..proof
+        }),
+        // Where the form is kept on all states there, leaves are of no interest.
+        _ if entered.is_some() && keeps_all(&mut there, &dynamics) => Verdict::Proved(nothing),
+        _ => Verdict::Undecided(format!(
+            "what `{name}` does is not known: it carries vectors along one leaf across those of the constraints behind it, and the motion there is known to keep the form along leaves only"
+        )),
+    }
+}
