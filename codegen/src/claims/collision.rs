@@ -168,6 +168,10 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         self.wall.is_met(model, &mut point).then_some(point)
     }
 
+    fn balance(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        self.question.shown(terms, 0.0)
+    }
+
     fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {
         self.question.shown(terms, sum)
     }

@@ -193,6 +193,24 @@ impl Vanishing for Rate<'_> {
         Some(rate_scale(&self.quantity, model, &motion, point))
     }
 
+    fn balance(&self, model: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        let names = model
+            .coordinates
+            .iter()
+            .map(|coordinate| &coordinate.name.display);
+        let positions = names.clone().map(ToString::to_string);
+        let velocities = names.map(|name| format!("dot({name})"));
+        let all = positions.chain(velocities).chain(["t".to_owned()]);
+        let seen = all.zip(terms).filter(|(_, term)| **term != 0.0);
+        let mut shown: Vec<(String, f64)> = seen
+            .map(|(name, term)| (format!("part by {name}"), *term))
+            .collect();
+        if !shown.is_empty() {
+            shown.push(("sum".to_owned(), 0.0));
+        }
+        shown
+    }
+
     fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {
         vec![(format!("d/dt({})", self.written), sum)]
     }

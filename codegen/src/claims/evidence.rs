@@ -81,6 +81,12 @@ pub(super) trait Vanishing {
         Some(point)
     }
 
+    /// Values that show at a real state that terms add up to 0, if there is anything to see.
+    fn balance(&self, model: &Model, terms: &[f64]) -> Vec<(String, f64)> {
+        let _ = (model, terms);
+        Vec::new()
+    }
+
     /// Values shown to the user at a real state, given the terms and their sum.
     fn shown(&self, model: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)>;
 }
@@ -95,6 +101,8 @@ pub(super) struct Evidence {
     pub(super) primes: Vec<u64>,
     /// A bound of the chance of error.
     pub(super) error: f64,
+    /// A real point at which a reader can follow that terms cancel.
+    pub(super) balance: Option<(Sample, Vec<(String, f64)>)>,
     /// A real point at which an enclosure excludes 0, with what is shown there.
     pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
     /// True if it has a value at any of the real points tried.
@@ -131,6 +139,7 @@ impl Evidence {
             points: self.points + other.points,
             primes: self.primes,
             error: self.error + other.error,
+            balance: self.balance.or(other.balance),
             witness: self.witness.or(other.witness),
             is_real: self.is_real || other.is_real,
             is_suspect: self.is_suspect || other.is_suspect,
@@ -186,7 +195,14 @@ impl Evidence {
                 })
             }
             (false, true, _) => Verdict::Refuted(Witness {
-                reason: certificate(wording.vanishes, self.error).to_string(),
+                reason: match &self.balance {
+                    Some((sample, values)) => format!(
+                        "{}\nfor example {}",
+                        certificate(wording.vanishes, self.error),
+                        sentence(sample, values)
+                    ),
+                    None => certificate(wording.vanishes, self.error).to_string(),
+                },
                 sample: None,
                 values: Vec::new(),
                 help: wording.help[1].clone(),
@@ -236,6 +252,7 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
         points: covered.map_or(0, |(covered, _)| covered.points),
         primes,
         error: covered.map_or(1.0, |(_, error)| error),
+        balance: real.balance,
         witness: real.witness,
         is_real: real.is_real,
         is_suspect: real.is_suspect,
@@ -279,6 +296,8 @@ enum Search {
 /// Observations at real points.
 #[derive(Default)]
 struct Real {
+    /// A point at which terms are seen to cancel.
+    balance: Option<(Sample, Vec<(String, f64)>)>,
     /// A point where the sum is certainly not 0, and the values to show there.
     witness: Option<(Sample, Vec<(String, f64)>)>,
     /// True if it has a value at any.
@@ -312,6 +331,10 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         let Some(scale) = question.scale(model, &mut point.clone()) else {
             continue;
         };
+        if seen.balance.is_none() && sample.is_allowed(model) {
+            let values = question.balance(model, &terms);
+            seen.balance = (!values.is_empty()).then(|| (sample.clone(), values));
+        }
         if search == Search::Value || !sample.is_allowed(model) {
             continue;
         }
