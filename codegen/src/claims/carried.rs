@@ -7,11 +7,14 @@
 //! X has the rate 1 of time, and vectors have none. On vectors along the surface this is the pullback by the map, and with X in one place the specular
 //! condition (W. Clark, thesis, VII.3). Of a transition X+ and w+ are those of the mode that is entered.
 
+use std::cmp::Ordering;
+
 use dalembert_expr::{
-    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Series, SymbolId,
+    Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RangePoint, RealPoint, Series, SymbolId,
 };
 
 use super::collision::{AtImpact, with_difference};
+use super::contact::Contact;
 use super::dynamics::{Dynamics, Number};
 use super::examine::explicit;
 use super::expansion::{
@@ -48,6 +51,8 @@ struct Carry<S> {
     behind: Vec<S>,
     carried: Vec<Vec<S>>,
     outgoing: Vec<S>,
+    /// The gap rate behind the surface and its rate along the free motion.
+    gap_rates: Option<[S; 2]>,
 }
 
 /// A form at a surface.
@@ -62,6 +67,8 @@ pub(super) struct Carried<'c> {
     rates: Option<Vec<ExprId>>,
     positions: Vec<ExprId>,
     behind: Behind,
+    /// The motion behind it, where a law leaves two of them.
+    contact: Option<Contact>,
     /// The seed of weights if leaves behind it are asked for, not the form.
     leaves: Option<u64>,
     pub(super) part: Part,
@@ -103,6 +110,7 @@ impl<'c> Carried<'c> {
             rates: model.field.clone(),
             positions,
             behind,
+            contact: None,
             leaves: None,
             part: Part::All(0),
             shown: String::new(),
@@ -189,7 +197,9 @@ impl<'c> Carried<'c> {
         point: &mut P,
         velocities: &[Number<P>],
     ) -> Option<Vec<Number<P>>> {
-        let order = model.pool.reachable(&self.behind.roots());
+        let mut roots = self.behind.roots();
+        roots.extend(self.contact.iter().flat_map(Contact::roots));
+        let order = model.pool.reachable(&roots);
         if !self.computes_velocities() || self.rates.is_some() {
             return point.values(&model.pool, &order);
         }
@@ -225,16 +235,25 @@ impl<'c> Carried<'c> {
             series.iter().map(|entry| jets.value(entry)).collect()
         };
         let behind = self.values_behind(model, point, &numbers(&velocities))?;
-        let outgoing = self
+        let velocities_behind = numbers(&velocities);
+        let mut outgoing = self
             .behind
-            .motion::<P>(field, &numbers(&velocities), &behind)?;
+            .motion::<P>(field, &velocities_behind, &behind)?;
+        let gap = |vector: &Vec<_>| self.expansions.along(field, &values, self.wall.gap, vector);
+        let lost = gap(&incoming);
+        let gap_rates = (self.contact.as_ref()).map(|it| it.rates(field, &behind, &outgoing));
+        if let (Some(contact), Some([_, along])) = (&self.contact, gap_rates)
+            && contact.is_held
+        {
+            let velocities = [&incoming[..velocities_behind.len()], &velocities_behind];
+            contact.hold(field, &mut outgoing, velocities, (along, lost))?;
+        }
         let push = |vector: &Vec<Number<P>>| -> Vec<Number<P>> {
             let along =
                 |series: &Series<P::Field>| inner(field, series.iter().skip(1).copied(), vector);
             positions.iter().chain(&velocities).map(along).collect()
         };
-        let gap = |vector: &Vec<_>| self.expansions.along(field, &values, self.wall.gap, vector);
-        let share = field.inv(gap(&incoming))?;
+        let share = field.inv(lost)?;
         let image = push(&incoming);
         let carried = vectors.iter().map(|vector| {
             let share = field.mul(gap(vector), share);
@@ -250,6 +269,7 @@ impl<'c> Carried<'c> {
             behind,
             carried,
             outgoing,
+            gap_rates,
         })
     }
 
@@ -266,6 +286,7 @@ impl<'c> Carried<'c> {
             behind,
             carried,
             outgoing,
+            ..
         } = self.carry(model, point)?;
         let mut after = Products::new();
         for (coefficient, differentials) in &self.behind.terms {
@@ -309,6 +330,23 @@ impl<'c> Carried<'c> {
             }
         }
         Some(found)
+    }
+
+    /// The same with one of the motions that are possible behind the surface.
+    pub(super) fn with_contact(mut self, model: &mut Model, mut contact: Contact) -> Self {
+        if let Some(solution) = self.wall.solution() {
+            contact.restrict(&mut model.pool, solution);
+        }
+        self.contact = Some(contact);
+        self
+    }
+
+    /// True if a state is certain to be followed by the motion that is meant.
+    fn is_followed(&self, signs: impl FnOnce() -> Option<[Option<Ordering>; 2]>) -> bool {
+        match &self.contact {
+            None => true,
+            Some(contact) => signs().is_some_and(|signs| contact.is_it(signs)),
+        }
     }
 
     /// The question whether vectors leave the leaves of the constraints behind the surface.
@@ -500,7 +538,15 @@ impl AtImpact for Carried<'_> {
         let mut roots: Vec<ExprId> = self.expansions.roots().collect();
         roots.extend(self.dynamics.roots());
         roots.extend(self.behind.roots());
+        roots.extend(self.contact.iter().flat_map(Contact::roots));
         roots
+    }
+
+    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+        self.is_followed(|| {
+            let rates = self.carry(model, point)?.gap_rates?;
+            Some(rates.map(P::sign))
+        })
     }
 
     fn terms<P: ExpansionPoint>(
@@ -526,7 +572,11 @@ impl AtImpact for Carried<'_> {
             return Some(carry.carried.iter().map(size).sum::<f64>() / CHANCE);
         }
         let ([after, before], outgoing) = self.products(model, point)?;
-        if !self.goes_on(model, point, &outgoing)? {
+        let is_followed = self.is_followed(|| {
+            let rates = self.carry(model, point)?.gap_rates?;
+            Some(rates.map(|rate| rate.partial_cmp(&0.0)))
+        });
+        if !is_followed || !self.goes_on(model, point, &outgoing)? {
             return None;
         }
         let size = after.size() + before.size();

@@ -32,6 +32,12 @@ pub(super) trait AtImpact {
         true
     }
 
+    /// True if a state, given in ranges, is certain to be one that is asked about.
+    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+        let _ = (model, point);
+        true
+    }
+
     /// The size of what the terms were computed from.
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64>;
 
@@ -165,7 +171,8 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
         let mut point = P::of(point);
         self.wall.enclose(model, &mut point)?;
         self.dynamics.motion(&model.pool, &mut point, None)?;
-        self.wall.is_met(model, &mut point).then_some(point)
+        let is_met = self.wall.is_met(model, &mut point);
+        (is_met && self.question.is_certain(model, &mut point.clone())).then_some(point)
     }
 
     fn balance(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {

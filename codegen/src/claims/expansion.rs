@@ -205,6 +205,11 @@ impl Tangents {
         }
     }
 
+    /// The place of the first vector of a velocity: those of positions come before.
+    pub(super) fn first_velocity(&self) -> usize {
+        self.positions().count()
+    }
+
     /// Positions that are free.
     fn positions(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.coordinates).filter(|i| !self.is_along_leaves || !self.dependent.contains(i))

@@ -9,6 +9,7 @@ use super::bounds::is_never_negative;
 use super::carried::{Carried, explicit_form};
 use super::collision::evidence_at_impact;
 use super::conserved::jump;
+use super::contact::{Contact, loses_volumes};
 use super::dynamics::Dynamics;
 use super::evidence::{Evidence, Vanishing, Wording, evidence};
 use super::expansion::{CHANCE, Part, Tangents, choices, is_too_large};
@@ -20,7 +21,7 @@ use super::passage::{Open, Passage};
 use super::together::Together;
 use super::undecided::Undecided;
 use super::wall::Wall;
-use crate::model::{ExteriorForm, Law, Model};
+use crate::model::{ExteriorForm, Model};
 
 /// Real states at which the largest components are looked for, and components that are looked at one by one.
 const STATES: usize = 12;
@@ -288,12 +289,14 @@ pub(super) fn kept_at_surface(
             }
         }
     }
-    let is_volume = stated.form.degree == tangents.dimension();
-    let is_sure =
-        is_volume && loses_volumes(model, surface) && matches!(verdict, Verdict::Refuted(_));
-    if may_hold(model, surface) && !is_sure {
-        let text = "the motion behind it may be held by it, or still approach it";
-        return Verdict::Undecided(text.to_owned());
+    let contacts = Contact::all(model, surface, &wall);
+    if !contacts.is_empty() {
+        let is_volume = stated.form.degree == tangents.dimension();
+        return match verdict {
+            // Fewer dimensions have no volume, whatever the motion does then.
+            Verdict::Refuted(_) if is_volume && loses_volumes(model, surface) => verdict,
+            _ => behind_contacts(model, around, tangents, stated, (surface, &wall), contacts),
+        };
     }
     let may_slide = wall.passage.as_ref().is_some_and(Passage::may_slide);
     if may_slide && matches!(verdict, Verdict::Proved(_)) && !always_goes_on(model, &wall) {
@@ -303,19 +306,37 @@ pub(super) fn kept_at_surface(
     verdict
 }
 
-/// True if the law of a surface need not reverse the gap rate.
-fn may_hold(model: &Model, surface: usize) -> bool {
-    let law = model.surfaces[surface].law;
-    matches!(law, Law::NonholonomicPlastic | Law::TotallyPlastic) || loses_volumes(model, surface)
-}
-
-/// True if the gap rate is 0 after every impact: states are mapped to fewer dimensions, whatever the motion does then.
-fn loses_volumes(model: &Model, surface: usize) -> bool {
-    match model.surfaces[surface].law {
-        Law::ImpactPlastic => true,
-        Law::Restitution(e) | Law::Newton(e) => model.pool.is_syntactic_zero(e),
-        _ => false,
+/// The verdict on a surface behind which the motion may be held or go on: a state that shows a change says which.
+fn behind_contacts(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    stated: Stated<'_>,
+    (surface, wall): (usize, &Wall),
+    contacts: Vec<Contact>,
+) -> Verdict {
+    let motions = contacts.into_iter().map(After::Contact);
+    for after in [After::Any].into_iter().chain(motions) {
+        let text = match &after {
+            After::Contact(contact) => contact.text(),
+            _ => "",
+        };
+        let at = (surface, wall, None);
+        let found = kept_behind(model, around, tangents, stated, at, after);
+        if let Verdict::Refuted(mut witness) = found {
+            witness.reason += text;
+            return Verdict::Refuted(witness);
+        }
     }
+    let text = match loses_volumes(model, surface) {
+        true => {
+            "no state was found that shows a change, and a proof needs the sign of the acceleration of its gap at all states behind it: the motion may go on freely or be held"
+        }
+        false => {
+            "no state was found that shows a change, and a proof needs a law that turns the rate of its gap round at all states: the motion behind it may still approach it"
+        }
+    };
+    Verdict::Undecided(text.to_owned())
 }
 
 /// True if the motion of the mode that is entered is certified not to come back to the surface.
@@ -339,12 +360,34 @@ fn always_goes_on(model: &mut Model, wall: &Wall) -> bool {
     is_never_negative(model, falling)
 }
 
+/// The verdict on what a wall does, with the motion behind it that its law leaves.
 fn kept_at_wall(
     model: &mut Model,
     around: &Surroundings<'_>,
     tangents: &Tangents,
     stated: Stated<'_>,
+    at: (usize, &Wall, Option<&Model>),
+) -> Verdict {
+    kept_behind(model, around, tangents, stated, at, After::Law)
+}
+
+/// The motion behind a wall.
+enum After {
+    /// The one that the law leaves.
+    Law,
+    /// One of two.
+    Contact(Contact),
+    /// Any: of vectors along the wall the law alone decides.
+    Any,
+}
+
+fn kept_behind(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    stated: Stated<'_>,
     (surface, wall, entered): (usize, &Wall, Option<&Model>),
+    after: After,
 ) -> Verdict {
     let name = model.surfaces[surface].name.display.clone();
     let Stated { form, written, .. } = stated;
@@ -354,6 +397,10 @@ fn kept_at_wall(
         Ok(question) => question,
         Err(reason) => return Verdict::Undecided(reason),
     };
+    let is_any = matches!(after, After::Any);
+    if let After::Contact(contact) = after {
+        question = question.with_contact(model, contact);
+    }
     let names = tangents.names(model);
     let place = tangents.place();
     let wording = || Wording {
@@ -371,6 +418,11 @@ fn kept_at_wall(
             question.components(model, &mut point)
         })
     };
+    let first = if is_any { tangents.first_velocity() } else { 0 };
+    let ranked = ranked
+        .into_iter()
+        .filter(|places| places.iter().all(|place| *place >= first))
+        .collect();
     decided(around.seed, ranked, &mut |part| {
         question.shown = format!("the form on {}", on(&names, part));
         question.part = part.clone();

@@ -19,7 +19,7 @@
 //! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
 //! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
-//! | `expansion.rs`, `lie.rs`, `carried.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of one time, along the motion and through surfaces; on leaves of integrable constraints |
+//! | `expansion.rs`, `lie.rs`, `carried.rs`, `contact.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of one time, along the motion and through surfaces, where it may be held behind them; on leaves of integrable constraints |
 //! | `involution.rs`, `integrable.rs` | brackets of functions; conserved functions that are enough of them |
 //! | `together.rs` | several proofs that are needed together |
 //! | `corollaries.rs` | consequences of a volume that is kept |
@@ -38,6 +38,7 @@ mod closure;
 mod collision;
 mod conditions;
 mod conserved;
+mod contact;
 mod continuity;
 mod contraction;
 mod corollaries;

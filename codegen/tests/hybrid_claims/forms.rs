@@ -246,6 +246,39 @@ fn near_misses_are_refuted() {
     );
 }
 
+/// A fall with `g = 2` onto a floor that stops it: held there, and free behind a ceiling. By hand, of `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`.
+#[test]
+fn forms_change_behind_laws_that_stop_the_motion() {
+    let stop = |surface: &str| {
+        format!(
+            "pub Stop {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - 2*y; impacts {{ stop: {surface}; }} CLAIM }}"
+        )
+    };
+    let [floor, ceiling] = ["y >= 0 => impact_plastic", "y <= 0 => newton(0)"].map(stop);
+    // Along the surface the law alone decides.
+    let along = "the form on partial(dot(y)) after";
+    for held in [&floor, &ceiling] {
+        check(held, "invariant: d(momentum(y) + 2*t)", Shown(along, 0.0));
+        check(held, "invariant: d(dot(y)^2/2 + 2*y)", Shown(along, 0.0));
+    }
+    // partial(y) goes on as 0: with the force of the floor, and with -1.6 partial(dot(y)) below the ceiling, where X has dot(y) = 1.25.
+    let fallen = "invariant: d(momentum(y))^d(y)";
+    check(&floor, fallen, False("the motion behind it is held"));
+    check(
+        &ceiling,
+        fallen,
+        False("the motion behind it goes on freely"),
+    );
+    let fall = "invariant: exp(y + dot(y)^2/4)*d(dot(y)^2/4 + y)^d(x - t*dot(x))";
+    check(&floor, fall, False("`stop` changes"));
+    // Without constraints this law is elastic; beside them it may let go.
+    let elastic = stop("y >= 0 => nonholonomic_plastic");
+    check(&elastic, "invariant: d(momentum(x))", True);
+    check(&elastic, "invariant: d(x - t*dot(x))", True);
+    let rim = disk("rim: 1 - x >= 0 => nonholonomic_plastic;");
+    check(&rim, "invariant: d(dot(theta))", False("`rim` changes"));
+}
+
 #[test]
 fn forms_that_are_not_examined_stay_open() {
     // The velocity that sticks pushes on the wall.
@@ -259,12 +292,12 @@ fn forms_that_are_not_examined_stay_open() {
     check(
         &particle("hold: x >= 0 => impact_plastic;"),
         "invariant: d(dot(y))",
-        Open("may be held by it"),
+        Open("the sign of the acceleration of its gap at all states"),
     );
     check(
-        &particle("hold: x >= 0 => newton(0);"),
-        "invariant: d(dot(x))",
-        Open("may be held by it"),
+        &disk("hold: 1 - x >= 0 => nonholonomic_plastic;"),
+        "invariant: d(dot(phi))",
+        Open("a law that turns the rate of its gap round at all states"),
     );
     check(
         &parametric(["k", "1"], "k = 1"),

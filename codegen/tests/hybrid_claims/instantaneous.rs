@@ -156,6 +156,6 @@ fn impacts_that_the_projection_may_turn_stay_open() {
     check(
         &wall("impact_plastic", "dot(y) = 0"),
         "invariant: d(momentum(x))^d(x)",
-        Open("may be held by it"),
+        Open("the sign of the acceleration of its gap"),
     );
 }

@@ -1,0 +1,136 @@
+//! The motion behind an impact whose law does not turn the gap rate round: free, or held by the surface.
+//!
+//! ```text
+//! hdot+ > 0, or hdot+ = 0 and hddot > 0     the motion goes on freely
+//! hdot+ = 0 and hddot < 0                   it is held: qddot + c W with hddot = 0,    W = -(qdot+ - qdot-)/hdot-
+//! ```
+//!
+//! `hddot` is that of the free motion. Which of them it is is known at a state, where both are enclosed away from 0, and not of all states.
+
+use std::cmp::Ordering;
+
+use dalembert_expr::{Arithmetic, ExprId, Pool, SymbolId};
+
+use super::expansion::inner;
+use super::wall::Wall;
+use crate::model::{Law, Model};
+
+/// One of both motions.
+pub(super) struct Contact {
+    rate: ExprId,
+    /// The derivatives of the gap rate by positions, velocities and time.
+    slopes: Vec<ExprId>,
+    /// True if the gap rate is 0 after each impact.
+    is_stopped: bool,
+    pub(super) is_held: bool,
+}
+
+impl Contact {
+    /// The motions that are possible behind a surface; none where the law turns the gap rate round.
+    pub(super) fn all(model: &mut Model, surface: usize, wall: &Wall) -> Vec<Self> {
+        if !may_hold(model, surface) {
+            return Vec::new();
+        }
+        let is_stopped = loses_volumes(model, surface);
+        // What is held is under instantaneous constraints, too.
+        let is_alone = model.surfaces[surface].instantaneous.is_empty();
+        let held = [false, true].into_iter();
+        let held = held.filter(|is_held| !is_held || (is_stopped && is_alone));
+        let held: Vec<bool> = held.collect();
+        let positions = model.coordinates.iter().map(|coordinate| coordinate.q);
+        let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
+        let variables: Vec<SymbolId> = positions.chain(velocities).chain([model.time]).collect();
+        let pool = &mut model.pool;
+        let slopes = variables.iter().map(|by| pool.diff(wall.gap_rate, *by));
+        let slopes: Vec<ExprId> = slopes.collect();
+        let of = |is_held| Self {
+            rate: wall.gap_rate,
+            slopes: slopes.clone(),
+            is_stopped,
+            is_held,
+        };
+        held.into_iter().map(of).collect()
+    }
+
+    /// The motion in words that follow what a surface does.
+    pub(super) fn text(&self) -> &'static str {
+        match self.is_held {
+            true => "; the motion behind it is held",
+            false => "; the motion behind it goes on freely",
+        }
+    }
+
+    pub(super) fn roots(&self) -> impl Iterator<Item = ExprId> + '_ {
+        self.slopes.iter().copied().chain([self.rate])
+    }
+
+    /// Replaces a coordinate by its value on the surface.
+    pub(super) fn restrict(&mut self, pool: &mut Pool, solution: (SymbolId, ExprId)) {
+        self.rate = pool.substitute(self.rate, &[solution]);
+        self.slopes = pool.substitute_all(&self.slopes, &[solution]);
+    }
+
+    /// The gap rate behind the surface, and its rate along the free motion, from the values there.
+    pub(super) fn rates<A: Arithmetic>(
+        &self,
+        field: A,
+        values: &[A::Scalar],
+        outgoing: &[A::Scalar],
+    ) -> [A::Scalar; 2] {
+        let (slopes, time) = self.slopes.split_at(outgoing.len());
+        let slopes = slopes.iter().map(|slope| values[slope.index()]);
+        let along = inner(field, slopes, outgoing);
+        let along = time
+            .iter()
+            .fold(along, |sum, slope| field.add(sum, values[slope.index()]));
+        [values[self.rate.index()], along]
+    }
+
+    /// True if signs of these two are those of this motion.
+    pub(super) fn is_it(&self, [rate, along]: [Option<Ordering>; 2]) -> bool {
+        match (self.is_stopped, self.is_held) {
+            (true, true) => along == Some(Ordering::Less),
+            (true, false) => along == Some(Ordering::Greater),
+            (false, _) => rate == Some(Ordering::Greater),
+        }
+    }
+
+    /// Adds the force of the surface to the rates of a free motion: `along` is that of the gap rate, `lost` the gap rate before.
+    pub(super) fn hold<A: Arithmetic>(
+        &self,
+        field: A,
+        outgoing: &mut [A::Scalar],
+        velocities: [&[A::Scalar]; 2],
+        (along, lost): (A::Scalar, A::Scalar),
+    ) -> Option<()> {
+        let size = field.mul(along, field.inv(lost)?);
+        let [before, after] = velocities;
+        let accelerations = outgoing.iter_mut().skip(after.len());
+        for (entry, (before, after)) in accelerations.zip(before.iter().zip(after)) {
+            let change = field.sub(*after, *before);
+            *entry = field.add(*entry, field.mul(size, change));
+        }
+        Some(())
+    }
+}
+
+/// True if the law of a surface need not turn the gap rate round.
+fn may_hold(model: &Model, surface: usize) -> bool {
+    let declared = &model.surfaces[surface];
+    let has_constraints = !(model.constraints.is_empty() && declared.instantaneous.is_empty());
+    match declared.law {
+        // Without constraints it is the elastic one.
+        Law::NonholonomicPlastic => has_constraints,
+        Law::TotallyPlastic => true,
+        _ => loses_volumes(model, surface),
+    }
+}
+
+/// True if the gap rate is 0 after every impact: states are mapped to fewer dimensions, whatever the motion does then.
+pub(super) fn loses_volumes(model: &Model, surface: usize) -> bool {
+    match model.surfaces[surface].law {
+        Law::ImpactPlastic => true,
+        Law::Restitution(e) | Law::Newton(e) => model.pool.is_syntactic_zero(e),
+        _ => false,
+    }
+}
