@@ -87,7 +87,7 @@ impl Open {
             }
             Self::Positions => "positions after it depend on velocities".to_owned(),
             Self::Coordinates => "both modes have other numbers of coordinates".to_owned(),
-            Self::Refraction => "refraction within constraints is not examined".to_owned(),
+            Self::Refraction => "refraction within constraints is not examined; state what is behind it by `reset { .. }` where that is known".to_owned(),
             Self::Size => format!("more than {} coordinates are not examined", LARGEST - 1),
         }
     }

@@ -269,8 +269,10 @@ pub(super) fn with_velocities(
     attempt: usize,
 ) -> Option<(Sample, RealPoint)> {
     let mut point = sample.point();
+    // Other steps from one velocity to the next, so that all pairs of signs occur.
+    let step = 1 + attempt / VELOCITIES.len() % (VELOCITIES.len() - 1);
     for (i, coordinate) in model.coordinates.iter().enumerate() {
-        let velocity = VELOCITIES[(i + attempt) % VELOCITIES.len()];
+        let velocity = VELOCITIES[(i * step + attempt) % VELOCITIES.len()];
         point.set(coordinate.qdot, velocity);
     }
     let motion = dynamics.motion(&model.pool, &mut point, None)?;

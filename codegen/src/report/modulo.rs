@@ -194,25 +194,30 @@ fn symmetry(
         let mut model = mode.model.clone();
         let kept = check_equivariance(&mut model, &mode.derivation, &all, number, 0);
         found.keeps_momentum &= kept.map_err(refuse)?;
-        if !add(&mut found, &mut model, &fields[number], parameters) {
-            let reason = "its flow is not affine in the coordinates, which is not followed";
-            let text = format!("`{}`: {reason}", found.text);
+        if let Err(name) = add(&mut found, &mut model, &fields[number], parameters) {
+            let text = format!(
+                "`{}`: its flow is not affine in the coordinates, as the factor of `partial({name})` is not of degree 1 in them with constant slopes",
+                found.text
+            );
             return Err(Asked::refusal(
                 text,
-                "write it in coordinates in which it is a translation or a rotation",
+                "translations, rotations and sums of them are followed, as `partial(x)` and `x*partial(y) - y*partial(x)`: write the model in coordinates in which it is one",
             ));
         }
     }
     Ok(found)
 }
 
-/// Adds the numbers of a field on one mode. Returns false if it is not affine.
+/// Adds the numbers of a field on one mode.
+///
+/// # Errors
+/// The coordinate whose component is not affine.
 fn add(
     found: &mut Symmetry,
     model: &mut Model,
     field: &[ExprId],
     parameters: &[(&str, f64)],
-) -> bool {
+) -> Result<(), String> {
     let symbols: Vec<SymbolId> = model.coordinates.iter().map(|one| one.q).collect();
     let names: Vec<String> = (model.coordinates.iter())
         .map(|one| one.name.display.clone())
@@ -234,7 +239,7 @@ fn add(
             .iter()
             .any(|slope| model.pool.depends_on_any(*slope, &moving))
         {
-            return false;
+            return Err(found.coordinates[*row].clone());
         }
         let constant = model.pool.substitute(*component, &origin);
         let mut roots = slopes;
@@ -263,5 +268,5 @@ fn add(
         }
         found.constant[*row] = values[symbols.len()];
     }
-    true
+    Ok(())
 }

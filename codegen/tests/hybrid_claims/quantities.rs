@@ -2,7 +2,7 @@
 
 use crate::Expected::{Barred, False, Shown, True};
 use crate::check;
-use crate::systems::{crossing, grooves, media, spokes};
+use crate::systems::{crossing, grooves, media, particle, spokes};
 
 fn kept(surface: &str, quantity: &str) -> String {
     format!("conserved under {surface}: {quantity}")
@@ -110,4 +110,22 @@ fn reflections_count_too() {
     let same = media("(dot(x)^2 + dot(y)^2)/2", "(dot(x)^2 + dot(y)^2)/2 - V*y^2");
     check(&same, &kept("rightward", "energy"), True);
     check(&same, &kept("rightward", "x*momentum(y)"), True);
+}
+
+/// A map that keeps what it should on one side of `dot(y) = 0` alone.
+#[test]
+fn branches_of_resets_are_all_looked_at() {
+    for map in ["abs(dot(y))", "sqrt(dot(y)^2)"] {
+        let folded = particle(&format!(
+            "wall: x >= 0 => reset {{ dot(x) = -dot(x); dot(y) = {map}; }};"
+        ));
+        check(&folded, "conserved under wall: dot(y)^2", True);
+        check(
+            &folded,
+            "conserved under wall: dot(y)",
+            Shown("dot(y) after", 0.25),
+        );
+        check(&folded, "invariant: d(dot(y))", False("`wall` changes"));
+        check(&folded, "symplectic", False("`wall` changes"));
+    }
 }

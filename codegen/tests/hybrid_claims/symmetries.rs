@@ -304,7 +304,10 @@ fn flows_that_are_not_affine_are_refused() {
     refuse(
         text,
         "sin(s)*partial(s)",
-        &["its flow is not affine in the coordinates"],
+        &[
+            "its flow is not affine in the coordinates",
+            "the factor of `partial(s)`",
+        ],
     );
 }
 
