@@ -16,10 +16,9 @@ use dalembert_expr::{
 use super::collision::{AtImpact, with_difference};
 use super::contact::Contact;
 use super::dynamics::{Dynamics, Number};
-use super::examine::explicit;
 use super::expansion::{
-    CHANCE, Expansions, Part, Products, Tangents, accelerations, constants, inner, weight,
-    written_out,
+    CHANCE, Expansions, Part, Products, Tangents, accelerations, constants, explicit_form, inner,
+    weight, with_rates, written_out,
 };
 use super::hybrid::Surroundings;
 use super::invariant::Stated;
@@ -41,8 +40,8 @@ struct Behind {
     terms: Vec<(ExprId, Vec<Vec<ExprId>>)>,
 }
 
-/// The products of a form after and before, and the motion after.
-type Sides<S> = ([Products<S>; 2], Vec<S>);
+/// The products of a form after and before.
+type Sides<S> = [Products<S>; 2];
 
 /// Tangent vectors before a surface and what becomes of them, with the values of both sides.
 struct Carry<S> {
@@ -273,7 +272,7 @@ impl<'c> Carried<'c> {
         })
     }
 
-    /// The products that the form is the sum of, after and before, and the motion after.
+    /// The products that the form is the sum of, after and before.
     fn products<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -285,7 +284,6 @@ impl<'c> Carried<'c> {
             vectors,
             behind,
             carried,
-            outgoing,
             ..
         } = self.carry(model, point)?;
         let mut after = Products::new();
@@ -308,7 +306,7 @@ impl<'c> Carried<'c> {
             let coefficient = self.expansions.value(&values, term.coefficient);
             before.push(coefficient, term.differentials.iter().map(row).collect());
         }
-        Some(([after, before], outgoing))
+        Some([after, before])
     }
 
     /// `eta^a(v+)` of the constraints behind the surface, which is 0 on vectors along their leaves, with random weights.
@@ -368,7 +366,7 @@ impl<'c> Carried<'c> {
         point: &mut RealPoint,
     ) -> Option<(Vec<f64>, f64)> {
         let field = point.field();
-        let (sides, _) = self.products(model, point)?;
+        let sides = self.products(model, point)?;
         let (dimension, degree) = self.sizes();
         let each = super::expansion::choices(dimension, degree);
         let change = |places: &Vec<usize>| {
@@ -379,20 +377,28 @@ impl<'c> Carried<'c> {
         Some((changes?, sides[0].size() + sides[1].size()))
     }
 
-    /// True if a motion of first order goes on through the surface at a real state, and does not slide along it.
-    fn goes_on(&self, model: &Model, point: &mut RealPoint, outgoing: &[f64]) -> Option<bool> {
+    /// The rate of the gap along a motion of first order behind the surface, which slides along it where that is not negative; `None` of motions that
+    /// cannot slide.
+    fn sliding<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+    ) -> Option<Option<Number<P>>> {
         if !self.wall.passage.as_ref().is_some_and(Passage::may_slide) {
-            return Some(true);
+            return Some(None);
         }
-        let roots: Vec<ExprId> = self.expansions.roots().collect();
-        let values = point.values(&model.pool, &model.pool.reachable(&roots))?;
-        let mut vector = outgoing.to_vec();
-        vector.resize(2 * model.coordinates.len(), 0.0);
-        vector.push(1.0);
-        let rate = self
-            .expansions
-            .along(point.field(), &values, self.wall.gap, &vector);
-        Some(rate < 0.0)
+        let field = point.field();
+        let carry = self.carry(model, point)?;
+        let mut vector = carry.outgoing;
+        vector.resize(2 * model.coordinates.len(), field.integer(0));
+        vector.push(field.integer(1));
+        let gap = self.wall.gap;
+        Some(Some(self.expansions.along(
+            field,
+            &carry.values,
+            gap,
+            &vector,
+        )))
     }
 }
 
@@ -514,25 +520,6 @@ fn positions(model: &mut Model, wall: &Wall) -> Vec<ExprId> {
     }
 }
 
-/// A form of a first-order system with velocities replaced by rates.
-pub(super) fn with_rates(model: &mut Model, form: ExteriorForm, rates: &[ExprId]) -> ExteriorForm {
-    let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
-    let replacements: Vec<_> = velocities.zip(rates.iter().copied()).collect();
-    let pool = &mut model.pool;
-    let replaced = written_out(&form, |id| Some(pool.substitute(id, &replacements)));
-    replaced.unwrap_or(form)
-}
-
-/// A form with energy, momenta and rates written out.
-pub(super) fn explicit_form(model: &mut Model, form: &ExteriorForm) -> ExteriorForm {
-    let found = written_out(form, |id| Some(explicit(model, id)));
-    let found = found.unwrap_or_else(|| form.clone());
-    match model.field.clone() {
-        Some(rates) => with_rates(model, found, &rates),
-        None => found,
-    }
-}
-
 impl AtImpact for Carried<'_> {
     fn roots(&self) -> Vec<ExprId> {
         let mut roots: Vec<ExprId> = self.expansions.roots().collect();
@@ -543,10 +530,15 @@ impl AtImpact for Carried<'_> {
     }
 
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
-        self.is_followed(|| {
-            let rates = self.carry(model, point)?.gap_rates?;
-            Some(rates.map(P::sign))
-        })
+        let goes_on = match self.sliding(model, point) {
+            Some(rate) => rate.is_none_or(|rate| P::sign(rate) == Some(Ordering::Less)),
+            None => false,
+        };
+        goes_on
+            && self.is_followed(|| {
+                let rates = self.carry(model, point)?.gap_rates?;
+                Some(rates.map(P::sign))
+            })
     }
 
     fn terms<P: ExpansionPoint>(
@@ -559,7 +551,7 @@ impl AtImpact for Carried<'_> {
         if let Some(seed) = self.leaves {
             return self.crossings(model, point, seed);
         }
-        let ([after, before], _) = self.products(model, point)?;
+        let [after, before] = self.products(model, point)?;
         let after = after.total(field, &self.part, self.sizes())?;
         let before = before.total(field, &self.part, self.sizes())?;
         Some(vec![after, field.neg(before)])
@@ -571,12 +563,13 @@ impl AtImpact for Carried<'_> {
             let size = |vector: &Vec<f64>| vector.iter().map(|entry| entry.abs()).sum::<f64>();
             return Some(carry.carried.iter().map(size).sum::<f64>() / CHANCE);
         }
-        let ([after, before], outgoing) = self.products(model, point)?;
+        let [after, before] = self.products(model, point)?;
         let is_followed = self.is_followed(|| {
             let rates = self.carry(model, point)?.gap_rates?;
             Some(rates.map(|rate| rate.partial_cmp(&0.0)))
         });
-        if !is_followed || !self.goes_on(model, point, &outgoing)? {
+        let goes_on = self.sliding(model, point)?.is_none_or(|rate| rate < 0.0);
+        if !is_followed || !goes_on {
             return None;
         }
         let size = after.size() + before.size();

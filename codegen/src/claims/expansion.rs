@@ -12,6 +12,7 @@ use dalembert_expr::{
 };
 
 use super::dynamics::{Dynamics, Number};
+use super::examine::explicit;
 use super::frame::choose_dependent;
 use super::hybrid::Surroundings;
 use super::linear::{Matrix, solve};
@@ -445,6 +446,25 @@ pub(super) fn written_out(
         }
     }
     Some(form)
+}
+
+/// A form of a first-order system with velocities replaced by rates.
+pub(super) fn with_rates(model: &mut Model, form: ExteriorForm, rates: &[ExprId]) -> ExteriorForm {
+    let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
+    let replacements: Vec<_> = velocities.zip(rates.iter().copied()).collect();
+    let pool = &mut model.pool;
+    let replaced = written_out(&form, |id| Some(pool.substitute(id, &replacements)));
+    replaced.unwrap_or(form)
+}
+
+/// A form with energy, momenta and rates written out.
+pub(super) fn explicit_form(model: &mut Model, form: &ExteriorForm) -> ExteriorForm {
+    let found = written_out(form, |id| Some(explicit(model, id)));
+    let found = found.unwrap_or_else(|| form.clone());
+    match model.field.clone() {
+        Some(rates) => with_rates(model, found, &rates),
+        None => found,
+    }
 }
 
 /// The accelerations that the equations of motion give for the velocities of a point, as series.

@@ -1,6 +1,8 @@
 //! Changes of a volume `f mu_C` at surfaces: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`] or [`super::passage`].
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
+use std::cmp::Ordering;
+
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RangePoint, RealPoint};
 
 use super::collision::{AtImpact, after_and_before, evidence_at_impact, with_difference};
 use super::dynamics::{Dynamics, Number};
@@ -371,6 +373,17 @@ impl AtImpact for Change<'_> {
             false => field.mul(volume, volume),
         };
         Some(vec![power(after), field.neg(power(before))])
+    }
+
+    /// Where the motion slides volumes become 0: a factor of 0 is right there.
+    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+        let after = |point: &mut P| self.wall.after(model, point);
+        !self.is_signed()
+            || after(point)
+                .and_then(|after| self.terms(model, point, &after))
+                .is_some_and(|terms| {
+                    P::sign(terms[0]) == Some(Ordering::Greater) || P::sign(terms[1]).is_some()
+                })
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {

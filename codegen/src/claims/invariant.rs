@@ -6,13 +6,13 @@
 use dalembert_expr::{ExprId, RealPoint};
 
 use super::bounds::is_never_negative;
-use super::carried::{Carried, explicit_form};
+use super::carried::Carried;
 use super::collision::evidence_at_impact;
 use super::conserved::jump;
 use super::contact::{Contact, loses_volumes};
 use super::dynamics::Dynamics;
 use super::evidence::{Evidence, Vanishing, Wording, evidence};
-use super::expansion::{CHANCE, Part, Tangents, choices, is_too_large};
+use super::expansion::{CHANCE, Part, Tangents, choices, explicit_form, is_too_large};
 use super::finding::{Certificate, Verdict, Witness};
 use super::focusing::{TURNED, leaves_gap_rate};
 use super::hybrid::Surroundings;

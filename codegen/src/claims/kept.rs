@@ -4,15 +4,21 @@
 //! The volume is `f mu_C`, or `f dq` of a first-order system, with the density `f` that the claims state (`density = f`). Where they
 //! state none, `volume: kept` takes the one that the motion is found to keep, and a factor is that of `mu_C`.
 
-use dalembert_expr::{ExprId, Pool};
+use std::cmp::Ordering;
+
+use dalembert_expr::{ExpansionPoint, ExprId, Pool, RangePoint, RealPoint};
 
 use super::bounds::is_never_negative;
+use super::collision::{AtImpact, evidence_at_impact};
+use super::conserved::magnitude;
 use super::corollaries::corollaries;
+use super::dynamics::Number;
 use super::evidence::Wording;
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Effect, Surroundings, Unknown, change_at, effects, factor};
 use super::potential::{Potential, Term};
 use super::side::stated_density;
+use super::wall::Wall;
 use crate::model::{Law, Model};
 
 /// The density that the claims state, else that of `mu_C` itself.
@@ -191,12 +197,78 @@ pub(super) fn check_factor(
     };
     let is_signed = (wall.passage.as_ref()).is_some_and(super::passage::Passage::may_slide);
     let verdict = found.verdict(true, wording, around.seed);
-    if matches!(verdict, Verdict::Proved(_)) && !is_signed && !is_never_negative(model, value) {
-        return Verdict::Undecided(format!(
+    let is_proof = matches!(verdict, Verdict::Proved(_));
+    match is_proof && !is_never_negative(model, value) {
+        true if is_signed => where_it_slides(model, around, &wall, &name, (value, written)),
+        true => Verdict::Undecided(format!(
             "`{name}` multiplies {volume} by {written} up to its sign, and `{written}` may be negative; write its size, `abs(..)`"
-        ));
+        )),
+        false => verdict,
     }
-    verdict
+}
+
+/// The verdict on a factor that holds where the motion of a field goes on, and may be negative: the motion slides there, which maps volumes to 0.
+fn where_it_slides(
+    model: &Model,
+    around: &Surroundings<'_>,
+    wall: &Wall,
+    name: &str,
+    (value, written): (ExprId, &str),
+) -> Verdict {
+    let question = Negative { value, written };
+    let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
+    let wording = Wording {
+        differs: format!(
+            "the motion slides along `{name}` where `{written}` is negative, and volumes become 0 there"
+        ),
+        help: ["leave it out".to_owned(), String::new()],
+        ..Wording::default()
+    };
+    match found.verdict(true, wording, around.seed) {
+        refuted @ Verdict::Refuted(_) => refuted,
+        _ => Verdict::Undecided(format!(
+            "the motion slides along `{name}` where `{written}` is negative, which is not known to be nowhere"
+        )),
+    }
+}
+
+/// The question whether a function is negative anywhere on a wall.
+struct Negative<'n> {
+    value: ExprId,
+    written: &'n str,
+}
+
+impl AtImpact for Negative<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        vec![self.value]
+    }
+
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        _: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        let values = point.values(&model.pool, &model.pool.reachable(&[self.value]))?;
+        Some(vec![values[self.value.index()]])
+    }
+
+    fn wants(&self, terms: &[f64]) -> bool {
+        terms[0] < 0.0
+    }
+
+    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+        let terms = self.terms(model, point, &[]);
+        terms.is_some_and(|terms| P::sign(terms[0]) == Some(Ordering::Less))
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint, _: &[f64]) -> Option<f64> {
+        Some(magnitude(model, point, self.value))
+    }
+
+    fn shown(&self, terms: &[f64], _: f64) -> Vec<(String, f64)> {
+        vec![(self.written.to_owned(), terms[0])]
+    }
 }
 
 /// The verdict where there is no map between volumes of one dimension.

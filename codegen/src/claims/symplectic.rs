@@ -12,12 +12,11 @@
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
 
-use super::carried::explicit_form;
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
 use super::evidence::{Vanishing, Wording, evidence};
 use super::exactness::decide_local;
-use super::expansion::Tangents;
+use super::expansion::{Tangents, explicit_form};
 use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Surroundings, effects};
 use super::invariant::{Stated, check_on, kept_at_surface, kept_by_motion};

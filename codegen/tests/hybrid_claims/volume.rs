@@ -135,6 +135,20 @@ fn a_motion_that_slides_keeps_no_volume() {
         "density under leftward: factor = 1",
         Shown("Jacobian", -1.0),
     );
+    // Where y is negative the motion slides, and the factor is 0.
+    let partly = crossing(["-1", "1"], ["-y", "1"], "1");
+    let factor = "density under leftward: factor =";
+    let slides = Shown("y", -0.53);
+    check(&partly, &format!("{factor} y"), slides);
+    check(
+        &partly,
+        &format!("{factor} abs(y)"),
+        Shown("Jacobian", -0.53),
+    );
+    let positive = "(y + abs(y))/2";
+    check(&partly, &format!("{factor} {positive}"), Open(""));
+    let never = crossing(["-1", "1"], ["-1 - y^2", "1"], "1");
+    check(&never, &format!("{factor} 1 + y^2"), True);
 }
 
 /// A density that is found is one up to a factor, which a transition would have to agree on.
