@@ -165,9 +165,11 @@ impl Witness {
             let (name, value) = text.rsplit_once(" = ").expect("a name and a value");
             (name.to_owned(), value.parse().expect("a number"))
         };
+        // A state at which parts cancel is an example, and shows nothing.
         let is_value = |line: &&str| {
             let number = line.rsplit_once(" = ");
-            matches!(number.map(|(_, value)| value.parse::<f64>()), Some(Ok(_)))
+            let is_number = number.is_some_and(|(_, value)| value.parse::<f64>().is_ok());
+            is_number && !line.starts_with("for example ")
         };
         let lines = message.lines().skip(1);
         let place = message.lines().find_map(|line| line.strip_prefix("at "));

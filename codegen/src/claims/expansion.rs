@@ -245,25 +245,33 @@ impl Tangents {
             vector[place] = field.integer(1);
             vectors.push(vector);
         }
+        let residuals = self.residuals.iter();
         if self.is_along_leaves {
-            let forms = |residual: ExprId, vector: &[A::Scalar]| {
-                let entries = expansions.slopes(residual)[n..].iter();
-                inner(
-                    field,
-                    entries.map(|entry| values[entry.index()]),
-                    &vector[..n],
-                )
+            let form = |residual: &ExprId, vector: &Vec<A::Scalar>| {
+                let entries = expansions.slopes(*residual)[n..].iter();
+                let entries = entries.map(|entry| values[entry.index()]);
+                inner(field, entries, &vector[..n])
             };
-            self.complete(field, expansions, values, &mut vectors, 0, &forms)?;
+            let lacking = residuals.clone().map(|residual| {
+                vectors
+                    .iter()
+                    .map(|vector| form(residual, vector))
+                    .collect()
+            });
+            let lacking = lacking.collect();
+            self.complete(field, expansions, values, &mut vectors, 0, lacking)?;
         }
-        let along = |residual: ExprId, vector: &[A::Scalar]| {
-            expansions.along(field, values, residual, vector)
-        };
-        self.complete(field, expansions, values, &mut vectors, n, &along)?;
+        let lacking = residuals.map(|residual| {
+            let along = |vector| expansions.along(field, values, *residual, vector);
+            vectors.iter().map(|vector| along(vector)).collect()
+        });
+        let lacking = lacking.collect();
+        self.complete(field, expansions, values, &mut vectors, n, lacking)?;
         Some(vectors)
     }
 
-    /// Sets the dependent positions or velocities of vectors, whose places begin at `first`, so that functions of residuals and vectors become 0.
+    /// Sets the dependent positions or velocities of vectors, whose places begin at `first`, so that what
+    /// residuals lack on vectors becomes 0.
     fn complete<A: Arithmetic>(
         &self,
         field: A,
@@ -271,7 +279,7 @@ impl Tangents {
         values: &[A::Scalar],
         vectors: &mut [Vec<A::Scalar>],
         first: usize,
-        along: &dyn Fn(ExprId, &[A::Scalar]) -> A::Scalar,
+        lacking: Vec<Vec<A::Scalar>>,
     ) -> Option<()> {
         if self.dependent.is_empty() {
             return Some(());
@@ -286,9 +294,9 @@ impl Tangents {
                 self.dependent.iter().map(entry).collect()
             })
             .collect();
-        let right = self.residuals.iter().map(|residual| {
-            let value = |vector: &Vec<A::Scalar>| jets.constant(along(*residual, vector));
-            vectors.iter().map(value).collect()
+        let right = lacking.into_iter().map(|row| {
+            let row = row.into_iter().map(|value| jets.constant(value));
+            row.collect()
         });
         let solved = solve(&jets, minor, right.collect())?.unknowns;
         for (j, row) in self.dependent.iter().zip(&solved) {
