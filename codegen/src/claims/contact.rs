@@ -134,3 +134,37 @@ pub(super) fn loses_volumes(model: &Model, surface: usize) -> bool {
         _ => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use dalembert_expr::Reals;
+
+    use super::*;
+
+    #[test]
+    fn what_is_held_stays_at_the_surface() {
+        let pool = Pool::new();
+        let (zero, one) = (pool.zero(), pool.one());
+        let mut values = vec![0.0; zero.index().max(one.index()) + 1];
+        values[one.index()] = 1.0;
+        // The gap y of a point (x, y): its rate is dot(y).
+        let contact = Contact {
+            rate: zero,
+            slopes: vec![zero, zero, zero, one, zero],
+            is_stopped: true,
+            is_held: true,
+        };
+        let mut outgoing = [0.5, 0.0, 0.3, -2.0];
+        let [rate, along] = contact.rates(Reals, &values, &outgoing);
+        assert_eq!([rate, along], [0.0, -2.0]);
+        let order = |value: f64| value.partial_cmp(&0.0);
+        assert!(contact.is_it([order(rate), order(along)]));
+        let velocities = [[0.5, -0.75], [0.5, 0.0]];
+        let [before, after] = velocities.each_ref().map(|row| row.as_slice());
+        let held = contact.hold(Reals, &mut outgoing, [before, after], (along, -0.75));
+        assert!(held.is_some());
+        assert_eq!(outgoing, [0.5, 0.0, 0.3, 0.0]);
+        let [_, along] = contact.rates(Reals, &values, &outgoing);
+        assert_eq!(along, 0.0);
+    }
+}
