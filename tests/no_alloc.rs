@@ -111,7 +111,7 @@ fn held(line: &str) -> isize {
             errors: &mut std::io::sink(),
             terminal: false,
         };
-        let models = dalembert_cli::models![PointBilliard];
+        let models = dalembert_command::all();
         exit = Some(dalembert_cli::run_with(&words, &models, &mut streams));
     });
     assert_eq!(exit, Some(Exit::Reached), "{line}");
@@ -121,7 +121,8 @@ fn held(line: &str) -> isize {
 /// Tables hold the rows that they print; counts and sums hold nothing for a step or an impact.
 #[test]
 fn a_long_run_of_the_command_line_holds_no_more_than_a_short_one() {
-    let [short, long] = [10, 2000].map(|until| {
+    // The first also loads the model.
+    let [_, short, long] = [10, 10, 2000].map(|until| {
         let bytes = held(&format!(
             "dalembert simulate point_billiard --until {until}"
         ));
