@@ -12,7 +12,7 @@ use dalembert_driver::{
 
 use dalembert_tests::sampling::Random;
 
-use super::models::{Compiled, every_model};
+use super::models::{Compiled, compared};
 
 /// The longest run.
 const UNTIL: f64 = 2.0;
@@ -130,7 +130,7 @@ fn compare_loaded(compiled: &Compiled) {
 
 #[test]
 fn a_loaded_model_runs_as_the_compiled_one() {
-    every_model().iter().for_each(compare_loaded);
+    compared().iter().for_each(compare_loaded);
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn a_model_behind_pointers_runs_as_its_own_type() {
         ($($model:ty),*) => {$({
             let inlined = of_type::<$model>();
             let name = inlined.description().name;
-            let mut models = every_model().iter();
+            let mut models = compared().iter();
             let compiled = models.find(|compiled| compiled.description.name == name);
             let (_, form) = compiled.expect("a model").emitted[0];
             let erased = of_form(form.into(), Code::Pointers).expect("room");

@@ -77,7 +77,7 @@ impl SceneVisitor for Compiled {
 
 /// The compared models. With the feature `every_model` these are every shipped model, the systems of the tests, and [`Folded`];
 /// else a few with all that the language has, since each is compiled over every kind of number.
-pub fn every_model() -> &'static [Compiled] {
+pub fn compared() -> &'static [Compiled] {
     static MODELS: OnceLock<Vec<Compiled>> = OnceLock::new();
     macro_rules! compiled {
         ($package:path: $($model:ident)*) => {{
@@ -115,7 +115,10 @@ pub fn every_model() -> &'static [Compiled] {
 #[cfg(feature = "every_model")]
 #[test]
 fn every_shipped_model_is_compared() {
-    let compared: Vec<&str> = every_model().iter().map(|it| it.description.name).collect();
+    let compared: Vec<&str> = self::compared()
+        .iter()
+        .map(|it| it.description.name)
+        .collect();
     for (name, _) in dalembert_command::TEXTS {
         assert!(compared.contains(name), "{name}");
     }

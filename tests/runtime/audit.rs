@@ -3,9 +3,10 @@
 
 use dalembert::audit::{Audit, Finding};
 use dalembert::effects::{Moment, StepView};
+use dalembert::integrate::Chosen;
 use dalembert::{
-    Effect, Event, EventLog, Law, NoForces, Observer, Outcome, Policies, Rest, Simulation, Stepper,
-    System, Taylor, Tolerance, VectorField,
+    Dop853, Effect, Event, EventLog, Gauss6, Law, NoForces, Observer, Outcome, Policies, Rest,
+    Simulation, Stepper, System, Taylor, Tolerance, VectorField,
 };
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, vector};
@@ -72,10 +73,8 @@ struct Audited {
 fn with_every_integrator(
     model: &Model,
     Start { q, v, until }: Start<'_>,
-    set: impl Fn(Course<'static, Model>) -> Course<'static, Model>,
+    set: impl for<'a> Fn(Course<'a, Model>) -> Course<'a, Model>,
 ) -> Vec<Audited> {
-    // NOTE: a course borrows its model for as long as the settings may.
-    let model: &'static Model = Box::leak(Box::new(*model));
     let settings = Integrator::every().iter().flat_map(|&integrator| {
         let tolerances: &[f64] = match integrator {
             Integrator::Dop853 => &[1e-12, 1e-5],
@@ -115,7 +114,7 @@ fn first_impact_is_audited(model: &Model, start: Start<'_>, (time, surface): (f6
         let (t, met) = run.first.unwrap_or_else(|| panic!("{run:?}"));
         assert!((t - time).abs() < 1e-3 && met == surface, "{run:?}");
     }
-    for run in with_every_integrator(model, start, Course::alone) {
+    for run in with_every_integrator(model, start, |course| course.alone()) {
         assert_eq!((run.outcome, run.impacts), (Outcome::Done, 0), "{run:?}");
         match run.finding {
             Some(Finding::MayBeMet { surface: met, t }) => {
@@ -171,7 +170,7 @@ fn a_narrow_bump_is_not_passed() {
         q: &[-1.0, 1.5],
         ..start
     };
-    for run in with_every_integrator(&BUMP.model(), flat, Course::alone) {
+    for run in with_every_integrator(&BUMP.model(), flat, |course| course.alone()) {
         assert_eq!(run.finding, None, "{run:?}");
     }
 }
@@ -205,7 +204,7 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
         until: 2.5,
     };
     let slow = COURSE.with([("g", 0.1)]);
-    for run in with_every_integrator(&slow, beyond, Course::alone) {
+    for run in with_every_integrator(&slow, beyond, |course| course.alone()) {
         match run.finding {
             Some(Finding::MayBeMet { surface: 2, t }) => assert!((t - 2.0).abs() < 1e-6),
             _ => panic!("{run:?}"),
@@ -221,11 +220,13 @@ fn hops_that_accumulate_and_rest_are_confirmed() {
         v: &[0.0, 0.0],
         until: 50.0,
     };
-    let policies = Policies {
-        rest: Rest::Contact,
-        ..Policies::default()
-    };
-    let set = |run: Course<'static, Model>| run.law(0, Law::Restitution(0.5)).policies(policies);
+    fn set(run: Course<'_, Model>) -> Course<'_, Model> {
+        let policies = Policies {
+            rest: Rest::Contact,
+            ..Policies::default()
+        };
+        run.law(0, Law::Restitution(0.5)).policies(policies)
+    }
     for run in with_every_integrator(&course, start, set) {
         assert_eq!((run.outcome, run.finding), (Outcome::Done, None), "{run:?}");
         assert!(run.impacts > 10, "{run:?}");
@@ -266,15 +267,24 @@ impl Effect<Model> for Invented {
 
 #[test]
 fn an_impact_away_from_its_surface_is_found() {
-    let peg = PEG.model();
-    let [q, v] = [[0.0, 2.0], [0.0, 0.0]].map(|pair| vector(&pair));
-    let state = peg.state(0.0, &q, &v).unwrap();
-    let mut audit = Audit::new(&peg);
-    let stepper = Taylor::new(Tolerance::new(1e-12).unwrap());
-    Simulation::new(&peg, stepper, Invented)
-        .run(0.0, state, 1.0, &mut audit)
-        .unwrap();
-    let finding = audit.finding();
-    let is_found = matches!(finding, Some(Finding::Misplaced { surface: 0, .. }));
-    assert!(is_found, "{finding:?}");
+    fn finding(stepper: &mut impl Stepper<Model>) -> Option<Finding> {
+        let peg = PEG.model();
+        let [q, v] = [[0.0, 2.0], [0.0, 0.0]].map(|pair| vector(&pair));
+        let state = peg.state(0.0, &q, &v).unwrap();
+        let mut audit = Audit::new(&peg);
+        Simulation::new(&peg, Chosen::new(stepper), Invented)
+            .run(0.0, state, 1.0, &mut audit)
+            .unwrap();
+        audit.finding()
+    }
+    let tolerance = Tolerance::new(1e-9).unwrap();
+    let findings = [
+        finding(&mut Taylor::new(tolerance)),
+        finding(&mut Dop853::new(tolerance)),
+        finding(&mut Gauss6::new(tolerance).with_step(1.0 / 512.0)),
+    ];
+    for finding in findings {
+        let is_found = matches!(finding, Some(Finding::Misplaced { surface: 0, .. }));
+        assert!(is_found, "{finding:?}");
+    }
 }

@@ -10,10 +10,9 @@ use dalembert::Described;
 use dalembert::certified::CertifiedRun;
 use dalembert::extended::{At, Extended, ExtendedSimulation, Impact};
 use dalembert::numbers::{Interval, Numbers, Row};
-use dalembert::{Impacting, Scene, StateVector, System, Variational};
-use dalembert_stability::course::vector;
+use dalembert::{Impacting, Scene, StateVector, Variational};
 use dalembert_stability::text::{Model, Text};
-use dalembert_tests::certified::follow;
+use dalembert_tests::certified::{follow, state};
 use dalembert_tests::reference::read;
 use serde_json::Value;
 
@@ -250,11 +249,6 @@ fn along(mut run: CertifiedRun<'_, Model>, references: &[Reference], name: &str)
     widest
 }
 
-fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
-    let state = system.state_unchecked(0.0, &vector(q), &vector(qdot));
-    state.unwrap()
-}
-
 /// Impacts in numbers of 48 digits.
 fn impacts<S: Variational + Scene>(system: &S, start: &S::State, t_end: f64) -> Vec<Impact<S, 3>> {
     let mut impacts = Vec::new();
@@ -442,7 +436,11 @@ fn a_walker_is_held_over_twelve_steps() {
 #[test]
 fn a_walker_on_springs_is_held_over_five_steps() {
     let walker = SpringWalker::default();
-    let start = state(&walker, &[0.0, 0.97], &[0.351, 0.0]);
+    let start = state(
+        &walker,
+        &[0.0, 0.97, 0.0, 0.0, 0.0],
+        &[0.351, 0.0, 0.0, 0.0, 0.0],
+    );
     assert!(beside(&walker, &walker, &start, 8.0, "walker on springs") < 1e-9);
 }
 

@@ -91,14 +91,14 @@ fn is_fixed(integrator: Integrator) -> bool {
 #[test]
 fn k05_a_unit_impulse_gives_its_velocity() {
     for s in [1.0, 0.1, 1e-2, 1e-3, 1e-4] {
-        for (by, [_, v], steps) in ends(&STRUCK.with([("s", s)]), [0.0, 0.0], 12.0) {
-            if is_fixed(by) && s < 0.1 {
+        for (integrator, [_, v], steps) in ends(&STRUCK.with([("s", s)]), [0.0, 0.0], 12.0) {
+            if is_fixed(integrator) && s < 0.1 {
                 continue;
             }
-            let allowed = if is_fixed(by) { 0.05 } else { 1e-7 };
+            let allowed = if is_fixed(integrator) { 0.05 } else { 1e-7 };
             assert!(
                 (v - 1.0).abs() < allowed,
-                "{by:?}, s = {s}: {v} after {steps} steps"
+                "{integrator:?}, s = {s}: {v} after {steps} steps"
             );
         }
     }
@@ -107,14 +107,14 @@ fn k05_a_unit_impulse_gives_its_velocity() {
 #[test]
 fn k06_a_barrier_above_the_energy_turns_the_motion_back() {
     for s in [1.0, 0.1, 1e-2, 1e-3] {
-        for (by, [x, v], steps) in ends(&BARRIER.with([("s", s)]), [-8.0, 1.0], 15.0) {
-            if is_fixed(by) && s < 0.1 {
+        for (integrator, [x, v], steps) in ends(&BARRIER.with([("s", s)]), [-8.0, 1.0], 15.0) {
+            if is_fixed(integrator) && s < 0.1 {
                 continue;
             }
-            let allowed = if is_fixed(by) { 0.05 } else { 1e-6 };
+            let allowed = if is_fixed(integrator) { 0.05 } else { 1e-6 };
             assert!(
                 x < 2.0 && (v + 1.0).abs() < allowed,
-                "{by:?}, s = {s}: {x} {v} after {steps} steps"
+                "{integrator:?}, s = {s}: {x} {v} after {steps} steps"
             );
         }
     }
@@ -123,7 +123,7 @@ fn k06_a_barrier_above_the_energy_turns_the_motion_back() {
 #[test]
 fn a_needle_beside_other_forces_is_felt() {
     for s in [0.1, 1e-2, 1e-3] {
-        let (by, [x, v], _) = ends(&SPRING.with([("s", s)]), [1.0, 0.0], 12.0)[0];
+        let (integrator, [x, v], _) = ends(&SPRING.with([("s", s)]), [1.0, 0.0], 12.0)[0];
         // A unit impulse at 5.3, smeared: its spectrum at the frequency of the spring.
         let strength = (-s * s / 4.0).exp();
         let exact = [
@@ -131,15 +131,18 @@ fn a_needle_beside_other_forces_is_felt() {
             -12.0_f64.sin() + strength * (12.0 - 5.3_f64).cos(),
         ];
         let error = (x - exact[0]).hypot(v - exact[1]);
-        assert!(error < 1e-7, "{by:?}, s = {s}: {error:e}");
+        assert!(error < 1e-7, "{integrator:?}, s = {s}: {error:e}");
     }
 }
 
 #[test]
 fn a_steep_wall_turns_the_motion_back() {
-    for (by, [x, v], _) in ends(&STEEP.model(), [1.0, -1.0], 2.0) {
-        let allowed = if is_fixed(by) { 0.1 } else { 1e-6 };
-        assert!(x > 0.9 && (v - 1.0).abs() < allowed, "{by:?}: {x} {v}");
+    for (integrator, [x, v], _) in ends(&STEEP.model(), [1.0, -1.0], 2.0) {
+        let allowed = if is_fixed(integrator) { 0.1 } else { 1e-6 };
+        assert!(
+            x > 0.9 && (v - 1.0).abs() < allowed,
+            "{integrator:?}: {x} {v}"
+        );
     }
 }
 

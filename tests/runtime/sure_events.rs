@@ -246,13 +246,13 @@ struct Tally {
 }
 
 /// Compares the first impact of a run with the exact one.
-fn compare(family: &dyn Family, run: Runs<'_>, flight: &Flight, until: f64, exact: Exact) {
-    let Runs {
+fn compare(family: &dyn Family, setting: Setting<'_>, flight: &Flight, until: f64, exact: Exact) {
+    let Setting {
         model,
         integrator,
         tol,
         step,
-    } = run;
+    } = setting;
     let [q, v] = [flight.q, flight.v].map(|pair| vector(&pair));
     let state = model.state_unchecked(0.0, &q, &v).unwrap();
     let mut log = EventLog::<<Model as VectorField>::State, 1>::new();
@@ -285,7 +285,7 @@ fn compare(family: &dyn Family, run: Runs<'_>, flight: &Flight, until: f64, exac
 
 /// A model, and how it is run.
 #[derive(Clone, Copy)]
-struct Runs<'a> {
+struct Setting<'a> {
     model: &'a Model,
     integrator: Integrator,
     tol: f64,
@@ -303,13 +303,13 @@ fn with_every_integrator(family: &dyn Family, flight: &Flight, until: f64, tally
     tally.grazes += u64::from(exact == Exact::Grazes);
     let model = &family.model();
     let mut run = |integrator, tol, step| {
-        let runs = Runs {
+        let setting = Setting {
             model,
             integrator,
             tol,
             step,
         };
-        compare(family, runs, flight, until, exact);
+        compare(family, setting, flight, until, exact);
         tally.runs += 1;
     };
     for &integrator in Integrator::every() {

@@ -2,21 +2,19 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::System;
 use dalembert::certified::{
     CertifiedFlow, CertifiedImpact, CertifiedOrbit, CertifiedRun, CertifiedSection, Lost, NotProved,
 };
-use dalembert::{System, VectorField};
 use dalembert_stability::course::vector;
 use dalembert_stability::text::Model;
-
-type State = <Model as VectorField>::State;
 
 /// The state of these positions and velocities.
 ///
 /// # Panics
 /// If they are refused.
-pub fn state(model: &Model, q: &[f64], qdot: &[f64]) -> State {
-    let state = model.state_unchecked(0.0, &vector(q), &vector(qdot));
+pub fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
+    let state = system.state_unchecked(0.0, &vector(q), &vector(qdot));
     state.expect("a state")
 }
 
