@@ -254,3 +254,43 @@ fn the_order_at_a_corner_is_asked_for_where_it_matters() -> Result<(), Fault> {
     }
     Ok(())
 }
+
+/// A point on a sphere: it slides off at `cos(phi) = (2 + v^2)/3`.
+static SPHERE: Text = Text::new(
+    "Sphere {
+        coordinates { r; phi; }
+        lagrangian = (dot(r)^2 + r^2*dot(phi)^2)/2 - r*cos(phi);
+        impacts { sphere: r >= 1; }
+    }",
+);
+
+#[test]
+fn a_surface_pressed_from_the_start_holds_the_motion_at_once_whatever_the_step() {
+    let sphere = SPHERE.model();
+    for &integrator in Integrator::every() {
+        for step in [1e-1, 1e-2, 1e-3] {
+            let course = Course::new(&sphere, &[1.0, 0.0], &[0.0, 0.5], 2.0);
+            let mut holds = Vec::new();
+            let mut log = Holds(&mut holds);
+            let run = course.step(step).resting().observed(integrator, &mut log);
+            let case = format!("{}, {step}: {:?}", integrator.name(), run.counters);
+            assert_eq!(run.outcome, Outcome::Done, "{case}");
+            assert_eq!(run.counters.impacts, 0, "{case}");
+            let [(true, begin, _), (false, _, phi)] = holds[..] else {
+                panic!("{case}: {holds:?}")
+            };
+            assert_eq!(begin, 0.0, "{case}");
+            assert!((phi.cos() - 0.75).abs() < 1e-3, "{case}: {phi}");
+        }
+    }
+}
+
+/// Notes where surfaces begin and cease to hold the motion: with times and second coordinates.
+struct Holds<'a>(&'a mut Vec<(bool, f64, f64)>);
+
+impl Observer<Model> for Holds<'_> {
+    fn hold(&mut self, hold: &Hold<<Model as VectorField>::State>) -> ControlFlow<()> {
+        self.0.push((hold.begins, hold.t, hold.state.as_ref()[1]));
+        ControlFlow::Continue(())
+    }
+}

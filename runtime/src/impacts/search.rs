@@ -25,6 +25,9 @@ const FALLS: u32 = 1024;
 /// Ratio of a gap rate to those at the ends of the step below which a grazing impact is possible.
 const SLOW: f64 = 1.0 / (1 << 10) as f64;
 
+/// Largest gap, in units of its rounding, at which a surface that the motion does not leave is still touched.
+const FLAT: f64 = 64.0;
+
 /// Bound of the growth of the local errors during a flight, relative to their sum.
 const SAFETY: f64 = 8.0;
 
@@ -171,7 +174,7 @@ impl<Sys: Impacting> Watch<Sys> {
             };
             step.counters.crossings += 1;
             if is_active(surface, step, part) {
-                if part == 0.0 && start.slope.is_some() {
+                if self.falls_at_start(surface, part, start, step) {
                     let pressed = self.is_pressed(surface, step, glance);
                     return match pressed {
                         true if !is_accelerated(surface, step)?
@@ -199,6 +202,36 @@ impl<Sys: Impacting> Watch<Sys> {
             }
         }
         Ok(Found::Unfinished(start.from))
+    }
+
+    /// True if a fall of a surface at hand is that with which the step begins: at its start, or where the gap has not
+    /// risen beyond its rounding since then.
+    ///
+    /// NOTE: hops that rounding invents on a surface that presses would never end: each falls a little later.
+    fn falls_at_start<Step: Stepper<Sys>>(
+        &mut self,
+        surface: usize,
+        part: f64,
+        start: Start,
+        step: &mut StepView<'_, Sys, Step>,
+    ) -> bool {
+        let Some(slope) = start.slope else {
+            return false;
+        };
+        if part == 0.0 || slope > 0.0 {
+            return part == 0.0;
+        }
+        let mut evaluations = 0;
+        let rounding = rounding_along(surface, step, part, &self.sizes, &mut evaluations);
+        step.counters.event_evaluations += evaluations;
+        step.counters.enclosures += 1;
+        self.path.enclose();
+        let (path, part) = (&self.path, [0.0, part]);
+        let component = |i: usize| path.component(i, part);
+        let gap = step
+            .system
+            .gap_along(surface, path.time_model(part), &component);
+        gap.range().hi <= FLAT * rounding
     }
 
     /// Place of an impact and the gap rate there; `None` if the surface is not approached.
