@@ -270,27 +270,17 @@ fn a_surface_pressed_from_the_start_holds_the_motion_at_once_whatever_the_step()
     for &integrator in Integrator::every() {
         for step in [1e-1, 1e-2, 1e-3] {
             let course = Course::new(&sphere, &[1.0, 0.0], &[0.0, 0.5], 2.0);
-            let mut holds = Vec::new();
-            let mut log = Holds(&mut holds);
-            let run = course.step(step).resting().observed(integrator, &mut log);
+            let mut holds = Holds(Vec::new());
+            let run = course.step(step).resting().observed(integrator, &mut holds);
             let case = format!("{}, {step}: {:?}", integrator.name(), run.counters);
             assert_eq!(run.outcome, Outcome::Done, "{case}");
             assert_eq!(run.counters.impacts, 0, "{case}");
-            let [(true, begin, _), (false, _, phi)] = holds[..] else {
-                panic!("{case}: {holds:?}")
+            let [begin, end] = &holds.0[..] else {
+                panic!("{case}: {:?}", holds.0)
             };
-            assert_eq!(begin, 0.0, "{case}");
+            assert_eq!((begin.begins, begin.t), (true, 0.0), "{case}");
+            let phi = end.state.as_ref()[1];
             assert!((phi.cos() - 0.75).abs() < 1e-3, "{case}: {phi}");
         }
-    }
-}
-
-/// Notes where surfaces begin and cease to hold the motion: with times and second coordinates.
-struct Holds<'a>(&'a mut Vec<(bool, f64, f64)>);
-
-impl Observer<Model> for Holds<'_> {
-    fn hold(&mut self, hold: &Hold<<Model as VectorField>::State>) -> ControlFlow<()> {
-        self.0.push((hold.begins, hold.t, hold.state.as_ref()[1]));
-        ControlFlow::Continue(())
     }
 }
