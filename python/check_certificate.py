@@ -1050,14 +1050,16 @@ class Crossing:
         return [Decimal(1), *model.velocities(state), *(acceleration[i] for i in self.independent(side))]
 
     def factor(self, densities):
-        """By how much the volume of a density is multiplied; by 0 where a motion of first order slides, as the rates have other signs."""
+        """By how much the volume of a density is multiplied; by 0 where a motion of first order slides, as the gap rates have other signs."""
         ends = list(zip(self.models, (self.before, self.after), self.dependent))
         weights = [Decimal(1) if mode.rates else mode.weight(state, dependent) for mode, state, dependent in ends]
         values = [density(state) * weight for density, (_, state, _), weight in zip(densities, ends, weights)]
         factor = determinant([item[1:] for item in self.columns[1:]]) * values[1] / values[0]
         transition = self.surface["transition"]
-        slides = self.models[0].rates and transition is not None and transition["state"] is None
-        return max(factor, Decimal(0)) if slides else abs(factor)
+        may_slide = self.models[0].rates and transition is not None and transition["state"] is None
+        if may_slide and jacobian < 0:
+            return Decimal(0)
+        return abs(jacobian * values[1] / values[0])
 
     def form_defects(self):
         """The change of `dp dq - dH dt`, without constraints."""

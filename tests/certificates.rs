@@ -209,6 +209,14 @@ const FORMS: &str = "
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - x;
         constraints { groove: dot(y) = 2*dot(x); }
         claims { symplectic; }
+    }
+    pub Belts {
+        coordinates { x; y; }
+        modes {
+            right { field { dot(x) = -1; dot(y) = 0; } claims { density = y; density under leftward: factor = 1; } }
+            left { field { dot(x) = -1; dot(y) = 0; } claims { density = -y; } }
+        }
+        transitions { leftward: right -> left when x <= 0; }
     }";
 
 /// Brackets: of canonical momenta beside a magnetic field, beside affine constraints, and integrable systems with walls.
@@ -372,6 +380,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
 #[test]
 fn a_certificate_that_was_tampered_with_fails() {
     let folder = folder("tampered_certificates");
+        "forms:belts",
     let cases = [
         (
             "double_pendulum",
@@ -483,6 +492,8 @@ fn a_certificate_that_was_tampered_with_fails() {
             "leaves:slope",
             "/0/content/constraints/0/form/0",
             json!("-x*exp(x*y)*(1 + y/1000000000)"),
+        // A field that leads back, beside densities of other signs.
+        ("forms:belts", "/1/content/motion/rates/0", json!("1")),
         ),
         (
             "leaves:step",

@@ -14,6 +14,7 @@ use super::passage::{Open, Passage};
 use super::potential::factor_text;
 use super::problem::Problem;
 use super::side::stated_density;
+use super::sliding::{may_slide, unless_it_slides};
 use super::wall::Wall;
 use crate::mechanics::{Derivation, derive};
 use crate::model::{Law, Model};
@@ -98,6 +99,9 @@ fn effect(
         }
     };
     let verdict = found.verdict(true, Wording::default(), around.seed);
+    let before = wall.passage.as_ref().map(|passage| passage.before.density);
+    let claimed = before.into_iter().collect();
+    let verdict = unless_it_slides(model, around, (surface, &wall), claimed, verdict);
     let is_stated = density.written.is_some();
     let text = match (&verdict, is_stated) {
         (Verdict::Proved(_), _) => "keeps it".to_owned(),
@@ -331,11 +335,6 @@ impl Change<'_> {
         let values = point.values(&model.pool, &model.pool.reachable(&[both.0, both.1]))?;
         Some([values[both.0.index()], values[both.1.index()]])
     }
-
-    /// True if the sign of the Jacobian counts: a motion of first order that does not go on slides along the surface.
-    fn is_signed(&self) -> bool {
-        self.wall.passage.as_ref().is_some_and(Passage::may_slide)
-    }
 }
 
 impl AtImpact for Change<'_> {
@@ -350,7 +349,7 @@ impl AtImpact for Change<'_> {
             .collect()
     }
 
-    /// `(f+ J)^2 - (E f-)^2`: both are positive, and squares do not depend on the branch of an absolute value.
+    /// `(f+ J)^2 - (E f-)^2`: sizes are compared, and squares do not depend on the branch of an absolute value.
     fn terms<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -368,22 +367,25 @@ impl AtImpact for Change<'_> {
             }
             None => old,
         };
-        let power = |volume| match self.is_signed() {
-            true => volume,
-            false => field.mul(volume, volume),
-        };
-        Some(vec![power(after), field.neg(power(before))])
+        let square = |volume| field.mul(volume, volume);
+        Some(vec![square(after), field.neg(square(before))])
     }
 
-    /// Where the motion slides volumes become 0: a factor of 0 is right there.
+    /// A motion that slides is another matter, see [`super::sliding`]; where it may, a factor that is not 0 has to be that of a motion that goes on.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
-        let after = |point: &mut P| self.wall.after(model, point);
-        !self.is_signed()
-            || after(point)
-                .and_then(|after| self.terms(model, point, &after))
-                .is_some_and(|terms| {
-                    P::sign(terms[0]) == Some(Ordering::Greater) || P::sign(terms[1]).is_some()
-                })
+        if !may_slide(self.wall) {
+            return true;
+        }
+        let Some(jacobian) = self.wall.jacobian(model, point, &[]) else {
+            return false;
+        };
+        match P::sign(jacobian) {
+            Some(sign) => sign == Ordering::Greater,
+            None => {
+                let terms = self.terms(model, point, &[]);
+                terms.is_some_and(|terms| P::sign(terms[1]).is_some())
+            }
+        }
     }
 
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
@@ -404,9 +406,6 @@ impl AtImpact for Change<'_> {
             ],
             (None, factor) => ["Jacobian".to_owned(), factor.unwrap_or("1").to_owned()],
         };
-        if self.is_signed() {
-            return with_difference(names, [terms[0], -terms[1]], sum);
-        }
         let sizes = [terms[0].abs().sqrt(), terms[1].abs().sqrt()];
         with_difference(names, sizes, sum / (sizes[0] + sizes[1]))
     }

@@ -5,7 +5,6 @@
 
 use dalembert_expr::{ExprId, RealPoint};
 
-use super::bounds::is_never_negative;
 use super::carried::Carried;
 use super::collision::evidence_at_impact;
 use super::conserved::jump;
@@ -18,6 +17,7 @@ use super::focusing::{TURNED, leaves_gap_rate};
 use super::hybrid::Surroundings;
 use super::lie::Lie;
 use super::passage::{Open, Passage};
+use super::sliding::{MAY_SLIDE, always_goes_on, may_slide};
 use super::together::Together;
 use super::undecided::Undecided;
 use super::wall::Wall;
@@ -298,10 +298,9 @@ pub(super) fn kept_at_surface(
             _ => behind_contacts(model, around, tangents, stated, (surface, &wall), contacts),
         };
     }
-    let may_slide = wall.passage.as_ref().is_some_and(Passage::may_slide);
-    if may_slide && matches!(verdict, Verdict::Proved(_)) && !always_goes_on(model, &wall) {
-        let text = "the motion may slide along it, and the rate of its gap is not known to be negative behind it";
-        return Verdict::Undecided(text.to_owned());
+    let is_proof = matches!(verdict, Verdict::Proved(_));
+    if is_proof && may_slide(&wall) && !always_goes_on(model, &wall) {
+        return Verdict::Undecided(MAY_SLIDE.to_owned());
     }
     verdict
 }
@@ -337,27 +336,6 @@ fn behind_contacts(
         }
     };
     Verdict::Undecided(text.to_owned())
-}
-
-/// True if the motion of the mode that is entered is certified not to come back to the surface.
-fn always_goes_on(model: &mut Model, wall: &Wall) -> bool {
-    let Some(passage) = &wall.passage else {
-        return true;
-    };
-    let (slopes, rate) = passage.gap_form();
-    let rates = passage.after.rates.clone().unwrap_or_default();
-    let pool = &mut model.pool;
-    let mut terms = vec![rate];
-    for (slope, rate) in slopes.iter().zip(rates) {
-        terms.push(pool.mul(*slope, rate));
-    }
-    let outgoing = pool.sum(&terms);
-    let outgoing = match wall.solution() {
-        Some(solution) => pool.substitute(outgoing, &[solution]),
-        None => outgoing,
-    };
-    let falling = pool.neg(outgoing);
-    is_never_negative(model, falling)
 }
 
 /// The verdict on what a wall does, with the motion behind it that its law leaves.

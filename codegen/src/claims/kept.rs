@@ -18,6 +18,7 @@ use super::finding::{Certificate, Verdict, Witness};
 use super::hybrid::{Density, Effect, Surroundings, Unknown, change_at, effects, factor};
 use super::potential::{Potential, Term};
 use super::side::stated_density;
+use super::sliding::{may_slide, unless_it_slides};
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
@@ -195,40 +196,41 @@ pub(super) fn check_factor(
         differs: format!("`{name}` does not multiply {volume} by {written}"),
         help: [help, String::new()],
     };
-    let is_signed = (wall.passage.as_ref()).is_some_and(super::passage::Passage::may_slide);
     let verdict = found.verdict(true, wording, around.seed);
+    let before = wall.passage.as_ref().map(|passage| passage.before.density);
+    let claimed = before.into_iter().chain([value]).collect();
+    let verdict = unless_it_slides(model, around, (surface, &wall), claimed, verdict);
     let is_proof = matches!(verdict, Verdict::Proved(_));
     match is_proof && !is_never_negative(model, value) {
-        true if is_signed => where_it_slides(model, around, &wall, &name, (value, written)),
-        true => Verdict::Undecided(format!(
-            "`{name}` multiplies {volume} by {written} up to its sign, and `{written}` may be negative; write its size, `abs(..)`"
-        )),
+        true => up_to_its_sign(model, around, &wall, &[&name, &volume], (value, written)),
         false => verdict,
     }
 }
 
-/// The verdict on a factor that holds where the motion of a field goes on, and may be negative: the motion slides there, which maps volumes to 0.
-fn where_it_slides(
+/// The verdict on a factor that has the right size, and may be negative. Between fields the factor itself is known, and a state shows it.
+fn up_to_its_sign(
     model: &Model,
     around: &Surroundings<'_>,
     wall: &Wall,
-    name: &str,
+    [name, volume]: &[&str; 2],
     (value, written): (ExprId, &str),
 ) -> Verdict {
+    let open = Verdict::Undecided(format!(
+        "`{name}` multiplies {volume} by {written} up to its sign, and `{written}` may be negative; write its size, `abs(..)`"
+    ));
+    if !may_slide(wall) {
+        return open;
+    }
     let question = Negative { value, written };
     let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
     let wording = Wording {
-        differs: format!(
-            "the motion slides along `{name}` where `{written}` is negative, and volumes become 0 there"
-        ),
-        help: ["leave it out".to_owned(), String::new()],
+        differs: format!("`{written}` is negative, and `{name}` multiplies volumes by its size"),
+        help: ["write its size, `abs(..)`".to_owned(), String::new()],
         ..Wording::default()
     };
     match found.verdict(true, wording, around.seed) {
         refuted @ Verdict::Refuted(_) => refuted,
-        _ => Verdict::Undecided(format!(
-            "the motion slides along `{name}` where `{written}` is negative, which is not known to be nowhere"
-        )),
+        _ => open,
     }
 }
 

@@ -17,7 +17,7 @@
 //! | `equivariance.rs` | symmetries of motion, surfaces and their maps together |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
 //! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
-//! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too; do resets keep the constraints? |
+//! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `sliding.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too, and where it slides; do resets keep the constraints? |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
 //! | `expansion.rs`, `lie.rs`, `carried.rs`, `contact.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of one time, along the motion and through surfaces, where it may be held behind them; on leaves of integrable constraints |
 //! | `involution.rs`, `integrable.rs` | brackets of functions; conserved functions that are enough of them |
@@ -91,6 +91,7 @@ mod refraction;
 mod regularity;
 mod sample;
 mod side;
+mod sliding;
 mod smoothness;
 mod symmetry;
 mod symplectic;

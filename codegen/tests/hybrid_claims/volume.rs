@@ -138,7 +138,7 @@ fn a_motion_that_slides_keeps_no_volume() {
     // Where y is negative the motion slides, and the factor is 0.
     let partly = crossing(["-1", "1"], ["-y", "1"], "1");
     let factor = "density under leftward: factor =";
-    let slides = Shown("y", -0.53);
+    let slides = Shown("Jacobian", -0.53);
     check(&partly, &format!("{factor} y"), slides);
     check(
         &partly,
@@ -147,8 +147,35 @@ fn a_motion_that_slides_keeps_no_volume() {
     );
     let positive = "(y + abs(y))/2";
     check(&partly, &format!("{factor} {positive}"), Open(""));
+    let stops = crossing(["-1", "1"], ["0", "1"], "1");
+    check(&stops, &format!("{factor} 1"), Shown("Jacobian", 0.0));
+    check(&stops, &format!("{factor} 0"), True);
     let never = crossing(["-1", "1"], ["-1 - y^2", "1"], "1");
     check(&never, &format!("{factor} 1 + y^2"), True);
+}
+
+/// Densities have any sign: it is the sizes that are compared, and the rates of the gap that say where the motion slides.
+#[test]
+fn densities_that_are_negative_are_compared_by_their_size() {
+    let claim = |rest: &str| format!("density = y; {rest}");
+    let factor = |value: &str| claim(&format!("density under leftward: factor = {value}"));
+    let to = |rate: &str| crossing(["-1", "0"], [rate, "0"], "-y");
+    let slides = Shown("Jacobian", -1.0);
+    check(&to("1"), &factor("1"), slides);
+    check(&to("1"), &claim("volume: kept"), slides);
+    check(&to("-1"), &factor("1"), True);
+    check(&to("-1"), &claim("volume: kept"), True);
+    check(&to("-1 - 1e-9"), &factor("1"), False("Jacobian"));
+    check(
+        &to("-1 - 1e-9"),
+        &claim("volume: kept"),
+        False("difference = 5.3"),
+    );
+    // A factor is not negative, whatever the densities are.
+    check(&to("-1"), &factor("y/abs(y)"), False("is negative"));
+    // One field on both sides goes on, wherever it leads.
+    let same = crossing(["-y - x^2", "0"], ["-y - x^2", "0"], "-y").replace("density = -y;", "");
+    check(&same, "density under leftward: factor = 1", True);
 }
 
 /// A density that is found is one up to a factor, which a transition would have to agree on.

@@ -1,0 +1,132 @@
+//! Sliding along a surface between fields of first order: where the motion comes back to it from the other side, and volumes become 0.
+//!
+//! ```text
+//! J = G+/G-      G- < 0 on the way to the surface; the motion slides where G+ > 0
+//! ```
+//!
+//! Densities have no part in it: their signs are not those of the gap rates.
+
+use std::cmp::Ordering;
+
+use dalembert_expr::{ExpansionPoint, ExprId, Pool, RangePoint, RealPoint};
+
+use super::bounds::is_never_negative;
+use super::collision::{AtImpact, evidence_at_impact};
+use super::dynamics::Number;
+use super::evidence::Wording;
+use super::factor::closed_form;
+use super::finding::Verdict;
+use super::hybrid::Surroundings;
+use super::passage::Passage;
+use super::wall::Wall;
+use crate::model::Model;
+
+/// The reason for which it is open whether the motion goes on.
+pub(super) const MAY_SLIDE: &str =
+    "the motion may slide along it, and the rate of its gap is not known to be negative behind it";
+
+/// True if the motion that comes to a wall may slide along it.
+pub(super) fn may_slide(wall: &Wall) -> bool {
+    wall.passage.as_ref().is_some_and(Passage::may_slide)
+}
+
+/// The verdict on a factor of a volume that a surface has where the motion goes on: where it slides the factor is 0. The factor, and the density before,
+/// are `claimed`.
+pub(super) fn unless_it_slides(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    (surface, wall): (usize, &Wall),
+    claimed: Vec<ExprId>,
+    verdict: Verdict,
+) -> Verdict {
+    if !may_slide(wall) || matches!(verdict, Verdict::Refuted(_)) {
+        return verdict;
+    }
+    let question = Slides { wall, claimed };
+    let name = &model.surfaces[surface].name.display;
+    let wording = Wording {
+        differs: format!(
+            "the motion slides along `{name}` where the Jacobian is negative, and volumes become 0 there"
+        ),
+        help: ["leave it out".to_owned(), String::new()],
+        ..Wording::default()
+    };
+    let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
+    match (found.verdict(true, wording, around.seed), verdict) {
+        (refuted @ Verdict::Refuted(_), _) => refuted,
+        (_, Verdict::Proved(_)) if !always_goes_on(model, wall) => {
+            Verdict::Undecided(MAY_SLIDE.to_owned())
+        }
+        (_, verdict) => verdict,
+    }
+}
+
+/// True if the motion of the mode that is entered is certified not to come back to the surface: by its gap rate, its product with that before, or their ratio.
+pub(super) fn always_goes_on(model: &mut Model, wall: &Wall) -> bool {
+    let Some(passage) = &wall.passage else {
+        return true;
+    };
+    let (slopes, rate) = passage.gap_form();
+    let solution = wall.solution();
+    let along = |pool: &mut Pool, rates: &Option<Vec<ExprId>>| {
+        let mut terms = vec![rate];
+        for (slope, rate) in slopes.iter().zip(rates.iter().flatten()) {
+            terms.push(pool.mul(*slope, *rate));
+        }
+        let sum = pool.sum(&terms);
+        solution.map_or(sum, |solution| pool.substitute(sum, &[solution]))
+    };
+    let pool = &mut model.pool;
+    let incoming = along(pool, &passage.before.rates);
+    let outgoing = along(pool, &passage.after.rates);
+    let (falling, product) = (pool.neg(outgoing), pool.mul(incoming, outgoing));
+    [falling, product]
+        .into_iter()
+        .any(|rate| is_never_negative(model, rate))
+        || closed_form(model, passage).is_some_and(|ratio| is_never_negative(model, ratio))
+}
+
+/// The question whether the motion slides anywhere where a factor is claimed that is not 0.
+struct Slides<'s> {
+    wall: &'s Wall,
+    claimed: Vec<ExprId>,
+}
+
+impl AtImpact for Slides<'_> {
+    fn roots(&self) -> Vec<ExprId> {
+        let passage = self.wall.passage.iter().flat_map(Passage::roots);
+        self.claimed.iter().copied().chain(passage).collect()
+    }
+
+    fn terms<P: ExpansionPoint>(
+        &self,
+        model: &Model,
+        point: &mut P,
+        after: &[Number<P>],
+    ) -> Option<Vec<Number<P>>> {
+        Some(vec![self.wall.jacobian(model, point, after)?])
+    }
+
+    fn wants(&self, terms: &[f64]) -> bool {
+        terms[0] < 0.0
+    }
+
+    fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
+        let order = model.pool.reachable(&self.claimed);
+        let Some(values) = point.values(&model.pool, &order) else {
+            return false;
+        };
+        let claims = |id: &ExprId| P::sign(values[id.index()]).is_some();
+        let is_claimed = self.claimed.iter().all(claims);
+        let jacobian = |point: &mut P| self.wall.jacobian(model, point, &[]);
+        is_claimed && jacobian(point).is_some_and(|it| P::sign(it) == Some(Ordering::Less))
+    }
+
+    fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64> {
+        Some(self.wall.jacobian(model, point, after)?.abs())
+    }
+
+    fn shown(&self, terms: &[f64], _: f64) -> Vec<(String, f64)> {
+        vec![("Jacobian".to_owned(), terms[0])]
+    }
+}
