@@ -5,7 +5,9 @@
 //! hdot+ = 0 and hddot < 0                   it is held: qddot + c W with hddot = 0,    W = -(qdot+ - qdot-)/hdot-
 //! ```
 //!
-//! `hddot` is that of the free motion. Which of them it is is known at a state, where both are enclosed away from 0, and not of all states.
+//! `hddot` is that of the free motion. Which of them it is is known at a state, where both are enclosed away from 0, and not of all states. The rate
+//! `hdot+` is 0 behind `impact_plastic` and `newton(0)`, and behind `restitution(0)` unless constraints are affine: that stops the part of the
+//! velocity across them, and leaves the rate at which they run.
 
 use std::cmp::Ordering;
 
@@ -21,7 +23,7 @@ pub(super) struct Contact {
     /// The derivatives of the gap rate by positions, velocities and time.
     slopes: Vec<ExprId>,
     /// True if the gap rate is 0 after each impact.
-    is_stopped: bool,
+    pub(super) is_stopped: bool,
     pub(super) is_held: bool,
 }
 
@@ -31,7 +33,7 @@ impl Contact {
         if !may_hold(model, surface) {
             return Vec::new();
         }
-        let is_stopped = loses_volumes(model, surface);
+        let is_stopped = stops(model, surface);
         // What is held is under instantaneous constraints, too.
         let is_alone = model.surfaces[surface].instantaneous.is_empty();
         let held = [false, true].into_iter();
@@ -126,7 +128,16 @@ fn may_hold(model: &Model, surface: usize) -> bool {
     }
 }
 
-/// True if the gap rate is 0 after every impact: states are mapped to fewer dimensions, whatever the motion does then.
+/// True if the gap rate is 0 after every impact.
+fn stops(model: &Model, surface: usize) -> bool {
+    let declared = &model.surfaces[surface];
+    let constraints = model.constraints.iter().chain(&declared.instantaneous);
+    let mut affine = constraints.map(|constraint| constraint.affine);
+    let is_linear = affine.all(|rest| model.pool.is_syntactic_zero(rest));
+    loses_volumes(model, surface) && (is_linear || !matches!(declared.law, Law::Restitution(_)))
+}
+
+/// True if the part of the velocities across a surface is 0 after every impact: states are mapped to fewer dimensions, whatever the motion does then.
 pub(super) fn loses_volumes(model: &Model, surface: usize) -> bool {
     match model.surfaces[surface].law {
         Law::ImpactPlastic => true,

@@ -314,6 +314,7 @@ fn behind_contacts(
     (surface, wall): (usize, &Wall),
     contacts: Vec<Contact>,
 ) -> Verdict {
+    let is_stopped = contacts.iter().any(|contact| contact.is_stopped);
     let motions = contacts.into_iter().map(After::Contact);
     for after in [After::Any].into_iter().chain(motions) {
         let text = match &after {
@@ -327,7 +328,7 @@ fn behind_contacts(
             return Verdict::Refuted(witness);
         }
     }
-    let text = match loses_volumes(model, surface) {
+    let text = match is_stopped {
         true => {
             "no state was found that shows a change, and a proof needs the sign of the acceleration of its gap at all states behind it: the motion may go on freely or be held"
         }

@@ -279,6 +279,40 @@ fn forms_change_behind_laws_that_stop_the_motion() {
     check(&rim, "invariant: d(dot(theta))", False("`rim` changes"));
 }
 
+/// A belt with the velocity `z` beside a wall along which it leads: `restitution(0)` stops the part across the belt, and the gap rate is that of the belt.
+#[test]
+fn a_belt_carries_the_motion_away_from_a_wall() {
+    let belt = |rate: &str, law: &str| {
+        format!(
+            "pub Belt {{ coordinates {{ x; z; }} lagrangian = (dot(x)^2 + dot(z)^2)/2 - x;
+            constraints {{ belt: dot(z) = {rate}; }} impacts {{ wall: x + z >= 0 => {law}; }} CLAIM }}"
+        )
+    };
+    let pair = "invariant: d(z)^d(dot(x))";
+    let along = "; the motion behind it goes on freely";
+    check(&belt("1/4", "restitution(0)"), pair, False(along));
+    // By hand: partial(x) goes on with d(dot(x)) = -1/(dot(x) + 1/4), where dot(x) is -3/4.
+    let after = "the form on partial(x), partial(z) after";
+    check(&belt("1/4", "restitution(0)"), pair, Shown(after, -2.0));
+    // The velocity that the belt leads into the wall with stays, and no law turns it round.
+    check(
+        &belt("-1/4", "restitution(0)"),
+        pair,
+        Open("a law that turns the rate of its gap round"),
+    );
+    let held = "; the motion behind it is held";
+    check(&belt("1/4", "newton(0)"), pair, False(held));
+    check(&belt("1/4", "impact_plastic"), pair, False(held));
+    check(&belt("0", "restitution(0)"), pair, False(held));
+    // Volumes are lost in any case.
+    let volume = "invariant: d(x)^d(z)^d(dot(x))";
+    check(
+        &belt("-1/4", "restitution(0)"),
+        volume,
+        False("`wall` changes"),
+    );
+}
+
 #[test]
 fn forms_that_are_not_examined_stay_open() {
     // The velocity that sticks pushes on the wall.
