@@ -1054,7 +1054,7 @@ class Crossing:
         ends = list(zip(self.models, (self.before, self.after), self.dependent))
         weights = [Decimal(1) if mode.rates else mode.weight(state, dependent) for mode, state, dependent in ends]
         values = [density(state) * weight for density, (_, state, _), weight in zip(densities, ends, weights)]
-        factor = determinant([item[1:] for item in self.columns[1:]]) * values[1] / values[0]
+        jacobian = determinant([item[1:] for item in self.columns[1:]])
         transition = self.surface["transition"]
         may_slide = self.models[0].rates and transition is not None and transition["state"] is None
         if may_slide and jacobian < 0:
@@ -1137,9 +1137,10 @@ def check_symplectic(model, claim, source):
     on the leaves of constraints that are integrable."""
     if model.rates is not None:
         raise NotChecked("the symplectic form belongs to mechanical systems")
-    if model.constraints:
+    entered = [model.mode(item["transition"]["enters"]) for item in model.surfaces if item["transition"] is not None]
+    if model.constraints or any(mode.constraints for mode in entered):
         holds, text = kept_form(model, symplectic_terms, source)
-        if not holds and are_integrable(model, source):
+        if not holds and model.constraints and are_integrable(model, source):
             return kept_form(model, symplectic_terms, source, True)
         return holds, text
     total = lambda state: [sum((item[i](state) for item in model.forces), Decimal(0)) for i in range(model.n)]
@@ -1252,8 +1253,9 @@ def along_leaves(chart, vectors):
     return found
 
 
-def kept_form(model, terms_of, source, is_along_leaves=False):
-    """The form of a mode on vectors that the motion carries along; if asked, along leaves of the constraints alone."""
+def kept_form(model, terms_of, source, is_along_leaves=False, assumed=()):
+    """The form of a mode on vectors that the motion carries along; if asked, along leaves of the constraints alone. Modes that are `assumed` are
+    being examined, and are taken to keep the form on all of their states."""
     terms = terms_of(model)
     degree = len(terms[0][1])
     on_leaves = {}
@@ -1273,15 +1275,14 @@ def kept_form(model, terms_of, source, is_along_leaves=False):
         return (ends[0] - ends[1]) / (2 * h)
 
     def needs_leaves(entered):
-        """Whether the motion of a mode keeps the form on the leaves of its constraints alone."""
+        """Whether a mode keeps the form on the leaves of its constraints alone: its motion and its surfaces, with the modes behind these."""
         if entered is model:
             return is_along_leaves
-        if terms_of is not symplectic_terms or not entered.constraints:
+        if terms_of is not symplectic_terms or not entered.constraints or entered in assumed:
             return False
         if entered not in on_leaves:
-            free = copy(entered)
-            free.surfaces = []
-            on_leaves[entered] = are_integrable(entered, source) and not kept_form(free, terms_of, source)[0]
+            keeps_all = lambda: kept_form(entered, terms_of, source, assumed=(*assumed, entered))[0]
+            on_leaves[entered] = are_integrable(entered, source) and not keeps_all()
         return on_leaves[entered]
 
     def change(surface):

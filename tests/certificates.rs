@@ -278,6 +278,35 @@ const LEAVES: &str = "
         transitions { go: near -> far when x <= 0 => reset { z = x - y; dot(z) = 0; }; }
         claims { symplectic; }
     }
+    pub Shelf {
+        coordinates { x; y; s; }
+        modes {
+            near { lagrangian = (dot(x)^2 + dot(y)^2 + dot(s)^2)/2; constraints { hold: dot(s) = 0; } claims { symplectic; } }
+            far {
+                coordinates { z; }
+                lagrangian = (dot(x)^2 + dot(y)^2 + dot(s)^2 + dot(z)^2)/2;
+                constraints { hold: dot(s) = 0; shelf: dot(z) = 0; }
+                impacts { wall: x >= -1; }
+                claims { symplectic; }
+            }
+        }
+        transitions {
+            go: near -> far when x <= 0 => reset { z = dot(y); dot(z) = 0; };
+            back: far -> near when x >= 1 => reset { dot(s) = 0; };
+        }
+    }
+    pub Wider {
+        coordinates { x; }
+        modes {
+            line { lagrangian = dot(x)^2/2; claims { symplectic; } }
+            plane {
+                coordinates { y; z; }
+                lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - x*z;
+                constraints { shelf: dot(z) = 0; }
+            }
+        }
+        transitions { go: line -> plane when x <= 0 => reset { y = 0; dot(y) = 0; z = 3; dot(z) = 0; }; }
+    }
     pub Speed {
         coordinates { x; y; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
@@ -351,6 +380,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "forms:turned",
         "forms:roller",
         "forms:groove",
+        "forms:belts",
         "brackets:charged",
         "brackets:belt",
         "brackets:table",
@@ -358,6 +388,8 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "leaves:hoop",
         "leaves:slope",
         "leaves:step",
+        "leaves:shelf",
+        "leaves:wider",
         "leaves:speed",
         "leaves:free",
     ];
@@ -380,7 +412,6 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
 #[test]
 fn a_certificate_that_was_tampered_with_fails() {
     let folder = folder("tampered_certificates");
-        "forms:belts",
     let cases = [
         (
             "double_pendulum",
@@ -461,6 +492,8 @@ fn a_certificate_that_was_tampered_with_fails() {
             "/1/content/motion/rates/1",
             json!("1 + 1/1000000000"),
         ),
+        // A field that leads back, beside densities of other signs.
+        ("forms:belts", "/1/content/motion/rates/0", json!("1")),
         // A bracket, one beside affine constraints, a wall and two functions that depend on each other.
         (
             "brackets:charged",
@@ -492,13 +525,27 @@ fn a_certificate_that_was_tampered_with_fails() {
             "leaves:slope",
             "/0/content/constraints/0/form/0",
             json!("-x*exp(x*y)*(1 + y/1000000000)"),
-        // A field that leads back, beside densities of other signs.
-        ("forms:belts", "/1/content/motion/rates/0", json!("1")),
         ),
         (
             "leaves:step",
             "/0/content/surfaces/0/transition/state/q/2",
             json!("x - y + dot(x)/1000000000"),
+        ),
+        // A wall of a mode that is entered across its leaves, a map to more dimensions, and one across leaves there.
+        (
+            "leaves:shelf",
+            "/1/content/surfaces/0/gap",
+            json!("x + 1 + z/1000000000"),
+        ),
+        (
+            "leaves:wider",
+            "/0/content/surfaces/0/transition/state/qdot/1",
+            json!("dot(x)/1000000"),
+        ),
+        (
+            "leaves:wider",
+            "/0/content/surfaces/0/transition/state/q/2",
+            json!("3 + dot(x)/1000000000"),
         ),
         (
             "leaves:speed",

@@ -17,17 +17,31 @@ use super::finding::{Certificate, Verdict};
 use super::hybrid::Surroundings;
 use super::invariant::Stated;
 use super::side::Side;
+use super::undecided::Undecided;
 use super::wall::Wall;
-use crate::mechanics::derive;
+use crate::mechanics::{Derivation, derive};
 use crate::model::{ExteriorForm, Model};
 
-/// The proof that the constraints of a model are integrable together; `None` if none is found.
-pub(super) fn are_integrable(
-    model: &mut Model,
-    dynamics: &Dynamics,
-    seed: u64,
-) -> Option<Certificate> {
-    let curls = curls(model);
+/// The verdict on whether the constraints of a model are integrable together.
+pub(super) fn are_integrable(model: &mut Model, dynamics: &Dynamics, seed: u64) -> Verdict {
+    if model.is_nonlinear() {
+        return Verdict::Undecided(Undecided::Nonlinear.to_string());
+    }
+    let mut variables: Vec<SymbolId> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.q)
+        .collect();
+    variables.push(model.time);
+    let forms: Vec<Vec<ExprId>> = model
+        .constraints
+        .iter()
+        .map(|constraint| constraint.expressions().collect())
+        .collect();
+    let curls: Vec<Vec<Vec<ExprId>>> = forms
+        .iter()
+        .map(|form| curl(&mut model.pool, form, &variables))
+        .collect();
     let side = Side::of(model);
     let question = Involutive {
         dynamics,
@@ -40,40 +54,30 @@ pub(super) fn are_integrable(
         ..Wording::default()
     };
     match evidence(model, &question, seed).verdict(true, wording, seed) {
-        Verdict::Proved(proof) => Some(Certificate {
-            error: proof.error + CHANCE,
-            ..proof
-        }),
-        _ => None,
+        Verdict::Proved(proof) => Verdict::Proved(with_chance(proof)),
+        other => other,
     }
 }
 
-/// `d_i w_j - d_j w_i` of each constraint, time after the coordinates.
-fn curls(model: &mut Model) -> Vec<Vec<Vec<ExprId>>> {
-    let mut variables: Vec<SymbolId> = model
-        .coordinates
-        .iter()
-        .map(|coordinate| coordinate.q)
-        .collect();
-    variables.push(model.time);
-    let constraints = model.constraints.clone();
-    let pool = &mut model.pool;
-    let forms = constraints.iter().map(|constraint| {
-        let form: Vec<ExprId> = constraint.expressions().collect();
-        let entry = |i: usize, j: usize, pool: &mut Pool| {
-            let [one, other] = [
-                pool.diff(form[j], variables[i]),
-                pool.diff(form[i], variables[j]),
-            ];
-            pool.sub(one, other)
-        };
-        let all = 0..form.len();
-        let rows = all
-            .clone()
-            .map(|i| all.clone().map(|j| entry(i, j, pool)).collect());
-        rows.collect()
-    });
-    forms.collect()
+/// A proof by random weights.
+fn with_chance(proof: Certificate) -> Certificate {
+    Certificate {
+        error: proof.error + CHANCE,
+        ..proof
+    }
+}
+
+/// `d_i w_j - d_j w_i`
+pub(super) fn curl(pool: &mut Pool, form: &[ExprId], variables: &[SymbolId]) -> Vec<Vec<ExprId>> {
+    let all = 0..form.len();
+    let mut entry = |i: usize, j: usize| {
+        let one = pool.diff(form[j], variables[i]);
+        let other = pool.diff(form[i], variables[j]);
+        pool.sub(one, other)
+    };
+    all.clone()
+        .map(|i| all.clone().map(|j| entry(i, j)).collect())
+        .collect()
 }
 
 /// `dw^a` on pairs of fields that are annihilated, all with random weights.
@@ -157,61 +161,96 @@ impl Vanishing for Involutive<'_> {
     }
 }
 
-/// The verdict on what a surface carries vectors to: where the constraints of the mode behind it are integrable, the motion there need keep the form on
-/// its leaves only.
+/// A mode that is entered, with its equations.
+pub(super) struct Entered {
+    /// Its index, unless it is the mode that is left.
+    pub(super) index: Option<usize>,
+    pub(super) model: Model,
+    pub(super) derivation: Derivation,
+    pub(super) dynamics: Dynamics,
+}
+
+impl Entered {
+    fn of(index: Option<usize>, mut model: Model) -> Self {
+        let derivation = derive(&mut model);
+        let dynamics = Dynamics::of(&mut model, &derivation);
+        Self {
+            index,
+            model,
+            derivation,
+            dynamics,
+        }
+    }
+}
+
+/// The verdict on what a surface carries vectors to: where the constraints of the mode behind it are integrable, that need keep the form on its leaves
+/// only, unless it `keeps_all`. `None` where nothing is asked.
 pub(super) fn check_behind(
     model: &mut Model,
     around: &Surroundings<'_>,
     tangents: &Tangents,
-    (form, stated): (&ExteriorForm, Stated<'_>),
+    forms: (&ExteriorForm, Stated<'_>),
     surface: usize,
-    keeps_all: impl FnOnce(&mut Model, &Dynamics) -> bool,
-) -> Verdict {
+    keeps_all: impl FnOnce(&mut Entered) -> Verdict,
+) -> Option<Verdict> {
     let enters = model.surfaces[surface].transition.as_ref();
     let enters = enters.map(|transition| transition.enters);
     let entered = enters.and_then(|enters| around.others.get(enters)).copied();
-    let name = model.surfaces[surface].name.display.clone();
-    let shown = format!("`{name}` carries vectors along leaves to such vectors");
-    let nothing = Certificate::without_chance(shown.clone(), around.seed);
     let is_needed = match entered {
         Some(mode) => !mode.constraints.is_empty(),
         None => tangents.is_along_leaves,
     };
     if !is_needed {
-        return Verdict::Proved(nothing);
+        return None;
     }
-    let mut there = entered.unwrap_or(model).clone();
-    let derivation = derive(&mut there);
-    let dynamics = Dynamics::of(&mut there, &derivation);
-    if are_integrable(&mut there, &dynamics, around.seed).is_none() {
-        return Verdict::Proved(nothing);
+    let mut behind = Entered::of(enters, entered.unwrap_or(model).clone());
+    let integrable = are_integrable(&mut behind.model, &behind.dynamics, around.seed);
+    // Without leaves the form there is one on all states.
+    if matches!(integrable, Verdict::Refuted(_)) {
+        return None;
     }
+    if let landed @ Verdict::Proved(_) =
+        lands_along(model, around, tangents, forms, surface, entered)
+    {
+        return Some(landed);
+    }
+    if entered.is_some()
+        && let kept @ Verdict::Proved(_) = keeps_all(&mut behind)
+    {
+        return Some(kept);
+    }
+    let why = match integrable {
+        Verdict::Proved(_) => "the motion there is known to keep the form along leaves only",
+        _ => "these are not known to be integrable or not",
+    };
+    Some(Verdict::Undecided(format!(
+        "it carries vectors along one leaf across those of the constraints behind it, and {why}"
+    )))
+}
+
+/// The verdict on whether a surface carries vectors to such along leaves of the constraints behind it.
+fn lands_along(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    forms: (&ExteriorForm, Stated<'_>),
+    surface: usize,
+    entered: Option<&Model>,
+) -> Verdict {
+    let name = model.surfaces[surface].name.display.clone();
     let wall = Wall::of(model, around.derivation, surface, around.others);
     let tangents = &tangents.at_wall(model, around, &wall);
-    let landing = match Carried::of(model, around, (form, stated), tangents, (&wall, entered)) {
-        Ok(question) => {
-            let question = question.across_leaves(around.seed);
-            let wording = Wording {
-                vanishes: shown,
-                ..Wording::default()
-            };
-            evidence_at_impact(model, &wall, around.dynamics, &question, around.seed).verdict(
-                true,
-                wording,
-                around.seed,
-            )
-        }
-        Err(reason) => Verdict::Undecided(reason),
+    let question = match Carried::of(model, around, forms, tangents, (&wall, entered)) {
+        Ok(question) => question.across_leaves(around.seed),
+        Err(reason) => return Verdict::Undecided(reason),
     };
-    match landing {
-        Verdict::Proved(proof) => Verdict::Proved(Certificate {
-            error: proof.error + CHANCE,
-            ..proof
-        }),
-        // Where the form is kept on all states there, leaves are of no interest.
-        _ if entered.is_some() && keeps_all(&mut there, &dynamics) => Verdict::Proved(nothing),
-        _ => Verdict::Undecided(format!(
-            "what `{name}` does is not known: it carries vectors along one leaf across those of the constraints behind it, and the motion there is known to keep the form along leaves only"
-        )),
+    let wording = Wording {
+        vanishes: format!("`{name}` carries vectors along leaves to such vectors"),
+        ..Wording::default()
+    };
+    let found = evidence_at_impact(model, &wall, around.dynamics, &question, around.seed);
+    match found.verdict(true, wording, around.seed) {
+        Verdict::Proved(proof) => Verdict::Proved(with_chance(proof)),
+        other => other,
     }
 }

@@ -10,7 +10,7 @@
 //! both are annihilated by `eta^a`. Where that is 0 the form on all states of D decides, as `invariant` does. If it is not kept there and the
 //! constraints are integrable, the form on their leaves decides, see `leaves.rs`. An impulse along `dh` keeps the form iff it keeps the volume.
 
-use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
+use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
 use super::conserved::magnitude;
 use super::dynamics::{Dynamics, Number};
@@ -18,10 +18,10 @@ use super::evidence::{Vanishing, Wording, evidence};
 use super::exactness::decide_local;
 use super::expansion::{Tangents, explicit_form};
 use super::finding::{Certificate, Verdict, Witness};
-use super::hybrid::{Density, Surroundings, effects};
-use super::invariant::{Stated, check_on, kept_at_surface, kept_by_motion};
-use super::leaves::{are_integrable, check_behind};
-use super::passage::{Passage, Velocities};
+use super::hybrid::{Density, Effect, Surroundings, effects};
+use super::invariant::{Stated, check_on, kept_at_surface};
+use super::leaves::{Entered, are_integrable, check_behind, curl};
+use super::passage::{Open, Passage, Velocities};
 use super::problem::Problem;
 use super::side::Side;
 use super::together::Together;
@@ -31,6 +31,7 @@ use crate::model::{ExteriorForm, Model};
 
 const KEPT: &str = "the motion of a Lagrangian without constraints keeps the symplectic form";
 const LEAVES: &str = "some constraints are integrable and some are not: the form on all states of D changes, and on the leaves of the integrable ones it is not examined";
+const UNKNOWN: &str = "the form on all states of D changes, and it is not known whether the constraints are integrable: on their leaves it may be kept";
 
 /// The verdict on `symplectic`.
 pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
@@ -50,45 +51,55 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
     let effects = effects(model, around, &one);
     let mut open = None;
     for effect in effects {
-        let surface = effect.surface;
-        let name = model.surfaces[surface].name.display.clone();
-        let wall = Wall::of(model, around.derivation, surface, around.others);
-        let is_declared =
-            |passage: &Passage| matches!(passage.velocities, Velocities::Declared(..));
-        let verdict = match wall.passage.as_ref().is_some_and(is_declared) {
-            // What changes volumes does not keep the form.
-            true if effect.keeps() => map_keeps(model, around, surface),
-            _ => match effect.verdict {
-                Verdict::Refuted(witness) => changed_with_volumes(
-                    model,
-                    around,
-                    surface,
-                    Witness {
-                        reason: format!(
-                            "`{name}` does not keep the symplectic form, as volumes are not kept: it {}",
-                            effect.text
-                        ),
-                        help: "leave it out".to_owned(),
-                        ..witness
-                    },
-                ),
-                other => other,
-            },
-        };
-        match verdict {
+        let name = model.surfaces[effect.surface].name.display.clone();
+        match at_surface(model, around, effect) {
             Verdict::Proved(part) => {
                 all.rest_on(&part);
                 all.shown += &format!("; `{name}` keeps it");
             }
-            Verdict::Refuted(_) => return verdict,
             Verdict::Undecided(reason) => {
                 open.get_or_insert(format!("what `{name}` does is not known: {reason}"));
             }
+            refuted @ Verdict::Refuted(_) => return refuted,
         }
     }
     match open {
         Some(reason) => Verdict::Undecided(reason),
         None => Verdict::Proved(all),
+    }
+}
+
+/// The verdict on a surface of a mode without constraints, given its effect on volumes.
+fn at_surface(model: &mut Model, around: &Surroundings<'_>, effect: Effect) -> Verdict {
+    let surface = effect.surface;
+    let wall = Wall::of(model, around.derivation, surface, around.others);
+    let gains = |open: Option<Open>| matches!(open, Some(Open::Dimensions(before, after)) if before < after);
+    let leads_to_more = model.surfaces[surface].instantaneous.is_empty()
+        && wall
+            .passage
+            .as_ref()
+            .is_some_and(|passage| gains(passage.open));
+    let is_declared = |passage: &Passage| matches!(passage.velocities, Velocities::Declared(..));
+    match effect.verdict {
+        _ if leads_to_more => map_to_more_keeps(model, around, surface),
+        // What changes volumes does not keep the form.
+        Verdict::Proved(_) if wall.passage.as_ref().is_some_and(is_declared) => {
+            map_keeps(model, around, surface)
+        }
+        Verdict::Refuted(witness) => {
+            let name = &model.surfaces[surface].name.display;
+            let reason = format!(
+                "`{name}` does not keep the symplectic form, as volumes are not kept: it {}",
+                effect.text
+            );
+            let witness = Witness {
+                reason,
+                help: "leave it out".to_owned(),
+                ..witness
+            };
+            changed_with_volumes(model, around, surface, witness)
+        }
+        other => other,
     }
 }
 
@@ -166,24 +177,26 @@ fn on_constraints(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     let (form, written) = &symplectic_form(model);
     let form = stated(form, written);
     let on_d = check_on(model, around, &tangents, form);
+    let on_d = with_behind(model, around, &tangents, form, (on_d, &[]));
     if matches!(on_d, Verdict::Proved(_)) {
-        return with_behind(model, around, &tangents, form, on_d);
+        return on_d;
     }
     match are_integrable(model, around.dynamics, around.seed) {
-        Some(integrable) => {
+        Verdict::Proved(integrable) => {
             let tangents = tangents.along_leaves();
             let mut verdict = check_on(model, around, &tangents, form);
             if let Verdict::Proved(all) = &mut verdict {
                 all.rest_on(&integrable);
                 all.shown = format!("{}, and {}", integrable.shown, all.shown);
             }
-            with_behind(model, around, &tangents, form, verdict)
+            with_behind(model, around, &tangents, form, (verdict, &[]))
         }
         // A vector off the leaves of integrable constraints says nothing of them.
-        None if matches!(on_d, Verdict::Refuted(_)) && !connects(model, around) => {
-            Verdict::Undecided(LEAVES.to_owned())
+        found if matches!(on_d, Verdict::Refuted(_)) && !connects(model, around) => {
+            let is_known = matches!(found, Verdict::Refuted(_));
+            Verdict::Undecided(if is_known { LEAVES } else { UNKNOWN }.to_owned())
         }
-        None => on_d,
+        _ => on_d,
     }
 }
 
@@ -193,34 +206,72 @@ fn with_behind(
     around: &Surroundings<'_>,
     tangents: &Tangents,
     form: Stated<'_>,
-    verdict: Verdict,
+    (verdict, assumed): (Verdict, &[usize]),
 ) -> Verdict {
     let Verdict::Proved(all) = verdict else {
         return verdict;
     };
-    let explicit = explicit_form(model, form.form);
     let mut together = Together::of(all);
     for surface in 0..model.surfaces.len() {
-        let forms = (&explicit, form);
-        let keeps_all = |there: &mut Model, dynamics: &Dynamics| {
-            let Some(tangents) = Tangents::of(there, dynamics) else {
-                return false;
-            };
-            let around = Surroundings {
-                dynamics,
-                ..*around
-            };
-            let (form, written) = symplectic_form(there);
-            let form = explicit_form(there, &form);
-            let kept = kept_by_motion(there, &around, &tangents, (&form, &written));
-            matches!(kept, Verdict::Proved(_))
+        let behind = check_mode_behind(model, around, tangents, form, surface, assumed);
+        let named = |verdict| match verdict {
+            Verdict::Undecided(reason) => unknown(model, surface, &reason),
+            decided => decided,
         };
-        let behind = check_behind(model, around, tangents, forms, surface, keeps_all);
-        if let Some(refuted) = together.add(behind) {
+        if let Some(refuted) = behind.and_then(|verdict| together.add(named(verdict))) {
             return refuted;
         }
     }
     together.verdict()
+}
+
+/// The reason for which a surface is open, with its name.
+fn unknown(model: &Model, surface: usize, reason: &str) -> Verdict {
+    let name = &model.surfaces[surface].name.display;
+    Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
+}
+
+/// The verdict on the vectors that one surface carries to another mode.
+fn check_mode_behind(
+    model: &mut Model,
+    around: &Surroundings<'_>,
+    tangents: &Tangents,
+    form: Stated<'_>,
+    surface: usize,
+    assumed: &[usize],
+) -> Option<Verdict> {
+    let explicit = explicit_form(model, form.form);
+    let forms = (&explicit, form);
+    check_behind(model, around, tangents, forms, surface, |entered| {
+        keeps_all(entered, around, assumed)
+    })
+}
+
+/// The verdict on all states of a mode that is entered: its motion and its surfaces keep the form there, and so do the modes behind it. Those on the way to
+/// it are assumed to: they are being examined.
+fn keeps_all(entered: &mut Entered, around: &Surroundings<'_>, assumed: &[usize]) -> Verdict {
+    let index = entered.index.unwrap_or(usize::MAX);
+    if assumed.contains(&index) {
+        let shown = "the form is kept on all states".to_owned();
+        return Verdict::Proved(Certificate::without_chance(shown, around.seed));
+    }
+    if entered.model.is_nonlinear() {
+        return Verdict::Undecided(Undecided::Nonlinear.to_string());
+    }
+    let model = &mut entered.model;
+    let around = &Surroundings {
+        derivation: &entered.derivation,
+        dynamics: &entered.dynamics,
+        ..*around
+    };
+    let Some(tangents) = Tangents::of(model, around.dynamics) else {
+        return Verdict::Undecided(Undecided::Degenerate.to_string());
+    };
+    let (form, written) = &symplectic_form(model);
+    let form = stated(form, written);
+    let on_d = check_on(model, around, &tangents, form);
+    let assumed = [assumed, &[index]].concat();
+    with_behind(model, around, &tangents, form, (on_d, &assumed))
 }
 
 /// True if brackets of fields of D span all directions: there are no leaves.
@@ -238,17 +289,14 @@ fn changed_on_fields(model: &mut Model, around: &Surroundings<'_>) -> Option<Ver
         .iter()
         .map(|coordinate| coordinate.q)
         .collect();
-    let mut curls = Vec::new();
-    for constraint in model.constraints.clone() {
-        let form = constraint.form;
-        let entry = |i: usize, j: usize, pool: &mut Pool| {
-            let [one, other] = [pool.diff(form[j], q[i]), pool.diff(form[i], q[j])];
-            pool.sub(one, other)
-        };
-        let row = |i: usize, pool: &mut Pool| (0..n).map(|j| entry(i, j, pool)).collect();
-        let rows: Vec<Vec<ExprId>> = (0..n).map(|i| row(i, &mut model.pool)).collect();
-        curls.push(rows);
-    }
+    let constraints = model.constraints.iter();
+    let forms: Vec<Vec<ExprId>> = constraints
+        .map(|constraint| constraint.form.clone())
+        .collect();
+    let curls: Vec<Vec<Vec<ExprId>>> = forms
+        .iter()
+        .map(|form| curl(&mut model.pool, form, &q))
+        .collect();
     let side = Side::of(model);
     let free = n - model.constraints.len();
     for i in 0..free {
@@ -290,6 +338,21 @@ fn map_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Ve
     };
     let (form, written) = &symplectic_form(model);
     kept_at_surface(model, around, &tangents, stated(form, written), surface)
+}
+
+/// The verdict on a map to states of more dimensions, which have no volume of these: the form decides, on vectors along leaves of constraints there.
+fn map_to_more_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Verdict {
+    let kept = map_keeps(model, around, surface);
+    let (Verdict::Proved(all), Some(tangents)) = (&kept, Tangents::of(model, around.dynamics))
+    else {
+        return kept;
+    };
+    let mut together = Together::of(all.clone());
+    let (form, written) = &symplectic_form(model);
+    let form = stated(form, written);
+    let behind = check_mode_behind(model, around, &tangents, form, surface, &[]);
+    let refuted = behind.and_then(|verdict| together.add(verdict));
+    refuted.unwrap_or_else(|| together.verdict())
 }
 
 /// The symplectic form as one that is stated.

@@ -209,7 +209,7 @@ fn leaves_are_not_kept_by_losses_forces_and_what_is_not_integrable() {
     check(&torn, CLAIM, False("`wall` changes"));
 }
 
-/// Of two modes each has its form: one behind a transition has the coordinates of its mode.
+/// The form behind a transition is that of its mode, with the coordinates that the mode has.
 #[test]
 fn transitions_lead_from_leaves_to_leaves() {
     let step = |potential: &str, z: &str| {
@@ -241,6 +241,89 @@ fn transitions_lead_from_leaves_to_leaves() {
         CLAIM,
         Open("some constraints are integrable and some are not"),
     );
+}
+
+/// A mode that is entered across its leaves has to keep the form on all of its states, at its surfaces too.
+#[test]
+fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
+    let step = |surfaces: &str, z: &str, rest: &str| {
+        format!(
+            "pub Step {{ coordinates {{ x; y; s; }} modes {{
+                near {{ lagrangian = (dot(x)^2 + dot(y)^2 + dot(s)^2)/2; constraints {{ hold: dot(s) = 0; }} CLAIM }}
+                far {{ coordinates {{ z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(s)^2 + dot(z)^2)/2;
+                    constraints {{ hold: dot(s) = 0; shelf: dot(z) = 0; }} {surfaces} }} }}
+            transitions {{ go: near -> far when x <= 0 => reset {{ z = {z}; dot(z) = 0; }}; {rest} }} }}"
+        )
+    };
+    let wall = |gap: &str| format!("impacts {{ wall: {gap} >= -1; }}");
+    check(&step("", "dot(y)", ""), CLAIM, True);
+    check(&step(&wall("x"), "dot(y)", ""), CLAIM, True);
+    // The wall turns dz/dt = dot(y) into a part of the form: leaves of the shelf keep it, other vectors do not.
+    let across = Open("across those of the constraints behind it");
+    check(&step(&wall("x + z"), "dot(y)", ""), CLAIM, across);
+    check(&step(&wall("x + 1e-9*z"), "dot(y)", ""), CLAIM, across);
+    check(&step(&wall("x + z"), "y", ""), CLAIM, across);
+    check(&step(&wall("x + z"), "3", ""), CLAIM, True);
+    // Modes that lead to each other.
+    let back = "back: far -> near when x >= 1 => reset { dot(s) = 0; };";
+    check(&step("", "dot(y)", back), CLAIM, True);
+    let changed = "back: far -> near when x >= 1 => reset { y = y + z; dot(s) = 0; };";
+    check(&step("", "3", changed), CLAIM, True);
+    check(&step("", "dot(y)", changed), CLAIM, across);
+    // A third one behind them, with the potential near its entrance.
+    let third = |potential: &str, z: &str| {
+        let on = "on: far -> third when y <= -1 => reset { dot(z) = 0; };";
+        let mode = format!(
+            "CLAIM }} third {{ coordinates {{ z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(s)^2 + dot(z)^2)/2 - {potential};
+                constraints {{ hold: dot(s) = 0; shelf: dot(z) = 0; }} }}"
+        );
+        step("", z, on).replace("CLAIM }", &mode)
+    };
+    check(&third("0", "dot(y)"), CLAIM, True);
+    check(&third("z*(y + 1)^2", "dot(y)"), CLAIM, across);
+    check(&third("z*(y + 1)^2", "3"), CLAIM, True);
+}
+
+#[test]
+fn states_of_more_dimensions_may_keep_the_form() {
+    let wider = |reset: &str, rest: &str| {
+        format!(
+            "pub Wider {{ coordinates {{ x; }} modes {{ line {{ lagrangian = dot(x)^2/2; CLAIM }}
+                plane {{ coordinates {{ y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2; {rest} }} }}
+            transitions {{ go: line -> plane when x <= 0 => reset {{ {reset} }}; }} }}"
+        )
+    };
+    let still = "y = 0; dot(y) = 0; z = 0; dot(z) = 0;";
+    check(&wider(still, ""), CLAIM, True);
+    // By hand: partial(x) goes on as partial(x) + partial(y).
+    let after = "the form on partial(x), partial(dot(x)) after";
+    let moving = "y = 0; dot(y) = dot(x); z = 0; dot(z) = 0;";
+    check(&wider(moving, ""), CLAIM, Shown(after, -2.0));
+    let near = "y = 0; dot(y) = 1e-6*dot(x); z = 0; dot(z) = 0;";
+    check(&wider(near, ""), CLAIM, False("`go` changes"));
+    // Along leaves of the mode that is entered, and across them.
+    let belt = "constraints { belt: dot(z) = x*dot(x); }";
+    let on_belt = |z: &str| format!("y = 0; dot(y) = 0; z = {z}; dot(z) = x*dot(x);");
+    check(&wider(&on_belt("x^2/2"), belt), CLAIM, True);
+    let shelf = |z: &str| {
+        let lands = format!("y = 0; dot(y) = 0; z = {z}; dot(z) = 0;");
+        let held = wider(&lands, "constraints { shelf: dot(z) = 0; }");
+        held.replace("dot(z)^2)/2", "dot(z)^2)/2 - x*z")
+    };
+    check(&shelf("3"), CLAIM, True);
+    let across = Open("across those of the constraints behind it");
+    check(&shelf("dot(x)"), CLAIM, across);
+    check(&shelf("3 + 1e-9*dot(x)"), CLAIM, across);
+    // Constraints that are not linear in the velocities have no leaves that are known.
+    let speed = wider(
+        "y = 0; dot(y) = 1; z = 0; dot(z) = 0;",
+        "constraints { speed: dot(y)^2 + dot(z)^2 = 1; }",
+    );
+    check(&speed, CLAIM, Open("not known to be integrable or not"));
+    // Fewer dimensions keep no such form.
+    let narrow = "pub Narrow { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
+        modes { free { CLAIM } bound { constraints { shelf: dot(y) = 0; } } } transitions { go: free -> bound when x <= 0; } }";
+    check(narrow, CLAIM, False("`go`"));
 }
 
 /// Along `dot(x)^2 + dot(y)^2 = v^2` the rate is `2 g dot(x)/v^2` on `partial(y)` and `partial(dot(x))`, from `lambda = m g dot(y)/(2 v^2)` and
