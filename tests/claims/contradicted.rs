@@ -48,6 +48,7 @@ fn contradictions(claim: &str) -> Vec<String> {
 struct Contradicted {
     claims: usize,
     messages: usize,
+    examples: usize,
 }
 
 impl Contradicted {
@@ -62,6 +63,10 @@ impl Contradicted {
                 match Witness::of(&message) {
                     Some(_) => witness::check(&mut system.clone(), &wrong, &message),
                     None => holds_numerically(system, claim, &message),
+                }
+                if let Some(example) = Witness::example(&message) {
+                    witness::check_example(&mut system.clone(), claim, &example);
+                    self.examples += 1;
                 }
                 self.messages += 1;
             }
@@ -114,6 +119,7 @@ fn what_contradicts_a_claim_of_a_shipped_model_is_refuted() {
     let mut contradicted = Contradicted {
         claims: 0,
         messages: 0,
+        examples: 0,
     };
     for system in every_system() {
         contradicted.contradict(system);
@@ -124,6 +130,8 @@ fn what_contradicts_a_claim_of_a_shipped_model_is_refuted() {
         "{} messages",
         contradicted.messages
     );
+    let examples = contradicted.examples;
+    assert!(examples >= 10, "{examples} examples");
 }
 
 /// Every claim is refuted, with a point whose numbers are right.

@@ -161,11 +161,7 @@ impl Witness {
     /// # Panics
     /// If a number cannot be read.
     pub fn of(message: &str) -> Option<Self> {
-        let pair = |text: &str| {
-            let (name, value) = text.rsplit_once(" = ").expect("a name and a value");
-            (name.to_owned(), value.parse().expect("a number"))
-        };
-        // A state at which parts cancel is an example, and shows nothing.
+        // A state at which parts cancel is an example, see below.
         let is_value = |line: &&str| {
             let number = line.rsplit_once(" = ");
             let is_number = number.is_some_and(|(_, value)| value.parse::<f64>().is_ok());
@@ -178,8 +174,20 @@ impl Witness {
             .filter(is_value)
             .map(pair)
             .collect();
-        let at = place.map_or(Vec::new(), |place| place.split(", ").map(pair).collect());
+        let at = place.map_or(Vec::new(), pairs);
         (!values.is_empty()).then_some(Self { values, at })
+    }
+
+    /// Reads the example of a message, a state at which parts cancel; `None` if it has none.
+    ///
+    /// # Panics
+    /// If a number cannot be read.
+    pub fn example(message: &str) -> Option<Self> {
+        let mut lines = message.lines();
+        let line = lines.find_map(|line| line.strip_prefix("for example "))?;
+        let (values, at) = line.rsplit_once(" at ").expect("a place");
+        let [values, at] = [values, at].map(pairs);
+        Some(Self { values, at })
     }
 
     /// A value by its name.
@@ -219,4 +227,26 @@ impl Witness {
         }
         (t, q, qdot)
     }
+}
+
+/// Name and value of `name = 1.5`.
+fn pair(text: &str) -> (String, f64) {
+    let (name, value) = text.rsplit_once(" = ").expect("a name and a value");
+    (name.to_owned(), value.parse().expect("a number"))
+}
+
+/// Names and values of `x = 1.5, dot(x) = -2`. Names may have commas.
+fn pairs(text: &str) -> Vec<(String, f64)> {
+    let mut found = Vec::new();
+    let mut open = String::new();
+    for piece in text.split(", ") {
+        open += piece;
+        let value = open.rsplit_once(" = ").map(|(_, value)| value);
+        match value.is_some_and(|value| value.parse::<f64>().is_ok()) {
+            true => found.push(pair(&std::mem::take(&mut open))),
+            false => open += ", ",
+        }
+    }
+    assert!(open.is_empty(), "{text}");
+    found
 }

@@ -105,6 +105,50 @@ pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
     );
 }
 
+/// Compares the example of a message, a state at which the parts of a rate cancel or two values agree, with numbers computed in this file; `claim` is the
+/// true one.
+///
+/// # Panics
+/// If parts do not add up, the rate is not 0 there, or a value differs.
+pub fn check_example(system: &mut dyn Numeric, claim: &str, example: &Witness) {
+    let (t, q, qdot) = example.place(system);
+    let system = &*system;
+    let state = system.state(t, &q, &qdot);
+    let is_part = |(name, _): &&(String, f64)| name.starts_with("part by ");
+    let parts: Vec<f64> = example
+        .values
+        .iter()
+        .filter(is_part)
+        .map(|it| it.1)
+        .collect();
+    let size = parts
+        .iter()
+        .fold(0.0, |size: f64, part| size.max(part.abs()));
+    if !parts.is_empty() {
+        let sum: f64 = parts.iter().sum();
+        assert!(sum.abs() <= 1e-9 * size, "{claim}: {example:?}");
+        assert!(
+            example.value("sum").abs() <= 1e-9 * size,
+            "{claim}: {example:?}"
+        );
+        let (_, quantity) = claim.split_once(':').expect("a quantity");
+        let rate = rate(system, quantity, t, &state);
+        assert!(
+            rate.abs() <= ONCE[0] * size + ONCE[1],
+            "{claim}: {rate}, {example:?}"
+        );
+    }
+    let is_side = |name: &str| name.ends_with(" after") || name.ends_with(" before");
+    for (name, printed) in example.values.iter().filter(|(name, _)| is_side(name)) {
+        let found = computed(system, claim, name, t, &state);
+        let error = (found - printed).abs();
+        assert!(
+            error <= ONCE[0] * printed.abs() + ONCE[1],
+            "{claim}: {found}, {example:?}"
+        );
+    }
+}
+
 /// The two numbers that would agree if the claim were true.
 fn opposites(witness: &Witness) -> [f64; 2] {
     match witness.values.as_slice() {

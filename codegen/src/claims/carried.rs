@@ -22,7 +22,7 @@ use super::expansion::{
 };
 use super::hybrid::Surroundings;
 use super::invariant::Stated;
-use super::passage::{Passage, Velocities};
+use super::passage::{Passage, Velocities, positions};
 use super::side::{imported, named_in, velocities_of};
 use super::symplectic::symplectic_form;
 use super::wall::Wall;
@@ -88,7 +88,7 @@ impl<'c> Carried<'c> {
     ) -> Result<Self, String> {
         let behind = Behind::of(model, around, stated, wall, entered)
             .ok_or("the form is not known behind it")?;
-        let positions = positions(model, wall);
+        let positions = positions_behind(model, wall);
         let mut expansions = Expansions::of(model);
         let mut before: Vec<ExprId> = form.expressions().collect();
         before.extend(&positions);
@@ -220,7 +220,7 @@ impl<'c> Carried<'c> {
         values
     }
 
-    /// What the motion through the surface makes of the tangent vectors.
+    /// The tangent vectors as the motion through the surface carries them.
     fn carry<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Carry<Number<P>>> {
         let field = point.field();
         let incoming = self.motion_before(model, point)?;
@@ -436,7 +436,7 @@ impl Behind {
             Some(Velocities::Declared(values, _)) => values.clone(),
             _ => velocities_of(model),
         };
-        let after = (positions(model, wall), qdot);
+        let after = (positions_behind(model, wall), qdot);
         let mut here = |expressions: &[ExprId], there: &Model| {
             imported(model, there, (&after.0, &after.1), expressions)
         };
@@ -502,21 +502,10 @@ impl Behind {
 }
 
 /// The positions behind a wall.
-fn positions(model: &mut Model, wall: &Wall) -> Vec<ExprId> {
+fn positions_behind(model: &mut Model, wall: &Wall) -> Vec<ExprId> {
     match &wall.passage {
         Some(passage) => passage.positions.clone(),
-        None => {
-            let symbols: Vec<SymbolId> = model
-                .coordinates
-                .iter()
-                .map(|coordinate| coordinate.q)
-                .collect();
-            let pool = &mut model.pool;
-            symbols
-                .into_iter()
-                .map(|symbol| pool.variable(symbol))
-                .collect()
-        }
+        None => positions(model),
     }
 }
 

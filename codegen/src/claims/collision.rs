@@ -176,7 +176,7 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     fn balance(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
-        self.question.shown(terms, 0.0)
+        self.question.shown(terms, terms.iter().sum())
     }
 
     fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {

@@ -10,6 +10,9 @@ use super::sample::{ATTEMPTS, state_on_d};
 use super::undecided::Undecided;
 use crate::model::Model;
 
+/// Part of the largest term below which a sum is seen to cancel.
+const CANCELLED: f64 = 1e-9;
+
 /// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written. The motion is given on each part of
 /// D.
 pub(super) fn check_conserved(
@@ -205,8 +208,16 @@ impl Vanishing for Rate<'_> {
         let mut shown: Vec<(String, f64)> = seen
             .map(|(name, term)| (format!("part by {name}"), *term))
             .collect();
+        let sum: f64 = terms.iter().sum();
+        let largest = terms
+            .iter()
+            .fold(0.0, |size: f64, term| size.max(term.abs()));
+        // Rounding beside nothing is no part of anything.
+        if sum.abs() > CANCELLED * largest {
+            return Vec::new();
+        }
         if !shown.is_empty() {
-            shown.push(("sum".to_owned(), 0.0));
+            shown.push(("sum".to_owned(), sum));
         }
         shown
     }

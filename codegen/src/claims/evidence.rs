@@ -101,7 +101,7 @@ pub(super) struct Evidence {
     pub(super) primes: Vec<u64>,
     /// A bound of the chance of error.
     pub(super) error: f64,
-    /// A real point at which a reader can follow that terms cancel.
+    /// A certified real state at which a reader can follow that terms cancel.
     pub(super) balance: Option<(Sample, Vec<(String, f64)>)>,
     /// A real point at which an enclosure excludes 0, with what is shown there.
     pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
@@ -333,7 +333,8 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         };
         if seen.balance.is_none() && sample.is_allowed(model) {
             let values = question.balance(model, &terms);
-            seen.balance = (!values.is_empty()).then(|| (sample.clone(), values));
+            let is_shown = !values.is_empty() && is_state(model, question, &point);
+            seen.balance = is_shown.then(|| (sample.clone(), values));
         }
         if search == Search::Value || !sample.is_allowed(model) {
             continue;
@@ -360,6 +361,13 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         seen.is_suspect |= size > SUSPECT * scale && is_defined(model, &mut place.point);
     }
     seen
+}
+
+/// True if a real point is certified to be next to a state that is asked about: one that meets a wall, say.
+fn is_state(model: &Model, question: &impl Vanishing, point: &RealPoint) -> bool {
+    let with_doubles: Option<EnclosedPoint> = question.enclosed(model, point);
+    let with_balls = || -> Option<BallPoint> { question.enclosed(model, point) };
+    with_doubles.is_some() || with_balls().is_some()
 }
 
 /// A real state.

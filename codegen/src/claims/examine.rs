@@ -11,6 +11,7 @@ use super::existence::{self, Decision};
 use super::finding::{self, ClosedForm, Finding, Verdict};
 use super::global::Global;
 use super::hybrid::{self, Density, Effect, Surroundings};
+use super::invariant::Stated;
 use super::problem::Problem;
 use super::undecided::Undecided;
 use super::volume::Volume;
@@ -99,15 +100,15 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
                 others: &[],
                 seed,
             };
-            let (form, written) = match &claim.statement {
+            // No other mode is looked at.
+            let (symplectic, name) = symplectic::symplectic_form(model);
+            let stated = match &claim.statement {
                 Statement::Invariant(form) => {
                     let written = claim.text.trim_start_matches("invariant: ");
-                    (form.clone(), written.to_owned())
+                    Stated::named(form, written)
                 }
-                _ => symplectic::symplectic_form(model),
+                _ => symplectic::stated(&symplectic, &name),
             };
-            // No other mode is looked at.
-            let stated = symplectic::stated(&form, &written);
             invariant::check_on_parts(model, &around, &parts, stated)
         }
         _ => Verdict::Undecided(Undecided::Nonlinear.to_string()),

@@ -41,7 +41,7 @@ pub(super) struct Stated<'f> {
 }
 
 impl<'f> Stated<'f> {
-    fn named(form: &'f ExteriorForm, written: &'f str) -> Self {
+    pub(super) fn named(form: &'f ExteriorForm, written: &'f str) -> Self {
         Self {
             form,
             written,

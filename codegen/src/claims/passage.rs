@@ -534,7 +534,8 @@ impl Passage {
     }
 }
 
-fn positions(model: &mut Model) -> Vec<ExprId> {
+/// The positions as expressions.
+pub(super) fn positions(model: &mut Model) -> Vec<ExprId> {
     let symbols: Vec<SymbolId> = model
         .coordinates
         .iter()

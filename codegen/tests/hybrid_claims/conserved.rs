@@ -93,7 +93,7 @@ fn what_the_motion_keeps_and_changes() {
     }
 }
 
-/// What is kept has no state that shows it, but one at which a reader sees its parts cancel.
+/// A quantity that is kept has no state that shows it, but one at which a reader sees its parts cancel.
 #[test]
 fn parts_that_cancel_are_shown() {
     // m g dot(y) and -m g dot(y); a harmonic motion beside it; a speed without parts.
