@@ -13,6 +13,9 @@ use crate::model::Model;
 /// Relative difference below which two numbers look alike in a message.
 const ALIKE: f64 = 1e-9;
 
+/// Name of a difference in messages.
+const DIFFERENCE: &str = "difference";
+
 /// A sum of terms that may vanish at all states before an impact; see [`Vanishing`].
 pub(super) trait AtImpact {
     /// Expressions evaluated in addition to the impact map.
@@ -82,7 +85,7 @@ pub(super) fn with_difference(
 ) -> Vec<(String, f64)> {
     let mut shown: Vec<(String, f64)> = names.into_iter().zip(values).collect();
     if difference.abs() < ALIKE * values[0].abs() {
-        shown.push(("difference".to_owned(), difference));
+        shown.push((DIFFERENCE.to_owned(), difference));
     }
     shown
 }
@@ -176,7 +179,10 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     fn balance(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
-        self.question.shown(terms, terms.iter().sum())
+        // The difference of equal values is their rounding.
+        let mut shown = self.question.shown(terms, terms.iter().sum());
+        shown.retain(|(name, _)| name != DIFFERENCE);
+        shown
     }
 
     fn shown(&self, _: &Model, terms: &[f64], sum: f64) -> Vec<(String, f64)> {

@@ -205,9 +205,6 @@ impl Vanishing for Rate<'_> {
         let velocities = names.map(|name| format!("dot({name})"));
         let all = positions.chain(velocities).chain(["t".to_owned()]);
         let seen = all.zip(terms).filter(|(_, term)| **term != 0.0);
-        let mut shown: Vec<(String, f64)> = seen
-            .map(|(name, term)| (format!("part by {name}"), *term))
-            .collect();
         let sum: f64 = terms.iter().sum();
         let largest = terms
             .iter()
@@ -216,10 +213,8 @@ impl Vanishing for Rate<'_> {
         if sum.abs() > CANCELLED * largest {
             return Vec::new();
         }
-        if !shown.is_empty() {
-            shown.push(("sum".to_owned(), sum));
-        }
-        shown
+        seen.map(|(name, term)| (format!("part by {name}"), *term))
+            .collect()
     }
 
     fn shown(&self, _: &Model, _: &[f64], sum: f64) -> Vec<(String, f64)> {

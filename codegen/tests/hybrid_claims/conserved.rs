@@ -97,10 +97,10 @@ fn what_the_motion_keeps_and_changes() {
 #[test]
 fn parts_that_cancel_are_shown() {
     // m g dot(y) and -m g dot(y); a harmonic motion beside it; a speed without parts.
-    let sum = "\nfor example part by y = -1.5, part by dot(y) = 1.5, sum = 0 at y = -0.53, g = 2, dot(x) = 0.5, dot(y) = -0.75";
+    let sum = "\nfor example part by y = -1.5, part by dot(y) = 1.5 at y = -0.53, g = 2, dot(x) = 0.5, dot(y) = -0.75";
     check(FALL, "not conserved: energy", Barred(sum));
     let turned = "pub Turned { coordinates { x; y; } field { dot(x) = -y; dot(y) = x; } CLAIM }";
-    let sum = "part by x = 0.3816, part by y = -0.3816, sum = 0 at x = 0.36, y = -0.53";
+    let sum = "part by x = 0.3816, part by y = -0.3816 at x = 0.36, y = -0.53";
     check(turned, "not conserved: x^2 + y^2", Barred(sum));
     let same = "for example energy after = ";
     check(WALLS, "not conserved under wall: energy", Barred(same));
