@@ -34,7 +34,7 @@ impl Contact {
             return Vec::new();
         }
         let is_stopped = stops(model, surface);
-        // What is held is under instantaneous constraints, too.
+        // The held motion is under instantaneous constraints, too.
         let is_alone = model.surfaces[surface].instantaneous.is_empty();
         let held = [false, true].into_iter();
         let held = held.filter(|is_held| !is_held || (is_stopped && is_alone));

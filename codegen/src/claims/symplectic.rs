@@ -82,7 +82,7 @@ fn at_surface(model: &mut Model, around: &Surroundings<'_>, effect: Effect) -> V
     let is_declared = |passage: &Passage| matches!(passage.velocities, Velocities::Declared(..));
     match effect.verdict {
         _ if leads_to_more => map_to_more_keeps(model, around, surface),
-        // What changes volumes does not keep the form.
+        // A map that changes volumes does not keep the form.
         Verdict::Proved(_) if wall.passage.as_ref().is_some_and(is_declared) => {
             map_keeps(model, around, surface)
         }
