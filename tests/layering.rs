@@ -114,7 +114,7 @@ fn a_stage_uses_only_those_to_its_left() {
 }
 
 /// The modules of the runtime, each after those it uses.
-const RUNTIME: [&str; 39] = [
+const RUNTIME: [&str; 40] = [
     "error",
     "state",
     "per_surface",
@@ -143,6 +143,7 @@ const RUNTIME: [&str; 39] = [
     "impacts",
     "inputs",
     "describe",
+    "integrals",
     "generated",
     "initial",
     "projection",

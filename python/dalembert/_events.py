@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -107,6 +108,8 @@ def watched(model: Model, events: Sequence[Event]) -> _native.NativeModel | None
         foreign = [sign for sign in _FOREIGN if sign in text]
         if foreign:
             raise RequestError(f"events: `{foreign[0]}` cannot be in the expression `{text}`")
+        if re.search(r"\bintegral\s*\(", text):
+            raise RequestError(f"events: `{text}`: an integral along a run is no function of its state")
     body = model.source.rpartition("}")[0].rstrip()
     lines = "".join(f"event_{place}: ({text});\n" for place, text in enumerate(texts))
     first = body.count("\n") + 3

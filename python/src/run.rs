@@ -342,6 +342,7 @@ fn value<'py>(py: Python<'py>, fact: Fact) -> PyResult<Bound<'py, PyAny>> {
     match fact {
         Fact::Number(number) => number.into_bound_py_any(py),
         Fact::Index(index) => index.into_bound_py_any(py),
+        Fact::Flag(flag) => flag.into_bound_py_any(py),
         Fact::Name(name) => name.into_bound_py_any(py),
         Fact::List(facts) => {
             let values: PyResult<Vec<_>> = facts.into_iter().map(|it| value(py, it)).collect();

@@ -1,7 +1,7 @@
-//! Action of a run: the integral of the Lagrangian along its motion.
+//! Integrals along a run, above all the action: that of the Lagrangian.
 //!
 //! `L = <p, qdot> - H` with `H = 1/2 g(qdot, qdot) + V`, so that a term of `L` that is linear in the velocities is
-//! counted. Impacts take no time and add nothing to the integral.
+//! counted. Impacts take no time and add nothing to an integral.
 
 use core::ops::ControlFlow;
 
@@ -26,6 +26,38 @@ pub fn lagrangian<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> Resu
     let pairs = p.as_slice().iter().zip(qdot.as_slice());
     let product: f64 = pairs.map(|(p, qdot)| p * qdot).sum();
     Ok(product - system.energy(t, state)?)
+}
+
+/// The integral of a function of time and state over a part of a stretch of motion, with 16 Gauss-Legendre nodes in each of as
+/// many panels as it takes for the sum to settle to its last digits, 64 at most.
+///
+/// # Errors
+/// A [`Fault`] of the function or of the dense output.
+pub fn integral<S: Copy>(
+    segment: &mut Segment<'_, S>,
+    [from, to]: [f64; 2],
+    function: &mut dyn FnMut(f64, &S) -> Result<f64, Fault>,
+) -> Result<f64, Fault> {
+    let length = to - from;
+    if length == 0.0 {
+        return Ok(0.0);
+    }
+    let mut density = |part: f64| {
+        let t = from + part * length;
+        function(t, &segment.at(t)?)
+    };
+    let mut panels = 1;
+    let mut coarse = composite(&mut density, panels)?;
+    while panels < PANELS {
+        panels *= 2;
+        let fine = composite(&mut density, panels)?;
+        let change = (fine.0 - coarse.0).abs();
+        coarse = fine;
+        if change <= AGREEMENT * fine.1 {
+            break;
+        }
+    }
+    Ok(coarse.0 * length)
 }
 
 /// Integrates the Lagrangian along the run that it observes, with 16 Gauss-Legendre nodes in each panel of a step of
@@ -73,33 +105,15 @@ impl<'a, Sys: System> Action<'a, Sys> {
     pub const fn value(&self) -> Result<f64, Fault> {
         self.value
     }
-
-    /// The integral over one stretch of motion.
-    fn integral(&self, segment: &mut Segment<'_, Sys::State>) -> Result<f64, Fault> {
-        let (start, length) = (segment.t_start(), segment.t_end() - segment.t_start());
-        let mut density = |part: f64| {
-            let t = start + part * length;
-            lagrangian(self.system, t, &segment.at(t)?)
-        };
-        let mut panels = 1;
-        let mut coarse = composite(&mut density, panels)?;
-        while panels < PANELS {
-            panels *= 2;
-            let fine = composite(&mut density, panels)?;
-            let change = (fine.0 - coarse.0).abs();
-            coarse = fine;
-            if change <= AGREEMENT * fine.1 {
-                break;
-            }
-        }
-        Ok(coarse.0 * length)
-    }
 }
 
 impl<Sys: System> Observer<Sys> for Action<'_, Sys> {
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
         if let Ok(sum) = self.value {
-            self.value = self.integral(segment).map(|integral| sum + integral);
+            let system = self.system;
+            let ends = [segment.t_start(), segment.t_end()];
+            let integral = integral(segment, ends, &mut |t, state| lagrangian(system, t, state));
+            self.value = integral.map(|integral| sum + integral);
         }
         ControlFlow::Continue(())
     }

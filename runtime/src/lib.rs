@@ -132,6 +132,7 @@ pub mod impacts;
 mod independence;
 pub mod initial;
 pub mod inputs;
+pub mod integrals;
 pub mod integrate;
 pub mod jet;
 pub mod kernels;
@@ -171,6 +172,7 @@ pub use forces::{Forces, NoForces};
 pub use impacts::Impacts;
 pub use initial::{complete_positions, complete_velocities};
 pub use inputs::{Actuated, Steered};
+pub use integrals::Integrals;
 pub use integrate::{
     Counters, Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, MaxStepError, Rk4, Stepper,
     Taylor, Tolerance, ToleranceError,

@@ -48,6 +48,13 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
+    /// The motion reached a surface with the law `stop`.
+    StoppedAt {
+        /// The surface.
+        surface: usize,
+        /// True if the motion may only have touched the surface: rounding decides.
+        graze: bool,
+    },
     /// A mode that is run by itself reached a surface that leads to another mode.
     LeftMode {
         /// The surface.
@@ -166,6 +173,7 @@ impl Outcome {
             Self::StillPenetrating { .. } => "still_penetrating",
             Self::ResetOffConstraint { .. } => "reset_off_constraint",
             Self::NoReset { .. } => "no_reset",
+            Self::StoppedAt { .. } => "stopped_at",
             Self::LeftMode { .. } => "left_mode",
             Self::Untaken { .. } => "untaken",
             Self::Trapped { .. } => "trapped",
@@ -230,6 +238,14 @@ impl fmt::Display for Outcome {
                 "the reset of surface {surface} leaves the state off constraint {constraint}"
             ),
             Self::NoReset { surface } => write!(f, "surface {surface} declares no reset"),
+            Self::StoppedAt { surface, graze } => {
+                let reached = if graze {
+                    "reached or touched"
+                } else {
+                    "reached"
+                };
+                write!(f, "the motion {reached} surface {surface}, which ends it")
+            }
             Self::LeftMode { surface } => write!(
                 f,
                 "surface {surface} leads to another mode, and this one is run by itself"

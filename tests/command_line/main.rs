@@ -13,6 +13,7 @@ mod eval;
 mod files;
 mod gallery;
 mod hostile;
+mod integrals;
 mod list;
 mod map;
 mod pictures;

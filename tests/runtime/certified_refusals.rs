@@ -282,6 +282,17 @@ fn a_law_that_leaves_the_motion_at_the_surface_is_refused() {
 }
 
 #[test]
+fn a_stop_ends_certified_motion_with_its_name() {
+    let ball = BALL.model();
+    let start = points([0.5, 0.0]);
+    let run = || CertifiedRun::new(&ball, 0.0, |i| start[i]).with_law(0, Law::Stop);
+    let lost = lost(run().next_impact(2.0).map(|_| ()));
+    assert_eq!(lost.reason, Reason::Stops { surface: 0 });
+    assert!(lost.t > 0.9 && lost.t <= 1.0, "{lost}");
+    assert!(matches!(run().next_impact(0.75), Ok(None)));
+}
+
+#[test]
 fn an_end_within_the_times_of_an_impact_is_refused() {
     let start = [Interval::new(0.45, 0.55), Interval::point(0.0)];
     let (surfaces, ended) = run(&BALL.model(), &start, 1.0);

@@ -187,7 +187,7 @@ records! {
     describe::ViewInfo { labels, plane, region }
     describe::Description {
         type_name, name, documentation, source, is_first_order, coordinates, parameters, constraints, forces,
-        quasi_velocities, surfaces, outputs, scenes, modes, view,
+        quasi_velocities, surfaces, outputs, integrals, scenes, modes, view,
     }
     kernels::Quantity { name, shape }
     kernels::Documentation { description, inputs, placed, named, geometry }
@@ -265,6 +265,7 @@ impl Constant for Law {
             Self::NonholonomicPlastic => quote!(NonholonomicPlastic),
             Self::ImpactPlastic => quote!(ImpactPlastic),
             Self::TotallyPlastic => quote!(TotallyPlastic),
+            Self::Stop => quote!(Stop),
             Self::Reset => quote!(Reset),
             Self::Transition => quote!(Transition),
         };

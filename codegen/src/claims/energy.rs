@@ -114,7 +114,7 @@ fn known(
                 _ => None,
             }
         }
-        Law::Reset => None,
+        Law::Reset | Law::Stop => None,
     }
 }
 

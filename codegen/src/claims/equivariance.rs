@@ -80,7 +80,7 @@ pub(super) fn symmetry_at_surfaces(
         others: &[],
         fields: &[field.to_vec()],
     };
-    (0..model.surfaces.len())
+    (model.acting_surfaces().into_iter())
         .map(|surface| {
             let name = model.surfaces[surface].name.display.clone();
             match check_surface(model, around, &all, 0, surface) {
@@ -301,7 +301,7 @@ fn keeps_momentum(model: &mut Model, around: &Surroundings<'_>, field: &[ExprId]
     }
     let momentum = model.pool.sum(&terms);
     let momentum = model.pool.sub(momentum, lost);
-    (0..model.surfaces.len()).all(|surface| {
+    model.acting_surfaces().into_iter().all(|surface| {
         let found = changes_at(model, around, surface, (momentum, "momentum"), Wanted::Any);
         found.is_ok_and(|changes| changes.together(true).shows_that_it_vanishes())
     })

@@ -76,7 +76,7 @@ pub(super) fn effects(
     around: &Surroundings<'_>,
     density: &Density,
 ) -> Vec<Effect> {
-    (0..model.surfaces.len())
+    (model.acting_surfaces().into_iter())
         .map(|surface| effect(model, around, density, surface))
         .collect()
 }
@@ -266,6 +266,7 @@ pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
         Law::NonholonomicPlastic => format!("multiplies it by (1 - 2*rho)^2, {RHO}"),
         Law::ImpactPlastic => "maps it to 0".to_owned(),
         Law::TotallyPlastic => format!("multiplies it by (1 - rho)^2, {RHO}"),
+        Law::Stop => "ends the motion".to_owned(),
         Law::Transition | Law::Reset => {
             let passage = wall.passage.as_ref();
             let slides = passage.is_some_and(Passage::may_slide);

@@ -71,7 +71,7 @@ impl<A: Arithmetic> Parts<A> {
             }
             Law::ImpactPlastic => gap_rate,
             Law::TotallyPlastic => jets.mul(&ratio()?, &gap_rate),
-            Law::Reset | Law::Transition => return None,
+            Law::Reset | Law::Stop | Law::Transition => return None,
         };
         let impulse = jets.mul(&factor, &jets.inverse(&steep)?);
         let after = |(before, along): (&Series<A>, &Series<A>)| {

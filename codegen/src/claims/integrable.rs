@@ -61,7 +61,7 @@ pub(super) fn check_integrable(
         return refuted;
     }
     together.all.shown += " are conserved, in involution and independent at almost all states";
-    for surface in 0..model.surfaces.len() {
+    for surface in model.acting_surfaces() {
         for StatedFunction { value, written } in declared {
             let stated = (*value, written.as_str());
             let verdict = check_conserved_under(model, around, surface, stated, true);

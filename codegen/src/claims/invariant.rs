@@ -143,7 +143,7 @@ fn check_kept(
         Verdict::Proved(certificate) => Together::of(certificate),
         other => return other,
     };
-    for surface in 0..model.surfaces.len() {
+    for surface in model.acting_surfaces() {
         let name = model.surfaces[surface].name.display.clone();
         if model.is_nonlinear() {
             let text = format!("what `{name}` does is not known: {AT_NONLINEAR}");

@@ -24,7 +24,7 @@ pub(super) fn momentum_at_surfaces(
         terms.push(model.pool.mul(*component, momentum));
     }
     let momentum = model.pool.sum(&terms);
-    (0..model.surfaces.len())
+    (model.acting_surfaces().into_iter())
         .map(|surface| at_surface(model, around, surface, (momentum, field)))
         .collect()
 }

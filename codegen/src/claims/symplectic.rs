@@ -212,7 +212,7 @@ fn with_behind(
         return verdict;
     };
     let mut together = Together::of(all);
-    for surface in 0..model.surfaces.len() {
+    for surface in model.acting_surfaces() {
         let behind = check_mode_behind(model, around, tangents, form, surface, assumed);
         let named = |verdict| match verdict {
             Verdict::Undecided(reason) => unknown(model, surface, &reason),

@@ -155,13 +155,7 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
             }),
             Takes::State,
         ),
-        Kernel::Outputs => (
-            "outputs".into(),
-            list(model, "the declared outputs", |model| {
-                model.outputs.iter().map(|it| &it.name.display).collect()
-            }),
-            Takes::State,
-        ),
+        Kernel::Outputs => ("outputs".into(), outputs(model), Takes::State),
         Kernel::Gaps => (
             "gaps".into(),
             list(
@@ -230,6 +224,16 @@ fn surfaces(model: &Model) -> Vec<&String> {
 fn list(model: &Model, about: &str, names: impl Fn(&Model) -> Vec<&String>) -> String {
     let names: Vec<&str> = names(model).into_iter().map(String::as_str).collect();
     format!("{about}: {}", names.join(", "))
+}
+
+/// The declared outputs by name; of an integral along a run, the integrand.
+fn outputs(model: &Model) -> String {
+    let names = model.outputs.iter().map(|output| match output.is_integral {
+        true => format!("the integrand of {}", output.name.display),
+        false => output.name.display.clone(),
+    });
+    let names: Vec<String> = names.collect();
+    format!("the declared outputs: {}", names.join(", "))
 }
 
 /// The state after a blow, whose results are its size, its share and its direction.

@@ -494,7 +494,8 @@ fn jump(
     sections: &[Vec<ExprId>],
 ) -> Option<Jump> {
     let law = model.surfaces[index].law;
-    if matches!(law, Law::Reset | Law::Transition) || !surface.instantaneous.is_empty() {
+    if matches!(law, Law::Reset | Law::Stop | Law::Transition) || !surface.instantaneous.is_empty()
+    {
         return None;
     }
     let is_linear = (model.constraints.iter())
@@ -551,7 +552,7 @@ fn impulse(
                 _ => share,
             }
         }
-        Law::Reset | Law::Transition => return None,
+        Law::Reset | Law::Stop | Law::Transition => return None,
     };
     let product = pool.mul(factor, rate);
     let quotient = pool.div(product, allowed);

@@ -6,7 +6,9 @@ use super::definitions::Definition;
 use super::resolve::{DerivedNames, Resolver, Scope, Value};
 use super::symbols::Meaning;
 use crate::diagnostics::{Location, listed, nearest};
-use crate::spec::{EXPONENT, EXPONENT_DENOMINATOR_BITS, NUMBER_BITS, Scalar, ScalarKind, Word};
+use crate::spec::{
+    EXPONENT, EXPONENT_DENOMINATOR_BITS, INTEGRAL, NUMBER_BITS, Scalar, ScalarKind, Word,
+};
 
 impl<'s> Resolver<'s> {
     pub(super) fn power(
@@ -77,6 +79,11 @@ impl<'s> Resolver<'s> {
     ) -> Option<Value> {
         match name.text.as_str() {
             "dot" | "d" => self.derivative(at, name, arguments, scope),
+            INTEGRAL => {
+                let text = "an integral along a run is a whole output";
+                let help = "write `outputs { S: integral(..); }`, with one expression";
+                self.refuse(name.at, text, help)
+            }
             "momentum" | "multiplier" => self.derived_quantity(name, arguments, scope),
             "partial" => self.partial(name, arguments, scope),
             "sqrt" | "atan2" => self.elementary(at, name, None, arguments, scope),

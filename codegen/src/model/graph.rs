@@ -11,7 +11,7 @@ use dalembert_expr::Pool;
 use super::check::{check_mode, peer};
 use super::scene::{Extras, Parts, Scene};
 use super::transition::Peer;
-use super::{Beside, Coordinate, Model, Name, Topology};
+use super::{Beside, Coordinate, Model, Name, Output, Topology};
 use crate::diagnostics::Diagnostics;
 use crate::spec::{self, STEPS};
 
@@ -139,6 +139,7 @@ pub fn check_modes(declared: &spec::Modes) -> Result<ModeGraph, Diagnostics> {
     keep_common_notes(&mut models);
     let graph = joined(declared, models);
     check_topologies(declared, &graph)?;
+    check_integrals(declared, &graph)?;
     check_surfaces(declared, &graph)?;
     Ok(graph)
 }
@@ -398,6 +399,31 @@ fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Dia
                     coordinate.name.display, other.scene.name
                 );
                 let at = written.spec.location(coordinate.item);
+                diagnostics.error(at, text).help("choose another name");
+            }
+        }
+    }
+    diagnostics.finish(())
+}
+
+/// Refuses outputs that are integrals in some modes and values in others.
+fn check_integrals(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
+    let mut diagnostics = Diagnostics::new();
+    let kind = |output: &Output| match output.is_integral {
+        true => "an integral",
+        false => "a value",
+    };
+    for (mode, written) in graph.modes.iter().zip(&declared.modes) {
+        for (output, place) in mode.model.outputs.iter().zip(&mode.places.outputs) {
+            let entry = &graph.outputs[*place];
+            let other = &graph.modes[entry.mode];
+            let [first, second] = [kind(&other.model.outputs[entry.place]), kind(output)];
+            if first != second {
+                let text = format!(
+                    "`{}` is {second} here and {first} in `{}`",
+                    output.name.display, other.scene.name
+                );
+                let at = written.spec.location(output.item);
                 diagnostics.error(at, text).help("choose another name");
             }
         }

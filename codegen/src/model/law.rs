@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::{Coordinate, Model, Surface};
-use crate::spec::{INSTANTANEOUS, ItemId, RESET};
+use crate::spec::{INSTANTANEOUS, ItemId, RESET, STOP};
 
 /// A declared impact law; coefficients are expressions of the parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +22,8 @@ pub enum Law {
     TotallyPlastic,
     /// `reset { .. }`: the map is [`Surface::reset`](super::Surface::reset).
     Reset,
+    /// `stop`: the motion ends there.
+    Stop,
     /// Not a law that can be written. The surface leads to another mode; see
     /// [`Surface::transition`](super::Surface::transition).
     Transition,
@@ -38,6 +40,7 @@ impl Law {
             ("impact_plastic", None) => Self::ImpactPlastic,
             ("totally_plastic", None) => Self::TotallyPlastic,
             (RESET, None) => Self::Reset,
+            (STOP, None) => Self::Stop,
             _ => return None,
         })
     }
@@ -52,8 +55,14 @@ impl Law {
             Self::ImpactPlastic => "impact_plastic",
             Self::TotallyPlastic => "totally_plastic",
             Self::Reset => RESET,
+            Self::Stop => STOP,
             Self::Transition => "transition",
         }
+    }
+
+    /// True if the motion goes on behind a surface with this law.
+    pub fn goes_on(self) -> bool {
+        self != Self::Stop
     }
 
     /// Coefficient.
@@ -65,6 +74,7 @@ impl Law {
             | Self::ImpactPlastic
             | Self::TotallyPlastic
             | Self::Reset
+            | Self::Stop
             | Self::Transition => None,
         }
     }
@@ -128,6 +138,12 @@ impl Reset {
 }
 
 impl Model {
+    /// Surfaces behind which the motion goes on, by index: those of which claims about impacts speak.
+    pub fn acting_surfaces(&self) -> Vec<usize> {
+        let acts = |surface: &usize| self.surfaces[*surface].law.goes_on();
+        (0..self.surfaces.len()).filter(acts).collect()
+    }
+
     /// Law of a surface as declared, with the names of its instantaneous constraints: `newton(e), instantaneous {
     /// no_slip }`.
     pub fn law_text(&self, surface: usize) -> String {

@@ -382,6 +382,8 @@ pub struct Output {
     pub documentation: Vec<String>,
     /// An expression of coordinates, velocities, parameters, time and [`DerivedSymbols`].
     pub value: ExprId,
+    /// True for the integral of the expression along a run.
+    pub is_integral: bool,
     /// Place of the declaration.
     pub item: ItemId,
 }

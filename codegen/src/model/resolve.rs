@@ -13,8 +13,8 @@ use super::symbols::{Meaning, Symbols};
 use super::transition::Peer;
 use crate::diagnostics::{Diagnostics, Location};
 use crate::spec::{
-    Binder, EXPONENT, EXPRESSIONS, NUMBER_BITS, Operator, RESOLVED_DEPTH, RESOLVED_PARTS, Scalar,
-    ScalarKind, Spec,
+    Binder, EXPONENT, EXPRESSIONS, LAGRANGIAN, NUMBER_BITS, Operator, RESOLVED_DEPTH,
+    RESOLVED_PARTS, Scalar, ScalarKind, Spec,
 };
 
 /// A resolved expression.
@@ -93,6 +93,8 @@ pub(super) struct Resolver<'s> {
     pub(super) derived_names: DerivedNames,
     /// The fields `partial(x)` of the coordinates, where they may be named.
     pub(super) partials: Vec<SymbolId>,
+    /// The Lagrangian, once it is resolved.
+    pub(super) lagrangian: Option<ExprId>,
     parts: usize,
     depth: usize,
     /// Place at which the budget of the pool ended.
@@ -129,6 +131,7 @@ impl<'s> Resolver<'s> {
             multipliers: BTreeMap::new(),
             derived_names: DerivedNames::Nowhere,
             partials: Vec::new(),
+            lagrangian: None,
             parts: 0,
             depth: 0,
             exhausted: None,
@@ -380,6 +383,7 @@ impl<'s> Resolver<'s> {
             "t" => return Some(self.pool.variable(self.symbols.time).into()),
             "pi" => return Some(self.pool.pi().into()),
             "energy" => return self.energy(at),
+            LAGRANGIAN => return self.lagrangian(at),
             _ => {}
         }
         let Some((meaning, _)) = self.symbols.names.get(name).copied() else {
@@ -401,6 +405,18 @@ impl<'s> Resolver<'s> {
             }
             Meaning::Definition => self.definition(name, at),
         }
+    }
+
+    fn lagrangian(&mut self, at: Location) -> Option<Value> {
+        if self.spec.field.is_some() {
+            return self.refuse_without_mechanics(at, LAGRANGIAN);
+        }
+        if self.derived_names != DerivedNames::Outputs {
+            let text = "the Lagrangian is not known here";
+            return self.refuse(at, text, "it may be used in `outputs`");
+        }
+        // A mistake in its declaration is told there.
+        self.lagrangian.map(Value::from)
     }
 
     fn energy(&mut self, at: Location) -> Option<Value> {

@@ -321,13 +321,24 @@ impl Writer<'_> {
             .model
             .outputs
             .iter()
-            .map(|output| (output.name.display.clone(), output.value))
+            .map(|output| {
+                (
+                    output.name.display.clone(),
+                    output.is_integral,
+                    output.value,
+                )
+            })
             .collect();
         let items = outputs
             .into_iter()
-            .map(|(name, value)| {
+            .map(|(name, is_integral, value)| {
                 let latex = format!("\\text{{{}}}", escape(&name));
-                self.formula(name, latex, value)
+                match is_integral {
+                    true => {
+                        self.formula(format!("d/dt {name}"), format!("\\dot{{{latex}}}"), value)
+                    }
+                    false => self.formula(name, latex, value),
+                }
             })
             .collect();
         Section::plain("Outputs", items)

@@ -11,6 +11,7 @@
 //! | `request.rs`, `bracket.rs`, `group.rs` | what is asked for in the words of a claim: brackets of functions, reduction by a group |
 //! | `control.rs` | the maximum principle of a model with a cost |
 //! | `modulo.rs` | symmetries for orbits that close up to a group |
+//! | `planar` | hypotheses of the Poincare-Bendixson theorem |
 //! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
 //! | `print.rs` | a report as text and as a document of LaTeX |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
@@ -23,6 +24,7 @@ mod equations;
 mod frame;
 mod group;
 mod modulo;
+pub mod planar;
 mod print;
 mod request;
 mod volume;

@@ -118,7 +118,7 @@ const NOT_DIFFERENTIABLE: [&str; 8] = [
 ];
 
 /// The impact laws, with the number of their coefficients.
-pub const LAWS: [(&str, usize); 7] = [
+pub const LAWS: [(&str, usize); 8] = [
     ("elastic", 0),
     ("restitution", 1),
     ("newton", 1),
@@ -126,10 +126,20 @@ pub const LAWS: [(&str, usize); 7] = [
     ("impact_plastic", 0),
     ("totally_plastic", 0),
     (RESET, 0),
+    (STOP, 0),
 ];
 
 /// The law that is a map: `reset { x = ..; dot(x) = ..; }`.
 pub const RESET: &str = "reset";
+
+/// The law that ends the motion.
+pub const STOP: &str = "stop";
+
+/// An output that is the integral of an expression along a run.
+pub const INTEGRAL: &str = "integral";
+
+/// The Lagrangian: its declaration, and its name in `outputs`.
+pub const LAGRANGIAN: &str = "lagrangian";
 
 /// Replacement of `when`: the surface counts where no other surface of the same gap counts.
 pub const OTHERWISE: &str = "otherwise";
@@ -145,7 +155,7 @@ pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 pub const WHOLE: &str = "all";
 
 /// Words with a meaning of their own in expressions.
-const RESERVED: [&str; 12] = [
+const RESERVED: [&str; 14] = [
     "t",
     "pi",
     "d",
@@ -155,6 +165,8 @@ const RESERVED: [&str; 12] = [
     "momentum",
     "multiplier",
     "partial",
+    INTEGRAL,
+    LAGRANGIAN,
     "until",
     "when",
     OTHERWISE,
@@ -179,7 +191,7 @@ pub fn is_function(name: &str) -> bool {
     FUNCTIONS.contains(&name)
         || matches!(
             name,
-            "d" | "dot" | "sum" | "momentum" | "multiplier" | "partial"
+            "d" | "dot" | "sum" | "momentum" | "multiplier" | "partial" | INTEGRAL
         )
 }
 

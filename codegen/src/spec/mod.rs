@@ -21,8 +21,8 @@ mod tests;
 
 pub use ast::*;
 pub use keyword::{
-    EXTRAS, FUNCTIONS, INSTANTANEOUS, LAWS, PIECEWISE, RESET, SECTIONS, WHOLE, foreign_function,
-    is_function, is_not_differentiable, is_rust_keyword,
+    EXTRAS, FUNCTIONS, INSTANTANEOUS, INTEGRAL, LAGRANGIAN, LAWS, PIECEWISE, RESET, SECTIONS, STOP,
+    WHOLE, foreign_function, is_function, is_not_differentiable, is_rust_keyword,
 };
 pub use limits::{
     COORDINATES, EXPONENT, EXPONENT_DENOMINATOR_BITS, EXPRESSIONS, FAMILY, NUMBER_BITS, PARAMETERS,

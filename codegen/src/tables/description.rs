@@ -9,7 +9,7 @@ use dalembert_numbers::description::{
 use dalembert_numbers::kernel::Shape;
 
 use super::{FormOf, constant, default_value, name, names, table, text};
-use crate::model::{Assumption, Constraint, Coordinate, Model, Topology};
+use crate::model::{Assumption, Constraint, Coordinate, Model, Output, Topology};
 use crate::program::recipes::geometry;
 use crate::spec::WHOLE;
 
@@ -56,6 +56,7 @@ impl FormOf<'_> {
                     .iter()
                     .map(|output| output.name.display.as_str()),
             ),
+            integrals: integrals(model.outputs.iter()),
             scenes: names(core::iter::once(WHOLE).chain(scenes)),
             view: view(model, &places),
             ..of_model(model)
@@ -78,10 +79,17 @@ pub(super) fn of_model(model: &Model) -> Description {
         quasi_velocities: Held::Static(&[]),
         surfaces: Held::Static(&[]),
         outputs: Held::Static(&[]),
+        integrals: Held::Static(&[]),
         scenes: Held::Static(&[]),
         modes: Held::Static(&[]),
         view: None,
     }
+}
+
+/// The outputs that are integrals, by index.
+pub(super) fn integrals<'m>(outputs: impl Iterator<Item = &'m Output>) -> Held<[usize]> {
+    let integrals = outputs.enumerate().filter(|(_, output)| output.is_integral);
+    table(integrals.map(|(index, _)| index))
 }
 
 /// The lines of a doc comment as a text.

@@ -194,6 +194,7 @@ fn law(declared: model::Law) -> Law {
         model::Law::ImpactPlastic => Law::ImpactPlastic,
         model::Law::TotallyPlastic => Law::TotallyPlastic,
         model::Law::Reset => Law::Reset,
+        model::Law::Stop => Law::Stop,
         model::Law::Transition => Law::Transition,
     }
 }

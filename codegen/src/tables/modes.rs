@@ -156,6 +156,9 @@ impl<'a> Whole<'a> {
                     .iter()
                     .map(|entry| entry.name.display.as_str()),
             ),
+            integrals: description::integrals(
+                (graph.outputs.iter()).map(|entry| &model_of(entry).outputs[entry.place]),
+            ),
             scenes: names(core::iter::once(WHOLE).chain(scenes)),
             modes: table(modes),
             view: description::view(self.model(), &graph.modes[0].places.coordinates),

@@ -102,3 +102,12 @@ fn maps_that_are_not_the_identity_at_their_ends_and_rough_densities_have_none() 
         [true, false],
     );
 }
+
+#[test]
+fn nothing_recurs_where_a_surface_ends_the_motion() {
+    check(
+        &particle(&BOX.replace("y >= -2;", "y >= -2 => stop;")),
+        KEPT,
+        [false; 2],
+    );
+}

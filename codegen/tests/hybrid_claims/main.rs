@@ -13,6 +13,7 @@
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `symmetries.rs` | symmetries of motion, surfaces and their maps together; of first-order systems |
 //! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
+//! | `stops.rs` | surfaces at which the motion ends |
 //! | `numbers.rs` | numbers of the sources: returns of a walker, an impact off D, the matrix of a ball |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
 
@@ -34,6 +35,7 @@ mod qualified;
 mod quantities;
 mod reduction;
 mod shipped;
+mod stops;
 mod symmetries;
 mod symplectic;
 mod systems;

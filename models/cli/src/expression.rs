@@ -1,11 +1,13 @@
 //! Expressions of flags in the language of models. They become outputs of the model, so that its own parser and its own
 //! compiler read them.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::names;
+use crate::state_input::find_model;
 
 /// Signs between the sides of an expression; longer ones first.
 const SIGNS: [(&str, Sign); 5] = [
@@ -218,21 +220,54 @@ impl Line {
     }
 }
 
+/// The models, the one of this name with the outputs of `--output`.
+///
+/// # Errors
+/// A flag that is no `NAME = EXPR`, and the errors of [`add_to`].
+pub fn with_outputs<'m>(
+    models: &'m [Entry],
+    model: &str,
+    flags: &[String],
+) -> Result<Cow<'m, [Entry]>, CliError> {
+    if flags.is_empty() {
+        return Ok(Cow::Borrowed(models));
+    }
+    let named = flags
+        .iter()
+        .map(|flag| Expression::parse("--output", flag)?.assigned());
+    let named: Vec<(String, Expression)> = named.collect::<Result<_, _>>()?;
+    let named: Vec<(String, &Expression)> = named
+        .iter()
+        .map(|(name, expression)| (name.clone(), expression))
+        .collect();
+    Ok(Cow::Owned(vec![add_named(
+        find_model(models, model)?,
+        &named,
+    )?]))
+}
+
 /// The model with expressions as its last outputs, in their order.
 ///
 /// # Errors
 /// An expression that is not one of the model, at the place where it is wrong; a model without a text.
 pub fn add_to(entry: &Entry, expressions: &[&Expression]) -> Result<Entry, CliError> {
+    let numbered = expressions.iter().enumerate();
+    let named: Vec<(String, &Expression)> = numbered
+        .map(|(index, expression)| (format!("flag_{index}"), *expression))
+        .collect();
+    add_named(entry, &named)
+}
+
+/// The model with expressions as its last outputs, with these names.
+fn add_named(entry: &Entry, named: &[(String, &Expression)]) -> Result<Entry, CliError> {
     let source = &entry.description().source;
     let Some((body, _)) = source.rsplit_once('}') else {
         return Err(CliError::Usage(
             "expressions need the text of the model, and this one has none; declare an output, or a surface",
         ));
     };
-    let named = expressions.iter().enumerate();
-    let lines: Vec<Line> = named
-        .map(|(index, expression)| expression.line(&format!("flag_{index}")))
-        .collect();
+    let lines = named.iter().map(|(name, expression)| expression.line(name));
+    let lines: Vec<Line> = lines.collect();
     let mut text = body.trim_end().to_owned();
     text += "\noutputs {\n";
     let first = text.lines().count() + 1;
@@ -244,7 +279,7 @@ pub fn add_to(entry: &Entry, expressions: &[&Expression]) -> Result<Entry, CliEr
         let mistake = refused.mistakes().first().cloned();
         let found = mistake.and_then(|mistake| {
             let index = mistake.line.checked_sub(first)?;
-            let (line, expression) = (lines.get(index)?, expressions.get(index)?);
+            let (line, (_, expression)) = (lines.get(index)?, named.get(index)?);
             let column = line.column(mistake.column - 1);
             Some(expression.refuse_at(column, mistake.width, &mistake.message))
         });

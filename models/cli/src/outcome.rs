@@ -25,6 +25,7 @@ fn value(fact: Fact) -> Value {
     match fact {
         Fact::Number(number) => json::number(number),
         Fact::Index(index) => Value::from(index),
+        Fact::Flag(flag) => Value::from(flag),
         Fact::Name(name) => Value::from(name),
         Fact::List(facts) => Value::Array(facts.into_iter().map(value).collect()),
     }

@@ -53,7 +53,11 @@ pub fn build_run(models: &[Entry], args: &RunArgs) -> Result<Box<dyn AnyModel>, 
     Ok(model)
 }
 
-fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
+/// Sets a parameter from `NAME=VALUE`.
+///
+/// # Errors
+/// An unknown name, a value that is not a number or contradicts the declaration.
+pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
     let (name, value) = names::assignment("--set", text, "NAME=VALUE")?;
     let parameters = &model.description().parameters;
     let index = names::find(

@@ -90,7 +90,7 @@ pub struct Point {
     pub p: Vec<f64>,
     /// Kinetic plus potential energy.
     pub energy: f64,
-    /// The declared outputs, in their order.
+    /// The declared outputs, in their order. Integrals are those from the start of the run.
     pub outputs: Vec<f64>,
     /// The point that the declared view shows.
     pub view: Option<[f64; 2]>,
@@ -152,7 +152,7 @@ pub trait AnyModel: Runs {
     /// # Errors
     /// [`StateError`] under the same conditions as for the start of a run.
     fn point(&self, origin: &Origin) -> Result<Point, StateError>;
-    /// The declared outputs at a time, positions and velocities; `None` where they do not exist.
+    /// The declared outputs at a time, positions and velocities, NaN for integrals along a run; `None` where they do not exist.
     fn outputs(&self, t: f64, q: &[f64], qdot: &[f64]) -> Option<Vec<f64>>;
     /// The declared region's function, positive where motion is allowed; `None` without a region.
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
@@ -345,7 +345,7 @@ impl Code {
     }
 }
 
-/// Values of a state for tables and pictures.
+/// Values of a state for tables and pictures; NaN for outputs that are integrals along a run.
 pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
     let description = model.description();
     let mode = description.modes.get(model.mode(state));
@@ -364,6 +364,9 @@ pub(crate) fn point<M: Instance>(model: &M, t: f64, state: &M::State) -> Point {
     let mut outputs = vec![f64::NAN; description.outputs.len()];
     if model.outputs(t, state, &mut outputs).is_err() {
         outputs.fill(f64::NAN);
+    }
+    for &index in description.integrals.iter() {
+        outputs[index] = f64::NAN;
     }
     Point {
         mode: mode.map(|mode| mode.name),

@@ -13,6 +13,8 @@ pub enum Fact {
     Number(f64),
     /// An index.
     Index(usize),
+    /// A yes or no.
+    Flag(bool),
     /// A declared name.
     Name(&'static str),
     /// Several facts.
@@ -53,6 +55,10 @@ pub fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static st
         | Outcome::NoReset { surface: index }
         | Outcome::TangentialCrossing { surface: index }
         | Outcome::SingularSurface { surface: index } => vec![surface(index)],
+        Outcome::StoppedAt {
+            surface: index,
+            graze,
+        } => vec![surface(index), ("graze", Fact::Flag(graze))],
         Outcome::StartsInside {
             surface: index,
             gap,
@@ -109,6 +115,16 @@ pub fn explanation(description: &Description, outcome: &Outcome) -> Option<Strin
         Outcome::NoReset { surface: index } => {
             format!("`{}` declares no reset", surface(index))
         }
+        Outcome::StoppedAt {
+            surface: index,
+            graze,
+        } => match graze {
+            false => format!("the motion reached `{}`, which ends it", surface(index)),
+            true => format!(
+                "the motion reached or touched `{}`, which ends it: rounding decides",
+                surface(index)
+            ),
+        },
         Outcome::LeftMode { surface: index } => format!(
             "the mode ends at `{}`, which leads to another mode",
             surface(index)

@@ -348,6 +348,9 @@ impl<O: Owner> AnyModel for Typed<O> {
         let state = model.state_unchecked(t, &q, &qdot).ok()?;
         let mut outputs = vec![f64::NAN; model.description().outputs.len()];
         model.outputs(t, &state, &mut outputs).ok()?;
+        for &index in model.description().integrals.iter() {
+            outputs[index] = f64::NAN;
+        }
         Some(outputs)
     }
 

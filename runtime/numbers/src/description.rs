@@ -108,6 +108,8 @@ pub struct Description {
     pub surfaces: Held<[SurfaceInfo]>,
     /// The declared outputs.
     pub outputs: Held<[&'static str]>,
+    /// The outputs that are integrals along a run, by index. At a state their function gives the integrand.
+    pub integrals: Held<[usize]>,
     /// The scenes; `all`, the model itself, comes first. For a model with modes, each mode by itself is a scene of
     /// `derive` and `check`; a visitor of scenes does not see it.
     pub scenes: Held<[&'static str]>,

@@ -36,6 +36,8 @@ pub enum Law {
     /// The declared map of positions and velocities. No side of the surface is forbidden: where the map leaves the gap
     /// falling, the surface is crossed.
     Reset,
+    /// Ends the run as the motion reaches the surface.
+    Stop,
     /// The surface leads to another mode: the state becomes a state of that mode. Cannot be chosen.
     Transition,
 }
@@ -46,8 +48,13 @@ impl Law {
         matches!(self, Self::Reset | Self::Transition)
     }
 
+    /// True if it is an impulse: neither a map of the state nor the end of the run.
+    pub const fn is_impulse(&self) -> bool {
+        !self.is_map() && !matches!(self, Self::Stop)
+    }
+
     /// The laws by their names in the language and on the command line; true for those with a coefficient.
-    pub const NAMES: [(&'static str, bool); 7] = [
+    pub const NAMES: [(&'static str, bool); 8] = [
         ("elastic", false),
         ("restitution", true),
         ("newton", true),
@@ -55,6 +62,7 @@ impl Law {
         ("impact_plastic", false),
         ("totally_plastic", false),
         ("reset", false),
+        ("stop", false),
     ];
 
     /// The law's name.
@@ -67,11 +75,13 @@ impl Law {
             Self::ImpactPlastic => "impact_plastic",
             Self::TotallyPlastic => "totally_plastic",
             Self::Reset => "reset",
+            Self::Stop => "stop",
             Self::Transition => "transition",
         }
     }
 
-    /// Change of the gap rate by the law, with `e` for its coefficient and the numbers of a contact in their order; NaN for [`Law::Reset`].
+    /// Change of the gap rate by the law, with `e` for its coefficient and the numbers of a contact in their order; NaN for laws without an
+    /// impulse.
     #[inline(always)]
     pub fn taken<L: Numbers>(self, e: L, scalars: &[L; 5]) -> L {
         let [gap_rate, constrained_rate, surface_rate, constrained, free] = *scalars;
@@ -84,7 +94,7 @@ impl Law {
             Self::NonholonomicPlastic => L::of(2.0) * rho() * gap_rate,
             Self::ImpactPlastic => gap_rate,
             Self::TotallyPlastic => rho() * gap_rate,
-            Self::Reset | Self::Transition => L::of(f64::NAN),
+            Self::Reset | Self::Stop | Self::Transition => L::of(f64::NAN),
         }
     }
 
@@ -110,6 +120,7 @@ impl Law {
             | Self::ImpactPlastic
             | Self::TotallyPlastic
             | Self::Reset
+            | Self::Stop
             | Self::Transition => None,
         }
     }
@@ -124,6 +135,7 @@ impl Law {
             "impact_plastic" => Self::ImpactPlastic,
             "totally_plastic" => Self::TotallyPlastic,
             "reset" => Self::Reset,
+            "stop" => Self::Stop,
             _ => return None,
         })
     }
@@ -151,7 +163,8 @@ mod tests {
             Law::NonholonomicPlastic => Some(Law::ImpactPlastic),
             Law::ImpactPlastic => Some(Law::TotallyPlastic),
             Law::TotallyPlastic => Some(Law::Reset),
-            Law::Reset | Law::Transition => None,
+            Law::Reset => Some(Law::Stop),
+            Law::Stop | Law::Transition => None,
         }
     }
 

@@ -56,6 +56,11 @@ pub enum Reason {
         /// The surface.
         surface: usize,
     },
+    /// The law of the surface is `stop`: the motion ends there.
+    Stops {
+        /// The surface.
+        surface: usize,
+    },
     /// The reset leads off the constraints.
     OffConstraint {
         /// The surface.
@@ -107,6 +112,7 @@ impl fmt::Display for Reason {
                 f,
                 "the law of surface {surface} may not give one finite state"
             ),
+            Self::Stops { surface } => write!(f, "the motion ends at surface {surface}"),
             Self::OffConstraint { surface } => {
                 write!(
                     f,

@@ -395,6 +395,9 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
                 chosen: self.chosen(surface)?,
                 motion_start: flow.field.system.motion_start(&flow.frame.centre),
             };
+            if strike.law(flow.field.system, flow.field.parameters()) == Law::Stop {
+                return Err(Reason::Stops { surface });
+            }
             let (surfaces, start) = (self.surfaces(flow), (flow.t, &flow.frame));
             cross(
                 &surfaces,

@@ -5,6 +5,7 @@ use super::hits::{Hits, Order};
 use super::impulse::{Impacts, STILL};
 use crate::contract::Impacting;
 use crate::effects::Moment;
+use crate::law::Law;
 use crate::outcome::Outcome;
 use crate::policy::Corner;
 use crate::state::StateVector;
@@ -89,6 +90,11 @@ impl<Sys: Impacting> Impacts<Sys> {
         verdict: &mut Verdict,
         now: &mut Moment<'_, Sys>,
     ) -> Result<Option<usize>, Outcome> {
+        let system = now.system;
+        let mut approached = (0..rates.count()).filter(|&s| hits.is_approached(s, rates));
+        if let Some(surface) = approached.find(|&s| self.law_of(system, s) == Law::Stop) {
+            return Err(self.stopped_at(surface));
+        }
         if hits.begin_round(rates) > 1
             && *verdict == Verdict::Open
             && let Some(surfaces) = self.ambiguous(hits, rates, verdict, now)?
@@ -178,6 +184,9 @@ impl<Sys: Impacting> Impacts<Sys> {
             let Some(surface) = hits.turn(&rates, order) else {
                 return Ok(Some(state));
             };
+            if self.law_of(now.system, surface) == Law::Stop {
+                return Ok(Some(state));
+            }
             let rate = rates.as_slice()[surface];
             hits.set_still(surface, STILL * rate.abs());
             let struck = self.struck(now.system, surface, rate, now.t, &state)?;

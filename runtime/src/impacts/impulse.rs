@@ -44,6 +44,9 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
 /// reset of positions, a surface at hand acts if it is approached. Such a surface does not hold the motion.
 ///
+/// A surface with the law [`Law::Stop`] ends the run as [`Outcome::StoppedAt`] when it is approached, before other surfaces
+/// at hand act.
+///
 /// # Examples
 ///
 /// ```
@@ -183,7 +186,11 @@ impl<Sys: Impacting> Impacts<Sys> {
         step: &StepView<'_, Sys, Step>,
     ) -> Result<Option<f64>, Outcome> {
         let t = step.t_start();
-        let is_map = self.law_of(step.system, surface).is_map();
+        let law = self.law_of(step.system, surface);
+        if law == Law::Stop {
+            return Err(self.stopped_at(surface));
+        }
+        let is_map = law.is_map();
         if is_map && self.accumulation.has_passed_on(surface, t) {
             return Err(Outcome::Zeno { t, surface });
         }
@@ -196,6 +203,14 @@ impl<Sys: Impacting> Impacts<Sys> {
             (true, None) => {}
         }
         self.resting.press(surface, t)
+    }
+
+    /// The end of a run at a surface with the law [`Law::Stop`].
+    pub(super) fn stopped_at(&self, surface: usize) -> Outcome {
+        Outcome::StoppedAt {
+            surface,
+            graze: self.watch.is_graze(surface),
+        }
     }
 
     /// True if the motion may go on along a surface. A surface with a reset does not hold the motion.

@@ -87,6 +87,7 @@ impl Facts {
             forces: Held::Static(&[]),
             surfaces: Held::Static(self.surfaces),
             outputs: Held::Static(self.outputs),
+            integrals: Held::Static(&[]),
             scenes: Held::Static(&["all"]),
             modes: Held::Static(&[]),
             view: match self.region {

@@ -212,6 +212,7 @@ where
         quasi_velocities: M::DESCRIPTION.quasi_velocities.again(),
         surfaces: M::DESCRIPTION.surfaces.again(),
         outputs: M::DESCRIPTION.outputs.again(),
+        integrals: M::DESCRIPTION.integrals.again(),
         scenes: Held::Static(&["all"]),
         modes: M::DESCRIPTION.modes.again(),
         view: None,

@@ -47,6 +47,7 @@ pub fn held_model(mut model: Model) -> Result<Held, Uncontrolled> {
         name: plain(TERMINAL.to_owned()),
         documentation: Vec::new(),
         value: cost_of.terminal,
+        is_integral: false,
         item: item_of(&model),
     };
     let parts = Parts {

@@ -236,6 +236,7 @@ fn outputs(model: &mut Model, extremals: &Extremals, item: ItemId) -> Vec<Output
         name: plain(display),
         documentation: Vec::new(),
         value,
+        is_integral: false,
         item,
     };
     values.into_iter().map(output).collect()

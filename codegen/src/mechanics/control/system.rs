@@ -242,6 +242,11 @@ fn of_reset(
 
 /// A law after which the state before is not known.
 fn refused(surface: &Surface) -> Uncontrolled {
+    if surface.law == Law::Stop {
+        let text = format!("the motion ends at `{}`", surface.name.display);
+        let help = "leave the surface out: a control that avoids it is not searched";
+        return Uncontrolled::at(surface.item, text, help);
+    }
     let text = format!(
         "the law of `{}` is not invertible: the costate after the impact does not follow from that before",
         surface.name.display

@@ -333,6 +333,11 @@ impl Resolver<'_> {
         };
         let mut all = surfaces.iter();
         let found = all.position(|surface| surface.name.display == *display || is_member(surface));
+        if let Some(surface) = found.filter(|found| !surfaces[*found].law.goes_on()) {
+            let name = &surfaces[surface].name.display;
+            let text = format!("the motion ends at `{name}`: no claim speaks of what follows");
+            return self.refuse(declared.name.at, text, "leave it out");
+        }
         found.or_else(|| {
             let names: Vec<&str> = surfaces
                 .iter()

@@ -11,7 +11,7 @@ use super::RATES;
 use super::targets::Section;
 use crate::diagnostics::{Location, listed};
 use crate::spec::{
-    self, AssignmentTarget, Declared, InitialTarget, ItemId, RESET, Rate, Statement,
+    self, AssignmentTarget, Declared, InitialTarget, ItemId, RESET, Rate, STOP, Statement,
 };
 
 const NONE: &str = "a first-order system has no";
@@ -145,6 +145,7 @@ pub(super) fn check_surfaces(resolver: &mut Resolver<'_>) {
     let takes_reset = |surface: &&spec::Surface| surface.enters.is_none() || surface.law.is_some();
     for surface in spec.surfaces.iter().filter(takes_reset) {
         match &surface.law {
+            Some(law) if law.name.text == STOP => {}
             Some(law) if law.name.text == RESET => {
                 for entry in law.assignments.iter().flatten() {
                     if entry.target == AssignmentTarget::Velocity {
@@ -157,10 +158,10 @@ pub(super) fn check_surfaces(resolver: &mut Resolver<'_>) {
                     .as_ref()
                     .map_or(surface.declared.name.at, |law| law.name.at);
                 let text = format!(
-                    "{NONE} impulses: `{}` takes a reset",
+                    "{NONE} impulses: `{}` takes a reset or a stop",
                     surface.declared.name.text
                 );
-                resolver.refuse::<()>(at, text, "write `=> reset { x = ..; }`");
+                resolver.refuse::<()>(at, text, "write `=> reset { x = ..; }` or `=> stop`");
             }
         }
     }

@@ -136,6 +136,7 @@ fn plastic_note(surface: &Surface) -> Option<String> {
         | Law::Newton(_)
         | Law::ImpactPlastic
         | Law::Reset
+        | Law::Stop
         | Law::Transition => {
             return None;
         }

@@ -91,8 +91,10 @@ pub(in crate::model) fn check_mode(
     resolver.all_parameters();
     resolver.order_symbols();
     resolver.all_definitions();
+    let lagrangian = lagrangian(&mut resolver);
+    resolver.lagrangian = lagrangian.as_ref().map(|lagrangian| lagrangian.whole);
     let mut parts = Parts {
-        lagrangian: lagrangian(&mut resolver),
+        lagrangian,
         field: field::resolve(&mut resolver),
         constraints: constraints::resolve(&mut resolver),
         cost: cost::resolve(&mut resolver),

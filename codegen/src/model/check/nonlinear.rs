@@ -5,7 +5,7 @@
 
 use super::super::Constraint;
 use super::super::resolve::Resolver;
-use crate::spec::{Declared, RESET, Statement};
+use crate::spec::{Declared, RESET, STOP, Statement};
 
 /// Refuses declarations that such constraints leave undefined.
 pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
@@ -23,7 +23,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
     }
     for surface in &spec.surfaces {
         let law = surface.law.as_ref();
-        if law.is_some_and(|law| law.name.text == RESET) {
+        if law.is_some_and(|law| [RESET, STOP].contains(&law.name.text.as_str())) {
             continue;
         }
         let at = law.map_or(surface.declared.name.at, |law| law.name.at);

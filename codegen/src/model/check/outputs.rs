@@ -3,6 +3,7 @@
 use super::super::resolve::{DerivedNames, Resolver, Scope};
 use super::super::{Output, View};
 use super::names::Names;
+use crate::spec::{INTEGRAL, Scalar, ScalarKind};
 
 /// The declared view, if it has a path.
 pub(super) fn view(resolver: &mut Resolver<'_>) -> Option<View> {
@@ -46,13 +47,17 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
     for output in &spec.outputs {
         for (name, mut scope) in resolver.members(&output.declared) {
             names.add(resolver, &name, &output.declared.name);
-            let Some(value) = resolver.expression(&output.value, &mut scope) else {
+            let (written, is_integral) = match integrand(&output.value) {
+                Some(integrand) => (integrand, true),
+                None => (&output.value, false),
+            };
+            let Some(value) = resolver.expression(written, &mut scope) else {
                 break;
             };
             let differentials = resolver.symbols.all_differentials();
             let text = "an output contains no differentials";
             let kept = resolver.forbid(
-                &output.value,
+                written,
                 &scope,
                 value,
                 &differentials,
@@ -64,6 +69,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
                     name,
                     documentation: output.documentation.clone(),
                     value,
+                    is_integral,
                     item: output.item,
                 });
             }
@@ -71,4 +77,17 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Output> {
     }
     names.check_families(resolver);
     outputs
+}
+
+/// The expression of an output that is an integral: `e` of `integral(e)`.
+fn integrand(written: &Scalar) -> Option<&Scalar> {
+    match &written.kind {
+        ScalarKind::Call(function, arguments) if function.text == INTEGRAL => {
+            match &arguments[..] {
+                [integrand] => Some(integrand),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
 }

@@ -60,7 +60,11 @@ fn constant_share(kernel: &mut Kernel<'_>, law: Law) -> Option<Value> {
             Some(kernel.builder.add(one, e))
         }
         Law::ImpactPlastic => Some(kernel.builder.integer(1)),
-        Law::NonholonomicPlastic | Law::TotallyPlastic | Law::Reset | Law::Transition => None,
+        Law::NonholonomicPlastic
+        | Law::TotallyPlastic
+        | Law::Reset
+        | Law::Stop
+        | Law::Transition => None,
     }
 }
 
@@ -170,7 +174,7 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let builder = &mut kernel.builder;
     let elastic = builder.add(constrained_rate, surface_rate);
     let (share, of) = match (law, constant) {
-        (Law::Reset | Law::Transition, _) => return None,
+        (Law::Reset | Law::Stop | Law::Transition, _) => return None,
         (Law::Elastic | Law::Restitution(_), Some(share)) => (share, elastic),
         (_, Some(share)) => (share, gap_rate),
         (_, None) => {

@@ -4,7 +4,7 @@ use proc_macro2::Delimiter;
 
 use super::super::ast::{Equation, Law, Spec};
 use super::super::cursor::{Cursor, Read, tokens_of};
-use super::super::keyword::INSTANTANEOUS;
+use super::super::keyword::{INSTANTANEOUS, STOP};
 use super::constraints::equation;
 use super::entry_length;
 
@@ -28,6 +28,10 @@ pub(super) fn equations(
         let text = "a reset takes no instantaneous constraints";
         let help = "a reset says what positions and velocities are after the impact";
         return Err(cursor.refuse(word.at, text, help));
+    }
+    if law.name.text == STOP {
+        let text = "`stop` takes no instantaneous constraints";
+        return Err(cursor.refuse(word.at, text, "the motion ends there"));
     }
     let Some(group) = cursor.eat_group(Delimiter::Brace) else {
         let text = "expected `{ .. }` after `instantaneous`";

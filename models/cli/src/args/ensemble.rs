@@ -51,6 +51,10 @@ pub struct EnsembleArgs {
     /// the tables of `simulate --csv` and `ensemble --csv`. `-` is the standard input.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "members"])]
     pub from: Option<PathBuf>,
+    /// Add an output to the model for these runs, such as `S = integral(lagrangian)`: an expression as of a declared output, or an
+    /// integral along a run. May be repeated.
+    #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
+    pub output: Vec<String>,
     /// Run only block I of N blocks of members, counted from 1. The rows of all blocks together are those of the whole
     /// ensemble.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]

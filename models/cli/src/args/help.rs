@@ -18,6 +18,7 @@ pub const DERIVE: &str = "More examples:
 pub const CHECK: &str = "More examples:
   dalembert check rolling_disk --format json
   dalembert check rolling_disk --certificate proofs.json
+  dalembert check rimless_wheel_five --bendixson
   python3 python/check_certificate.py proofs.json";
 
 pub const SIMULATE: &str =

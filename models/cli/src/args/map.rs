@@ -24,7 +24,7 @@ the start, at every return and after every step of the integrator, which --max-s
 
 Rows of --csv: `member`, `in.NAME` for what is varied, `class`, `outcome`, `returns`, `period`, `orbit` (0 without one),
 `t`, `end.NAME` (the state after the last return, without returns at the end), `exponent` with --lyapunov, `value` with a
---class that is an expression, `contour.K`, `reason`. The rows and the picture do not depend on threads.
+--class that is an expression, `out.NAME` with --output, `contour.K`, `reason`. The rows and the picture do not depend on threads.
 
 Exit status: 0 every cell was run, 1 some start was refused, 2 bad flags or input.
 
@@ -75,6 +75,9 @@ pub struct MapArgs {
     /// Draw the line on which this holds for the starts, such as `xi = 2*eta`, or is 0; may be repeated.
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub contour: Vec<String>,
+    /// Add a column `out.NAME` with an expression at the end of each run, such as `S = integral(lagrangian)`. May be repeated.
+    #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
+    pub output: Vec<String>,
     /// The longest period that is looked for, in returns.
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "returns", value_parser = clap::value_parser!(u32).range(1..=64), default_value_t = 8)]
     pub period: u32,
@@ -104,6 +107,10 @@ pub struct MapArgs {
     /// Draw the map.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Draw a dot for each cell in the plane of two quantities, in place of the map: what is varied, coordinates and velocities
+    /// at the end, names of --output, `t`. Colours are those of --class.
+    #[arg(long, value_name = "X,Y", requires = "plot")]
+    pub axes: Option<String>,
 }
 
 impl MapArgs {

@@ -1,5 +1,6 @@
 //! `check`: the declarations of a model, the verdicts on its claims, and tests of its defaults and its initial state.
 
+mod bendixson;
 mod certificate;
 
 use std::io::Write;
@@ -48,6 +49,9 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     let sink = Sink::open_given("--certificate", args.certificate.as_deref())?;
     let model = find_model(models, &args.model)?.with_defaults(0);
+    if args.bendixson {
+        return bendixson::run(model, args, streams.output);
+    }
     let model = model.as_ref();
     let mut checks = checks(model);
     // A system written by hand has no declaration and no claims.

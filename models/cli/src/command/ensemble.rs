@@ -19,6 +19,7 @@ use crate::ensemble::{self, Columns, Plan, Shared, Summary, Tally, listed, pilot
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::expression;
 use crate::sink::{Sink, is_stdout};
 use crate::state_input::build_model;
 use crate::{Streams, plot, run_request};
@@ -52,6 +53,7 @@ pub fn run(
         let text = "--input: an ensemble leaves inputs at 0; declare a parameter for what its members vary";
         return Err(CliError::Usage(text));
     }
+    let models = &*expression::with_outputs(models, &args.run.model.model, &args.output)?;
     let model = build_model(models, &args.run.model)?;
     let model = model.as_ref();
     let settings = run_request::course(model, &args.run, &args.course)?;

@@ -88,7 +88,7 @@ fn laws(args: &EvalArgs) -> Vec<Law> {
         .filter(|(_, takes_coefficient)| !takes_coefficient);
     let mut laws: Vec<Law> = plain
         .filter_map(|(name, _)| Law::from_name(name, 0.0))
-        .filter(|law| !law.is_map())
+        .filter(Law::is_impulse)
         .collect();
     laws.extend(args.restitution.map(Law::Restitution));
     laws.extend(args.newton.map(Law::Newton));

@@ -10,6 +10,7 @@ use dalembert_driver::{AnyModel, Component, Search, Settings};
 use serde_json::{Map, Value, json};
 
 use crate::args::MapArgs;
+use crate::ensemble::listed::INPUT;
 use crate::ensemble::members::{Members, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::output::Table;
@@ -261,20 +262,62 @@ fn request(model: &dyn AnyModel, args: &MapArgs, members: &Members) -> Result<Re
         "lyapunov" => Colours::Exponent,
         text => Colours::Value(watched(shown(text)?)),
     };
+    let mut outputs = Vec::new();
+    for text in &args.output {
+        let (name, expression) = Expression::parse("--output", text)?.assigned()?;
+        outputs.push((name, watched(expression)));
+    }
     let mut contours = Vec::new();
     for text in &args.contour {
         contours.push(watched(line(text)?));
     }
     let is_parameter = |quantity: &Quantity| matches!(quantity, Quantity::Parameter(_));
+    let components = Components::of(description, args)?;
+    let plane = args.axes.as_deref();
+    let plane = plane.map(|text| plane_of(text, members, &components, &outputs));
     Ok(Request {
         returns: returns(model, args)?,
         starts,
         fail,
         colours,
+        outputs,
         contours,
-        components: Components::of(description, args)?,
+        plane: plane.transpose()?,
+        components,
         is_bifurcating: members.quantities().iter().any(is_parameter),
     })
+}
+
+/// The columns of the axes of `--axes`.
+fn plane_of(
+    text: &str,
+    members: &Members,
+    components: &Components,
+    outputs: &[(String, Watched)],
+) -> Result<[String; 2], CliError> {
+    let (names, columns): (Vec<&str>, Vec<String>) = (members.names().iter())
+        .map(|name| (name.as_str(), format!("{INPUT}{name}")))
+        .chain(
+            outputs
+                .iter()
+                .map(|(name, _)| (name.as_str(), map::output(name))),
+        )
+        .chain(
+            components
+                .names
+                .iter()
+                .map(|name| (name.as_str(), map::end(name))),
+        )
+        .chain([("t", "t".to_owned())])
+        .unzip();
+    let [x, y] = *text.split(',').map(str::trim).collect::<Vec<_>>() else {
+        return Err(CliError::value("--axes", text, "two quantities: X,Y"));
+    };
+    let column = |name: &str| -> Result<String, CliError> {
+        let place = names::find("--axes", "quantity", name, names.iter().copied())?;
+        Ok(columns[place].clone())
+    };
+    Ok([column(x)?, column(y)?])
 }
 
 /// The component and the expression of `--start`.
@@ -396,6 +439,7 @@ fn extended(models: &[Entry], args: &MapArgs, request: &Request) -> Result<Vec<E
     let watched = starts
         .chain(&request.fail)
         .chain(value)
+        .chain(request.outputs.iter().map(|(_, watched)| watched))
         .chain(&request.contours);
     let expressions: Vec<&Expression> = watched.map(|it| &it.expression).collect();
     if expressions.is_empty() {
@@ -415,6 +459,7 @@ fn asked(model: &dyn AnyModel, args: &MapArgs, request: &Request) -> Value {
         "start": args.start,
         "fail": args.fail,
         "class": args.class,
+        "outputs": args.output,
         "contours": args.contour,
         "period": args.period,
         "near": number(args.nearness()),

@@ -11,6 +11,7 @@ use crate::args::SimulateArgs;
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::expression;
 use crate::input_table::{self, InputTable};
 use crate::plot::trace::{Source, Trace};
 use crate::plot::{self, Drawn, Picture, quantity};
@@ -55,6 +56,7 @@ pub fn run(
     args: &SimulateArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
+    let models = &*expression::with_outputs(models, &args.run.model.model, &args.output)?;
     if args.certify.certify {
         return certify::run(models, args, streams);
     }
@@ -116,6 +118,7 @@ fn write_as_it_goes<'a>(
 /// # Errors
 /// The errors of [`run`] except those of files.
 pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
+    let models = &*expression::with_outputs(models, &args.run.model.model, &args.output)?;
     let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     let finished = finish(model.as_ref(), prepared, args, Vec::new(), false)?;

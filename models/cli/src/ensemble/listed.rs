@@ -191,6 +191,7 @@ mod tests {
         forces: Held::Static(&[]),
         surfaces: Held::Static(&[]),
         outputs: Held::Static(&[]),
+        integrals: Held::Static(&[]),
         scenes: Held::Static(&["all"]),
         modes: Held::Static(&[]),
         view: None,

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use dalembert::Outcome;
 use dalembert_driver::{
     Contact, Ending, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,
 };
@@ -9,6 +10,7 @@ use dalembert_driver::{
 use super::orbits;
 use super::request::{Request, Returns};
 use crate::ensemble::runner::{Runner, details};
+use crate::names;
 
 /// The outcome of a run that made all returns.
 pub const RETURNED: &str = "returned";
@@ -20,6 +22,8 @@ pub const FAILED: &str = "failed";
 pub struct Cell {
     /// The outcome.
     pub outcome: &'static str,
+    /// The surface at which the motion ended by its law.
+    pub stop: Option<&'static str>,
     /// Number of returns.
     pub returns: u64,
     /// The time at the end; NaN if there was no run.
@@ -32,6 +36,8 @@ pub struct Cell {
     pub exponent: f64,
     /// The expression of the colours at the end; NaN if there is none.
     pub value: f64,
+    /// The expressions that become columns, at the end.
+    pub outputs: Vec<f64>,
     /// The expressions of the lines at the start.
     pub contours: Vec<f64>,
     /// Details of the outcome.
@@ -45,12 +51,14 @@ pub fn run(runner: &mut Runner<'_>, request: &Request, member: u64) -> Cell {
         Ok(ending) => finished(runner, request, seen, &ending),
         Err((outcome, reason)) => Cell {
             outcome,
+            stop: None,
             returns: seen.returns,
             t: f64::NAN,
             end: vec![f64::NAN; request.components.names.len()],
             cycle: Vec::new(),
             exponent: f64::NAN,
             value: f64::NAN,
+            outputs: vec![f64::NAN; request.outputs.len()],
             contours: vec![f64::NAN; request.contours.len()],
             reason: reason.replace(['\n', '\r'], " "),
         },
@@ -78,14 +86,24 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
     } else if outcome != FAILED {
         reason = details(runner.model().description(), &ending.outcome);
     }
+    let stop = match ending.outcome {
+        Outcome::StoppedAt { surface, .. } => {
+            names::surfaces(runner.model().description()).nth(surface)
+        }
+        _ => None,
+    };
     Cell {
         outcome,
+        stop,
         returns: seen.returns,
         t: ending.t,
         end: components.values(end),
         cycle,
         exponent,
         value: request.colours.value(end),
+        outputs: (request.outputs.iter())
+            .map(|(_, watched)| watched.value(end))
+            .collect(),
         contours: request
             .contours
             .iter()

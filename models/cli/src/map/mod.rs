@@ -27,7 +27,7 @@ use crate::progress::Count;
 pub use orbits::Orbit;
 use request::Request;
 pub use sums::{Cells, Sums};
-pub use table::columns;
+pub use table::{columns, end, output};
 
 /// Largest number of cells in a block of a thread.
 const BLOCK: u64 = 64;

@@ -18,8 +18,12 @@ pub struct Request {
     pub fail: Option<Watched>,
     /// Meaning of the colours.
     pub colours: Colours,
+    /// The expressions that become columns, with their names.
+    pub outputs: Vec<(String, Watched)>,
     /// The lines over the map.
     pub contours: Vec<Watched>,
+    /// The columns of a picture of ends: those along x and along y.
+    pub plane: Option<[String; 2]>,
     /// The components of a state.
     pub components: Components,
     /// True if a parameter is varied: every cell then has orbits of its own.

@@ -34,6 +34,8 @@ pub struct Cells {
     pub numbers: Vec<f64>,
     /// For each line, its expression at the start.
     pub contours: Vec<Vec<f64>>,
+    /// Its place in a picture of ends.
+    pub places: Vec<[f64; 2]>,
 }
 
 /// Positions of values in a row.
@@ -46,6 +48,7 @@ struct Places {
     end: std::ops::Range<usize>,
     number: Option<usize>,
     contours: std::ops::Range<usize>,
+    plane: Option<[usize; 2]>,
     reason: usize,
 }
 
@@ -67,6 +70,7 @@ impl Places {
                 Colours::Value(_) => Some(place("value")),
             },
             contours: reason - request.contours.len()..reason,
+            plane: (request.plane.as_ref()).map(|names| [place(&names[0]), place(&names[1])]),
             reason,
         }
     }
@@ -142,6 +146,9 @@ impl Sums {
             drawn.classes.push(index);
             if let Some(place) = places.number {
                 drawn.numbers.push(number(row.get(place)));
+            }
+            if let Some(plane) = places.plane {
+                drawn.places.push(plane.map(|place| number(row.get(place))));
             }
             for (line, place) in drawn.contours.iter_mut().zip(places.contours.clone()) {
                 line.push(number(row.get(place)));

@@ -10,6 +10,16 @@ use crate::ensemble::listed::INPUT;
 use crate::ensemble::members::Members;
 use crate::ensemble::row::{Field, Kind, Row};
 
+/// The column of a coordinate or a velocity at the end.
+pub fn end(name: &str) -> String {
+    format!("end.{name}")
+}
+
+/// The column of an expression of `--output`.
+pub fn output(name: &str) -> String {
+    format!("out.{name}")
+}
+
 /// The columns of a map.
 pub fn columns(request: &Request, members: &Members) -> Columns {
     let mut columns = vec![("member".to_owned(), Kind::Integer)];
@@ -24,13 +34,16 @@ pub fn columns(request: &Request, members: &Members) -> Columns {
     }
     add("t".to_owned(), Kind::Number);
     for name in &request.components.names {
-        add(format!("end.{name}"), Kind::Number);
+        add(end(name), Kind::Number);
     }
     if request.has_exponent() {
         add("exponent".to_owned(), Kind::Number);
     }
     if matches!(request.colours, Colours::Value(_)) {
         add("value".to_owned(), Kind::Number);
+    }
+    for (name, _) in &request.outputs {
+        add(output(name), Kind::Number);
     }
     for index in 1..=request.contours.len() {
         add(format!("contour.{index}"), Kind::Number);
@@ -60,6 +73,7 @@ pub fn row(members: &Members, member: u64, cell: &Cell, request: &Request, orbit
     if matches!(request.colours, Colours::Value(_)) {
         row.push(number(cell.value));
     }
+    row.extend(cell.outputs.iter().copied().map(number));
     row.extend(cell.contours.iter().copied().map(number));
     row.push(Field::Text(Cow::Owned(cell.reason.clone())));
     row
@@ -74,6 +88,9 @@ fn class(cell: &Cell, orbit: u64, request: &Request) -> String {
         (FAILED, ..) if cell.returns == 0 && request.returns.is_some() => {
             "failed at once".to_owned()
         }
-        (outcome, ..) => outcome.to_owned(),
+        (outcome, ..) => match cell.stop {
+            Some(surface) => format!("stopped at {surface}"),
+            None => outcome.to_owned(),
+        },
     }
 }

@@ -18,6 +18,10 @@ use crate::symbols;
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 720.0;
 
+/// Radius of the dot of a cell, in pixels, and the room around all dots as a share of their range.
+const DOT: f64 = 1.5;
+const DOTS_ROOM: f64 = 0.04;
+
 /// Fraction of the numbers beyond the first colour, and beyond the last.
 const BEYOND: f64 = 0.005;
 
@@ -96,6 +100,9 @@ pub struct Chart<'a> {
 /// An error of the drawing library.
 pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
     let painted = chart.painted();
+    if let Some(names) = &chart.request.plane {
+        return chart.draw_ends(&painted, names);
+    }
     let (x, y) = (&chart.axes[0], chart.axes.get(1));
     let window = Window {
         x: x.range(),
@@ -151,6 +158,41 @@ struct Painted<'a> {
 }
 
 impl Chart<'_> {
+    /// Draws a dot for each cell in the plane of two columns.
+    fn draw_ends(&self, painted: &Painted<'_>, names: &[String; 2]) -> Result<String, String> {
+        let places = &self.cells.places;
+        let finite = |place: &&[f64; 2]| place.iter().all(|value| value.is_finite());
+        let range = |axis: usize| {
+            let values = places.iter().filter(finite).map(move |place| place[axis]);
+            style::padded(values, DOTS_ROOM)
+        };
+        let window = Window {
+            x: range(0),
+            y: range(1),
+        };
+        let [x, y] = names.each_ref().map(|name| {
+            let shown = name
+                .split_once('.')
+                .map_or(name.as_str(), |(_, shown)| shown);
+            symbols::text(shown)
+        });
+        let words = Words {
+            title: self.title,
+            subtitle: self.subtitle,
+            axes: [&x, &y],
+            head: &self.head(painted, false),
+        };
+        Plane::free_scales(window, WIDTH).sheet(
+            &words,
+            |_| Ok(()),
+            |drawn| {
+                let colours = painted.pixels.iter();
+                let colours = colours.map(|&shade| painted.palette[usize::from(shade)]);
+                plane::dots(drawn, places.iter().copied().zip(colours), DOT)
+            },
+        )
+    }
+
     fn painted(&self) -> Painted<'_> {
         match &self.request.colours {
             Colours::End => self.by_class(),

@@ -23,7 +23,7 @@ const QUARTER: &str = "--plot-width 400";
 pub fn all() -> Vec<Figure> {
     let mut figures = walker::figures();
     figures.extend(rolling_disk::figures());
-    figures.push(connections::bouncing_ball());
+    figures.extend(connections::figures());
     figures.extend(control::figures());
     figures.extend([
         zeno::bouncing_ball(),

@@ -49,6 +49,8 @@ pub struct Linearisation {
     pub inputs: Vec<f64>,
     /// The rates of the state there.
     pub rates: Vec<f64>,
+    /// The names of the outputs; those that are integrals along a run have no value at a state and are left out.
+    pub output_names: Vec<&'static str>,
     /// The values of the outputs there.
     pub outputs: Vec<f64>,
     /// `A`, row by row: derivatives of the rates by the state.
@@ -239,7 +241,12 @@ fn linearise<S: Instance + Scene + Variational>(
     let description = system.description();
     let n = state.len();
     let [a, b] = split(&sample.by_rates, n);
-    let [c, d] = split(&sample.by_outputs, n);
+    let is_value = |index: &usize| !description.integrals.contains(index);
+    let values: Vec<usize> = (0..sample.outputs.len()).filter(is_value).collect();
+    let by_outputs: Vec<Vec<f64>> = (values.iter())
+        .map(|&index| sample.by_outputs[index].clone())
+        .collect();
+    let [c, d] = split(&by_outputs, n);
     let strides = match &place.sampling {
         Some(sampling) => sampled::strides(&plant, sampling, &state, &inputs)?,
         None => Vec::new(),
@@ -255,7 +262,11 @@ fn linearise<S: Instance + Scene + Variational>(
         unsteady,
         levels: sample.levels.len(),
         rates: sample.rates,
-        outputs: sample.outputs,
+        output_names: values
+            .iter()
+            .map(|&index| description.outputs[index])
+            .collect(),
+        outputs: values.iter().map(|&index| sample.outputs[index]).collect(),
         state,
         inputs,
         steps,

@@ -2,9 +2,9 @@
 
 use dalembert::lanes::{Member, run_abreast};
 use dalembert::simulation::STEP_BUDGET;
-use dalembert::{Observer, Taylor, Tolerance};
+use dalembert::{Observer, Run, Taylor, Tolerance};
 
-use super::{Bridge, Ending, Settings, Solved, Watch, effects, ending};
+use super::{Bridge, Ending, Integrals, Settings, Solved, Watch, effects, ending};
 use crate::model::{Together, point};
 use crate::refusal::Refusal;
 use crate::typed::{Model, prepare};
@@ -81,13 +81,15 @@ fn simulate_abreast<M: Model>(
         states.push(state);
         bridges.push(Bridge {
             model,
-            point: |t, state: &M::State| point(model, t, state),
+            reading: model,
+            integrals: Integrals::of(model),
             watch,
             balance: None,
         });
     }
-    let mut endings: Vec<Option<Result<Ending, Refusal>>> = Vec::new();
-    endings.resize_with(models.len(), || None);
+    let looks_inside = looks_inside || bridges.iter().any(|bridge| bridge.integrals.is_some());
+    let mut ended: Vec<Option<Result<Run<M::State>, Refusal>>> = Vec::new();
+    ended.resize_with(models.len(), || None);
     let members = bridges.iter_mut().enumerate().map(|(index, bridge)| {
         let model = bridge.model;
         let (effects, _) = effects(model, settings);
@@ -106,24 +108,23 @@ fn simulate_abreast<M: Model>(
         .with_look_inside(looks_inside)
     });
     run_abreast(members, |index, run| {
-        let model = &models[index];
-        let ended = run.map_err(Refusal::from).map(|run| {
-            let (_, laws) = effects(model, settings);
+        ended[index] = Some(run.map_err(Refusal::from));
+    });
+    let endings = ended.into_iter().zip(&bridges).zip(&states);
+    endings
+        .map(|((ended, bridge), first)| {
+            let run = ended.expect("every member ends")?;
+            let (_, laws) = effects(bridge.model, settings);
             let ends = [
-                point(model, 0.0, &states[index]),
-                point(model, run.t, &run.state),
+                Integrals::of(bridge.model).put(point(bridge.model, 0.0, first)),
+                bridge.point(run.t, &run.state),
             ];
             let solved = Solved {
                 run,
                 step: None,
                 laws,
             };
-            ending(ends, solved, settings)
-        });
-        endings[index] = Some(ended);
-    });
-    endings
-        .into_iter()
-        .map(|ended| ended.expect("every member ends"))
+            Ok(ending(ends, solved, settings))
+        })
         .collect()
 }

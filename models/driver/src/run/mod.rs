@@ -9,6 +9,7 @@ macro_rules! limited {
 
 mod abreast;
 mod energy;
+mod reading;
 mod steered;
 
 use std::cell::RefCell;
@@ -27,11 +28,12 @@ use dalembert::{
 };
 
 use crate::integrator::{Form, Integrator};
-use crate::model::{Point, point};
+use crate::model::Point;
 use crate::refusal::Refusal;
 use crate::typed::Model;
 pub(crate) use abreast::abreast;
 use energy::Balance;
+use reading::{Integrals, Reading};
 pub use steered::{Changes, Control, InputFunction, steer};
 
 /// Settings of a run.
@@ -166,18 +168,19 @@ pub(crate) fn simulate<M: Model>(
     settings: &Settings,
     watch: &mut dyn Watch,
 ) -> Result<Ending, Refusal> {
-    let first = point(model, 0.0, &state);
     let is_doubtful = !settings.integrator.is_adaptive() && watch.wants_warnings();
     let balance = is_doubtful.then(|| Balance::of(model, 0.0, &state));
     let mut bridge = Bridge {
         model,
-        point: |t, state: &M::State| point(model, t, state),
+        reading: model,
+        integrals: Integrals::of(model),
         watch,
         balance: balance.flatten(),
     };
+    let first = bridge.point(0.0, &state);
     let solved = solve(model, &state, settings, &mut bridge)?;
+    let last = bridge.point(solved.run.t, &solved.run.state);
     let warnings = warnings(settings, &solved, bridge.balance);
-    let last = point(model, solved.run.t, &solved.run.state);
     Ok(Ending {
         warnings,
         ..ending([first, last], solved, settings)
@@ -306,16 +309,21 @@ pub(crate) fn effects<M: Instance + Scene>(
 }
 
 /// Forwards segments and events of the runtime to a [`Watch`].
-struct Bridge<'a, M, P> {
+struct Bridge<'a, M, R> {
     model: &'a M,
-    /// The values of a state at a time.
-    point: P,
+    reading: R,
+    integrals: Integrals,
     watch: &'a mut dyn Watch,
     /// The energy balance, if the watch wants warnings about a fixed-step integrator.
     balance: Option<Balance>,
 }
 
-impl<M, P> Bridge<'_, M, P> {
+impl<M: Model, R: Reading<M::State>> Bridge<'_, M, R> {
+    /// The values of the present state.
+    fn point(&self, t: f64, state: &M::State) -> Point {
+        self.integrals.put(self.reading.point(t, state))
+    }
+
     fn go_on(&self) -> ControlFlow<()> {
         match self.watch.is_over() {
             true => ControlFlow::Break(()),
@@ -324,16 +332,18 @@ impl<M, P> Bridge<'_, M, P> {
     }
 }
 
-impl<M: Model, P: Fn(f64, &M::State) -> Point> Observer<M> for Bridge<'_, M, P> {
+impl<M: Model, R: Reading<M::State>> Observer<M> for Bridge<'_, M, R> {
     fn step(&mut self, segment: &mut Segment<'_, M::State>) -> ControlFlow<()> {
         if let Some(balance) = &mut self.balance {
             balance.follow(self.model, segment);
         }
         self.watch.step(&SegmentPiece {
             description: self.model.description(),
-            point: &self.point,
-            segment: RefCell::new(segment),
+            reading: &self.reading,
+            integrals: &self.integrals,
+            segment: RefCell::new(&mut *segment),
         });
+        self.integrals = self.integrals.at(segment.t_end(), &self.reading, segment);
         self.go_on()
     }
 
@@ -344,8 +354,8 @@ impl<M: Model, P: Fn(f64, &M::State) -> Point> Observer<M> for Bridge<'_, M, P> 
         self.watch.impact(Impact {
             t: event.t,
             surface: event.surface,
-            before: (self.point)(event.t, &event.before),
-            after: (self.point)(event.t, &event.after),
+            before: self.point(event.t, &event.before),
+            after: self.point(event.t, &event.after),
             simultaneous: event.simultaneous,
             graze: event.graze,
         });
@@ -359,7 +369,7 @@ impl<M: Model, P: Fn(f64, &M::State) -> Point> Observer<M> for Bridge<'_, M, P> 
         self.watch.contact(Contact {
             t: hold.t,
             surface: hold.surface,
-            at: (self.point)(hold.t, &hold.state),
+            at: self.point(hold.t, &hold.state),
             begins: hold.begins,
             accumulation: hold.accumulation,
         });
@@ -368,22 +378,26 @@ impl<M: Model, P: Fn(f64, &M::State) -> Point> Observer<M> for Bridge<'_, M, P> 
 }
 
 /// A segment of a run. A query inside it prepares the dense output, hence the cell.
-struct SegmentPiece<'a, 'b, S, P> {
+struct SegmentPiece<'a, 'b, S, R> {
     description: &'a Description,
-    point: &'a P,
+    reading: &'a R,
+    integrals: &'a Integrals,
     segment: RefCell<&'a mut Segment<'b, S>>,
 }
 
-impl<S: StateVector, P: Fn(f64, &S) -> Point> Piece for SegmentPiece<'_, '_, S, P> {
+impl<S: StateVector, R: Reading<S>> Piece for SegmentPiece<'_, '_, S, R> {
     fn span(&self) -> (f64, f64) {
         let segment = self.segment.borrow();
         (segment.t_start(), segment.t_end())
     }
 
     fn at(&self, t: f64) -> Point {
-        let state = self.segment.borrow_mut().at(t);
-        match state {
-            Ok(state) => (self.point)(t, &state),
+        let mut segment = self.segment.borrow_mut();
+        match segment.at(t) {
+            Ok(state) => {
+                let integrals = self.integrals.at(t, self.reading, &mut segment);
+                integrals.put(self.reading.point(t, &state))
+            }
             Err(_) => Point::undefined(self.description),
         }
     }

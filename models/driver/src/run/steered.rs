@@ -14,13 +14,13 @@ use dalembert::integrate::{
 };
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::{
-    Effect, Event, Hold, Impacts, Instance, Observer, Outcome, Projection, SceneEffects, Segment,
-    Simulation, StateVector, System, VectorField,
+    Effect, Event, Fault, Hold, Impacts, Instance, Observer, Outcome, Projection, SceneEffects,
+    Segment, Simulation, StateVector, System, VectorField,
 };
 
-use super::{Bridge, Ending, Settings, Solved, Watch, ending, stepping};
+use super::{Bridge, Ending, Integrals, Reading, Settings, Solved, Watch, ending, stepping};
 use crate::integrator::{Form, Integrator};
-use crate::model::{Origin, point};
+use crate::model::{Origin, Point, point};
 use crate::refusal::Refusal;
 use crate::typed::prepare;
 
@@ -181,30 +181,41 @@ fn run<'f, 'c>(
     let laws = (0..plain.description().surfaces.len())
         .map(|surface| impacts.law(steered, surface))
         .collect();
-    let values = |t: f64, state: &State<'f>| point(&steered.at(t, state), t, state);
     let mut bridge = Driver(Bridge {
         model: plain,
-        point: &values,
+        reading: Given(steered),
+        integrals: Integrals::of(plain),
         watch,
         balance: None,
     });
+    let first = bridge.0.point(0.0, &state);
     let budget = settings.steps.unwrap_or(STEP_BUDGET);
     let effects = (projection, impacts, clock);
     let mut simulation =
         Simulation::new(steered, Chosen::new(stepper), effects).with_step_budget(budget);
     let run = simulation.run(0.0, state, settings.until, &mut bridge)?;
-    let ends = [values(0.0, &state), values(run.t, &run.state)];
+    let ends = [first, bridge.0.point(run.t, &run.state)];
     let step = simulation.fixed_step();
     Ok(ending(ends, Solved { run, step, laws }, settings))
 }
 
 /// Observes a system with inputs as if it were the system without.
-struct Driver<'a, 'f, P>(Bridge<'a, Plain<'f>, P>);
+struct Driver<'a, 'f, R>(Bridge<'a, Plain<'f>, R>);
 
-impl<'f, 'c, P> Observer<Driven<'f, 'c>> for Driver<'_, 'f, P>
-where
-    P: Fn(f64, &State<'f>) -> crate::model::Point,
-{
+/// The values of states, with the inputs that are given there.
+struct Given<'a, 'f, 'c>(&'a Driven<'f, 'c>);
+
+impl<'f> Reading<State<'f>> for Given<'_, 'f, '_> {
+    fn point(&self, t: f64, state: &State<'f>) -> Point {
+        point(&self.0.at(t, state), t, state)
+    }
+
+    fn outputs(&self, t: f64, state: &State<'f>, values: &mut [f64]) -> Result<(), Fault> {
+        Instance::outputs(&self.0.at(t, state), t, state, values)
+    }
+}
+
+impl<'f, 'c, R: Reading<State<'f>>> Observer<Driven<'f, 'c>> for Driver<'_, 'f, R> {
     fn step(&mut self, segment: &mut Segment<'_, State<'f>>) -> ControlFlow<()> {
         Observer::<Plain<'f>>::step(&mut self.0, segment)
     }

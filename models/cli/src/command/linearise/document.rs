@@ -33,7 +33,7 @@ fn write_found(
     found: &Linearisation,
 ) -> io::Result<()> {
     let components = || found.components.iter().map(String::as_str);
-    let outputs = model.description().outputs.iter().copied();
+    let outputs = found.output_names.iter().copied();
     document.field("t", number(found.t))?;
     document.field("state", named(components(), &found.state))?;
     document.field("rates", named(components(), &found.rates))?;

@@ -22,7 +22,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     writeln!(output, ", linearised at t = {}", found.t)?;
     let state: Vec<&str> = found.components.iter().map(String::as_str).collect();
     let inputs = model.inputs();
-    let outputs: Vec<&str> = description.outputs.iter().copied().collect();
+    let outputs = &found.output_names;
     for (title, names, values) in [
         ("state", &state[..], &found.state),
         ("inputs", inputs, &found.inputs),

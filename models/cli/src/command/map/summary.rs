@@ -66,7 +66,9 @@ pub fn caption(finished: &Finished<'_>) -> String {
         request, settings, ..
     } = finished;
     let mut parts = Vec::new();
-    if let Some(returns) = &request.returns {
+    if request.plane.is_some() {
+        parts.push(format!("ends of the runs until {}", settings.until));
+    } else if let Some(returns) = &request.returns {
         let description = finished.model.description();
         let surface = names::surfaces(description).nth(returns.surface);
         parts.push(format!(

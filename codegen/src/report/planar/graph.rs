@@ -1,0 +1,321 @@
+//! Modes as nodes, and the surfaces that lead from one to another as edges: `q -> place`, `v -> factor v`.
+
+use dalembert_expr::{ExprId, Interval, SymbolId};
+
+use super::{Decided, Reasoned};
+use crate::model::{Assumption, Law, Model, Reset, Topology};
+
+/// A mode at values of the parameters.
+pub(super) struct Node {
+    pub(super) model: Model,
+    /// The parameters with their values.
+    parameters: Vec<(SymbolId, Interval)>,
+}
+
+impl Node {
+    pub(super) fn of(model: Model, parameters: &[(&str, f64)]) -> Self {
+        let value = |name: &str| parameters.iter().find(|(known, _)| *known == name);
+        let known = model.parameters.iter().map(|parameter| {
+            let range = match value(&parameter.name.display) {
+                Some((_, value)) => Interval::point(*value),
+                None if parameter.is_input => Interval::point(0.0),
+                None => match parameter.assumption {
+                    Assumption::Positive | Assumption::NonNegative => {
+                        Interval::new(0.0, f64::INFINITY)
+                    }
+                    _ => Interval::WHOLE,
+                },
+            };
+            (parameter.symbol, range)
+        });
+        Self {
+            parameters: known.collect(),
+            model,
+        }
+    }
+
+    /// True if the mode is a first-order system.
+    pub(super) fn is_first_order(&self) -> bool {
+        self.model.is_first_order()
+    }
+
+    /// The range of an expression where symbols lie in these ranges; `None` where it may have no value.
+    pub(super) fn range(&self, expr: ExprId, at: &[(SymbolId, Interval)]) -> Option<Interval> {
+        let mut domain = self.parameters.clone();
+        domain.extend_from_slice(at);
+        let pool = &self.model.pool;
+        pool.enclose(&pool.reachable(&[expr]), &domain)[expr.index()]
+    }
+
+    /// Coordinate and velocity of a mode with one coordinate.
+    pub(super) fn symbols(&self) -> Option<[SymbolId; 2]> {
+        match &self.model.coordinates[..] {
+            [coordinate] if !self.is_first_order() => Some([coordinate.q, coordinate.qdot]),
+            _ => None,
+        }
+    }
+
+    /// The zero of an expression that is affine in a symbol, with the range of its slope.
+    fn zero_of(&mut self, expr: ExprId, symbol: SymbolId) -> Option<Interval> {
+        let pool = &mut self.model.pool;
+        let slope = pool.diff(expr, symbol);
+        let slope = pool.simplify(slope);
+        if pool.depends_on(slope, symbol) {
+            return None;
+        }
+        let zero = pool.zero();
+        let rest = pool.substitute(expr, &[(symbol, zero)]);
+        let quotient = pool.div(rest, slope);
+        let root = pool.neg(quotient);
+        let root = pool.simplify(root);
+        self.range(root, &[])
+    }
+}
+
+/// A surface that leads from a mode to another, or back into the same.
+pub(super) struct Edge {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    pub(super) name: String,
+    /// The place of the surface, of the entry behind it, and the factor of the velocity there; the reason where they are not
+    /// known.
+    pub(super) passage: Result<Passage, String>,
+    /// Derivative of the map along the surface.
+    slope: Slope,
+}
+
+/// A passage from one place to another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passage {
+    pub(super) exit: Interval,
+    pub(super) entry: Interval,
+    pub(super) factor: Interval,
+}
+
+/// Derivative of a map along its surface.
+enum Slope {
+    /// Its range.
+    Within(Interval),
+    /// It is not known.
+    Unknown(String),
+}
+
+/// All surfaces at which the motion goes on.
+pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
+    let mut edges = Vec::new();
+    for from in 0..nodes.len() {
+        let surfaces = nodes[from].model.surfaces.clone();
+        for surface in surfaces.iter().filter(|surface| surface.law.goes_on()) {
+            let to = surface.transition.as_ref().map_or(from, |it| it.enters);
+            let map = match (&surface.transition, &surface.reset) {
+                (Some(transition), _) => {
+                    (transition.map.as_ref()).map(|map| (map.q.clone(), map.qdot.clone()))
+                }
+                (None, Some(reset)) => Some(filled(&mut nodes[from], reset)),
+                (None, None) => None,
+            };
+            let node = &mut nodes[from];
+            let passage = match (&map, surface.conditions.is_empty()) {
+                (_, false) => Err(format!("`{}` has conditions", surface.name.display)),
+                (None, _) => Err(format!("`{}` is no reset", surface.name.display)),
+                (Some(map), true) => passage(node, surface.gap, map)
+                    .ok_or_else(|| format!("`{}` does not lead from one place to one place with a multiple of the velocity", surface.name.display)),
+            };
+            let slope = match (&map, surface.law) {
+                (Some(map), _) => slope(node, surface.gap, map),
+                (None, law) => of_law(node, law),
+            };
+            edges.push(Edge {
+                from,
+                to,
+                name: surface.name.display.clone(),
+                passage,
+                slope,
+            });
+        }
+    }
+    edges
+}
+
+/// The map of a reset, with what stays.
+fn filled(node: &mut Node, reset: &Reset) -> (Vec<ExprId>, Vec<ExprId>) {
+    let coordinates = node.model.coordinates.clone();
+    let pool = &mut node.model.pool;
+    let mut all = |values: &[Option<ExprId>], symbol: fn(&crate::model::Coordinate) -> SymbolId| {
+        let pairs = values.iter().zip(&coordinates);
+        pairs
+            .map(|(value, coordinate)| value.unwrap_or_else(|| pool.variable(symbol(coordinate))))
+            .collect()
+    };
+    let q = all(&reset.q, |coordinate| coordinate.q);
+    let qdot = all(&reset.qdot, |coordinate| coordinate.qdot);
+    (q, qdot)
+}
+
+/// The passage of a mode with one coordinate.
+fn passage(
+    node: &mut Node,
+    gap: ExprId,
+    (q, qdot): &(Vec<ExprId>, Vec<ExprId>),
+) -> Option<Passage> {
+    let [position, velocity] = node.symbols()?;
+    let (&[entry], &[after]) = (&q[..], &qdot[..]) else {
+        return None;
+    };
+    let exit = node.zero_of(gap, position)?;
+    let pool = &mut node.model.pool;
+    let factor = pool.diff(after, velocity);
+    let factor = pool.simplify(factor);
+    let zero = pool.zero();
+    let rest = pool.substitute(after, &[(velocity, zero)]);
+    let rest = pool.simplify(rest);
+    let is_known = !pool.depends_on(entry, velocity)
+        && !pool.depends_on(factor, velocity)
+        && pool.is_syntactic_zero(rest);
+    if !is_known {
+        return None;
+    }
+    let at = [(position, exit)];
+    Some(Passage {
+        exit,
+        entry: node.range(entry, &at)?,
+        factor: node.range(factor, &at)?,
+    })
+}
+
+/// The derivative of a map along its surface.
+fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -> Slope {
+    let unknown = |why: &str| Slope::Unknown(why.to_owned());
+    let coordinates: Vec<SymbolId> = node.model.coordinates.iter().map(|it| it.q).collect();
+    // A surface of one coordinate is a line; the other component of the state runs along it.
+    let (across, along, images) = match (node.symbols(), &coordinates[..]) {
+        (Some([position, velocity]), _) => (position, velocity, qdot),
+        (None, &[x, y]) if node.is_first_order() => {
+            let pool = &node.model.pool;
+            match (pool.depends_on(gap, x), pool.depends_on(gap, y)) {
+                (true, false) => (x, y, q),
+                (false, true) => (y, x, q),
+                _ => return unknown("the surface is no line of one coordinate"),
+            }
+        }
+        _ => return unknown("the states are no plane"),
+    };
+    let Some(place) = node.zero_of(gap, across) else {
+        return unknown("the surface is no line");
+    };
+    let mut widest = None;
+    for &image in images {
+        let pool = &mut node.model.pool;
+        let slope = pool.diff(image, along);
+        let slope = pool.simplify(slope);
+        let Some(range) = node.range(slope, &[(across, place), (along, Interval::WHOLE)]) else {
+            continue;
+        };
+        if range.excludes_zero() {
+            return Slope::Within(range);
+        }
+        widest = Some(range);
+    }
+    match widest {
+        Some(range) if images.len() == 1 => Slope::Within(range),
+        _ => unknown("no component of the image is shown to be monotone along the surface"),
+    }
+}
+
+/// The factor of the velocity by the law of an impulse: the gap rate of a mode with one coordinate.
+fn of_law(node: &Node, law: Law) -> Slope {
+    let within = |range: Option<Interval>| match range {
+        Some(range) => Slope::Within(range),
+        None => Slope::Unknown("the coefficient is not known".to_owned()),
+    };
+    match law {
+        _ if node.symbols().is_none() => Slope::Unknown("the states are no plane".to_owned()),
+        Law::Elastic => within(Some(Interval::point(1.0))),
+        Law::Restitution(e) | Law::Newton(e) => within(node.range(e, &[])),
+        Law::ImpactPlastic | Law::NonholonomicPlastic | Law::TotallyPlastic => {
+            within(Some(Interval::point(0.0)))
+        }
+        Law::Reset | Law::Stop | Law::Transition => {
+            Slope::Unknown("the mode is entered by a refraction or a focusing".to_owned())
+        }
+    }
+}
+
+/// The verdict on Q.1.
+pub(super) fn plane(nodes: &[Node]) -> Reasoned {
+    for node in nodes {
+        let model = &node.model;
+        let count = model.coordinates.len();
+        let dimension = match node.is_first_order() {
+            true => count,
+            false => 2 * count - model.constraints.len().min(2 * count),
+        };
+        if dimension != 2 {
+            let text = format!("the states of `{}` have {dimension} dimensions", model.name);
+            return (Decided::Fails, text);
+        }
+        if count != 1 && !node.is_first_order() {
+            let text = "constraints leave two dimensions, whose topology is not decided";
+            return (Decided::Open, text.to_owned());
+        }
+        let mut moving = model.surfaces.iter().map(|surface| surface.gap);
+        let depends = |expr: &ExprId| model.pool.depends_on(*expr, model.time);
+        let fields = model.field.iter().flatten();
+        let forces = model.forces.iter().flat_map(|force| &force.form);
+        if moving.any(|gap| depends(&gap))
+            || depends(&model.lagrangian.whole)
+            || fields.chain(forces).any(depends)
+        {
+            let text = "the declaration depends on time, which is a third dimension";
+            return (Decided::Fails, text.to_owned());
+        }
+        let turning = model.coordinates.iter();
+        let turning = turning.filter(|coordinate| coordinate.topology == Topology::Angle);
+        if let Some(angle) = turning.into_iter().next() {
+            let text = format!(
+                "`{}` is an angle: the states are a cylinder; declare it without `: angle` if it never turns over",
+                angle.name.display
+            );
+            return (Decided::Fails, text);
+        }
+    }
+    let text = match nodes.len() {
+        1 => "one mode of two dimensions".to_owned(),
+        count => format!("{count} modes of two dimensions"),
+    };
+    (Decided::Holds, text)
+}
+
+/// The verdict on Q.2.
+pub(super) fn injective(edges: &[Edge]) -> Reasoned {
+    for edge in edges {
+        match &edge.slope {
+            Slope::Within(range) if range.excludes_zero() => {}
+            Slope::Within(range) if range.lo == 0.0 && range.hi == 0.0 => {
+                let text = format!("`{}` maps all velocities to one", edge.name);
+                return (Decided::Fails, text);
+            }
+            Slope::Within(_) => {
+                let text = format!("the derivative of the map at `{}` may vanish", edge.name);
+                return (Decided::Open, text);
+            }
+            Slope::Unknown(reason) => return (Decided::Open, format!("`{}`: {reason}", edge.name)),
+        }
+    }
+    let text = "along its surface the derivative of every map has one sign";
+    (Decided::Holds, text.to_owned())
+}
+
+/// The verdict on Q.4.
+pub(super) fn ways_out(nodes: &[Node], edges: &[Edge]) -> Reasoned {
+    let out = |node: usize| edges.iter().filter(|edge| edge.from == node).count();
+    match (0..nodes.len()).map(out).find(|&count| count != 1) {
+        None => (Decided::Holds, "every mode has one way out".to_owned()),
+        Some(0) => (Decided::Open, "a mode has no way out".to_owned()),
+        Some(count) => {
+            let text =
+                format!("a mode has {count} ways out, and no partition of its states is searched");
+            (Decided::Open, text)
+        }
+    }
+}
