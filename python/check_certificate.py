@@ -410,6 +410,8 @@ class Model:
         self.constraints = [self.constraint(item) for item in content["constraints"]]
         self.is_nonlinear = any(item["nonlinear"] is not None for item in content["constraints"])
         self.surfaces = content["surfaces"]
+        #: Surfaces behind which the motion goes on, by index.
+        self.acting = [index for index, surface in enumerate(self.surfaces) if surface["law"] != "stop"]
         self.density = content["density"]
         self.parts = {}
         self.precision = SIMPLE
@@ -1125,7 +1127,7 @@ def check_kept(model, claim, source):
     closed = claim.get("density")
     density = density_of(model, model.density) if closed is None else closed_density(model, closed)
     holds, text = balanced(model, source, density)
-    for surface in model.surfaces:
+    for surface in (model.surfaces[index] for index in model.acting):
         densities = densities_of(model, surface, density)
         found = states(model, source, lambda state: Crossing(model, surface, state).factor(densities) - 1)
         holds = holds and all(is_small(item, 1, 20) for item in found)
@@ -1151,7 +1153,7 @@ def check_symplectic(model, claim, source):
         by_velocity = [model.derivative(total, state, model.along(state, 0, None, model.axis(i))) for i in range(model.n)]
         return found + [item for row in by_velocity for item in row] + [Decimal(0)]
     found = [item for state in states(model, source, defects) for item in state]
-    for surface in model.surfaces:
+    for surface in (model.surfaces[index] for index in model.acting):
         crossings = states(model, source, lambda state: Crossing(model, surface, state).form_defects(), 2)
         found += [item for defects in crossings for item in defects]
     return all(is_small(item, 1, 20) for item in found), f"largest defect {float(max(map(abs, found))):.1e}"
@@ -1299,10 +1301,10 @@ def kept_form(model, terms_of, source, is_along_leaves=False, assumed=()):
                 found += [dot(form, vector[1:1 + entered.n]) for form in forms for vector in carried]
             return found
         return of
-    if model.is_nonlinear and model.surfaces:
+    if model.is_nonlinear and model.acting:
         raise NotChecked("resets beside constraints that are not linear are not checked")
     found = states(model, source, rate)
-    for surface in model.surfaces:
+    for surface in (model.surfaces[index] for index in model.acting):
         found += [item for row in states(model, source, change(surface), 2) for item in row]
     return all(is_small(item, 1, 18) for item in found), f"largest change {float(max(map(abs, found))):.1e}"
 
@@ -1596,7 +1598,7 @@ def check_integrable(model, claim, source):
     if len(claim["values"]) != model.n - len(model.constraints):
         return False, "not as many functions as degrees of freedom"
     for value in claim["values"]:
-        for under in (None, *range(len(model.surfaces))):
+        for under in (None, *model.acting):
             holds, text = check_conserved(model, {"value": value, "under": under, "holds": True}, source)
             if not holds:
                 return False, f"{value} {text}"

@@ -56,6 +56,16 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    /// A ball below a ceiling that ends its motion.
+    pub Capped {
+        coordinates { x; }
+        lagrangian = dot(x)^2/2 - x;
+        impacts { floor: x >= 0; ceiling: x <= 4 => stop; }
+        claims { volume: kept; symplectic; invariant: d(x)^d(dot(x)); integrable: energy; }
+    }
+}
+
+dalembert::model! {
     /// Forces that change volumes at a rate that is not linear in the velocities.
     pub Cubic {
         coordinates { x; y; th: angle; }
@@ -341,7 +351,7 @@ fn certificate(model: &str, folder: &Path) -> PathBuf {
     }
     let mut models = dalembert_command::all();
     models.extend(models![
-        Spiral, Belt, Winding, Charge, Cubic, Slowed, Bent, Laws, Doors
+        Spiral, Belt, Winding, Charge, Capped, Cubic, Slowed, Bent, Laws, Doors
     ]);
     let finished = command::run(models, &["check", &model, "--certificate", place], "");
     assert_eq!(finished.exit, Exit::Reached, "{}", finished.output);

@@ -31,7 +31,12 @@ OUTPUTS = {
         ["check", name, "--format", "json"]
         for name in ("rolling_disk", "tent_map", "chaplygin_sleigh", "rolling_ball_euler", "spring_mass_walker")
     ],
+    "bendixson": [
+        ["check", name, "--bendixson", "--format", "json"] for name in ("rimless_wheel_five", "rolling_disk", "bouncing_ball")
+    ],
     "simulate": [
+        ["simulate", "rolling_disk", "--law", "leading_edge=stop"],
+        ["simulate", "bouncing_ball", "--output", "S = integral(lagrangian)"],
         ["simulate", "rolling_disk", "--verify"],
         ["simulate", "rolling_disk", "--until", "100", "--verify"],
         ["simulate", "bouncing_ball", "--law", "newton:0.5", "--until", "10"],

@@ -55,3 +55,46 @@ fn claims_are_listed_with_their_grounds() {
     assert_eq!(claims[2]["verdict"], "assumed");
     assert!(claims[2].get("certificate").is_none());
 }
+
+/// A ball that is lifted after every fall, with a share of its speed: E -> K (E + 1).
+const LIFTED: &str = "
+    Lifted {
+        coordinates { x; }
+        parameters { r = 1/2; }
+        lagrangian = dot(x)^2/2 - x;
+        impacts { floor: x >= 0 => reset { x = 1; dot(x) = r*dot(x); }; }
+    }";
+
+#[test]
+fn the_hypotheses_of_poincare_and_bendixson_depend_on_parameters() {
+    let on = |flags: &str| {
+        let line = format!("check - --bendixson {flags}");
+        run_on(LIFTED, &line.split_whitespace().collect::<Vec<_>>())
+    };
+    let done = on("");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.output);
+    for part in [
+        "Q.6  holds",
+        "R = 0.00000000, P = 1.00000000, K = 0.25000000",
+        "multiplier   0.25000000",
+        "energy       0.33333333, kinetic, on entry",
+    ] {
+        assert!(done.output.contains(part), "{part} in {}", done.output);
+    }
+    let document = on("--set r=0.8 --format json").json();
+    assert_eq!(document["concludes"], true);
+    let kept = numbers(&document["cascade"]["multiplier"]);
+    assert!(kept[0] <= 0.64 && 0.64 <= kept[1] && kept[1] - kept[0] < 1e-14);
+    let done = on("--set r=1");
+    assert_eq!(done.exit, Exit::Other);
+    assert!(done.output.contains("Q.3  open"), "{}", done.output);
+    for (flags, message) in [
+        ("--set q=1", "unknown parameter `q`"),
+        ("--certificate file.json", "cannot be used with"),
+    ] {
+        let done = on(flags);
+        assert_eq!(done.exit, Exit::Refused, "{flags}");
+        assert!(done.errors.contains(message), "{}", done.errors);
+    }
+    assert_eq!(run("check bouncing_ball --set m=1").exit, Exit::Refused);
+}
