@@ -377,6 +377,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
         "belt",
         "winding",
         "charge",
+        "capped",
         "cubic",
         "slowed",
         "bent",
