@@ -53,7 +53,7 @@ pub fn integral<S: Copy>(
         let fine = composite(&mut density, panels)?;
         let change = (fine.0 - coarse.0).abs();
         coarse = fine;
-        if change <= AGREEMENT * fine.1 {
+        if change.is_nan() || change <= AGREEMENT * fine.1 {
             break;
         }
     }

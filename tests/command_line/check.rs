@@ -75,8 +75,8 @@ fn the_hypotheses_of_poincare_and_bendixson_depend_on_parameters() {
     assert_eq!(done.exit, Exit::Reached, "{}", done.output);
     for part in [
         "Q.6  holds",
-        "R = 0.00000000, P = 1.00000000, K = 0.25000000",
-        "multiplier   0.25000000",
+        "P = 1, K = 0.25",
+        "multiplier   0.25",
         "energy       0.33333333, kinetic, on entry",
     ] {
         assert!(done.output.contains(part), "{part} in {}", done.output);

@@ -20,7 +20,7 @@ const LAYERS: &str = "
     Layers {
         coordinates { x; }
         modes {
-            left { lagrangian = dot(x)^2/2; initial { x = -1; dot(x) = 1; until = 3; } outputs { way: integral(dot(x)); } }
+            left { lagrangian = dot(x)^2/2; initial { x = -1; dot(x) = 1; until = 3; } outputs { way: integral(dot(x)); pulled: integral(0); } }
             right { lagrangian = dot(x)^2/2 + x; outputs { way: integral(dot(x)); pulled: integral(1); } }
         }
         transitions { go: left -> right when x >= 0; }
@@ -108,7 +108,7 @@ fn impacts_add_nothing_and_show_the_value_of_their_time() {
 }
 
 #[test]
-fn an_integral_goes_on_through_modes_and_rests_where_a_mode_lacks_it() {
+fn an_integral_goes_on_through_modes() {
     let table = table(LAYERS, "simulate - --tol 1e-13");
     let x = last(&table, "x");
     assert!((last(&table, "way") - (x + 1.0)).abs() < 1e-11);
@@ -173,6 +173,7 @@ fn flags_add_outputs() {
     for (output, message) in [
         ("W", "NAME = EXPR"),
         ("S = x", "`S`"),
+        ("a,b = x", "a word"),
         (
             "W = 1 + integral(x)",
             "an integral along a run is a whole output",
@@ -213,6 +214,7 @@ fn a_map_has_columns_and_a_picture_of_ends() {
             .count(),
         9
     );
+    assert_eq!(run("end.x_dot,in.x_dot").exit, Exit::Reached);
     for (axes, message) in [("x", "two quantities"), ("x,y", "quantity")] {
         let done = run(axes);
         assert_eq!(done.exit, Exit::Refused, "{axes}");
@@ -222,4 +224,44 @@ fn a_map_has_columns_and_a_picture_of_ends() {
             done.errors
         );
     }
+}
+
+#[test]
+fn a_map_refuses_integrals_of_a_start_and_returns_to_a_stop() {
+    let run = |flags: &[&str]| {
+        let line = ["map", "-", "--vary", "x_dot=1..2:3"];
+        on(BALL, &[&line[..], flags].concat())
+    };
+    for (flags, message) in [
+        (
+            &["--contour", "integral(x)"][..],
+            "an integral is known along a run alone",
+        ),
+        (
+            &["--start", "x = integral(x)"],
+            "an integral is known along a run alone",
+        ),
+        (
+            &["--returns", "3", "--law", "stop"],
+            "the motion ends at the surface",
+        ),
+        (&["--output", "W = x", "--output", "W = 1"], "given once"),
+    ] {
+        let done = run(flags);
+        assert_eq!(done.exit, Exit::Refused, "{flags:?}: {}", done.output);
+        assert!(done.errors.contains(message), "{}", done.errors);
+    }
+}
+
+#[test]
+fn an_integral_that_does_not_exist_is_empty_from_there_on() {
+    let words =
+        "simulate - --initial x=1,x_dot=0 --samples 5 --until 2 --csv - --output".split(' ');
+    let words: Vec<&str> = words.chain(["W = integral(sqrt(dot(x) + 1/2))"]).collect();
+    let table = on(BALL, &words).output;
+    let known: Vec<bool> = column(&table, "W")
+        .iter()
+        .map(|text| text.parse::<f64>().is_ok_and(f64::is_finite))
+        .collect();
+    assert!(known[0] && !known[known.len() - 1], "{table}");
 }

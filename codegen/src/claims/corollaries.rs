@@ -117,7 +117,7 @@ fn keeps_energy(model: &mut Model, around: &Surroundings<'_>) -> bool {
         changes.is_ok_and(|changes| changes.together(true).shows_that_it_vanishes())
     };
     matches!(along, Verdict::Proved(_))
-        && (model.acting_surfaces().into_iter()).all(|surface| keeps(model, surface))
+        && (0..model.surfaces.len()).all(|surface| keeps(model, surface))
 }
 
 /// The surfaces that bound the coordinates that are no angles; `None` if one of these is not known to be bounded.

@@ -212,7 +212,7 @@ impl fmt::Display for Witness {
 }
 
 /// Twelve digits, for comparison by hand.
-pub(super) fn digits(value: f64) -> String {
+pub(crate) fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }

@@ -107,6 +107,7 @@ pub(crate) use equivariance::{Fields, check_equivariance};
 pub use exactness::{Exactness, Local, decide, decide_local};
 pub use examine::{Examined, examine, examine_mode, examine_scene, examine_volume};
 pub use existence::Decision;
+pub(crate) use finding::digits;
 pub use finding::{Certificate, ClosedForm, Finding, Verdict, Witness};
 pub use fit::Certified;
 pub use geometry::{Geometry, geometry_at};

@@ -11,7 +11,7 @@ use dalembert_expr::Pool;
 use super::check::{check_mode, peer};
 use super::scene::{Extras, Parts, Scene};
 use super::transition::Peer;
-use super::{Beside, Coordinate, Model, Name, Output, Topology};
+use super::{Beside, Coordinate, Model, Name, Topology};
 use crate::diagnostics::Diagnostics;
 use crate::spec::{self, STEPS};
 
@@ -406,27 +406,44 @@ fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Dia
     diagnostics.finish(())
 }
 
-/// Refuses outputs that are integrals in some modes and values in others.
+/// Refuses integrals that are values in other modes, and those that a mode lacks.
 fn check_integrals(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
     let mut diagnostics = Diagnostics::new();
-    let kind = |output: &Output| match output.is_integral {
-        true => "an integral",
-        false => "a value",
-    };
-    for (mode, written) in graph.modes.iter().zip(&declared.modes) {
-        for (output, place) in mode.model.outputs.iter().zip(&mode.places.outputs) {
-            let entry = &graph.outputs[*place];
-            let other = &graph.modes[entry.mode];
-            let [first, second] = [kind(&other.model.outputs[entry.place]), kind(output)];
-            if first != second {
-                let text = format!(
-                    "`{}` is {second} here and {first} in `{}`",
-                    output.name.display, other.scene.name
-                );
-                let at = written.spec.location(output.item);
-                diagnostics.error(at, text).help("choose another name");
-            }
+    for (place, entry) in graph.outputs.iter().enumerate() {
+        let of = |mode: &Mode| -> Option<bool> {
+            let index = mode
+                .places
+                .outputs
+                .iter()
+                .position(|known| *known == place)?;
+            Some(mode.model.outputs[index].is_integral)
+        };
+        if !graph.modes.iter().any(|mode| of(mode) == Some(true)) {
+            continue;
         }
+        let Some(other) = graph.modes.iter().find(|mode| of(mode) != Some(true)) else {
+            continue;
+        };
+        let name = &entry.name.display;
+        let (text, help) = match of(other) {
+            Some(_) => (
+                format!(
+                    "`{name}` is an integral in some modes and a value in `{}`",
+                    other.scene.name
+                ),
+                "choose another name".to_owned(),
+            ),
+            None => (
+                format!(
+                    "`{name}` is an integral, and the mode `{}` lacks it",
+                    other.scene.name
+                ),
+                format!("write `outputs {{ {name}: integral(0); }}` there"),
+            ),
+        };
+        let item = graph.modes[entry.mode].model.outputs[entry.place].item;
+        let at = declared.modes[entry.mode].spec.location(item);
+        diagnostics.error(at, text).help(help);
     }
     diagnostics.finish(())
 }

@@ -242,8 +242,8 @@ pub struct CheckArgs {
     /// Write the claims with the grounds of their proofs as JSON, for the checker `python/check_certificate.py`.
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
-    /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems instead, by intervals. Modes of one degree
-    /// of freedom that follow each other have the inequalities of their energies. Exit status 0 if all hypotheses are shown.
+    /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems instead, by intervals. For modes of one degree
+    /// of freedom in a cycle the inequalities of their energies are evaluated. Exit status 0 if all hypotheses are shown.
     #[arg(long, conflicts_with = "certificate")]
     pub bendixson: bool,
     /// Set a parameter, for --bendixson. May be repeated.
@@ -482,7 +482,12 @@ pub struct SimulateArgs {
     pub between: Between,
     /// Add an output to the model for this run, such as `S = integral(lagrangian)`: an expression as of a declared output, or an
     /// integral along the run. May be repeated.
-    #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "NAME = EXPR",
+        allow_hyphen_values = true,
+        conflicts_with = "certify"
+    )]
     pub output: Vec<String>,
     /// Certified motion.
     #[command(flatten)]

@@ -220,6 +220,28 @@ impl Line {
     }
 }
 
+/// The names and the expressions of `--output`.
+///
+/// # Errors
+/// A flag that is no `NAME = EXPR`, a name that is not a word or is given twice.
+pub fn named_outputs(flags: &[String]) -> Result<Vec<(String, Expression)>, CliError> {
+    let mut named: Vec<(String, Expression)> = Vec::new();
+    for flag in flags {
+        let (name, expression) = Expression::parse("--output", flag)?.assigned()?;
+        let is_word = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
+            && name
+                .chars()
+                .all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !is_word || named.iter().any(|(known, _)| *known == name) {
+            let expected =
+                "NAME = EXPR, where NAME is a word of letters, digits and `_` that is given once";
+            return Err(CliError::value("--output", flag, expected));
+        }
+        named.push((name, expression));
+    }
+    Ok(named)
+}
+
 /// The models, the one of this name with the outputs of `--output`.
 ///
 /// # Errors
@@ -232,10 +254,7 @@ pub fn with_outputs<'m>(
     if flags.is_empty() {
         return Ok(Cow::Borrowed(models));
     }
-    let named = flags
-        .iter()
-        .map(|flag| Expression::parse("--output", flag)?.assigned());
-    let named: Vec<(String, Expression)> = named.collect::<Result<_, _>>()?;
+    let named = named_outputs(flags)?;
     let named: Vec<(String, &Expression)> = named
         .iter()
         .map(|(name, expression)| (name.clone(), expression))

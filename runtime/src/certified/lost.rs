@@ -56,7 +56,7 @@ pub enum Reason {
         /// The surface.
         surface: usize,
     },
-    /// The law of the surface is `stop`: the motion ends there.
+    /// The law of the surface is `stop`, and the motion may end there.
     Stops {
         /// The surface.
         surface: usize,
@@ -112,7 +112,7 @@ impl fmt::Display for Reason {
                 f,
                 "the law of surface {surface} may not give one finite state"
             ),
-            Self::Stops { surface } => write!(f, "the motion ends at surface {surface}"),
+            Self::Stops { surface } => write!(f, "the motion may end at surface {surface}"),
             Self::OffConstraint { surface } => {
                 write!(
                     f,

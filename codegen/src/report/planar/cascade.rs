@@ -5,10 +5,11 @@
 //! over it, and its impact keeps the share `K` of what arrives: `eta(E) = K (E + P)`. From the largest `R` on, every `eta` must give
 //! more than the next mode needs.
 
-use dalembert_expr::Interval;
+use dalembert_expr::{Interval, SymbolId};
 
 use super::graph::{Edge, Node, Passage};
 use super::{Decided, Reasoned, shown};
+use crate::model::Topology;
 
 /// Parts into which the way of a mode is divided at most, to bound its potential.
 const PARTS: usize = 4096;
@@ -136,6 +137,16 @@ fn step(
             return Err(format!("the mode before `{}` {text}", edge.name));
         }
     };
+    let toward = match goes_up {
+        true => passage.slope.hi < 0.0,
+        false => passage.slope.lo > 0.0,
+    };
+    if !toward {
+        return Err(format!(
+            "the gap of `{}` does not fall on the way to it",
+            edge.name
+        ));
+    }
     let unknown = || format!("the energies before `{}` may have no value", edge.name);
     let potential = |place: Interval| {
         let range = from.range(model.lagrangian.potential, &[(position, place)]);
@@ -148,6 +159,7 @@ fn step(
     };
     let hull = Interval::new(entry.lo.min(passage.exit.lo), entry.hi.max(passage.exit.hi));
     mass(from, hull).ok_or_else(unknown)?;
+    stays(from, position, hull)?;
     let ends = places.map(potential);
     let [Some(first), Some(last)] = ends else {
         return Err(unknown());
@@ -171,6 +183,40 @@ fn step(
         next: Interval::WHOLE,
     };
     Ok((step, goes_up))
+}
+
+/// Checks that no surface ends the motion on the way, and that its coordinate stays in its interval.
+fn stays(node: &Node, position: SymbolId, hull: Interval) -> Result<(), String> {
+    let model = &node.model;
+    for surface in model
+        .surfaces
+        .iter()
+        .filter(|surface| !surface.law.goes_on())
+    {
+        let gap = node.range(surface.gap, &[(position, hull)]);
+        if !gap.is_some_and(|gap| gap.lo > 0.0) {
+            let name = &surface.name.display;
+            return Err(format!("`{name}` may end the motion on the way"));
+        }
+    }
+    for coordinate in &model.coordinates {
+        if let Topology::Interval { low, high } = coordinate.topology {
+            let ends = [low, high].map(|end| node.range(end, &[]));
+            let [Some(low), Some(high)] = ends else {
+                return Err(format!(
+                    "the interval of `{}` is not known",
+                    coordinate.name.display
+                ));
+            };
+            if low.hi >= hull.lo || hull.hi >= high.lo {
+                return Err(format!(
+                    "the way leaves the interval of `{}`",
+                    coordinate.name.display
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The largest value of a potential on an interval.

@@ -3,7 +3,7 @@
 use dalembert_expr::{ExprId, Interval, SymbolId};
 
 use super::{Decided, Reasoned};
-use crate::model::{Assumption, Law, Model, Reset, Topology};
+use crate::model::{Assumption, Beside, Law, Model, Reset, Surface, Topology, Transition};
 
 /// A mode at values of the parameters.
 pub(super) struct Node {
@@ -18,7 +18,6 @@ impl Node {
         let known = model.parameters.iter().map(|parameter| {
             let range = match value(&parameter.name.display) {
                 Some((_, value)) => Interval::point(*value),
-                None if parameter.is_input => Interval::point(0.0),
                 None => match parameter.assumption {
                     Assumption::Positive | Assumption::NonNegative => {
                         Interval::new(0.0, f64::INFINITY)
@@ -44,6 +43,10 @@ impl Node {
         let mut domain = self.parameters.clone();
         domain.extend_from_slice(at);
         let pool = &self.model.pool;
+        let is_given = |symbol: &SymbolId| domain.iter().any(|(known, _)| known == symbol);
+        if !pool.symbols(expr).iter().all(is_given) {
+            return None;
+        }
         pool.enclose(&pool.reachable(&[expr]), &domain)[expr.index()]
     }
 
@@ -55,8 +58,8 @@ impl Node {
         }
     }
 
-    /// The zero of an expression that is affine in a symbol, with the range of its slope.
-    fn zero_of(&mut self, expr: ExprId, symbol: SymbolId) -> Option<Interval> {
+    /// The zero of an expression that is affine in a symbol, and its slope.
+    fn zero_of(&mut self, expr: ExprId, symbol: SymbolId) -> Option<[Interval; 2]> {
         let pool = &mut self.model.pool;
         let slope = pool.diff(expr, symbol);
         let slope = pool.simplify(slope);
@@ -68,7 +71,30 @@ impl Node {
         let quotient = pool.div(rest, slope);
         let root = pool.neg(quotient);
         let root = pool.simplify(root);
-        self.range(root, &[])
+        Some([self.range(root, &[])?, self.range(slope, &[])?])
+    }
+
+    /// All expressions of the declaration that decide about the motion.
+    fn expressions(&self) -> Vec<ExprId> {
+        let model = &self.model;
+        let mut found = vec![model.lagrangian.whole];
+        found.extend(model.field.iter().flatten());
+        found.extend(model.forces.iter().flat_map(|force| &force.form));
+        found.extend(model.constraints.iter().map(|constraint| constraint.affine));
+        found.extend(
+            model
+                .constraints
+                .iter()
+                .flat_map(|constraint| &constraint.form),
+        );
+        for surface in &model.surfaces {
+            found.push(surface.gap);
+            found.extend(surface.conditions.iter().map(|condition| condition.margin));
+            found.extend(surface.law.coefficient());
+            found.extend(surface.reset.iter().flat_map(Reset::expressions));
+            found.extend(surface.transition.iter().flat_map(Transition::expressions));
+        }
+        found
     }
 }
 
@@ -90,6 +116,8 @@ pub(super) struct Passage {
     pub(super) exit: Interval,
     pub(super) entry: Interval,
     pub(super) factor: Interval,
+    /// Slope of the gap at the surface.
+    pub(super) slope: Interval,
 }
 
 /// Derivative of a map along its surface.
@@ -114,8 +142,9 @@ pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
                 (None, Some(reset)) => Some(filled(&mut nodes[from], reset)),
                 (None, None) => None,
             };
+            let is_alone = surface.conditions.is_empty() && surface.beside == Beside::Independent;
             let node = &mut nodes[from];
-            let passage = match (&map, surface.conditions.is_empty()) {
+            let passage = match (&map, is_alone) {
                 (_, false) => Err(format!("`{}` has conditions", surface.name.display)),
                 (None, _) => Err(format!("`{}` is no reset", surface.name.display)),
                 (Some(map), true) => passage(node, surface.gap, map)
@@ -123,7 +152,7 @@ pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
             };
             let slope = match (&map, surface.law) {
                 (Some(map), _) => slope(node, surface.gap, map),
-                (None, law) => of_law(node, law),
+                (None, law) => of_law(node, law, &surface),
             };
             edges.push(Edge {
                 from,
@@ -162,7 +191,7 @@ fn passage(
     let (&[entry], &[after]) = (&q[..], &qdot[..]) else {
         return None;
     };
-    let exit = node.zero_of(gap, position)?;
+    let [exit, slope] = node.zero_of(gap, position)?;
     let pool = &mut node.model.pool;
     let factor = pool.diff(after, velocity);
     let factor = pool.simplify(factor);
@@ -180,6 +209,7 @@ fn passage(
         exit,
         entry: node.range(entry, &at)?,
         factor: node.range(factor, &at)?,
+        slope,
     })
 }
 
@@ -189,55 +219,59 @@ fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -
     let coordinates: Vec<SymbolId> = node.model.coordinates.iter().map(|it| it.q).collect();
     // A surface of one coordinate is a line; the other component of the state runs along it.
     let (across, along, images) = match (node.symbols(), &coordinates[..]) {
-        (Some([position, velocity]), _) => (position, velocity, qdot),
+        (Some([position, velocity]), _) => (position, velocity, [&q[..], &qdot[..]].concat()),
         (None, &[x, y]) if node.is_first_order() => {
             let pool = &node.model.pool;
             match (pool.depends_on(gap, x), pool.depends_on(gap, y)) {
-                (true, false) => (x, y, q),
-                (false, true) => (y, x, q),
+                (true, false) => (x, y, q.clone()),
+                (false, true) => (y, x, q.clone()),
                 _ => return unknown("the surface is no line of one coordinate"),
             }
         }
-        _ => return unknown("the states are no plane"),
+        _ => return unknown("the states are not part of a plane"),
     };
-    let Some(place) = node.zero_of(gap, across) else {
+    let Some([place, _]) = node.zero_of(gap, across) else {
         return unknown("the surface is no line");
     };
-    let mut widest = None;
-    for &image in images {
+    let mut is_constant = true;
+    for image in images {
         let pool = &mut node.model.pool;
         let slope = pool.diff(image, along);
         let slope = pool.simplify(slope);
-        let Some(range) = node.range(slope, &[(across, place), (along, Interval::WHOLE)]) else {
-            continue;
-        };
-        if range.excludes_zero() {
+        is_constant &= node.model.pool.is_syntactic_zero(slope);
+        let at = [(across, place), (along, Interval::WHOLE)];
+        let range = node.range(slope, &at);
+        if let Some(range) = range.filter(|range| range.excludes_zero()) {
             return Slope::Within(range);
         }
-        widest = Some(range);
     }
-    match widest {
-        Some(range) if images.len() == 1 => Slope::Within(range),
-        _ => unknown("no component of the image is shown to be monotone along the surface"),
+    match is_constant {
+        true => Slope::Within(Interval::ZERO),
+        false => unknown("no component of the image is shown to be monotone along the surface"),
     }
 }
 
 /// The factor of the velocity by the law of an impulse: the gap rate of a mode with one coordinate.
-fn of_law(node: &Node, law: Law) -> Slope {
+fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
     let within = |range: Option<Interval>| match range {
         Some(range) => Slope::Within(range),
         None => Slope::Unknown("the coefficient is not known".to_owned()),
     };
     match law {
-        _ if node.symbols().is_none() => Slope::Unknown("the states are no plane".to_owned()),
-        Law::Elastic => within(Some(Interval::point(1.0))),
+        // Without a map the position stays.
+        _ if node.is_first_order() => within(Some(Interval::point(1.0))),
+        _ if node.symbols().is_none() => {
+            Slope::Unknown("the states are not part of a plane".to_owned())
+        }
+        _ if !surface.instantaneous.is_empty() => {
+            Slope::Unknown("it has instantaneous constraints".to_owned())
+        }
+        // Without constraints the nonholonomic plastic law is the elastic one.
+        Law::Elastic | Law::NonholonomicPlastic => within(Some(Interval::point(1.0))),
         Law::Restitution(e) | Law::Newton(e) => within(node.range(e, &[])),
-        Law::ImpactPlastic | Law::NonholonomicPlastic | Law::TotallyPlastic => {
-            within(Some(Interval::point(0.0)))
-        }
-        Law::Reset | Law::Stop | Law::Transition => {
-            Slope::Unknown("the mode is entered by a refraction or a focusing".to_owned())
-        }
+        Law::ImpactPlastic | Law::TotallyPlastic => within(Some(Interval::ZERO)),
+        Law::Transition => Slope::Unknown("it is a refraction".to_owned()),
+        Law::Reset | Law::Stop => Slope::Unknown("no map is known".to_owned()),
     }
 }
 
@@ -250,6 +284,14 @@ pub(super) fn plane(nodes: &[Node]) -> Reasoned {
             true => count,
             false => 2 * count - model.constraints.len().min(2 * count),
         };
+        if model
+            .constraints
+            .iter()
+            .any(|constraint| constraint.level.is_some())
+        {
+            let text = "integrable constraints leave a surface, whose topology is not decided";
+            return (Decided::Open, text.to_owned());
+        }
         if dimension != 2 {
             let text = format!("the states of `{}` have {dimension} dimensions", model.name);
             return (Decided::Fails, text);
@@ -258,16 +300,20 @@ pub(super) fn plane(nodes: &[Node]) -> Reasoned {
             let text = "constraints leave two dimensions, whose topology is not decided";
             return (Decided::Open, text.to_owned());
         }
-        let mut moving = model.surfaces.iter().map(|surface| surface.gap);
-        let depends = |expr: &ExprId| model.pool.depends_on(*expr, model.time);
-        let fields = model.field.iter().flatten();
-        let forces = model.forces.iter().flat_map(|force| &force.form);
-        if moving.any(|gap| depends(&gap))
-            || depends(&model.lagrangian.whole)
-            || fields.chain(forces).any(depends)
-        {
+        let declared = node.expressions();
+        let names = |symbol: SymbolId| {
+            declared
+                .iter()
+                .any(|expr| model.pool.depends_on(*expr, symbol))
+        };
+        if names(model.time) {
             let text = "the declaration depends on time, which is a third dimension";
             return (Decided::Fails, text.to_owned());
+        }
+        let mut inputs = model.inputs().map(|(_, input)| input);
+        if let Some(input) = inputs.find(|input| names(input.symbol)) {
+            let text = format!("the input `{}` is free", input.name.display);
+            return (Decided::Open, text);
         }
         let turning = model.coordinates.iter();
         let turning = turning.filter(|coordinate| coordinate.topology == Topology::Angle);

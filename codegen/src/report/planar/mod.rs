@@ -17,6 +17,7 @@ mod tests;
 pub use dalembert_expr::Interval;
 
 use super::{ReportError, declaration};
+use crate::claims::digits;
 use crate::model::{self, Model};
 use crate::spec::Declaration;
 pub use cascade::{Cascade, Step};
@@ -65,7 +66,7 @@ impl Planar {
 
 /// The statements, in the order of the thesis.
 const STATEMENTS: [(&str, &str); 6] = [
-    ("Q.1", "the states of every mode are a part of the plane"),
+    ("Q.1", "the states of every mode are part of a plane"),
     ("Q.2", "every map at a surface is injective"),
     (
         "Q.3",
@@ -100,7 +101,7 @@ pub fn planar(source: &str, parameters: &[(&str, f64)]) -> Result<Planar, Report
     let plane = graph::plane(&nodes);
     let cascade = match &plane {
         (Decided::Holds, _) => cascade::cascade(&nodes, &edges),
-        _ => Err("the states are no part of the plane".to_owned()),
+        _ => Err("the states are not part of a plane".to_owned()),
     };
     let found = [
         plane,
@@ -127,11 +128,11 @@ pub fn planar(source: &str, parameters: &[(&str, f64)]) -> Result<Planar, Report
 /// A verdict with its reason.
 type Reasoned = (Decided, String);
 
-/// An interval in words: its middle, or both ends where they differ visibly.
-fn shown(interval: Interval) -> String {
-    let middle = 0.5 * (interval.lo + interval.hi);
-    match interval.hi - interval.lo <= 1e-9 * middle.abs() + 1e-300 {
-        true => format!("{middle:.9}"),
-        false => format!("[{}, {}]", interval.lo, interval.hi),
+/// An interval in words: its middle, with the digits in which its ends agree, or both ends where they differ in the first eight.
+pub fn shown(interval: Interval) -> String {
+    let middle = 0.5 * interval.lo + 0.5 * interval.hi;
+    match interval.hi - interval.lo <= 1e-8 * middle.abs() {
+        true => digits(format!("{middle:.7e}").parse().unwrap_or(middle)),
+        false => format!("[{:?}, {:?}]", interval.lo, interval.hi),
     }
 }

@@ -259,6 +259,27 @@ fn what_is_missing_is_named() {
 }
 
 #[test]
+fn maps_are_injective_by_any_component_of_their_image() {
+    let line = "coordinates { x; } lagrangian = dot(x)^2/2 - x;";
+    for impacts in [
+        "floor: x >= 0 => nonholonomic_plastic;",
+        "floor: x >= 0 => reset { x = 1 - dot(x); dot(x) = -1; };",
+    ] {
+        let found = ball(&format!("{line} impacts {{ {impacts} }}"));
+        assert_eq!(verdicts(&found)[1], Decided::Holds, "{impacts}: {found:?}");
+    }
+}
+
+#[test]
+fn the_mirrored_ball_is_decided_like_the_ball() {
+    let found = ball(
+        "coordinates { x; } lagrangian = dot(x)^2/2 + x;
+        impacts { floor: x <= 0 => reset { x = -1; dot(x) = dot(x)/2; }; far: x >= -2 => stop; }",
+    );
+    assert!(found.concludes(), "{found:?}");
+}
+
+#[test]
 fn a_ball_that_is_lifted_after_every_fall_has_one_orbit() {
     // Lifted from 0 to 1 with half of its speed: E -> (E + 1)/4, so that E = 1/3.
     let found = ball(

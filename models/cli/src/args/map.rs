@@ -107,9 +107,15 @@ pub struct MapArgs {
     /// Draw the map.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Draw a dot for each cell in the plane of two quantities, in place of the map: what is varied, coordinates and velocities
-    /// at the end, names of --output, `t`. Colours are those of --class.
-    #[arg(long, value_name = "X,Y", requires = "plot")]
+    /// Draw a dot for each cell in the plane of two quantities, in place of the map: what is varied, names of --output,
+    /// coordinates and velocities at the end, `t`, or columns of the table, such as `end.x` where x is varied. Colours are those of
+    /// --class.
+    #[arg(
+        long,
+        value_name = "X,Y",
+        requires = "plot",
+        conflicts_with = "contour"
+    )]
     pub axes: Option<String>,
 }
 

@@ -6,6 +6,7 @@ mod summary;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use dalembert::law::Law;
 use dalembert_driver::{AnyModel, Component, Search, Settings};
 use serde_json::{Map, Value, json};
 
@@ -132,6 +133,7 @@ fn make<F, T>(
     let counted = args.course.impacts.or(args.returns);
     let settings = run_request::course_to(model, &args.run, &args.course, counted)?;
     let extended = extended(models, args, &request)?;
+    check_states(&extended, args, &request)?;
     let starts = request.starts.iter();
     let starts: Vec<(Component, usize)> = starts
         .map(|(component, watched)| (*component, watched.output))
@@ -262,11 +264,10 @@ fn request(model: &dyn AnyModel, args: &MapArgs, members: &Members) -> Result<Re
         "lyapunov" => Colours::Exponent,
         text => Colours::Value(watched(shown(text)?)),
     };
-    let mut outputs = Vec::new();
-    for text in &args.output {
-        let (name, expression) = Expression::parse("--output", text)?.assigned()?;
-        outputs.push((name, watched(expression)));
-    }
+    let outputs = expression::named_outputs(&args.output)?.into_iter();
+    let outputs: Vec<(String, Watched)> = outputs
+        .map(|(name, expression)| (name, watched(expression)))
+        .collect();
     let mut contours = Vec::new();
     for text in &args.contour {
         contours.push(watched(line(text)?));
@@ -295,7 +296,7 @@ fn plane_of(
     components: &Components,
     outputs: &[(String, Watched)],
 ) -> Result<[String; 2], CliError> {
-    let (names, columns): (Vec<&str>, Vec<String>) = (members.names().iter())
+    let (names, columns): (Vec<String>, Vec<String>) = (members.names().iter())
         .map(|name| (name.as_str(), format!("{INPUT}{name}")))
         .chain(
             outputs
@@ -309,12 +310,13 @@ fn plane_of(
                 .map(|name| (name.as_str(), map::end(name))),
         )
         .chain([("t", "t".to_owned())])
+        .flat_map(|(name, column)| [(name.to_owned(), column.clone()), (column.clone(), column)])
         .unzip();
     let [x, y] = *text.split(',').map(str::trim).collect::<Vec<_>>() else {
         return Err(CliError::value("--axes", text, "two quantities: X,Y"));
     };
     let column = |name: &str| -> Result<String, CliError> {
-        let place = names::find("--axes", "quantity", name, names.iter().copied())?;
+        let place = names::find("--axes", "quantity", name, names.iter().map(String::as_str))?;
         Ok(columns[place].clone())
     };
     Ok([column(x)?, column(y)?])
@@ -405,6 +407,14 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
             ));
         }
     };
+    let laws = run_request::laws(model, &args.run.law)?;
+    let chosen = laws.iter().rev().find(|(index, _)| *index == surface);
+    let law = chosen.map(|(_, law)| *law).or(model.law(surface));
+    if law == Some(Law::Stop) {
+        return Err(CliError::Usage(
+            "--returns: the motion ends at the surface, which has the law `stop`; count the returns to another one",
+        ));
+    }
     let until = model.initial().until.unwrap_or(0.0);
     let tolerance = dalembert::Tolerance::new(args.course.tol);
     let refuse = |error: &dyn std::fmt::Display| {
@@ -416,7 +426,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
             returns,
             horizon: args.run.until.unwrap_or(until.max(HORIZON)),
             tolerance: tolerance.map_err(|error| refuse(&error))?,
-            laws: run_request::laws(model, &args.run.law)?,
+            laws: laws.clone(),
             policies: args.run.policies.policies(),
             modulo: None,
         })
@@ -447,6 +457,31 @@ fn extended(models: &[Entry], args: &MapArgs, request: &Request) -> Result<Vec<E
     }
     let entry = find_model(models, &args.run.model.model)?;
     Ok(vec![expression::add_to(entry, &expressions)?])
+}
+
+/// Refuses integrals along a run where an expression of a state is expected.
+fn check_states(models: &[Entry], args: &MapArgs, request: &Request) -> Result<(), CliError> {
+    let model = find_model(models, &args.run.model.model)?;
+    let integrals = &model.description().integrals;
+    let starts = request
+        .starts
+        .iter()
+        .map(|(_, watched)| ("--start", watched));
+    let lines = request
+        .contours
+        .iter()
+        .map(|watched| ("--contour", watched));
+    match starts
+        .chain(lines)
+        .find(|(_, watched)| integrals.contains(&watched.output))
+    {
+        None => Ok(()),
+        Some((flag, watched)) => Err(CliError::value(
+            flag,
+            watched.expression.text(),
+            "an expression of the start: an integral is known along a run alone",
+        )),
+    }
 }
 
 /// The request of the flags, for files.

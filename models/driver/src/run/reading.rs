@@ -76,6 +76,9 @@ impl Integrals {
             false => Vec::new(),
         };
         let values = self.values.iter().map(|&(index, before)| {
+            if before.is_nan() {
+                return (index, before);
+            }
             let added = integral(segment, [start, t], &mut |t, state| {
                 reading.outputs(t, state, &mut outputs)?;
                 Ok(outputs[index])

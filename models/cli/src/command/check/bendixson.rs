@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use dalembert_codegen::report::planar::{Cascade, Decided, Interval, Planar, planar};
+use dalembert_codegen::report::planar::{Cascade, Decided, Interval, Planar, planar, shown};
 use dalembert_driver::AnyModel;
 use serde_json::{Value, json};
 
@@ -82,10 +82,10 @@ fn write_text(
     };
     writeln!(output, "  conclusion   {conclusion}")?;
     if let (true, Some(cascade)) = (found.concludes(), &found.cascade) {
-        writeln!(output, "  multiplier   {}", short(cascade.multiplier))?;
+        writeln!(output, "  multiplier   {}", shown(cascade.multiplier))?;
         if let Some(energy) = cascade.energy {
             let place = mode_name(modes, cascade.steps[0].mode);
-            let energy = short(energy);
+            let energy = shown(energy);
             writeln!(output, "  energy       {energy}, kinetic, on entry{place}")?;
         }
     }
@@ -118,24 +118,15 @@ fn write_cascade(
         writeln!(
             output,
             "    {mode:10} R = {}, P = {}, K = {}; behind {}: {} {sign} {}",
-            short(step.needed),
-            short(step.gained),
-            short(step.kept),
+            shown(step.needed),
+            shown(step.gained),
+            shown(step.kept),
             step.surface,
-            short(step.reached),
-            short(step.next),
+            shown(step.reached),
+            shown(step.next),
         )?;
     }
     Ok(())
-}
-
-/// An interval by its middle, if it is narrow.
-fn short(interval: Interval) -> String {
-    let middle = 0.5 * interval.lo + 0.5 * interval.hi;
-    match interval.hi - interval.lo <= 1e-8 * middle.abs().max(1e-300) {
-        true => format!("{middle:.8}"),
-        false => format!("[{:?}, {:?}]", interval.lo, interval.hi),
-    }
 }
 
 fn ends(interval: Interval) -> Value {
