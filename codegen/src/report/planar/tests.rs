@@ -213,7 +213,7 @@ fn what_is_missing_is_named() {
             format!("{line} impacts {{ floor: x >= 0 => reset {{ x = 1; dot(x) = dot(x)^2; }}; }}"),
             1,
             Decided::Open,
-            "may vanish",
+            "monotone along the surface",
         ),
         (
             format!("{line} impacts {{ floor: x >= 0; top: x <= 1; }}"),
