@@ -2,6 +2,7 @@
 //! only there the names of the model are known.
 
 mod certify;
+mod check;
 mod choice;
 mod connect;
 mod control;
@@ -30,6 +31,7 @@ use dalembert_driver::{Form, Integrator, OffConstraint};
 use crate::input_table::Between;
 use crate::scalar;
 pub use certify::CertifyArgs;
+pub use check::CheckArgs;
 pub use connect::ConnectArgs;
 pub use control::ControlArgs;
 pub use derive::{DeriveArgs, DeriveFormat};
@@ -229,31 +231,6 @@ pub struct ListArgs {
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
-}
-
-/// `check`
-#[derive(Debug, Args)]
-pub struct CheckArgs {
-    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
-    pub model: String,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub format: Format,
-    /// Write the claims with the grounds of their proofs as JSON, for the checker `python/check_certificate.py`.
-    #[arg(long, value_name = "FILE")]
-    pub certificate: Option<PathBuf>,
-    /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems instead, by intervals. For modes of one degree
-    /// of freedom in a cycle the inequalities of their energies are evaluated. Exit status 0 if all hypotheses are shown.
-    #[arg(long, conflicts_with = "certificate")]
-    pub bendixson: bool,
-    /// Set a parameter, for --bendixson. May be repeated.
-    #[arg(
-        long,
-        value_name = "NAME=VALUE",
-        allow_hyphen_values = true,
-        requires = "bendixson"
-    )]
-    pub set: Vec<String>,
 }
 
 /// The model, its scene and its parameters.

@@ -1,0 +1,32 @@
+//! The flags of `check`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::Format;
+
+/// `check`
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
+    pub model: String,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+    /// Write the claims with the grounds of their proofs as JSON, for the checker `python/check_certificate.py`.
+    #[arg(long, value_name = "FILE")]
+    pub certificate: Option<PathBuf>,
+    /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems instead, by intervals. For modes of one degree
+    /// of freedom in a cycle the inequalities of their energies are evaluated. Exit status 0 if all hypotheses are shown.
+    #[arg(long, conflicts_with = "certificate")]
+    pub bendixson: bool,
+    /// Set a parameter, for --bendixson. May be repeated.
+    #[arg(
+        long,
+        value_name = "NAME=VALUE",
+        allow_hyphen_values = true,
+        requires = "bendixson"
+    )]
+    pub set: Vec<String>,
+}
