@@ -10,14 +10,18 @@ A model comes from a text of the language (:meth:`Model.from_text`), from a file
 shipped ones (:mod:`dalembert.models`).
 """
 
-from . import models
-from ._errors import DalembertError, Mistake, ModelError, RequestError
+from . import _native, models
+from ._ensemble import Density, Ensemble, Normal, Statistics
+from ._errors import DalembertError, EnsembleError, Mistake, ModelError, RequestError
 from ._events import Event, Occurrence
 from ._model import Model, Parameter
 from ._report import Derivation, Expression, Section, Verdict
 from ._run import Outcome, Run
 
+#: The version of the package.
+__version__: str = _native.version()
+
 __all__ = [
-    "DalembertError", "Derivation", "Event", "Expression", "Mistake", "Model", "ModelError", "Occurrence", "Outcome", "Parameter",
-    "RequestError", "Run", "Section", "Verdict", "models",
+    "DalembertError", "Density", "Derivation", "Ensemble", "EnsembleError", "Event", "Expression", "Mistake", "Model", "ModelError",
+    "Normal", "Occurrence", "Outcome", "Parameter", "RequestError", "Run", "Section", "Statistics", "Verdict", "models",
 ]

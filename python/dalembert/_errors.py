@@ -14,6 +14,10 @@ class RequestError(DalembertError, ValueError):
     """A parameter, a state or a run that is refused, in the names of the model."""
 
 
+class EnsembleError(DalembertError, RuntimeError):
+    """An ensemble that cannot go on: workers that were lost too often, or files that were altered. Parts that are done are kept."""
+
+
 @dataclass(frozen=True)
 class Mistake:
     """A mistake in the text of a model.

@@ -36,6 +36,12 @@ def pairs(values: Mapping[str, float]) -> list[tuple[str, float]]:
     return [(name, float(value)) for name, value in values.items()]
 
 
+def start(
+    state: Mapping[str, float] | None, q: Sequence[float] | None, qdot: Sequence[float] | None, p: Sequence[float] | None,
+) -> dict[str, Any]:
+    return {"state": pairs(state or {}), "q": floats(q), "qdot": floats(qdot), "p": floats(p)}
+
+
 def floats(values: Sequence[float] | None) -> list[float] | None:
     return None if values is None else [float(value) for value in values]
 

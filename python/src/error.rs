@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Advice about states that violate the constraints.
-const ADVICE: Advice = Advice {
+pub(crate) const ADVICE: Advice = Advice {
     off_constraint: "correct the velocities, or use off_constraint=\"project\" (nearest allowed velocity) or \
          off_constraint=\"keep\" (as it is)",
     off_position: "leave one of the positions out of `state` or `initial` (it is then solved for), or use \

@@ -9,12 +9,14 @@
 //! | `events.rs`, `cells.rs` | events and callbacks of the user; changes of the sign of a function |
 //! | `export.rs` | models for other languages |
 //! | `run.rs` | runs that have ended, as arrays |
+//! | `ensemble.rs` | rows and sums of members of an ensemble |
 //! | `evaluate.rs` | everything that is derived at a state |
 //! | `report.rs` | derivations and verdicts |
 //!
 //! Names, defaults and documentation that users see are those of the Python files beside it.
 
 mod cells;
+mod ensemble;
 mod error;
 mod evaluate;
 mod events;
@@ -25,9 +27,19 @@ mod report;
 mod request;
 mod run;
 
+/// The version of the package.
+#[pyo3::pyfunction]
+fn version() -> &'static str {
+    env!("CARGO_PKG_VERSION")
+}
+
 /// The functions and classes of the module.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    use super::version;
+    #[pymodule_export]
+    use crate::ensemble::NativeEnsemble;
     #[pymodule_export]
     use crate::export::{lines, to_c};
     #[pymodule_export]

@@ -21,10 +21,7 @@ use crate::model::NativeModel;
 pub struct Request<'py> {
     until: Option<f64>,
     pub(crate) impacts: Option<u64>,
-    state: Vec<(String, f64)>,
-    q: Option<Vec<f64>>,
-    qdot: Option<Vec<f64>>,
-    p: Option<Vec<f64>>,
+    start: Given,
     off_constraint: String,
     pub(crate) times: Option<PyReadonlyArray1<'py, f64>>,
     pub(crate) samples: u64,
@@ -49,6 +46,16 @@ pub struct Request<'py> {
     /// All inputs as a function of `t`, `q` and `qdot`, and the time for which its values are held.
     control: Option<Py<PyAny>>,
     period: Option<f64>,
+}
+
+/// The start that a request gives, in part or as a whole.
+#[derive(Clone, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Given {
+    state: Vec<(String, f64)>,
+    q: Option<Vec<f64>>,
+    qdot: Option<Vec<f64>>,
+    p: Option<Vec<f64>>,
 }
 
 /// A run that can be made, again and again with the same result.
@@ -80,8 +87,8 @@ impl Request<'_> {
 
     /// The run that is meant, of a model.
     pub(crate) fn course(&mut self, model: &dyn AnyModel) -> PyResult<Course> {
-        let policy = choice("off_constraint", &self.off_constraint, &policies())?;
-        let origin = self.beginning(model)?.settle(model, policy);
+        let policy = self.off_constraint()?;
+        let origin = self.start.beginning(model)?.settle(model, policy);
         let origin = origin.map_err(|reason| error::state(model.description(), &reason))?;
         Ok(Course {
             origin,
@@ -89,6 +96,16 @@ impl Request<'_> {
             has_end: self.until.is_some(),
             steering: self.steering()?,
         })
+    }
+
+    /// The start that is given.
+    pub(crate) fn start(&self) -> Given {
+        self.start.clone()
+    }
+
+    /// The policy for starts that violate constraints.
+    pub(crate) fn off_constraint(&self) -> PyResult<OffConstraint> {
+        choice("off_constraint", &self.off_constraint, &policies())
     }
 
     fn steering(&mut self) -> PyResult<Option<Arc<Steering>>> {
@@ -114,7 +131,11 @@ impl Request<'_> {
         Ok(Some(Arc::new(Steering { function, period })))
     }
 
-    fn settings(&self, model: &dyn AnyModel, policy: OffConstraint) -> PyResult<Settings> {
+    pub(crate) fn settings(
+        &self,
+        model: &dyn AnyModel,
+        policy: OffConstraint,
+    ) -> PyResult<Settings> {
         let integrator = choice("integrator", &self.integrator, &integrators())?;
         self.check(model, integrator)?;
         let wanted = self.form.as_deref();
@@ -184,39 +205,6 @@ impl Request<'_> {
         Ok(())
     }
 
-    fn beginning(&self, model: &dyn AnyModel) -> PyResult<Beginning> {
-        let rates = match (&self.q, &self.qdot, &self.p) {
-            (None, None, None) => return self.changed(model),
-            _ if !self.state.is_empty() => {
-                return Err(refused(
-                    "state: it changes the declared initial state, and q= gives another one; leave out one of them",
-                ));
-            }
-            (Some(q), None, None) if model.description().is_first_order => {
-                Rates::Velocities(vec![0.0; q.len()])
-            }
-            (Some(_), Some(qdot), None) => Rates::Velocities(vector(model, "qdot", qdot)?),
-            (Some(_), None, Some(p)) => Rates::Momenta(vector(model, "p", p)?),
-            (Some(_), ..) => return Err(refused("q needs qdot or p")),
-            (None, ..) => return Err(refused("qdot and p need q")),
-        };
-        let q = self.q.as_deref().unwrap_or_default();
-        let q = vector(model, "q", q)?;
-        Ok(Beginning::Given { q, rates })
-    }
-
-    /// The declared initial state with changes.
-    fn changed(&self, model: &dyn AnyModel) -> PyResult<Beginning> {
-        let mut beginning = Beginning::Named(model.initial());
-        let description = model.description();
-        for (name, value) in &self.state {
-            let component = Component::find(description, name);
-            let component = component.map_err(|unknown| refused(format!("state: {unknown}")))?;
-            beginning.set(component, *value);
-        }
-        Ok(beginning)
-    }
-
     fn laws(&self, model: &dyn AnyModel) -> PyResult<Vec<(usize, Law)>> {
         let description = model.description();
         let mut laws = Vec::new();
@@ -261,6 +249,42 @@ impl Request<'_> {
             corner: choice("corner", &self.corner, &corner)?,
             split: choice("split", &self.split, &split)?,
         })
+    }
+}
+
+impl Given {
+    /// The state before its checks.
+    pub(crate) fn beginning(&self, model: &dyn AnyModel) -> PyResult<Beginning> {
+        let rates = match (&self.q, &self.qdot, &self.p) {
+            (None, None, None) => return self.changed(model),
+            _ if !self.state.is_empty() => {
+                return Err(refused(
+                    "state: it changes the declared initial state, and q= gives another one; leave out one of them",
+                ));
+            }
+            (Some(q), None, None) if model.description().is_first_order => {
+                Rates::Velocities(vec![0.0; q.len()])
+            }
+            (Some(_), Some(qdot), None) => Rates::Velocities(vector(model, "qdot", qdot)?),
+            (Some(_), None, Some(p)) => Rates::Momenta(vector(model, "p", p)?),
+            (Some(_), ..) => return Err(refused("q needs qdot or p")),
+            (None, ..) => return Err(refused("qdot and p need q")),
+        };
+        let q = self.q.as_deref().unwrap_or_default();
+        let q = vector(model, "q", q)?;
+        Ok(Beginning::Given { q, rates })
+    }
+
+    /// The declared initial state with changes.
+    fn changed(&self, model: &dyn AnyModel) -> PyResult<Beginning> {
+        let mut beginning = Beginning::Named(model.initial());
+        let description = model.description();
+        for (name, value) in &self.state {
+            let component = Component::find(description, name);
+            let component = component.map_err(|unknown| refused(format!("state: {unknown}")))?;
+            beginning.set(component, *value);
+        }
+        Ok(beginning)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Ensembles: the same rows whatever the threads, the shard or the interruption; members that fail; densities that are
 //! known.
 
+mod merge;
 #[cfg(feature = "parquet")]
 mod parquet;
 

@@ -208,7 +208,7 @@ impl CliError {
 }
 
 /// Advice about states that violate the constraints.
-const ADVICE: Advice = Advice {
+pub(crate) const ADVICE: Advice = Advice {
     off_constraint: "correct the velocities, or use --off-constraint project (nearest allowed velocity) or \
          --off-constraint keep (as it is)",
     off_position: "leave one of the positions out of --initial or `initial` (it is then solved for), or use \

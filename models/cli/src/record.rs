@@ -4,7 +4,7 @@
 
 use std::io;
 
-use dalembert_driver::{Contact, Grid, Impact, Piece, Point, Watch};
+use dalembert_driver::{Contact, Grid, Impact, ImpactTally, Piece, Point, Watch};
 
 use crate::error::CliError;
 use crate::plot::trace::Trace;
@@ -35,19 +35,6 @@ pub trait Keep {
     fn failed(&self, error: io::Error) -> CliError;
 }
 
-/// Numbers of impacts.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// On each surface.
-    pub per_surface: Vec<u64>,
-    /// Impacts so light that rounding may have decided them.
-    pub grazing: u64,
-    /// Impacts at the same time as another.
-    pub simultaneous: u64,
-    /// Number of times that a surface began to hold the motion.
-    pub contacts: u64,
-}
-
 /// Makes the requested records during a run.
 pub struct Recorder<'a> {
     grid: Grid,
@@ -66,29 +53,7 @@ pub struct Record {
     /// The trace, if a picture was requested.
     pub trace: Option<Trace>,
     /// The number of impacts, with or without a picture.
-    pub tally: Tally,
-}
-
-impl Tally {
-    /// Counts an impact.
-    pub fn count(&mut self, impact: &Impact) {
-        if self.per_surface.len() <= impact.surface {
-            self.per_surface.resize(impact.surface + 1, 0);
-        }
-        self.per_surface[impact.surface] += 1;
-        self.grazing += u64::from(impact.graze);
-        self.simultaneous += u64::from(impact.simultaneous);
-    }
-
-    /// The number of impacts on one surface.
-    pub fn on(&self, surface: usize) -> u64 {
-        self.per_surface.get(surface).copied().unwrap_or(0)
-    }
-
-    /// The number of all impacts.
-    pub fn total(&self) -> u64 {
-        self.per_surface.iter().sum()
-    }
+    pub tally: ImpactTally,
 }
 
 impl<'a> Recorder<'a> {
@@ -102,7 +67,7 @@ impl<'a> Recorder<'a> {
             record: Record {
                 impacts: Vec::new(),
                 trace: wanted.trace,
-                tally: Tally::default(),
+                tally: ImpactTally::default(),
             },
             progress,
         }

@@ -8,6 +8,7 @@
 //! | `accuracy/` | measured errors of integrators, with work and time |
 //! | `orbit.rs` | periodic orbits, Lyapunov exponents |
 //! | `continuation/` | branches of periodic orbits over a parameter, with their bifurcations |
+//! | `ensemble/` | many members of one scene: their starts, rows, densities and sums |
 //! | `variation.rs` | derivatives of runs |
 //! | `connect/` | motions between two configurations |
 //! | `linearisation/` | equilibria, and linearised equations with inputs and outputs |
@@ -34,6 +35,7 @@ mod control;
 pub mod course;
 pub mod drift;
 mod dynamic;
+pub mod ensemble;
 mod grid;
 mod integrator;
 mod least_squares;
@@ -56,7 +58,7 @@ pub use connect::{Bounce, Boundary, Conjugate, Connected, Connection, Stage, Unj
 pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
 pub use control::{Controlled, Extremal, Kick, Moment, SecondOrder, Task, Unsought};
 pub use dynamic::{Axis, Choice, Hit, Landing, Lattice, Leg, Move, choose};
-pub use grid::Grid;
+pub use grid::{Grid, padded};
 pub use integrator::{Form, Integrator};
 pub use linearisation::{
     Linearisation, Place, Sampling, Stride, Tendency, Trim, Unlinear, components,
@@ -68,7 +70,8 @@ pub use modulo::{Generator, NoGroup, Symmetries};
 pub use orbit::{Found, Search};
 pub use refusal::{Refusal, Uncertified};
 pub use run::{
-    Changes, Contact, Control, Ending, Impact, InputFunction, Piece, Settings, Watch, steer,
+    Changes, Contact, Control, Ending, Impact, ImpactTally, InputFunction, Piece, Settings, Watch,
+    steer,
 };
 pub use typed::{Model, of_form, of_type};
 pub use variation::{Derivatives, Variable, VariationError, differentiate};

@@ -22,6 +22,7 @@ More examples:
   dalembert ensemble bouncing_ball --vary x=0.5..2:20 --vary g=1.62,9.81 --until 10
   dalembert ensemble double_pendulum --random 7 --members 1000 --vary theta1=1+-0.01 --csv swing.csv
   dalembert ensemble double_pendulum --from states.csv --shard 3/8 --csv part3.csv --resume
+  dalembert ensemble double_pendulum --from states.csv --merge part1.csv part2.csv part3.csv --csv all.csv
   dalembert ensemble rolling_disk --vary theta_dot=9..11 --members 64 --density x,y --plot disks.svg";
 
 /// `ensemble`
@@ -59,6 +60,10 @@ pub struct EnsembleArgs {
     /// ensemble.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
+    /// Take the rows and counts of all shards from their files in place of running them, as if one run had made them: the
+    /// same rows, sums, density and pictures. Give the flags that the shards were run with.
+    #[arg(long, value_name = "PART.csv", num_args = 1.., conflicts_with_all = ["shard", "resume"])]
+    pub merge: Vec<PathBuf>,
     /// Threads and rows.
     #[command(flatten)]
     pub rows: RowsArgs,

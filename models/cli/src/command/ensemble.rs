@@ -7,15 +7,19 @@ mod summary;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use dalembert_driver::ensemble::density::{Checkpoint, Counts, Density, convergence};
+use dalembert_driver::ensemble::row::Columns;
+use dalembert_driver::ensemble::runner::Shared;
+use dalembert_driver::ensemble::{Members, Tally, pilot};
 use dalembert_driver::{AnyModel, Settings};
 use serde_json::{Map, Value};
 
 use crate::args::EnsembleArgs;
-use crate::ensemble::density::{Checkpoint, Counts, Density, Wish, convergence};
-use crate::ensemble::members::{Members, Shard};
+use crate::ensemble::common::Flags;
+use crate::ensemble::members::{self, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::output::Table;
-use crate::ensemble::{self, Columns, Plan, Shared, Summary, Tally, listed, pilot};
+use crate::ensemble::{self, Plan, Summary, density, listed};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -57,22 +61,26 @@ pub fn run(
     let model = build_model(models, &args.run.model)?;
     let model = model.as_ref();
     let settings = run_request::course(model, &args.run, &args.course)?;
-    let members = members(model, args, streams)?;
+    let members = read_members(model, args, streams)?;
     let shard = args
         .shard
         .as_deref()
         .map_or(Ok(Shard::WHOLE), Shard::parse)?;
-    let mut shared = Shared {
+    let flags = Flags {
         models,
         run: &args.run,
+    };
+    let mut shared = Shared {
+        common: &flags,
+        off_constraint: args.run.state.off_constraint,
         settings: &settings,
         members: &members,
         density: None,
         starts: &[],
     };
-    let density = density(model, args, shared)?;
+    let density = measured(model, args, shared)?;
     shared.density = density.as_ref();
-    let metadata = metadata(model, &shared, shard)?;
+    let metadata = metadata(model, &args.run, &shared, shard)?;
     let columns = Columns::of(model.description(), &members);
     let range = shard.range(members.count());
     let plan = Plan {
@@ -84,6 +92,7 @@ pub fn run(
             metadata: &metadata,
             first: range.start,
         },
+        merged: &args.merge,
     };
     // Opened before the runs, so that a path that cannot be written is reported at once.
     let cells = Sink::open_given("--cells", args.cells.as_deref())?;
@@ -171,6 +180,11 @@ fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
         ));
     }
     args.rows.check()?;
+    if !args.merge.is_empty() && given.iter().any(|path| args.merge.contains(path)) {
+        return Err(CliError::Usage(
+            "--merge: a file of a shard cannot be an output too; give another name to --csv",
+        ));
+    }
     let timed = args.course.impacts.is_none() || args.run.until.is_some();
     if args.density.is_some() && !timed {
         return Err(CliError::Usage(
@@ -180,7 +194,7 @@ fn check_flags(args: &EnsembleArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn members(
+fn read_members(
     model: &dyn AnyModel,
     args: &EnsembleArgs,
     streams: &mut Streams<'_>,
@@ -188,13 +202,13 @@ fn members(
     let description = model.description();
     let members = match &args.from {
         Some(path) => listed::read(path, streams.input, description)?,
-        None => Members::varied(&args.vary, args.members, args.random, description)?,
+        None => members::varied(&args.vary, args.members, args.random, description)?,
     };
-    members.check_start(model, &args.run.state)?;
+    members::check_start(&members, model, &args.run.state)?;
     Ok(members)
 }
 
-fn density(
+fn measured(
     model: &dyn AnyModel,
     args: &EnsembleArgs,
     shared: Shared<'_>,
@@ -202,6 +216,12 @@ fn density(
     let Some(text) = &args.density else {
         return Ok(None);
     };
-    let wish = Wish::parse(text, model.description())?;
-    pilot::density(wish, shared, [args.every, args.discard]).map(Some)
+    let axes = density::parse(text, model.description())?;
+    let density = pilot::density(axes, shared, [args.every, args.discard]);
+    match density.map_err(CliError::Start)? {
+        None => Err(CliError::Usage(
+            "--density: a run ends before the first counted state; make --every or --discard smaller, or --until later",
+        )),
+        density => Ok(density),
+    }
 }

@@ -7,15 +7,17 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use dalembert::law::Law;
+use dalembert_driver::ensemble::runner::Shared;
+use dalembert_driver::ensemble::{Members, Quantity};
 use dalembert_driver::{AnyModel, Component, Search, Settings};
 use serde_json::{Map, Value, json};
 
 use crate::args::MapArgs;
+use crate::ensemble::common::Flags;
 use crate::ensemble::listed::INPUT;
-use crate::ensemble::members::{Members, Shard};
+use crate::ensemble::members::{self, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::output::Table;
-use crate::ensemble::{Quantity, Shared};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -126,9 +128,9 @@ fn make<F, T>(
 ) -> Result<T, CliError> {
     let model = build_model(models, &args.run.model)?;
     let model = model.as_ref();
-    let members = Members::varied(&args.vary, None, None, model.description())?;
+    let members = members::varied(&args.vary, None, None, model.description())?;
     let axes = axes(model, args, &members)?;
-    members.check_start(model, &args.run.state)?;
+    members::check_start(&members, model, &args.run.state)?;
     let request = request(model, args, &members)?;
     let counted = args.course.impacts.or(args.returns);
     let settings = run_request::course_to(model, &args.run, &args.course, counted)?;
@@ -138,15 +140,19 @@ fn make<F, T>(
     let starts: Vec<(Component, usize)> = starts
         .map(|(component, watched)| (*component, watched.output))
         .collect();
-    let shared = Shared {
+    let flags = Flags {
         models: &extended,
         run: &args.run,
+    };
+    let shared = Shared {
+        common: &flags,
+        off_constraint: args.run.state.off_constraint,
         settings: &settings,
         members: &members,
         density: None,
         starts: &starts,
     };
-    let mut metadata = metadata(model, &shared, Shard::WHOLE)?;
+    let mut metadata = metadata(model, &args.run, &shared, Shard::WHOLE)?;
     metadata.insert("map".to_owned(), asked(model, args, &request));
     let columns = map::columns(&request, &members);
     let plan = Plan {
@@ -212,7 +218,7 @@ fn axes(model: &dyn AnyModel, args: &MapArgs, members: &Members) -> Result<Vec<A
         return Err(CliError::Usage("--vary: a map has one axis or two"));
     }
     let named = members.names().iter().zip(members.quantities());
-    let spaced = members.spaced().into_iter().zip(&args.vary);
+    let spaced = members::spaced(members).into_iter().zip(&args.vary);
     let mut axes = Vec::new();
     for ((name, quantity), (spaced, text)) in named.zip(spaced) {
         let refuse = |expected: &str| CliError::value("--vary", text, expected);

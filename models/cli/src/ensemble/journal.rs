@@ -16,11 +16,12 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use dalembert_driver::ensemble::density::Counts;
+use dalembert_driver::ensemble::row::{Columns, Field, Row};
 use serde_json::{Map, Value};
 
-use super::density::Counts;
 use super::fingerprint::{fingerprint, hash};
-use super::row::{Columns, Field, Row};
+use super::line;
 use crate::error::CliError;
 use crate::sink;
 
@@ -114,15 +115,15 @@ impl Journal {
         compare(&path, metadata)?;
         let counted = match counts {
             None => u64::MAX,
-            Some(counts) => load(&beside(&path, ".counts"), counts)?,
+            Some(counts) => load("--resume", &beside(&path, ".counts"), counts)?,
         };
-        let mut sums = open_sums(&beside(&path, ".sums"))?;
+        let mut sums = open_sums("--resume", &beside(&path, ".sums"))?;
         self.file.rewind().map_err(whole)?;
         let mut scan = Scan::of(&mut self.file, columns, first_member);
         scan.sums = Some(BufReader::new(&mut sums));
-        let complete = match scan.run(counted, see).map_err(whole)? {
+        let complete = match scan.run(counted, &mut |_, row| see(row)).map_err(whole)? {
             Found::Complete(complete) => complete,
-            Found::Altered { line } => return Err(altered(&path, line)),
+            Found::Altered { line } => return Err(altered("--resume", &path, line)),
         };
         // Counts cannot be subtracted: if rows of counted members were lost, both start anew.
         let is_short = counted != u64::MAX && complete.rows < counted;
@@ -207,7 +208,7 @@ pub fn read_rows(
 ) -> io::Result<()> {
     let mut file = File::open(path)?;
     Scan::of(&mut file, columns, first_member)
-        .run(u64::MAX, see)
+        .run(u64::MAX, &mut |_, row| see(row))
         .map(drop)
 }
 
@@ -222,49 +223,73 @@ pub fn discard(path: &Path) -> io::Result<()> {
     remove(&beside(path, ".counts"))
 }
 
-/// Refuses to continue the file of another ensemble. An absent key counts as `null`, because older files lack keys of
-/// newer flags.
-fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
+/// The data that identify the ensemble of a file, as they were written beside it.
+///
+/// # Errors
+/// A file without such data, or one that cannot be read.
+pub fn metadata_of(flag: &'static str, path: &Path) -> Result<Map<String, Value>, CliError> {
     let place = beside(path, ".meta.json");
-    let invalid = |reason: String| CliError::Input {
-        place: format!("--resume {}", place.display()),
-        reason,
-    };
-    let text = fs::read(&place).map_err(|source| failed("--resume", &place, source))?;
-    let before: Map<String, Value> =
-        serde_json::from_slice(&text).map_err(|error| invalid(error.to_string()))?;
-    let differs = metadata
+    let text = fs::read(&place).map_err(|source| failed(flag, &place, source))?;
+    serde_json::from_slice(&text).map_err(|error| CliError::Input {
+        place: format!("{flag} {}", place.display()),
+        reason: error.to_string(),
+    })
+}
+
+/// The first key of `metadata` whose value differs from that of `before`, with both values. An absent key counts as
+/// `null`, because older files lack keys of newer flags.
+pub fn difference<'a>(
+    before: &Map<String, Value>,
+    metadata: &'a Map<String, Value>,
+) -> Option<(&'a str, String, &'a Value)> {
+    let (key, value) = metadata
         .iter()
-        .find(|(key, value)| before.get(*key).unwrap_or(&Value::Null) != *value);
-    match differs {
+        .find(|(key, value)| before.get(*key).unwrap_or(&Value::Null) != *value)?;
+    let was = before.get(key);
+    let was = was.map_or_else(|| "absent".to_owned(), Value::to_string);
+    Some((key, was, value))
+}
+
+/// Refuses to continue the file of another ensemble.
+fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
+    let before = metadata_of("--resume", path)?;
+    match difference(&before, metadata) {
         None => Ok(()),
-        Some((key, value)) => {
-            let was = before
-                .get(key)
-                .map_or_else(|| "absent".to_owned(), Value::to_string);
-            Err(invalid(format!(
+        Some((key, was, value)) => Err(CliError::Input {
+            place: format!("--resume {}", beside(path, ".meta.json").display()),
+            reason: format!(
                 "the file is of another ensemble: `{key}` was {was} and is {value}; give the same flags, or leave out --resume \
                  to start again"
-            )))
-        }
+            ),
+        }),
     }
 }
 
 /// Opens the checksums of a file that was begun.
-fn open_sums(path: &Path) -> Result<File, CliError> {
+fn open_sums(flag: &'static str, path: &Path) -> Result<File, CliError> {
     let opened = OpenOptions::new().read(true).write(true).open(path);
     opened.map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => CliError::Input {
-            place: format!("--resume {}", path.display()),
-            reason: "the file of checksums is missing, and rows without checksums are not continued; leave out --resume to start again"
-                .to_owned(),
+            place: format!("{flag} {}", path.display()),
+            reason: format!(
+                "the file of checksums is missing, and rows without checksums are not taken over; {}",
+                again(flag)
+            ),
         },
-        _ => failed("--resume", path, error),
+        _ => failed(flag, path, error),
     })
 }
 
+/// Remedy for a file that cannot be taken over.
+fn again(flag: &str) -> &'static str {
+    match flag {
+        "--resume" => "leave out --resume to start again",
+        _ => "run the shard again",
+    }
+}
+
 /// The error for a line that was altered since it was written.
-fn altered(path: &Path, line: u64) -> CliError {
+fn altered(flag: &'static str, path: &Path, line: u64) -> CliError {
     let (what, help) = match line {
         1 => ("header", ""),
         _ => (
@@ -273,11 +298,58 @@ fn altered(path: &Path, line: u64) -> CliError {
         ),
     };
     CliError::Input {
-        place: format!("--resume {}, line {line}", path.display()),
+        place: format!("{flag} {}, line {line}", path.display()),
         reason: format!(
-            "the {what} was altered after it was written: its checksum differs; {help}leave out --resume to start again"
+            "the {what} was altered after it was written: its checksum differs; {help}{}",
+            again(flag)
         ),
     }
+}
+
+/// Passes the rows of a shard's file, with their lines, to `see`, adds its counts, and returns the number of rows.
+///
+/// # Errors
+/// A file that cannot be read, or that was altered; counts that are not those of the rows.
+pub fn read_shard(
+    flag: &'static str,
+    path: &Path,
+    (columns, first_member): (&Columns, u64),
+    counts: Option<&mut Counts>,
+    see: &mut dyn FnMut(&[u8], &Row) -> Result<(), CliError>,
+) -> Result<u64, CliError> {
+    let whole = |source| failed(flag, path, source);
+    let mut file = File::open(path).map_err(whole)?;
+    let mut sums = open_sums(flag, &beside(path, ".sums"))?;
+    let mut scan = Scan::of(&mut file, columns, first_member);
+    scan.sums = Some(BufReader::new(&mut sums));
+    let mut failure = None;
+    let found = scan.run(u64::MAX, &mut |line, row| {
+        if failure.is_none() {
+            failure = see(line, row).err();
+        }
+    });
+    let rows = match found.map_err(whole)? {
+        Found::Complete(complete) => complete.rows,
+        Found::Altered { line } => return Err(altered(flag, path, line)),
+    };
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    if let Some(counts) = counts {
+        let mut these = counts.clone();
+        let counted = load(flag, &beside(path, ".counts"), &mut these)?;
+        if counted != rows {
+            return Err(CliError::Input {
+                place: format!("{flag} {}", path.display()),
+                reason: format!(
+                    "the file holds {rows} rows and counts of {counted}; {}",
+                    again(flag)
+                ),
+            });
+        }
+        counts.merge(&these);
+    }
+    Ok(rows)
 }
 
 /// Shortens a file, and moves to its end.
@@ -320,7 +392,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Reads at most `most` rows. Stops before a last row that is incomplete or has no checksum.
-    fn run(&mut self, most: u64, see: &mut dyn FnMut(&Row)) -> io::Result<Found> {
+    fn run(&mut self, most: u64, see: &mut dyn FnMut(&[u8], &Row)) -> io::Result<Found> {
         let mut complete = Complete { rows: 0, length: 0 };
         let mut line = Vec::new();
         if !self.next_line(&mut line)? {
@@ -335,9 +407,9 @@ impl<'a> Scan<'a> {
                 break;
             };
             let member = Field::Integer(self.first_member + complete.rows);
-            let row = self.columns.parse(&line).filter(|_| is_same);
+            let row = line::parse(self.columns, &line).filter(|_| is_same);
             match row.filter(|row| row.first() == Some(&member)) {
-                Some(row) => see(&row),
+                Some(row) => see(&line, &row),
                 None => {
                     let line = complete.rows + 2;
                     return Ok(Found::Altered { line });
@@ -392,17 +464,19 @@ fn save(path: &Path, members: u64, counts: &Counts) -> io::Result<()> {
 }
 
 /// Loads counts, and returns the number of members that they count; 0 if there are none.
-fn load(path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
+fn load(flag: &'static str, path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
     let content = match fs::read(path) {
         Ok(content) => content,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(0),
-        Err(error) => return Err(failed("--resume", path, error)),
+        Err(error) => return Err(failed(flag, path, error)),
     };
     members_of(&content, counts).ok_or_else(|| CliError::Input {
-        place: format!("--resume {}", path.display()),
-        reason: "the counts were altered after they were written: their checksum differs; remove the file to count from the \
-                 first member on, or leave out --resume to start again"
-            .to_owned(),
+        place: format!("{flag} {}", path.display()),
+        reason: format!(
+            "the counts were altered after they were written: their checksum differs; remove the file to count from the \
+             first member on, or {}",
+            again(flag)
+        ),
     })
 }
 
@@ -418,8 +492,8 @@ fn members_of(content: &[u8], counts: &mut Counts) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ensemble::density::{Axis, Density, Shown};
-    use crate::ensemble::row::{Kind, csv_line};
+    use dalembert_driver::ensemble::density::{Axis, Density, Shown};
+    use dalembert_driver::ensemble::row::{Kind, csv_line};
 
     fn density() -> Density {
         let axis = Axis {
@@ -440,7 +514,7 @@ mod tests {
     /// The kept rows of a file of members 7, 8 and 9, with this number of counted members.
     fn kept(name: &str, counted: Option<u64>) -> Option<(u64, u64)> {
         let path = std::env::temp_dir().join(format!("dalembert-{name}-{}", std::process::id()));
-        let columns = Columns::unnamed(&[Kind::Integer, Kind::Number]);
+        let columns = line::unnamed(&[Kind::Integer, Kind::Number]);
         let metadata = Map::from_iter([("tol".to_owned(), Value::from(0.5))]);
         let open = || Journal::open("--csv", &path).expect("the folder can be written");
         let mut journal = open();

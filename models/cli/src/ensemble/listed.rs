@@ -6,9 +6,10 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use dalembert::describe::Description;
+use dalembert_driver::ensemble::row::INPUT;
+use dalembert_driver::ensemble::{Members, Quantity};
 
-use super::members::Members;
-use super::vary::Quantity;
+use super::vary;
 use crate::error::CliError;
 use crate::scalar;
 use crate::sink::is_stdout;
@@ -23,9 +24,6 @@ const OTHERS: [&str; 7] = [
     "energy_change",
     "reason",
 ];
-
-/// Prefix of the names of columns in which `ensemble --csv` writes varied quantities.
-pub const INPUT: &str = "in.";
 
 /// Limits on the size of a table, which is kept in memory.
 #[derive(Debug, Clone, Copy)]
@@ -116,7 +114,7 @@ fn parse(
     let named = columns
         .into_iter()
         .map(|(_, name, quantity)| (name, quantity));
-    Ok(Members::listed(named.collect(), rows))
+    Ok(Members::listed(named.collect(), rows, 0))
 }
 
 /// A reader that stops at a limit of bytes after the last accepted row.
@@ -159,7 +157,7 @@ fn columns(
     let named = header.iter().enumerate();
     let mut columns: Vec<(usize, String, Quantity)> = Vec::new();
     for (index, name) in named.filter_map(|(index, name)| Some((index, ours(name)?))) {
-        let quantity = Quantity::find(place, &name, description)?;
+        let quantity = vary::find(place, &name, description)?;
         if columns.iter().any(|(.., other)| *other == quantity) {
             return Err(CliError::value(place, name, "every column once"));
         }

@@ -1,172 +1,88 @@
-//! The members of an ensemble, with the values of their varied quantities.
+//! The members of an ensemble from flags, and the data that identify them.
 
 use std::ops::Range;
 
 use dalembert::describe::Description;
 use dalembert_driver::AnyModel;
+use dalembert_driver::ensemble::{Members, Quantity, Source, Values};
 use serde_json::{Value, json};
 
 use super::fingerprint::fingerprint;
-use super::vary::{self, Asked, Draw, Quantity, Values, Varied};
+use super::vary::{self, Asked, Varied};
 use crate::args::StateArgs;
 use crate::error::CliError;
 use crate::state_input;
 
-/// All members of the ensemble, over every shard.
-#[derive(Debug, Clone)]
-pub struct Members {
-    names: Vec<String>,
-    quantities: Vec<Quantity>,
-    source: Source,
-    count: u64,
-}
-
-#[derive(Debug, Clone)]
-enum Source {
-    /// Cartesian product of the values of all quantities; the last runs fastest.
-    Product {
-        values: Vec<Values>,
-        seed: Option<u64>,
-    },
-    /// Values row by row.
-    Listed(Vec<f64>),
-}
-
-impl Members {
-    /// The members of `--vary`, `--members` and `--random`.
-    ///
-    /// # Errors
-    /// An error of one of the flags.
-    pub fn varied(
-        flags: &[String],
-        members: Option<u64>,
-        seed: Option<u64>,
-        description: &Description,
-    ) -> Result<Self, CliError> {
-        let asked = Asked {
-            members,
-            random: seed.is_some(),
-        };
-        let varied: Result<Vec<Varied>, CliError> = flags
+/// The members of `--vary`, `--members` and `--random`.
+///
+/// # Errors
+/// An error of one of the flags.
+pub fn varied(
+    flags: &[String],
+    members: Option<u64>,
+    seed: Option<u64>,
+    description: &Description,
+) -> Result<Members, CliError> {
+    let asked = Asked {
+        members,
+        random: seed.is_some(),
+    };
+    let varied: Result<Vec<Varied>, CliError> = flags
+        .iter()
+        .map(|text| vary::parse(text, description, asked))
+        .collect();
+    let varied = varied?;
+    for (index, (name, quantity, _)) in varied.iter().enumerate() {
+        if varied[..index]
             .iter()
-            .map(|text| vary::parse(text, description, asked))
-            .collect();
-        let varied = varied?;
-        for (index, (name, quantity, _)) in varied.iter().enumerate() {
-            if varied[..index]
-                .iter()
-                .any(|(_, other, _)| other == quantity)
-            {
-                return Err(CliError::value("--vary", name, "every name once"));
-            }
-        }
-        let count = count(&varied, asked)?;
-        let (mut names, mut quantities, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        for (name, quantity, its_values) in varied {
-            names.push(name);
-            quantities.push(quantity);
-            values.push(its_values);
-        }
-        Ok(Self {
-            names,
-            quantities,
-            source: Source::Product { values, seed },
-            count,
-        })
-    }
-
-    /// Members from a list, with a row of values for each.
-    pub fn listed(named: Vec<(String, Quantity)>, rows: Vec<f64>) -> Self {
-        let count = (rows.len() / named.len().max(1)) as u64;
-        let (names, quantities) = named.into_iter().unzip();
-        Self {
-            names,
-            quantities,
-            source: Source::Listed(rows),
-            count,
+            .any(|(_, other, _)| other == quantity)
+        {
+            return Err(CliError::value("--vary", name, "every name once"));
         }
     }
+    let count = count(&varied, asked)?;
+    Ok(Members::product(varied, seed, count))
+}
 
-    /// Refuses velocities that are varied where momenta are given.
-    ///
-    /// # Errors
-    /// [`CliError::Usage`], or an error of the flags of the state.
-    pub fn check_start(&self, model: &dyn AnyModel, args: &StateArgs) -> Result<(), CliError> {
-        let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
-        let has_momenta = state_input::beginning(model, args)?.has_momenta();
-        match has_momenta && self.quantities.iter().any(moved) {
-            true => Err(CliError::Usage(
-                "--p gives momenta, and velocities are varied: give --qdot",
-            )),
-            false => Ok(()),
+/// Refuses velocities that are varied where momenta are given.
+///
+/// # Errors
+/// [`CliError::Usage`], or an error of the flags of the state.
+pub fn check_start(
+    members: &Members,
+    model: &dyn AnyModel,
+    args: &StateArgs,
+) -> Result<(), CliError> {
+    let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
+    let has_momenta = state_input::beginning(model, args)?.has_momenta();
+    match has_momenta && members.quantities().iter().any(moved) {
+        true => Err(CliError::Usage(
+            "--p gives momenta, and velocities are varied: give --qdot",
+        )),
+        false => Ok(()),
+    }
+}
+
+/// The equally spaced values of each quantity, as both ends and their number; `None` for other values.
+pub fn spaced(members: &Members) -> Vec<Option<([f64; 2], u64)>> {
+    match members.source() {
+        Source::Product { values, .. } => values.iter().map(Values::spaced).collect(),
+        Source::Listed { .. } => vec![None; members.quantities().len()],
+    }
+}
+
+/// Data that identify members.
+pub fn metadata(members: &Members) -> Value {
+    let (count, names) = (members.count(), members.names());
+    match members.source() {
+        Source::Listed { rows, .. } => {
+            let bits: Vec<u8> = rows.iter().flat_map(|value| value.to_le_bytes()).collect();
+            json!({ "count": count, "names": names, "listed": fingerprint(&bits) })
         }
-    }
-
-    /// The equally spaced values of each quantity, as both ends and their number; `None` for other values.
-    pub fn spaced(&self) -> Vec<Option<([f64; 2], u64)>> {
-        match &self.source {
-            Source::Product { values, .. } => values.iter().map(Values::spaced).collect(),
-            Source::Listed(_) => vec![None; self.quantities.len()],
-        }
-    }
-
-    /// Number of members.
-    pub fn count(&self) -> u64 {
-        self.count
-    }
-
-    /// The names of the varied quantities.
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// The varied quantities.
-    pub fn quantities(&self) -> &[Quantity] {
-        &self.quantities
-    }
-
-    /// The values of a member, in the order of the quantities.
-    pub fn values(&self, member: u64) -> Vec<f64> {
-        let width = self.quantities.len();
-        match &self.source {
-            Source::Listed(rows) => {
-                let first = member as usize * width;
-                rows[first..first + width].to_vec()
-            }
-            Source::Product { values, seed } => {
-                let mut rest = member;
-                let mut row: Vec<f64> = (0..width)
-                    .rev()
-                    .map(|quantity| {
-                        let count = values[quantity].count();
-                        let index = rest % count;
-                        rest /= count;
-                        let draw = Draw {
-                            seed: seed.unwrap_or(0),
-                            member,
-                            quantity: quantity as u32,
-                        };
-                        values[quantity].value(index, draw)
-                    })
-                    .collect();
-                row.reverse();
-                row
-            }
-        }
-    }
-
-    /// Data that identify these members.
-    pub fn metadata(&self) -> Value {
-        match &self.source {
-            Source::Listed(rows) => {
-                let bits: Vec<u8> = rows.iter().flat_map(|value| value.to_le_bytes()).collect();
-                json!({ "count": self.count, "names": self.names, "listed": fingerprint(&bits) })
-            }
-            Source::Product { values, seed } => {
-                let varied = self.names.iter().zip(values);
-                let varied: Vec<Value> = varied.map(|(name, values)| spell(name, values)).collect();
-                json!({ "count": self.count, "varied": varied, "seed": seed })
-            }
+        Source::Product { values, seed } => {
+            let varied = names.iter().zip(values);
+            let varied: Vec<Value> = varied.map(|(name, values)| spell(name, values)).collect();
+            json!({ "count": count, "varied": varied, "seed": seed })
         }
     }
 }
@@ -258,36 +174,5 @@ mod tests {
             assert_eq!(ranges[of as usize - 1].end, count);
             assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
         }
-    }
-
-    #[test]
-    fn products_run_through_the_last_first() {
-        let members = Members {
-            names: vec!["x".to_owned(), "e".to_owned()],
-            quantities: vec![Quantity::Position(0), Quantity::Parameter(2)],
-            source: Source::Product {
-                values: vec![
-                    Values::Spaced {
-                        ends: [0.0, 1.0],
-                        count: 3,
-                    },
-                    Values::List(vec![5.0, 7.0]),
-                ],
-                seed: None,
-            },
-            count: 6,
-        };
-        let rows: Vec<_> = (0..6).map(|member| members.values(member)).collect();
-        assert_eq!(
-            rows,
-            [
-                [0.0, 5.0],
-                [0.0, 7.0],
-                [0.5, 5.0],
-                [0.5, 7.0],
-                [1.0, 5.0],
-                [1.0, 7.0]
-            ]
-        );
     }
 }

@@ -2,13 +2,14 @@
 
 use clap::ValueEnum;
 use dalembert::describe::Description;
+use dalembert_driver::ensemble::density::Density;
+use dalembert_driver::ensemble::runner::Shared;
 use dalembert_driver::{AnyModel, Beginning, Rates};
 use serde_json::{Map, Value, json};
 
 use super::fingerprint::fingerprint;
-use super::members::Shard;
-use super::runner::Shared;
-use crate::args::StateArgs;
+use super::members::{self, Shard};
+use crate::args::{RunArgs, StateArgs};
 use crate::error::CliError;
 use crate::json::{named, number};
 use crate::names;
@@ -20,12 +21,12 @@ use crate::state_input;
 /// An error of the flags of the state.
 pub fn metadata(
     model: &dyn AnyModel,
+    run: &RunArgs,
     shared: &Shared<'_>,
     shard: Shard,
 ) -> Result<Map<String, Value>, CliError> {
     let description = model.description();
     let Shared {
-        run,
         settings,
         members,
         density,
@@ -51,7 +52,7 @@ pub fn metadata(
         "model_source": *description.source,
         "parameters": named(names, &values),
         "start": start(model, description, &run.state)?,
-        "members": members.metadata(),
+        "members": members::metadata(members),
         "shard": {
             "index": shard.index,
             "of": shard.of,
@@ -72,12 +73,20 @@ pub fn metadata(
         "corner": word(run.policies.corner),
         "split": word(run.policies.split),
         "projection": settings.projection,
-        "density": density.map(|density| density.metadata()),
+        "density": density.map(measured),
     });
     match value {
         Value::Object(metadata) => Ok(metadata),
         _ => Ok(Map::new()),
     }
+}
+
+/// Data that identify a density.
+pub fn measured(density: &Density) -> Value {
+    let axes = density.axes.each_ref();
+    let axes =
+        axes.map(|axis| json!({ "name": axis.name, "range": axis.range, "bins": axis.bins }));
+    json!({ "axes": axes, "every": density.every, "discard": density.discard })
 }
 
 /// The common start of the members, without varied quantities.

@@ -2,55 +2,51 @@
 //!
 //! | file | |
 //! |---|---|
-//! | `vary`, `random`, `members`, `listed` | the start of each member, as a function of its index |
-//! | `runner` | runs one member and makes its row, also after a refusal or a panic |
+//! | `vary`, `members`, `listed`, `density` | members and densities from flags and tables |
+//! | `common` | the model and the start that members share, from flags |
 //! | `pool` | runs members on threads and returns the rows in order |
-//! | `row`, `output`, `journal`, `parquet` | the rows, where they go, the file they are appended to and continued from, the same as Parquet |
-//! | `tally`, `density` | sums over all members |
+//! | `output`, `journal`, `line`, `parquet` | where the rows go, the file they are appended to and continued from, its lines, the same as Parquet |
+//! | `merge` | rows and counts of shards that were run before |
 //! | `metadata` | data that identify an ensemble |
 //!
-//! A row depends on its member alone, and sums are formed in the order of members or in integers. Files therefore do
-//! not depend on threads, and the concatenated rows of all shards are those of the whole ensemble.
+//! Members, rows and sums themselves are those of [`dalembert_driver::ensemble`].
 
+pub mod common;
 pub mod density;
 mod fingerprint;
 pub mod journal;
+mod line;
 pub mod listed;
 pub mod members;
+mod merge;
 pub mod metadata;
 pub mod output;
 #[cfg(feature = "parquet")]
 pub mod parquet;
-pub mod pilot;
 pub mod pool;
-mod random;
-pub mod row;
-pub mod runner;
-mod tally;
 pub mod vary;
 
 use std::ops::Range;
+use std::path::PathBuf;
 
-use dalembert_driver::Settings;
-
-pub use row::Columns;
-pub use runner::Shared;
-pub use tally::Tally;
-pub use vary::Quantity;
+use dalembert_driver::ensemble::density::{Counts, Density};
+use dalembert_driver::ensemble::row::csv_line;
+use dalembert_driver::ensemble::runner::{Done, Runner, Shared};
+use dalembert_driver::ensemble::{Tally, is_reached};
 
 use crate::error::CliError;
 use crate::progress::Count;
-use density::{Counts, Density};
 use output::{Output, Rows, Table};
 use pool::Division;
-use row::csv_line;
-use runner::{Done, Runner};
 
 /// Largest number of members in a block of a thread.
 const BLOCK: u64 = 64;
 
 /// Largest number of visits of the members in a block.
 const VISITS: u64 = 1 << 16;
+
+/// Bytes of merged rows that are written at once.
+const LINES: usize = 1 << 20;
 
 /// Plan of an ensemble.
 pub struct Plan<'a> {
@@ -62,6 +58,8 @@ pub struct Plan<'a> {
     pub threads: u64,
     /// The table of the rows.
     pub table: Table<'a>,
+    /// Files of shards to take the rows from, in place of runs.
+    pub merged: &'a [PathBuf],
 }
 
 /// Results over all members.
@@ -74,11 +72,6 @@ pub struct Summary {
     pub kept: u64,
 }
 
-/// True if an outcome is the requested end.
-pub fn is_reached(outcome: &str, settings: &Settings) -> bool {
-    outcome == "done" || (outcome == "impact_budget" && settings.impacts.is_some())
-}
-
 /// Runs the members.
 ///
 /// # Errors
@@ -88,6 +81,9 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
     let Plan { shared, range, .. } = plan;
     let reached = |outcome: &str| is_reached(outcome, shared.settings);
     let (mut summary, mut output) = begin(plan, rows)?;
+    if !plan.merged.is_empty() {
+        merge(plan, &mut summary, &mut output)?;
+    }
     let left = range.start + summary.kept..range.end;
     let mut progress = Count::new(left.end - left.start, terminal);
     pool::in_order(
@@ -97,7 +93,7 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
         |runner, members| match runner {
             Ok(runner) => runner.run(members).into_iter().map(Ok).collect(),
             Err(error) => {
-                let refuse = |_| Err(CliError::Start(error.to_string()));
+                let refuse = |_| Err(CliError::Start(error.clone()));
                 members.map(refuse).collect()
             }
         },
@@ -120,6 +116,36 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
     progress.finish();
     output.finish(range.end - range.start, summary.counts.as_ref())?;
     Ok(summary)
+}
+
+/// Takes the rows of all members from the files of shards.
+fn merge(plan: &Plan<'_>, summary: &mut Summary, output: &mut Output<'_>) -> Result<(), CliError> {
+    let (shared, members) = (&plan.shared, plan.range.end);
+    let Summary {
+        tally,
+        counts,
+        kept,
+    } = summary;
+    let table = &plan.table;
+    let mut lines = Vec::new();
+    merge::read(
+        plan.merged,
+        table,
+        members,
+        counts.as_mut(),
+        &mut |line, row| {
+            tally.add(row, |outcome| is_reached(outcome, shared.settings));
+            *kept += 1;
+            lines.extend_from_slice(line);
+            if lines.len() < LINES && *kept < members {
+                return Ok(());
+            }
+            // NOTE: counts are complete at the end alone, where `finish` saves them.
+            let written = output.append(&lines, *kept, None);
+            lines.clear();
+            written
+        },
+    )
 }
 
 /// Number of members in a block: their visits are held in memory.

@@ -3,11 +3,11 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use dalembert_driver::ensemble::density::Counts;
+use dalembert_driver::ensemble::row::{Columns, Row};
 use serde_json::{Map, Value};
 
-use super::density::Counts;
 use super::journal::{self, Journal};
-use super::row::{Columns, Row};
 use crate::args::RowsArgs;
 use crate::error::CliError;
 use crate::sink::is_stdout;

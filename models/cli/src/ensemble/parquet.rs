@@ -4,6 +4,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
+use dalembert_driver::ensemble::row::{Columns, Field, Kind, Row};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::{ParquetError, Result};
@@ -14,7 +15,6 @@ use parquet::schema::types::{Type, TypePtr};
 use serde_json::{Map, Value};
 
 use super::journal;
-use super::row::{Columns, Field, Kind, Row};
 
 /// Number of rows in a group, which is held in memory.
 const GROUP: usize = 1 << 14;

@@ -1,128 +1,20 @@
-//! Varied quantities of members, by name, and their values.
+//! Varied quantities of members, as they are written in flags.
 
 use dalembert::describe::Description;
+use dalembert_driver::ensemble::{Quantity, Values};
 
-use super::random;
 use crate::error::CliError;
 use crate::{names, scalar};
 
-/// A quantity that may be varied between members, by index.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// A coordinate at the start.
-    Position(usize),
-    /// A velocity at the start.
-    Velocity(usize),
-    /// A parameter.
-    Parameter(usize),
-}
-
-impl Quantity {
-    /// All quantities of a model with their names: coordinates, velocities, parameters.
-    pub fn all(description: &Description) -> Vec<(String, Self)> {
-        let coordinates = names::coordinates(description).enumerate();
-        let positions = coordinates
-            .clone()
-            .map(|(index, name)| (name.to_owned(), Self::Position(index)));
-        let velocities =
-            coordinates.map(|(index, name)| (names::velocity(name), Self::Velocity(index)));
-        let parameters = description.parameters.iter().enumerate();
-        let parameters = parameters.map(|(index, it)| (it.name.to_owned(), Self::Parameter(index)));
-        positions.chain(velocities).chain(parameters).collect()
-    }
-
-    /// The quantity of this name.
-    ///
-    /// # Errors
-    /// [`CliError::Unknown`] if no quantity has this name.
-    pub fn find(place: &str, name: &str, description: &Description) -> Result<Self, CliError> {
-        let all = Self::all(description);
-        let accepted = all.iter().map(|(name, _)| name.as_str());
-        let index = names::find(place, "coordinate, velocity or parameter", name, accepted)?;
-        Ok(all[index].1)
-    }
-}
-
-/// The values of one quantity over the members.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Values {
-    /// Equally spaced, both ends included.
-    Spaced {
-        /// The first and the last value.
-        ends: [f64; 2],
-        /// Number of values.
-        count: u64,
-    },
-    /// Listed values.
-    List(Vec<f64>),
-    /// Drawn uniformly between these ends.
-    Uniform([f64; 2]),
-    /// Drawn from a normal distribution.
-    Normal {
-        /// Its mean.
-        mean: f64,
-        /// Its standard deviation.
-        deviation: f64,
-    },
-}
-
-impl Values {
-    /// Number of values; 1 if every member draws its value.
-    pub fn count(&self) -> u64 {
-        match self {
-            Self::Spaced { count, .. } => *count,
-            Self::List(values) => values.len() as u64,
-            Self::Uniform(_) | Self::Normal { .. } => 1,
-        }
-    }
-
-    /// Both ends and the number of equally spaced values.
-    pub fn spaced(&self) -> Option<([f64; 2], u64)> {
-        match *self {
-            Self::Spaced { ends, count } => Some((ends, count)),
-            _ => None,
-        }
-    }
-
-    /// The value of this index, below [`count`](Self::count); for drawn values, the value of the member.
-    pub fn value(&self, index: u64, draw: Draw) -> f64 {
-        let Draw {
-            seed,
-            member,
-            quantity,
-        } = draw;
-        match *self {
-            Self::Spaced { ends, count } => spaced(ends, index, count),
-            Self::List(ref values) => values[index as usize],
-            Self::Uniform([low, high]) => {
-                let part = random::uniform(seed, member, quantity);
-                low * (1.0 - part) + high * part
-            }
-            Self::Normal { mean, deviation } => {
-                mean + deviation * random::normal(seed, member, quantity)
-            }
-        }
-    }
-}
-
-/// Key of a random number.
-#[derive(Debug, Clone, Copy)]
-pub struct Draw {
-    /// The seed of the ensemble.
-    pub seed: u64,
-    /// The member.
-    pub member: u64,
-    /// Index of the varied quantity.
-    pub quantity: u32,
-}
-
-fn spaced([first, last]: [f64; 2], index: u64, count: u64) -> f64 {
-    match count.saturating_sub(1) {
-        0 => first,
-        // The last value is exact, and a constant stays constant.
-        gaps if index == gaps => last,
-        gaps => first + (last - first) * (index as f64 / gaps as f64),
-    }
+/// The quantity of this name.
+///
+/// # Errors
+/// [`CliError::Unknown`] if no quantity has this name.
+pub fn find(place: &str, name: &str, description: &Description) -> Result<Quantity, CliError> {
+    Quantity::find(name, description).map_err(|unknown| CliError::Unknown {
+        place: place.to_owned(),
+        unknown,
+    })
 }
 
 /// Number of members and their kind, as given by the flags.
@@ -146,7 +38,7 @@ pub type Varied = (String, Quantity, Values);
 /// A name that the model does not have, or invalid values.
 pub fn parse(text: &str, description: &Description, asked: Asked) -> Result<Varied, CliError> {
     let (name, values) = names::assignment("--vary", text, EXPECTED)?;
-    let quantity = Quantity::find("--vary", name, description)?;
+    let quantity = find("--vary", name, description)?;
     let values = parse_values(name, values, asked)?;
     Ok((name.to_owned(), quantity, values))
 }
@@ -202,29 +94,6 @@ fn parse_values(name: &str, text: &str, asked: Asked) -> Result<Values, CliError
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const NOBODY: Draw = Draw {
-        seed: 0,
-        member: 0,
-        quantity: 0,
-    };
-
-    #[test]
-    fn spaced_values_meet_both_ends() {
-        let values = Values::Spaced {
-            ends: [9.995, 10.005],
-            count: 10_000,
-        };
-        assert_eq!(values.value(0, NOBODY), 9.995);
-        assert_eq!(values.value(9999, NOBODY), 10.005);
-        let middle = values.value(5000, NOBODY);
-        assert!((middle - (9.995 + 0.01 * 5000.0 / 9999.0)).abs() < 1e-14);
-        let one = Values::Spaced {
-            ends: [2.0, 3.0],
-            count: 1,
-        };
-        assert_eq!(one.value(0, NOBODY), 2.0);
-    }
 
     #[test]
     fn values_as_they_are_written() {

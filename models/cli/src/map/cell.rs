@@ -9,8 +9,8 @@ use dalembert_driver::{
 
 use super::orbits;
 use super::request::{Request, Returns};
-use crate::ensemble::runner::{Runner, details};
 use crate::names;
+use dalembert_driver::ensemble::runner::{Runner, details};
 
 /// The outcome of a run that made all returns.
 pub const RETURNED: &str = "returned";

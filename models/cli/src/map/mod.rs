@@ -17,13 +17,12 @@ pub mod request;
 mod sums;
 mod table;
 
-use crate::ensemble::Shared;
 use crate::ensemble::output::{Output, Rows, Table};
 use crate::ensemble::pool::{self, Division};
-use crate::ensemble::row::csv_line;
-use crate::ensemble::runner::Runner;
 use crate::error::CliError;
 use crate::progress::Count;
+use dalembert_driver::ensemble::row::csv_line;
+use dalembert_driver::ensemble::runner::{Runner, Shared};
 pub use orbits::Orbit;
 use request::Request;
 pub use sums::{Cells, Sums};
@@ -73,7 +72,7 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<(Sums,
                 .map(|member| Ok(cell::run(runner, request, member)))
                 .collect(),
             Err(error) => {
-                let refuse = |_| Err(CliError::Start(error.to_string()));
+                let refuse = |_| Err(CliError::Start(error.clone()));
                 members.map(refuse).collect()
             }
         },

@@ -2,9 +2,8 @@
 
 use super::orbits::Orbits;
 use super::request::{Colours, Request};
-use crate::ensemble::Columns;
-use crate::ensemble::row::{Field, Row};
-use crate::ensemble::runner::{PANICKED, REFUSED};
+use dalembert_driver::ensemble::row::{Columns, Field, Row};
+use dalembert_driver::ensemble::runner::{PANICKED, REFUSED};
 
 /// Sums over cells.
 pub struct Sums {

@@ -5,10 +5,8 @@ use std::borrow::Cow;
 use super::cell::{Cell, FAILED, RETURNED};
 use super::orbits::Orbits;
 use super::request::{Colours, Request};
-use crate::ensemble::Columns;
-use crate::ensemble::listed::INPUT;
-use crate::ensemble::members::Members;
-use crate::ensemble::row::{Field, Kind, Row};
+use dalembert_driver::ensemble::Members;
+use dalembert_driver::ensemble::row::{Columns, Field, INPUT, Kind, Row};
 
 /// The column of a coordinate or a velocity at the end.
 pub fn end(name: &str) -> String {

@@ -1,7 +1,7 @@
 //! A branch of orbits over its parameter: stable and unstable arcs, bifurcations and ends.
 
 use dalembert::describe::Description;
-use dalembert_driver::{Bifurcation, Branch, BranchEnd, Member, Stability};
+use dalembert_driver::{Bifurcation, Branch, BranchEnd, Member, Stability, padded};
 use plotters::style::RGBColor;
 
 use super::canvas::message;
@@ -110,8 +110,8 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
         .map(|at| at[1])
         .filter(|value| value.is_finite());
     let window = Window {
-        x: style::padded(chart.range.into_iter(), 0.02),
-        y: style::padded(ordinates, 0.06),
+        x: padded(chart.range.into_iter(), 0.02),
+        y: padded(ordinates, 0.06),
     };
     let plane = Plane::free_scales(window, WIDTH);
     let words = Words {

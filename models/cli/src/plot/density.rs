@@ -8,8 +8,8 @@ use super::canvas::{self, Area, TITLE_HEIGHT, message, px, stroke, text};
 use super::colours;
 use super::plane::{self, Chart};
 use super::style::{self, Axis};
-use crate::ensemble::density::Density;
 use crate::symbols;
+use dalembert_driver::ensemble::density::Density;
 
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 900.0;

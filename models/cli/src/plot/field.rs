@@ -9,6 +9,7 @@ use super::legend::{Item, Symbol};
 use super::map::Top;
 use super::plane::{self, Chart, Plane, Words};
 use super::style;
+use dalembert_driver::padded;
 
 /// Fraction of the numbers up to the last colour; larger ones share it.
 const SHOWN: f64 = 0.95;
@@ -158,7 +159,7 @@ impl Field<'_> {
         let ends = [sorted.first(), sorted.get(last)].map(|it| it.copied().unwrap_or(0.0));
         let range = match ends[0] < ends[1] {
             true => ends,
-            false => style::padded(ends.into_iter(), 0.0),
+            false => padded(ends.into_iter(), 0.0),
         };
         let shade = move |value: f64| match value.is_nan() {
             true => 0,

@@ -14,6 +14,7 @@ use super::style::{self, Axis};
 use super::thin::thinned;
 use super::trace::{Source, Trace};
 use crate::{names, symbols};
+use dalembert_driver::padded;
 
 /// Height of a panel's plot as a fraction of the picture's width, and least height in pixels.
 const HEIGHT: f64 = 0.32;
@@ -126,7 +127,7 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
     let values = marks
         .iter()
         .flat_map(|mark| mark.values[curves.clone()].iter().copied());
-    let y = Axis::new(style::padded(values, 0.06), 6);
+    let y = Axis::new(padded(values, 0.06), 6);
     let end = if picture.last.0 > 0.0 {
         picture.last.0
     } else {

@@ -10,10 +10,11 @@ use super::legend::{Item, Symbol};
 use super::plane::{self, Head, Plane, Words};
 use super::portrait::draw_contours;
 use super::style::{self, PALETTE};
-use crate::ensemble::Quantity;
 use crate::map::request::{Colours, Request};
 use crate::map::{Cells, Sums};
 use crate::symbols;
+use dalembert_driver::ensemble::Quantity;
+use dalembert_driver::padded;
 
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 720.0;
@@ -271,7 +272,7 @@ impl Chart<'_> {
         let ends = ends.map(|end| end.copied().unwrap_or(0.0));
         let range = match ends[0] < ends[1] {
             true => ends,
-            false => style::padded(ends.into_iter(), 0.0),
+            false => padded(ends.into_iter(), 0.0),
         };
         let bar = Bar { name, range };
         let shade = |value: f64| match value.is_nan() {

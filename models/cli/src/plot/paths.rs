@@ -11,6 +11,7 @@ use super::legend::{self, Item, Symbol};
 use super::plane;
 use super::style::{self, Axis};
 use super::thin::thinned;
+use dalembert_driver::padded;
 
 /// Height of a panel's plot as a fraction of the picture's width.
 const HEIGHT: f64 = 0.42;
@@ -118,7 +119,7 @@ fn items(sheet: &Sheet<'_>) -> Vec<Item> {
 
 fn range(paths: &[Path], index: usize, margin: f64) -> [f64; 2] {
     let points = paths.iter().flat_map(|path| &path.points);
-    style::padded(points.map(|point| point[index]), margin)
+    padded(points.map(|point| point[index]), margin)
 }
 
 fn draw_panel(area: &Area<'_>, sheet: &Sheet<'_>, ordinate: usize) -> Result<(), String> {

@@ -6,6 +6,7 @@ use super::legend::{Item, Symbol};
 use super::plane::{self, Plane, Words};
 use super::quantity::Quantity;
 use super::style;
+use dalembert_driver::padded;
 
 /// Draws the ordinates over the abscissa, which is the first of the quantities.
 ///
@@ -21,8 +22,8 @@ pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, St
     let values = |index: usize| marks.iter().map(move |mark| mark.values[index]);
     let ordinates = 1..quantities.len();
     let window = Window {
-        x: style::padded(values(0), 0.06),
-        y: style::padded(ordinates.clone().flat_map(values), 0.06),
+        x: padded(values(0), 0.06),
+        y: padded(ordinates.clone().flat_map(values), 0.06),
     };
     let plane = Plane::free_scales(window, picture.width);
 

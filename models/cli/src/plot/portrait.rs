@@ -13,6 +13,7 @@ use super::region::{FINE, Region};
 use super::style;
 use super::trace::Mark;
 use crate::symbols;
+use dalembert_driver::padded;
 
 /// Draws the view.
 ///
@@ -65,8 +66,8 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
 
 /// The bounding rectangle of the path, with positive width and height.
 fn extent(points: &[[f64; 2]]) -> Window {
-    let x = style::padded(points.iter().map(|point| point[0]), 0.0);
-    let y = style::padded(points.iter().map(|point| point[1]), 0.0);
+    let x = padded(points.iter().map(|point| point[0]), 0.0);
+    let y = padded(points.iter().map(|point| point[1]), 0.0);
     let tight = Window::around(points.iter().copied());
     // A straight path along an axis takes the length of the other side, so that rounding noise is not magnified.
     let side = |range: [f64; 2]| range[1] - range[0];

@@ -158,23 +158,6 @@ fn shortest_exponent(value: f64) -> String {
     }
 }
 
-/// A range that contains the values with a margin; one unit around a constant.
-pub fn padded(values: impl Iterator<Item = f64>, room: f64) -> [f64; 2] {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
-    let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-    let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
-    // A smaller range is rounding error of a constant, or too small for ticks.
-    let is_constant = half <= 1e-12 * middle.abs() || half < 1e-200;
-    let half = if is_constant {
-        0.5 * middle.abs().max(1.0)
-    } else {
-        half * (1.0 + 2.0 * room)
-    };
-    [middle - half, middle + half]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -193,22 +176,5 @@ mod tests {
         assert_eq!(Axis::new([-4.0, 2.0], 3).ticks(), [-4.0, -2.0, 0.0, 2.0]);
         let small = Axis::new([1.0 - 1e-12, 1.0 + 1e-12], 4).ticks();
         assert!((2..=5).contains(&small.len()), "{small:?}");
-    }
-
-    #[test]
-    fn ranges_are_never_empty() {
-        for values in [
-            vec![],
-            vec![0.0],
-            vec![3.0, 3.0],
-            vec![1e300, -1e300],
-            vec![5e-324, 0.0],
-        ] {
-            let [low, high] = padded(values.iter().copied(), 0.05);
-            assert!(
-                low < high && low.is_finite() && high.is_finite(),
-                "{values:?}"
-            );
-        }
     }
 }

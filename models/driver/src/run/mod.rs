@@ -11,6 +11,7 @@ mod abreast;
 mod energy;
 mod reading;
 mod steered;
+mod tally;
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -35,6 +36,7 @@ pub(crate) use abreast::abreast;
 use energy::Balance;
 use reading::{Integrals, Reading};
 pub use steered::{Changes, Control, InputFunction, steer};
+pub use tally::ImpactTally;
 
 /// Settings of a run.
 #[derive(Debug, Clone)]

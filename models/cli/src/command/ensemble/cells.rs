@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::ensemble::density::{Axis, Counts, Density};
 use crate::table;
+use dalembert_driver::ensemble::density::{Axis, Counts, Density};
 
 /// Writes the middle of every cell, its number of states, and the density there: the fraction of all states in cells,
 /// divided by the area of the cell.

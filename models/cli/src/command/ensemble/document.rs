@@ -5,9 +5,10 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 
 use super::Finished;
-use crate::ensemble::density::{Checkpoint, Counts, Density};
+use crate::ensemble::metadata::measured;
 use crate::json::{Document, number};
 use crate::names;
+use dalembert_driver::ensemble::density::{Checkpoint, Counts, Density};
 
 /// Writes the document: the metadata of the ensemble, then the results.
 ///
@@ -51,7 +52,7 @@ fn write_density(
     counts: &Counts,
     checkpoints: &[Checkpoint],
 ) -> io::Result<()> {
-    document.field("density", density.metadata())?;
+    document.field("density", measured(density))?;
     let total = counts.total();
     document.field("density_states", total.iter().sum::<u64>())?;
     document.field("density_outside", counts.outside())?;

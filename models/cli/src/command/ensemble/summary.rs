@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use super::Finished;
-use crate::ensemble::density::{Axis, Checkpoint, Counts, Density};
 use crate::error::counted;
 use crate::names;
+use dalembert_driver::ensemble::density::{Axis, Checkpoint, Counts, Density};
 
 /// Writes the summary.
 ///

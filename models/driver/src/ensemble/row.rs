@@ -5,9 +5,11 @@ use std::borrow::Cow;
 use dalembert::describe::Description;
 use dalembert::integrate::Counters;
 
-use super::listed::INPUT;
 use super::members::Members;
 use crate::{names, outcome};
+
+/// Prefix of the names of columns of varied quantities.
+pub const INPUT: &str = "in.";
 
 /// Type of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,15 +87,6 @@ impl Columns {
         Self { columns }
     }
 
-    /// Unnamed columns of these types, for tests.
-    #[cfg(test)]
-    pub fn unnamed(kinds: &[Kind]) -> Self {
-        let columns = kinds.iter().map(|&kind| ("c".to_owned(), kind));
-        Self {
-            columns: columns.collect(),
-        }
-    }
-
     /// Names and types.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, Kind)> {
         self.columns
@@ -113,26 +106,6 @@ impl Columns {
                 .iter()
                 .map(|(name, _)| Cow::Borrowed(name.as_str())),
         )
-    }
-
-    /// Parses a line of CSV as a row.
-    pub fn parse(&self, line: &[u8]) -> Option<Row> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .from_reader(line);
-        let record = reader.records().next()?.ok()?;
-        if record.len() != self.columns.len() {
-            return None;
-        }
-        let fields = record.iter().zip(&self.columns);
-        let fields = fields.map(|(text, (_, kind))| {
-            Some(match kind {
-                Kind::Integer => Field::Integer(text.parse().ok()?),
-                Kind::Number => Field::Number(text.parse().ok()?),
-                Kind::Text => Field::Text(Cow::Owned(text.to_owned())),
-            })
-        });
-        fields.collect()
     }
 }
 
@@ -161,29 +134,4 @@ fn line<'a>(fields: impl Iterator<Item = Cow<'a, str>>) -> Vec<u8> {
     }
     line.push(b'\n');
     line
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_read_back_to_the_same_row() {
-        let columns = Columns::unnamed(&[Kind::Integer, Kind::Number, Kind::Number, Kind::Text]);
-        let row = vec![
-            Field::Integer(u64::MAX),
-            Field::Number(0.1),
-            Field::Number(f64::NEG_INFINITY),
-            Field::Text(Cow::Borrowed("\"floor\", at 2.5")),
-        ];
-        let line = csv_line(&row);
-        assert_eq!(
-            line,
-            b"18446744073709551615,0.1,-inf,\"\"\"floor\"\", at 2.5\"\n"
-        );
-        assert_eq!(columns.parse(&line), Some(row));
-        for torn in [&b"1,0.1,2"[..], b"1,x,2,y\n", b"", b"1,0.1,2,y,z\n"] {
-            assert_eq!(columns.parse(torn), None);
-        }
-    }
 }

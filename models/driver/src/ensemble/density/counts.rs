@@ -99,6 +99,12 @@ impl Counts {
         }
     }
 
+    /// Adds the counts of other members of the same density.
+    pub fn merge(&mut self, others: &Self) {
+        let pairs = self.counts.iter_mut().zip(&others.counts);
+        pairs.for_each(|(sum, count)| *sum += count);
+    }
+
     /// The counts of a class of time; the last is the count outside the grid.
     pub fn of_time(&self, class: usize) -> &[u64] {
         &self.counts[class * self.cells..][..self.cells]

@@ -7,21 +7,18 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dalembert::Outcome;
 use dalembert::describe::Description;
-use dalembert_driver::{
-    AnyModel, Component, Contact, Ending, Impact, Integrator, Origin, Piece, Point, Refusal,
-    Settings, Together, Watch,
-};
 
 use super::density::{Density, Sampler, Visits};
 use super::members::Members;
 use super::row::{Field, Row};
-use super::vary::Quantity;
-use crate::args::RunArgs;
-use crate::entry::Entry;
-use crate::error::{CliError, refusal_text, state_text};
-use crate::outcome;
-use crate::record::Tally;
-use crate::state_input::{self, build_model};
+use super::values::Quantity;
+use crate::beginning::{Beginning, Component};
+use crate::integrator::Integrator;
+use crate::model::{AnyModel, OffConstraint, Origin, Point, Together};
+use crate::outcome::{self, Fact};
+use crate::refusal::Refusal;
+use crate::run::{Contact, Ending, Impact, ImpactTally, Piece, Settings, Watch};
+use crate::words::{self, Advice};
 
 /// The outcome of a member whose start the system refuses.
 pub const REFUSED: &str = "refused";
@@ -29,13 +26,41 @@ pub const REFUSED: &str = "refused";
 /// The outcome of a member whose run panicked.
 pub const PANICKED: &str = "panicked";
 
+/// The model and the start that members have in common.
+pub trait Common: Sync {
+    /// The model, with the parameters that members share.
+    ///
+    /// # Errors
+    /// A text that explains why there is none.
+    fn model(&self) -> Result<Box<dyn AnyModel>, String>;
+
+    /// The start that members share, of a model that may have parameters of one of them.
+    ///
+    /// # Errors
+    /// A text that explains why there is none.
+    fn beginning(&self, model: &dyn AnyModel) -> Result<Beginning, String>;
+
+    /// Advice about starts that are refused.
+    fn advice(&self) -> &Advice;
+
+    /// True once the runs are to end, whose rows are then of no use.
+    fn is_over(&self) -> bool {
+        false
+    }
+}
+
 /// Data common to the runs of all members.
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
-    pub models: &'a [Entry],
-    pub run: &'a RunArgs,
+    /// The model and the start.
+    pub common: &'a dyn Common,
+    /// Policy for starts that violate constraints.
+    pub off_constraint: OffConstraint,
+    /// The settings of the runs.
     pub settings: &'a Settings,
+    /// The members.
     pub members: &'a Members,
+    /// The density, if states are counted.
     pub density: Option<&'a Density>,
     /// Components of the start that are outputs of the model, by their index, where the other components are as they
     /// were given.
@@ -44,6 +69,7 @@ pub struct Shared<'a> {
 
 /// A finished member.
 pub struct Done {
+    /// Its row.
     pub row: Row,
     /// Its visits, if a density is counted.
     pub visits: Option<Visits>,
@@ -59,9 +85,9 @@ impl<'a> Runner<'a> {
     /// A runner.
     ///
     /// # Errors
-    /// An error of the flags of the model.
-    pub fn new(shared: Shared<'a>) -> Result<Self, CliError> {
-        let model = build_model(shared.models, &shared.run.model)?;
+    /// A text that explains why there is no model.
+    pub fn new(shared: Shared<'a>) -> Result<Self, String> {
+        let model = shared.common.model()?;
         Ok(Self { shared, model })
     }
 
@@ -126,7 +152,8 @@ impl<'a> Runner<'a> {
 
     fn unseen(&self) -> Seen<'a> {
         Seen {
-            tally: Tally::default(),
+            common: self.shared.common,
+            tally: ImpactTally::default(),
             sampler: self.shared.density.map(Sampler::new),
         }
     }
@@ -160,7 +187,7 @@ impl<'a> Runner<'a> {
 
     /// Rebuilds the model after a panic, which may have left it inconsistent.
     fn renew(&mut self) {
-        if let Ok(model) = build_model(self.shared.models, &self.shared.run.model) {
+        if let Ok(model) = self.shared.common.model() {
             self.model = model;
         }
     }
@@ -191,13 +218,22 @@ impl<'a> Runner<'a> {
 
     /// Explains, in the model's names, why a member does not start.
     fn told(&self, refusal: &Refusal) -> String {
-        refusal_text(self.model.description(), refusal)
+        words::refusal_text(
+            self.model.description(),
+            refusal,
+            self.shared.common.advice(),
+        )
     }
 
     /// Sets the model's parameters to those of a member, and returns its initial state; the error explains why there is
     /// none.
     fn origin(&mut self, member: u64) -> Result<Origin, String> {
-        let Shared { members, run, .. } = self.shared;
+        let Shared {
+            common,
+            members,
+            off_constraint,
+            ..
+        } = self.shared;
         let values = members.values(member);
         let pairs = || members.quantities().iter().zip(&values);
         for (quantity, &value) in pairs() {
@@ -206,8 +242,7 @@ impl<'a> Runner<'a> {
             }
         }
         let model = self.model.as_ref();
-        let mut beginning =
-            state_input::beginning(model, &run.state).map_err(|error| error.to_string())?;
+        let mut beginning = common.beginning(model)?;
         for (quantity, &value) in pairs() {
             match *quantity {
                 Quantity::Position(index) => beginning.set_position(index, value),
@@ -215,8 +250,8 @@ impl<'a> Runner<'a> {
                 Quantity::Parameter(_) => {}
             }
         }
-        let told = |error| state_text(model.description(), &error);
-        let settled = beginning.settle(model, run.state.off_constraint);
+        let told = |error| words::state_text(model.description(), &error, common.advice());
+        let settled = beginning.settle(model, off_constraint);
         if self.shared.starts.is_empty() {
             return settled.map_err(told);
         }
@@ -226,16 +261,14 @@ impl<'a> Runner<'a> {
         for &(component, output) in self.shared.starts {
             beginning.set(component, point.outputs[output]);
         }
-        beginning
-            .settle(model, run.state.off_constraint)
-            .map_err(told)
+        beginning.settle(model, off_constraint).map_err(told)
     }
 
     fn row(
         &self,
         member: u64,
         ended: &Result<Ending, (&'static str, String)>,
-        tally: &Tally,
+        tally: &ImpactTally,
     ) -> Row {
         let description = self.model.description();
         let number = |value: f64| Field::Number(value);
@@ -273,12 +306,25 @@ pub fn details(description: &Description, outcome: &Outcome) -> String {
     let details = outcome::details(description, outcome);
     let details: Vec<String> = details
         .iter()
-        .map(|(name, value)| match value.as_str() {
-            Some(text) => format!("{name} {text}"),
-            None => format!("{name} {value}"),
-        })
+        .map(|(name, fact)| format!("{name} {}", spelt(fact)))
         .collect();
     details.join(", ")
+}
+
+/// A fact as text.
+fn spelt(fact: &Fact) -> String {
+    match fact {
+        Fact::Number(number) => format!("{number:?}"),
+        Fact::Index(index) => index.to_string(),
+        Fact::Name(name) => (*name).to_owned(),
+        Fact::List(facts) => {
+            let facts: Vec<String> = facts
+                .iter()
+                .map(|fact| format!("{:?}", spelt(fact)))
+                .collect();
+            format!("[{}]", facts.join(","))
+        }
+    }
 }
 
 /// The message of a panic.
@@ -290,7 +336,8 @@ fn message(panic: &(dyn Any + Send)) -> String {
 
 /// Observes a run for the member's row.
 struct Seen<'a> {
-    tally: Tally,
+    common: &'a dyn Common,
+    tally: ImpactTally,
     sampler: Option<Sampler<'a>>,
 }
 
@@ -307,5 +354,9 @@ impl Watch for Seen<'_> {
 
     fn contact(&mut self, contact: Contact) {
         self.tally.contacts += u64::from(contact.begins);
+    }
+
+    fn is_over(&self) -> bool {
+        self.common.is_over()
     }
 }

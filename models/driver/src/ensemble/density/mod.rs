@@ -6,17 +6,17 @@
 mod convergence;
 mod counts;
 mod sampler;
-mod wish;
 
 pub use convergence::{Checkpoint, convergence};
 pub use counts::{Counts, Visits};
-use dalembert_driver::Point;
 pub use sampler::Sampler;
-pub use wish::Wish;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-use serde_json::{Value, json};
+use dalembert::describe::{Description, Topology};
+
+use crate::model::Point;
+use crate::names::{self, Unknown};
 
 /// Quantity of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +43,9 @@ impl Shown {
     }
 }
 
+/// Largest number of cells along an axis.
+pub const MOST_BINS: usize = 1000;
+
 /// Axis of the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -59,6 +62,39 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// The axis of a coordinate, a velocity, an output or `energy`. Without a range it is a full turn, the chart of the
+    /// coordinate, or NaN for a range that is not known.
+    ///
+    /// # Errors
+    /// [`Unknown`] if no quantity has this name.
+    pub fn named(
+        name: &str,
+        range: Option<[f64; 2]>,
+        bins: usize,
+        description: &Description,
+    ) -> Result<Self, Unknown> {
+        let all = shown(description);
+        let accepted = all.iter().map(|(name, _)| name.as_str());
+        let index = names::find("coordinate, velocity or output", name, accepted)?;
+        let shown = all[index].1;
+        let topology = match shown {
+            Shown::Position(index) => description.coordinates[index].topology,
+            _ => Topology::Line,
+        };
+        let known = match topology {
+            Topology::Circle => [-PI, PI],
+            Topology::Interval { low, high } if low.is_finite() && high.is_finite() => [low, high],
+            _ => [f64::NAN; 2],
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            shown,
+            is_circle: topology == Topology::Circle,
+            range: range.unwrap_or(known),
+            bins,
+        })
+    }
+
     /// The cell along the axis that contains a value.
     fn bin(&self, value: f64) -> Option<usize> {
         let [low, high] = self.range;
@@ -113,14 +149,6 @@ impl Density {
         let sides = sides.map(|axis| (axis.range[1] - axis.range[0]) / axis.bins as f64);
         sides[0] * sides[1]
     }
-
-    /// Data that identify the density.
-    pub fn metadata(&self) -> Value {
-        let axes = self.axes.each_ref();
-        let axes =
-            axes.map(|axis| json!({ "name": axis.name, "range": axis.range, "bins": axis.bins }));
-        json!({ "axes": axes, "every": self.every, "discard": self.discard })
-    }
 }
 
 /// The number of states at `discard + every`, `discard + 2 every`, .. up to `until`. A quotient within rounding of an
@@ -128,6 +156,23 @@ impl Density {
 pub fn count_samples(discard: f64, every: f64, until: f64) -> u64 {
     let count = (until - discard) / every;
     (count * (1.0 + 4.0 * f64::EPSILON)).floor().max(0.0) as u64
+}
+
+/// Quantities of axes, by name. Of two quantities with the same name the first is used.
+fn shown(description: &Description) -> Vec<(String, Shown)> {
+    let coordinates = names::coordinates(description).enumerate();
+    let positions = coordinates
+        .clone()
+        .map(|(index, name)| (name.to_owned(), Shown::Position(index)));
+    let velocities =
+        coordinates.map(|(index, name)| (names::velocity(name), Shown::Velocity(index)));
+    let outputs = description.outputs.iter().enumerate();
+    let outputs = outputs.map(|(index, name)| ((*name).to_owned(), Shown::Output(index)));
+    positions
+        .chain(velocities)
+        .chain(outputs)
+        .chain([("energy".to_owned(), Shown::Energy)])
+        .collect()
 }
 
 #[cfg(test)]

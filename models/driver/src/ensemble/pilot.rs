@@ -1,12 +1,10 @@
 //! Ranges of a density without given ranges, from short runs of a few members. They depend on the whole ensemble, not
 //! on the shard.
 
-use dalembert_driver::{Contact, Impact, Piece, Settings, Watch};
-
-use super::density::{Axis, Density, Wish, count_samples};
+use super::density::{Axis, Density, count_samples};
 use super::runner::{Runner, Shared};
-use crate::error::CliError;
-use crate::plot::style;
+use crate::grid::padded;
+use crate::run::{Contact, Impact, Piece, Settings, Watch};
 
 /// Number of members that are run.
 const MEMBERS: u64 = 16;
@@ -17,23 +15,20 @@ const SAMPLES: f64 = 256.0;
 /// Margin beyond the visited range, as a fraction of it.
 const ROOM: f64 = 0.05;
 
-/// The requested density, with its ranges.
+/// The density over these axes, with its ranges; `None` if a run ends before the first counted state.
 ///
 /// # Errors
-/// No time to count in, or an error of the flags of the model.
+/// An error of the model of the members.
 pub fn density(
-    wish: Wish,
+    mut axes: [Axis; 2],
     shared: Shared<'_>,
     [every, discard]: [f64; 2],
-) -> Result<Density, CliError> {
+) -> Result<Option<Density>, String> {
     let until = shared.settings.until;
     let samples = count_samples(discard, every, until);
     if samples == 0 {
-        return Err(CliError::Usage(
-            "--density: a run ends before the first counted state; make --every or --discard smaller, or --until later",
-        ));
+        return Ok(None);
     }
-    let mut axes = wish.axes;
     if axes.iter().any(|axis| axis.range[0].is_nan()) {
         let settings = Settings {
             until: until.min(discard + SAMPLES * every),
@@ -50,16 +45,16 @@ pub fn density(
             }
         }
     }
-    Ok(Density {
+    Ok(Some(Density {
         axes,
         every,
         discard,
         samples,
-    })
+    }))
 }
 
 /// The ranges of the axes' quantities, over members from the whole ensemble.
-fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 2]; 2], CliError> {
+fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 2]; 2], String> {
     let mut seen = Seen {
         axes,
         discard,
@@ -75,7 +70,7 @@ fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 
     }
     Ok(seen
         .extremes
-        .map(|values| rounded(style::padded(values.into_iter(), ROOM))))
+        .map(|values| rounded(padded(values.into_iter(), ROOM))))
 }
 
 /// A slightly wider range whose ends have few digits.

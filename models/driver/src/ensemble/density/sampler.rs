@@ -1,8 +1,8 @@
 //! Samples the states of a run that a density counts.
 
-use dalembert_driver::{Piece, Point};
-
 use super::{Density, Visits};
+use crate::model::Point;
+use crate::run::Piece;
 
 /// Sampler of one run.
 pub struct Sampler<'a> {

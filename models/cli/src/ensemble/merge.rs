@@ -1,0 +1,110 @@
+//! Rows and counts of all shards of an ensemble, taken from their files.
+
+use std::path::{Path, PathBuf};
+
+use dalembert_driver::ensemble::density::Counts;
+use dalembert_driver::ensemble::row::Row;
+use serde_json::{Map, Value};
+
+use super::journal;
+use super::output::Table;
+use crate::error::CliError;
+
+/// The flag, for messages.
+const FLAG: &str = "--merge";
+
+/// A shard in a file.
+struct Part<'a> {
+    path: &'a Path,
+    index: u64,
+    of: u64,
+    first: u64,
+    members: u64,
+}
+
+/// Passes the rows of all shards to `see`, in the order of members, and adds their counts.
+///
+/// # Errors
+/// A file that cannot be read, that belongs to another ensemble, that was altered or is not finished; members that are in
+/// no file, or in two.
+pub fn read(
+    files: &[PathBuf],
+    table: &Table<'_>,
+    members: u64,
+    mut counts: Option<&mut Counts>,
+    see: &mut dyn FnMut(&[u8], &Row) -> Result<(), CliError>,
+) -> Result<(), CliError> {
+    let parts: Result<Vec<Part<'_>>, CliError> = files
+        .iter()
+        .map(|path| part(path, table.metadata))
+        .collect();
+    let mut parts = parts?;
+    parts.sort_by_key(|part| (part.first, part.members));
+    let mut next = 0;
+    for part in &parts {
+        if part.first != next {
+            return Err(uncovered(part.first.min(next)..part.first.max(next), part));
+        }
+        next += part.members;
+    }
+    if let Some(last) = parts.last().filter(|_| next != members) {
+        return Err(uncovered(next..members, last));
+    }
+    for part in &parts {
+        let rows = (table.columns, part.first);
+        let rows = journal::read_shard(FLAG, part.path, rows, counts.as_deref_mut(), see)?;
+        if rows != part.members {
+            return Err(CliError::Input {
+                place: format!("{FLAG} {}", part.path.display()),
+                reason: format!(
+                    "the file holds {rows} of the {} members of its shard; finish it with --shard {}/{} --resume",
+                    part.members, part.index, part.of
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The shard in a file of this ensemble.
+fn part<'a>(path: &'a Path, metadata: &Map<String, Value>) -> Result<Part<'a>, CliError> {
+    let mut before = journal::metadata_of(FLAG, path)?;
+    let shard = before.remove("shard").unwrap_or_default();
+    let mut metadata = metadata.clone();
+    metadata.remove("shard");
+    let place = format!("{FLAG} {}", path.display());
+    if let Some((key, was, value)) = journal::difference(&before, &metadata) {
+        return Err(CliError::Input {
+            place,
+            reason: format!(
+                "the file is of another ensemble: `{key}` was {was} and is {value}; give the flags that its shards were run with"
+            ),
+        });
+    }
+    let number = |key: &str| shard.get(key).and_then(Value::as_u64);
+    let read = || {
+        Some(Part {
+            path,
+            index: number("index")?,
+            of: number("of")?,
+            first: number("first")?,
+            members: number("members")?,
+        })
+    };
+    read().ok_or_else(|| CliError::Input {
+        place,
+        reason: "its metadata name no shard; run it again".to_owned(),
+    })
+}
+
+/// The error for members that are in no file, or in two.
+fn uncovered(members: std::ops::Range<u64>, part: &Part<'_>) -> CliError {
+    CliError::Input {
+        place: format!("{FLAG} {}", part.path.display()),
+        reason: format!(
+            "members {} to {} are in no file, or in two; name the file of every shard once",
+            members.start,
+            members.end.saturating_sub(1)
+        ),
+    }
+}

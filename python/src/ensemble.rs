@@ -1,0 +1,358 @@
+//! Ensembles: the rows of some members, with sums that merge exactly.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use dalembert_driver::ensemble::density::{Axis, Counts, Density, MOST_BINS, convergence};
+use dalembert_driver::ensemble::exact::ExactSum;
+use dalembert_driver::ensemble::row::{Columns, Field, Kind, csv_line};
+use dalembert_driver::ensemble::runner::{Common, Done, Runner, Shared};
+use dalembert_driver::ensemble::{Members, Quantity, Tally, Values, is_reached, pilot};
+use dalembert_driver::words::Advice;
+use dalembert_driver::{AnyModel, Beginning, Integrator, OffConstraint, Settings};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::error::{self, refused};
+use crate::model::NativeModel;
+use crate::request::{Given, Request};
+
+/// Time between two looks at the signals of the process.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Largest number of members that are made side by side.
+const BLOCK: u64 = 64;
+
+/// Members of an ensemble: quantities with values of each, or with rows of all.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Varied<'py> {
+    /// Name, kind and numbers.
+    values: Vec<(String, String, Vec<f64>)>,
+    seed: Option<u64>,
+    count: u64,
+    /// Rows of values one after the other, and the member of the first.
+    rows: Option<PyReadonlyArray1<'py, f64>>,
+    first: u64,
+}
+
+/// Axes of a density, with the range of each, and times of the states.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Counted {
+    axes: Vec<(String, Option<[f64; 2]>, usize)>,
+    every: f64,
+    discard: f64,
+}
+
+/// An ensemble of runs of a model.
+#[pyclass(frozen, module = "dalembert._native")]
+pub struct NativeEnsemble {
+    model: NativeModel,
+    start: Given,
+    off_constraint: OffConstraint,
+    settings: Settings,
+    members: Members,
+    density: Option<Density>,
+    columns: Columns,
+    stopped: AtomicBool,
+}
+
+impl Common for NativeEnsemble {
+    fn model(&self) -> Result<Box<dyn AnyModel>, String> {
+        Ok(self.model.build())
+    }
+
+    fn beginning(&self, model: &dyn AnyModel) -> Result<Beginning, String> {
+        let beginning = self.start.beginning(model);
+        beginning.map_err(|error| Python::attach(|py| error.value(py).to_string()))
+    }
+
+    fn advice(&self) -> &Advice {
+        &error::ADVICE
+    }
+
+    fn is_over(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+}
+
+/// Rows of some members, and sums over them.
+struct Unit {
+    rows: Vec<u8>,
+    tally: Tally,
+    sums: Vec<ExactSum>,
+    counts: Option<Counts>,
+}
+
+#[pymethods]
+impl NativeEnsemble {
+    /// An ensemble; nothing is run but a few members for ranges of a density that are not given.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        model: &NativeModel,
+        request: Request<'_>,
+        varied: Varied<'_>,
+        density: Option<Counted>,
+    ) -> PyResult<Self> {
+        let built = model.build();
+        let members = members(built.as_ref(), &varied)?;
+        let off_constraint = request.off_constraint()?;
+        let start = request.start();
+        let moved = |quantity: &Quantity| matches!(quantity, Quantity::Velocity(_));
+        if start.beginning(built.as_ref())?.has_momenta() && members.quantities().iter().any(moved)
+        {
+            return Err(refused(
+                "p: it gives momenta, and velocities are varied; give qdot",
+            ));
+        }
+        let mut ensemble = Self {
+            columns: Columns::of(model.describe(), &members),
+            settings: request.settings(built.as_ref(), off_constraint)?,
+            model: model.clone(),
+            start,
+            off_constraint,
+            members,
+            density: None,
+            stopped: AtomicBool::new(false),
+        };
+        if let Some(density) = density {
+            ensemble.density = Some(ensemble.measured(py, &density)?);
+        }
+        Ok(ensemble)
+    }
+
+    /// Names of the columns, with the type of their values.
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        let columns = self.columns.iter();
+        columns
+            .map(|(name, kind)| {
+                let kind = match kind {
+                    Kind::Integer => "integer",
+                    Kind::Number => "number",
+                    Kind::Text => "text",
+                };
+                (name.to_owned(), kind)
+            })
+            .collect()
+    }
+
+    /// The header of the rows as a line of CSV.
+    fn header<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.columns.header())
+    }
+
+    /// The axes of the density, with their ranges.
+    fn axes(&self) -> Vec<(String, [f64; 2], usize)> {
+        let axes = self.density.iter().flat_map(|density| &density.axes);
+        axes.map(|axis| (axis.name.clone(), axis.range, axis.bins))
+            .collect()
+    }
+
+    /// Ends all runs that are under way, with an error.
+    fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Runs members from `first` on, up to `last` or for this time: the number of members, their rows and their sums.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        first: u64,
+        last: u64,
+        seconds: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let begun = Instant::now();
+        let unit = py.detach(|| self.made(first..last, seconds))?;
+        let dict = self.told(py, &unit)?;
+        dict.set_item("seconds", begun.elapsed().as_secs_f64())?;
+        Ok(dict)
+    }
+
+    /// How far a density has converged, from the counts of all members: part, states, distances of halves.
+    fn convergence(&self, counts: &[u8]) -> PyResult<Vec<(f64, u64, f64, f64, f64)>> {
+        let checkpoints = convergence(&self.read(counts)?).into_iter();
+        Ok(checkpoints
+            .map(|it| {
+                let distances = (it.over_time, it.over_members, it.independent);
+                (it.part, it.samples, distances.0, distances.1, distances.2)
+            })
+            .collect())
+    }
+
+    /// States in each cell, the first axis running fastest, and states outside of them, from the counts of all members.
+    fn states(&self, counts: &[u8]) -> PyResult<(Vec<u64>, u64)> {
+        let counts = self.read(counts)?;
+        Ok((counts.total(), counts.outside()))
+    }
+}
+
+impl NativeEnsemble {
+    fn shared(&self) -> Shared<'_> {
+        Shared {
+            common: self,
+            off_constraint: self.off_constraint,
+            settings: &self.settings,
+            members: &self.members,
+            density: self.density.as_ref(),
+            starts: &[],
+        }
+    }
+
+    /// The density, with its ranges.
+    fn measured(&self, py: Python<'_>, given: &Counted) -> PyResult<Density> {
+        let axes: PyResult<Vec<Axis>> = given
+            .axes
+            .iter()
+            .map(|(name, range, bins)| {
+                if !(1..=MOST_BINS).contains(bins) {
+                    return Err(refused(format!(
+                        "bins: {bins} is not accepted; expected a number from 1 to {MOST_BINS}"
+                    )));
+                }
+                let axis = Axis::named(name, *range, *bins, self.model.describe());
+                axis.map_err(|unknown| refused(format!("density: {unknown}")))
+            })
+            .collect();
+        let axes: [Axis; 2] = axes?
+            .try_into()
+            .map_err(|_| refused("density: expected two quantities"))?;
+        let times = [given.every, given.discard];
+        let density = py.detach(|| pilot::density(axes, self.shared(), times));
+        density.map_err(refused)?.ok_or_else(|| {
+            refused(
+                "density: a run ends before the first counted state; make every or discard smaller, or until later",
+            )
+        })
+    }
+
+    /// Runs members until the last, or until the time is over.
+    fn made(&self, members: Range<u64>, seconds: f64) -> PyResult<Unit> {
+        let mut runner = Runner::new(self.shared()).map_err(refused)?;
+        let numbers = self
+            .columns
+            .iter()
+            .filter(|(_, kind)| *kind != Kind::Text)
+            .count();
+        let mut unit = Unit {
+            rows: Vec::new(),
+            tally: Tally::new(&self.columns),
+            sums: vec![ExactSum::default(); numbers],
+            counts: self.density.as_ref().map(Counts::new),
+        };
+        let is_abreast = self.settings.integrator == Integrator::Taylor;
+        let (begun, mut looked) = (Instant::now(), Instant::now());
+        let mut next = members.start;
+        while next < members.end
+            && (next == members.start || begun.elapsed().as_secs_f64() < seconds)
+        {
+            let block = if is_abreast { BLOCK } else { 1 };
+            let end = members.end.min(next + block);
+            for (member, done) in (next..end).zip(runner.run(next..end)) {
+                unit.add(member, &done, &self.settings);
+            }
+            next = end;
+            if looked.elapsed() >= PATIENCE {
+                looked = Instant::now();
+                Python::attach(|py| py.check_signals())?;
+            }
+            if self.is_over() {
+                return Err(refused("the ensemble was stopped"));
+            }
+        }
+        Ok(unit)
+    }
+
+    /// A unit as data of Python.
+    fn told<'py>(&self, py: Python<'py>, unit: &Unit) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let tally = &unit.tally;
+        dict.set_item("members", tally.members)?;
+        dict.set_item("rows", PyBytes::new(py, &unit.rows))?;
+        dict.set_item("outcomes", tally.outcomes.clone())?;
+        dict.set_item("not_reached", tally.strayed)?;
+        let first = tally.first_strayed.iter();
+        let first = first.map(|it| (it.member, it.outcome.as_str(), it.reason.as_str()));
+        dict.set_item("first_not_reached", first.collect::<Vec<_>>())?;
+        dict.set_item("energy_change", tally.energy_change)?;
+        dict.set_item("energy_change_relative", tally.relative_change)?;
+        let sums = unit.sums.iter().map(|sum| {
+            let whole = (
+                PyBytes::new(py, &sum.sum()),
+                PyBytes::new(py, &sum.squares()),
+            );
+            (sum.count, sum.least, sum.greatest, whole.0, whole.1)
+        });
+        dict.set_item("sums", sums.collect::<Vec<_>>())?;
+        let counts = unit.counts.as_ref().map(|counts| {
+            let mut bytes = Vec::new();
+            counts.write(&mut bytes).map(|()| PyBytes::new(py, &bytes))
+        });
+        dict.set_item("counts", counts.transpose()?)?;
+        Ok(dict)
+    }
+
+    fn read(&self, mut bytes: &[u8]) -> PyResult<Counts> {
+        let density = self.density.as_ref();
+        let density = density.ok_or_else(|| refused("the ensemble counts no density"))?;
+        let mut counts = Counts::new(density);
+        counts.read(&mut bytes)?;
+        Ok(counts)
+    }
+}
+
+impl Unit {
+    fn add(&mut self, member: u64, done: &Done, settings: &Settings) {
+        self.tally
+            .add(&done.row, |outcome| is_reached(outcome, settings));
+        let numbers = done.row.iter().filter_map(|field| match field {
+            Field::Integer(count) => Some(*count as f64),
+            Field::Number(number) => Some(*number),
+            Field::Text(_) => None,
+        });
+        for (sum, number) in self.sums.iter_mut().zip(numbers) {
+            sum.add(number);
+        }
+        if let (Some(counts), Some(visits)) = (&mut self.counts, &done.visits) {
+            counts.add(member, visits);
+        }
+        self.rows.append(&mut csv_line(&done.row));
+    }
+}
+
+/// The members that are meant, of a model.
+fn members(model: &dyn AnyModel, varied: &Varied<'_>) -> PyResult<Members> {
+    let description = model.description();
+    let mut named = Vec::new();
+    for (name, kind, numbers) in &varied.values {
+        let quantity = Quantity::find(name, description);
+        let quantity = quantity.map_err(|unknown| refused(format!("vary: {unknown}")))?;
+        named.push((name.clone(), quantity, values(kind, numbers)?));
+    }
+    Ok(match &varied.rows {
+        None => Members::product(named, varied.seed, varied.count),
+        Some(rows) => {
+            let named = named
+                .into_iter()
+                .map(|(name, quantity, _)| (name, quantity));
+            Members::listed(named.collect(), rows.as_array().to_vec(), varied.first)
+        }
+    })
+}
+
+/// Values of a kind, from the numbers that describe them.
+fn values(kind: &str, numbers: &[f64]) -> PyResult<Values> {
+    Ok(match (kind, numbers) {
+        ("spaced", &[low, high, count]) => Values::Spaced {
+            ends: [low, high],
+            count: count as u64,
+        },
+        ("uniform", &[low, high]) => Values::Uniform([low, high]),
+        ("normal", &[mean, deviation]) => Values::Normal { mean, deviation },
+        ("list", numbers) => Values::List(numbers.to_vec()),
+        (kind, _) => return Err(refused(format!("vary: no values of the kind {kind}"))),
+    })
+}

@@ -1,0 +1,114 @@
+//! Files of shards that are merged: those of one run, to the byte; mistakes that are named.
+
+use super::*;
+
+const COUNTED: &str = "--density x_dot=-3..3,x=0..4:8 --every 0.25";
+
+/// Runs the shards of an ensemble to files, and returns their paths, last first.
+fn shards(folder: &Folder, line: &str, of: u64) -> Vec<String> {
+    let paths = (1..=of).rev().map(|shard| {
+        let path = folder.path(&format!("part{shard}.csv"));
+        let done = run(&format!("{line} --shard {shard}/{of} --csv {path}"));
+        assert_ne!(done.exit, Exit::Refused, "{}", done.errors);
+        path
+    });
+    paths.collect()
+}
+
+#[test]
+fn shards_merge_to_the_files_of_the_whole() {
+    let folder = Folder::new("merge");
+    for more in ["", COUNTED] {
+        let line = format!("{BALLS} {more}");
+        let whole = run(&format!(
+            "{line} --csv {} --json -",
+            folder.path("whole.csv")
+        ));
+        for of in [1, 3, 7] {
+            let parts = shards(&folder, &line, of).join(" ");
+            let merged = run(&format!(
+                "{line} --merge {parts} --csv {} --json -",
+                folder.path("all.csv")
+            ));
+            assert_eq!(merged.exit, whole.exit, "{}", merged.errors);
+            assert_eq!(merged.output, whole.output, "{of} shards");
+            for ending in ["", ".meta.json", ".sums"] {
+                let [one, other] =
+                    ["whole", "all"].map(|name| folder.read(&format!("{name}.csv{ending}")));
+                assert_eq!(one, other, "{of} shards, {ending}");
+            }
+            if !more.is_empty() {
+                let [one, other] = ["whole", "all"]
+                    .map(|name| fs::read(folder.0.join(format!("{name}.csv.counts"))).unwrap());
+                assert_eq!(one, other, "{of} shards");
+            }
+        }
+    }
+}
+
+/// The message of a merge that is refused.
+fn refused(line: &str, parts: &[&String]) -> String {
+    let parts: Vec<&str> = parts.iter().map(|part| part.as_str()).collect();
+    let done = run(&format!("{line} --merge {}", parts.join(" ")));
+    assert_eq!(done.exit, Exit::Refused, "{}", done.output);
+    done.errors
+}
+
+#[test]
+fn shards_that_are_not_the_whole_are_refused() {
+    let folder = Folder::new("unmerged");
+    let line = format!("{BALLS} {COUNTED}");
+    let parts = shards(&folder, &line, 3);
+    let [last, middle, first] = [&parts[0], &parts[1], &parts[2]];
+    let told = |parts: &[&String], words: &[&str]| {
+        let message = refused(&line, parts);
+        for word in words {
+            assert!(message.contains(word), "{word}: {message}");
+        }
+    };
+    told(
+        &[first, last],
+        &["--merge", "part3.csv", "members 42 to 83"],
+    );
+    told(&[first, middle], &["part2.csv", "members 84 to 125"]);
+    told(
+        &[first, middle, middle, last],
+        &["members 42 to 83", "once"],
+    );
+    let other = line.replace("--until 6", "--until 7");
+    let message = refused(&other, &[first, middle, last]);
+    assert!(message.contains("`until` was 6.0 and is 7.0"), "{message}");
+    let output = run(&format!("{line} --merge {first} --csv {first}"));
+    assert!(
+        output.errors.contains("cannot be an output"),
+        "{}",
+        output.errors
+    );
+    let absent = folder.path("absent.csv");
+    told(&[first, &absent, last], &["absent.csv.meta.json"]);
+
+    let rows = folder.read("part2.csv");
+    fs::write(folder.0.join("part2.csv"), rows.replacen("done", "gone", 1)).unwrap();
+    told(
+        &[first, middle, last],
+        &["part2.csv, line", "altered", "run the shard again"],
+    );
+    let cut = rows.trim_end().rfind('\n').unwrap() + 1;
+    fs::write(folder.0.join("part2.csv"), &rows[..cut]).unwrap();
+    told(&[first, middle, last], &["holds 41 rows and counts of 42"]);
+    fs::remove_file(folder.0.join("part2.csv.sums")).unwrap();
+    told(&[first, middle, last], &["part2.csv.sums", "missing"]);
+}
+
+#[test]
+fn a_shard_that_is_not_finished_is_named() {
+    let folder = Folder::new("unfinished");
+    let parts = shards(&folder, BALLS, 2);
+    let rows = folder.read("part1.csv");
+    let cut = rows.trim_end().rfind('\n').unwrap() + 1;
+    fs::write(folder.0.join("part1.csv"), &rows[..cut]).unwrap();
+    let message = refused(BALLS, &[&parts[0], &parts[1]]);
+    for part in ["part1.csv", "62 of the 63 members", "--shard 1/2 --resume"] {
+        assert!(message.contains(part), "{message}");
+    }
+}
