@@ -222,7 +222,9 @@ class Ensemble:
 
         texts = [name for name, kind in self._kinds.items() if kind == "text"]
         missing = {name: ["NaN"] for name in self.columns if name not in texts}
-        read = partial(pd.read_csv, float_precision="round_trip", keep_default_na=False, na_values=missing)
+        # Numbers are read back to the bit by default from pandas 3 on.
+        precision = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
+        read = partial(pd.read_csv, keep_default_na=False, na_values=missing, **precision)
         return pd.concat([read(path, dtype=dict.fromkeys(texts, object)) for path in self._directory.files()], ignore_index=True)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:

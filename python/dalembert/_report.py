@@ -74,7 +74,13 @@ class Section:
     items: tuple[Any, ...]
 
     def to_html(self) -> str:
-        """The section in HTML, with formulas for MathJax."""
+        """The section in HTML, with formulas for MathJax.
+
+        Returns
+        -------
+        str
+            An element for each item.
+        """
         parts = [f"<h4>{escape(self.title)}</h4>"]
         if self.equation_latex:
             parts.append(_display(self.equation_latex))

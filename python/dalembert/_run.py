@@ -292,25 +292,49 @@ class Run:
         return columns if self.mode is None else {**columns, "mode": self.mode}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The samples as a table of pandas."""
+        """The samples as a table of pandas.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each sample, with the columns of :meth:`columns`.
+        """
         import pandas
 
         return pandas.DataFrame(self.columns())
 
     def to_polars(self) -> polars.DataFrame:
-        """The samples as a table of polars."""
+        """The samples as a table of polars.
+
+        Returns
+        -------
+        polars.DataFrame
+            A row for each sample, with the columns of :meth:`columns`.
+        """
         import polars
 
         return polars.DataFrame(self.columns())
 
     def to_arrow(self) -> pyarrow.Table:
-        """The samples as a table of Arrow."""
+        """The samples as a table of Arrow.
+
+        Returns
+        -------
+        pyarrow.Table
+            A row for each sample, with the columns of :meth:`columns`.
+        """
         import pyarrow
 
         return pyarrow.table(self.columns())
 
     def to_xarray(self) -> xarray.Dataset:
-        """The samples as a data set of xarray over the dimension ``t``."""
+        """The samples as a data set of xarray over the dimension ``t``.
+
+        Returns
+        -------
+        xarray.Dataset
+            A variable for each of :meth:`columns`.
+        """
         import xarray
 
         columns = self.columns()

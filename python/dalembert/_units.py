@@ -17,6 +17,8 @@ FIRST = 64
 MOST = 50_000
 #: A unit ends after this multiple of its time, and the rest of its members is another unit.
 LONGEST = 6.0
+#: Towards the end units become shorter, down to their time divided by this.
+SHORTEST = 50
 #: Units in flight for each worker, so that none waits.
 AHEAD = 2
 #: Units over which the pace is measured, for each worker.
@@ -136,8 +138,8 @@ class Units:
         share = -(-left // (AHEAD * self._workers))
         seconds = sum(seconds for _, seconds in self._recent)
         pace = sum(members for members, _ in self._recent) / seconds if seconds > 0 else None
-        wanted = FIRST if pace is None else int(pace * self._plan.seconds)
-        size = max(1, min(wanted, share, MOST, last - first))
+        wanted, least = (FIRST, 1) if pace is None else (int(pace * self._plan.seconds), int(pace * self._plan.seconds / SHORTEST))
+        size = max(1, min(wanted, max(share, least), MOST, last - first))
         if first + size < last:
             self._gaps.appendleft((first + size, last))
         return Unit(first, first + size)

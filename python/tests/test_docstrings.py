@@ -57,7 +57,7 @@ def test_docstrings_have_the_form_of_numpydoc(name, item):
     if inspect.isclass(item):
         return
     signature = inspect.signature(item)
-    given = [parameter for parameter in signature.parameters if parameter != "self"]
+    given = [parameter for parameter in signature.parameters if parameter not in ("self", "cls")]
     assert documented(parts.get("Parameters", "")) == given
     returns = signature.return_annotation not in ("None", None, inspect.Signature.empty)
     assert ("Returns" in parts) == returns, "Returns"

@@ -331,7 +331,7 @@ def test_directories_that_are_not_this_ensemble_are_refused(tmp_path):
     with pytest.raises(RequestError, match="another run is writing"):
         drops({"x": (1, 2, 4)}, until=1, directory=kept)
     held.close()
-    (part,) = kept.glob("part-*.csv")
+    part = kept / "part-000000000000.csv"
     part.write_bytes(part.read_bytes().replace(b"done", b"gone", 1))
     for again in [lambda: dalembert.Ensemble.open(kept), lambda: drops({"x": (1, 2, 4)}, until=1, directory=kept)]:
         with pytest.raises(EnsembleError, match="altered or lost.*remove part-000000000000.json"):
@@ -339,7 +339,7 @@ def test_directories_that_are_not_this_ensemble_are_refused(tmp_path):
 
 
 REFUSED = {
-    "unknown `z`": {"vary": {"z": [1.0]}},
+    "unknown coordinate, velocity or parameter `z`": {"vary": {"z": [1.0]}},
     "low, high, count": {"vary": {"x": 1.0}},
     "positive whole number": {"vary": {"x": (1, 2, 0)}},
     "and members=": {"vary": {"x": (1, 2)}},
