@@ -1,47 +1,23 @@
-"""Ensembles: many runs of one model on any executor, kept in a directory."""
+"""Ensembles that were run: columns, statistics and densities over all members."""
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-import os
-import pickle
-import tempfile
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, cast
 
-from . import _native
-from ._errors import EnsembleError, RequestError
-from ._parts import Directory
-from ._request import inputs as input_functions, laws, pairs, start
-from ._units import Executor, Plan, Unit, Units
+from ._errors import RequestError
 
 if TYPE_CHECKING:
+    import os
+    from pathlib import Path
+
     import numpy as np
     import pandas
 
     from ._model import Model
-
-#: Arguments of :meth:`Model.simulate` that all members share, with their defaults.
-COURSE: dict[str, Any] = {
-    "until": None, "impacts": None, "state": None, "q": None, "qdot": None, "p": None, "off_constraint": "error", "tol": 1e-10,
-    "integrator": "dop853", "step": None, "max_step": None, "steps": None, "law": None, "form": None, "projection": None,
-    "rest": "stop", "penetration": "stop", "corner": "stop", "split": "first", "inputs": None, "mode": None,
-}
-#: Arguments of a run that ensembles do without.
-WITHOUT: dict[str, Any] = {
-    "times": None, "samples": 0, "events": [], "watched": None, "on_step": None, "on_event": None, "on_progress": None,
-    "control": None, "period": None,
-}
-#: Units of an executor inside this process: they cost nothing, and end soon after Ctrl-C.
-INSIDE = 1.0
-#: Members without the requested end that a summary lists.
-TOLD = 5
+    from ._parts import Directory
+    from ._units import Executor
 
 
 @dataclass(frozen=True)
@@ -125,8 +101,8 @@ class Ensemble:
     {'done': 4}
     """
 
-    def __init__(self, directory: Directory, temporary: Any = None) -> None:
-        self._directory, self._temporary = directory, temporary
+    def __init__(self, directory: Directory) -> None:
+        self._directory = directory
         self._manifest, self._summary = directory.manifest(), directory.summary()
 
     @classmethod
@@ -150,6 +126,8 @@ class Ensemble:
         EnsembleError
             A part that was altered since.
         """
+        from ._parts import Directory
+
         opened = Directory(directory)
         opened.manifest()
         opened.read()
@@ -224,8 +202,8 @@ class Ensemble:
         missing = {name: ["NaN"] for name in self.columns if name not in texts}
         # Numbers are read back to the bit by default from pandas 3 on.
         precision = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
-        read = partial(pd.read_csv, keep_default_na=False, na_values=missing, **precision)
-        return pd.concat([read(path, dtype=dict.fromkeys(texts, object)) for path in self._directory.files()], ignore_index=True)
+        arguments = {"keep_default_na": False, "na_values": missing, "dtype": dict.fromkeys(texts, object), **precision}
+        return pd.concat([pd.read_csv(path, **arguments) for path in self._directory.files()], ignore_index=True)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write all rows: the bytes of ``dalembert ensemble --csv`` for the same members.
@@ -249,296 +227,102 @@ class Ensemble:
         return f"<{len(self)} members of {self._manifest['model']}: {outcomes}>"
 
 
-def ensemble(
-    model: Model,
-    vary: Mapping[str, Any],
-    table: Mapping[str, Sequence[float]] | None,
-    members: int | None,
-    seed: int | None,
-    density: dict[str, Any] | None,
-    executor: Executor | Callable[[], Executor] | None,
-    directory: str | os.PathLike[str] | None,
-    plan: Plan,
-    progress: bool,
-    course: dict[str, Any],
-) -> Ensemble:
-    """The ensemble of :meth:`Model.ensemble`."""
-    request = _request(model, course)
-    varied, rows = _members(model, vary, table, members, seed)
-    spec = request | {"varied": varied, "density": density}
-    native = _built(model, spec, rows, 0)
-    if density is not None:
-        spec["density"] = density | {"axes": native.axes()}
-    temporary = tempfile.TemporaryDirectory(prefix="dalembert-") if directory is None else None
-    kept = Directory(temporary.name if temporary else directory)
-    kept.begin(_identity(model, spec, native, rows))
-    try:
-        _complete(kept, model, spec, native, rows, executor, plan, progress)
-    finally:
-        kept.close()
-    return Ensemble(kept, temporary)
+class Swept:
+    """Model that an ensemble runs many times."""
 
+    def ensemble(
+        self,
+        vary: Mapping[str, Any] | None = None,
+        *,
+        members: int | None = None,
+        seed: int | None = None,
+        table: Mapping[str, Sequence[float]] | None = None,
+        executor: Executor | Callable[[], Executor] | None = None,
+        directory: str | os.PathLike[str] | None = None,
+        density: Sequence[str] | Mapping[str, tuple[float, float] | None] | None = None,
+        bins: int | tuple[int, int] = 100,
+        every: float = 1.0,
+        discard: float = 0.0,
+        unit: float = 10.0,
+        retries: int = 3,
+        workers: int | None = None,
+        progress: bool = False,
+        **course: Any,
+    ) -> Ensemble:
+        """Run the model many times, each time with another start or other parameters, on any executor.
 
-def _complete(
-    kept: Directory,
-    model: Model,
-    spec: dict[str, Any],
-    native: _native.NativeEnsemble,
-    rows: np.ndarray | None,
-    executor: Executor | Callable[[], Executor] | None,
-    plan: Plan,
-    progress: bool,
-) -> None:
-    """Runs the members that are in no part, and writes the summary."""
-    count = spec["varied"]["count"]
-    inside = executor is None or isinstance(executor, ThreadPoolExecutor)
-    if inside:
-        plan = Plan(min(plan.seconds, INSIDE), plan.retries, plan.workers)
-        made = executor or partial(ThreadPoolExecutor, plan.workers or os.cpu_count() or 1)
-        units = Units(made, lambda unit, longest: (native.run, (unit.first, unit.last, longest)), kept.gaps(count), plan)
-    else:
-        work = pickle.dumps((model, spec))
+        Rows and sums are the same, to the bit, for any executor, any number of workers and any sizes of units, after any losses and
+        interruptions; rows are those of the command ``ensemble``.
 
-        def call(unit: Unit, longest: float) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-            part = None if rows is None else rows[unit.first:unit.last]
-            return run_unit, (work, unit.first, unit.last, longest, part, unit.attempts, _native.version())
+        Parameters
+        ----------
+        vary : mapping of str to object, optional
+            Values of coordinates and velocities at the start and of parameters, by name. ``(low, high, count)`` are equally spaced
+            values, both ends included; ``(low, high)`` as many as `members`; a list is its values. Several names make all
+            combinations, the last one changing fastest. With `seed`, ``(low, high)`` is uniform and ``Normal(mean, deviation)``
+            normal.
+        members : int, optional
+            Number of members.
+        seed : int, optional
+            Draw the values at random. A member depends on the seed and on its index alone.
+        table : mapping of str to sequence of float, optional
+            Columns with a row for each member in place of `vary`; a table of pandas is one.
+        executor : executor or callable, optional
+            Anything with the `submit` of :mod:`concurrent.futures`: a pool of processes, ``client.get_executor()`` of Dask,
+            ``MPIPoolExecutor``, an executor of loky or submitit. A function that makes one is asked for another after a loss. All
+            processors of this machine by default.
+        directory : path, optional
+            Where the parts are kept. One that holds parts of the same ensemble is continued. A temporary one by default.
+        density : sequence or mapping, optional
+            Two quantities over which states of all members are counted: ``("x", "y")``, or with ranges ``{"x": (-1, 1), "y": None}``.
+            Ranges that are not given come from short runs of a few members.
+        bins : int or tuple of int, default 100
+            Cells along each.
+        every, discard : float, default 1 and 0
+            Time between the states that are counted, and before the first.
+        unit : float, default 10
+            Seconds that a call in a worker should take. Numbers of members come from the measured pace; no call goes on beyond six
+            times this, but for the member that it is at.
+        retries : int, default 3
+            Workers that one unit may lose before the ensemble is given up.
+        workers : int, optional
+            Number of workers, where the executor does not tell it.
+        progress : bool, default False
+            Show how many members are done, by tqdm.
+        **course
+            What members share, as for :meth:`simulate`: ``until``, ``impacts``, ``state``, ``tol``, ``integrator``, ``law`` and others.
 
-        units = Units(executor, call, kept.gaps(count), plan)
-    header = native.header()
-    try:
-        with _shown(progress, count, model.name, sum(part["members"] for part in kept.parts.values())) as tell:
-            for first, unit in units.results():
-                kept.add(first, header, unit)
-                tell(unit["members"])
-    except BaseException:
-        native.stop()
-        raise
-    kept.finish(_summary(kept, spec, native))
+        Returns
+        -------
+        Ensemble
+            Columns, statistics and density. A member that does not reach its end is a row with its outcome.
 
+        Raises
+        ------
+        RequestError
+            Arguments that are refused; a directory of another ensemble.
+        EnsembleError
+            Workers that were lost too often, or failed. Parts that are done stay in the directory.
 
-def run_unit(
-    work: bytes, first: int, last: int, longest: float, rows: np.ndarray | None, attempt: int, version: str,
-) -> dict[str, Any]:
-    """Rows and sums of a unit, in a worker. `attempt` makes the calls after a loss differ from those before."""
-    if version != _native.version():
-        raise EnsembleError(f"the worker has dalembert {_native.version()}, and the driver {version}; install the same")
-    model, spec = _taken(work)
-    return _built(model, spec, rows, first).run(first, last, longest)
+        Examples
+        --------
+        >>> import dalembert
+        >>> drops = dalembert.models.bouncing_ball.ensemble({"x": (0.5, 2)}, members=4, until=10)
+        >>> drops.statistics["end.x"].count
+        4
+        """
+        from ._sweep import Plan, density_of, ensemble
 
-
-@lru_cache(maxsize=4)
-def _taken(work: bytes) -> tuple[Model, dict[str, Any]]:
-    """The model of an ensemble; a worker loads it once."""
-    return pickle.loads(work)
-
-
-def _built(model: Model, spec: dict[str, Any], rows: np.ndarray | None, first: int) -> _native.NativeEnsemble:
-    native = model._native
-    if spec["inputs"]:
-        native = native.with_inputs(spec["inputs"])
-    if spec["mode"] is not None:
-        native = native.with_mode(spec["mode"])
-    varied = spec["varied"] | {"rows": None if rows is None else rows.ravel(), "first": first}
-    return _native.NativeEnsemble(native, spec["request"] | WITHOUT, varied, spec["density"])
-
-
-def _request(model: Model, course: dict[str, Any]) -> dict[str, Any]:
-    """Arguments that all members share, as data."""
-    for name in course:
-        if name not in COURSE:
-            raise TypeError(f"ensemble() has no argument `{name}`; accepted for all members: {', '.join(COURSE)}")
-    given = COURSE | course
-    numbers, functions = input_functions(model.inputs, given.pop("inputs") or {})
-    if functions is not None:
-        raise RequestError("inputs: members take numbers alone; functions go with simulate")
-    mode = given.pop("mode")
-    request = {"start": start(*(given.pop(name) for name in ("state", "q", "qdot", "p"))), "laws": laws(given.pop("law"))}
-    return {"request": request | given, "inputs": numbers, "mode": mode}
-
-
-def _members(
-    model: Model, vary: Mapping[str, Any], table: Mapping[str, Sequence[float]] | None, members: int | None, seed: int | None,
-) -> tuple[dict[str, Any], np.ndarray | None]:
-    """Members as the extension module takes them; and the rows of a table."""
-    if members is not None and not (isinstance(members, int) and members > 0):
-        raise RequestError(f"members: {members} is not accepted; expected a positive whole number")
-    if seed is not None and not (isinstance(seed, int) and 0 <= seed < 1 << 64):
-        raise RequestError(f"seed: {seed} is not accepted; expected a whole number from 0 to 2^64 - 1")
-    rows = None
-    if table is not None:
-        if vary or members is not None or seed is not None:
-            raise RequestError("table: its rows are the members; leave out vary, members and seed")
-        rows = _rows(table)
-        values = [(str(name), "list", []) for name in table]
-        count = len(rows)
-    else:
-        values = [(name, *_values(name, given, members, seed is not None)) for name, given in vary.items()]
-        count = _count(values, members, seed is not None)
-    named = {name for name, _, _ in values}
-    for name, value in model.parameters.items():
-        if math.isnan(value) and name not in named:
-            raise RequestError(f"parameter `{name}` has no default; give it by with_parameters({name}=..), or vary it")
-    return {"values": values, "seed": seed, "count": count}, rows
-
-
-def _rows(table: Mapping[str, Sequence[float]]) -> np.ndarray:
-    import numpy as np
-
-    columns = [np.asarray(table[name], dtype=np.float64) for name in table]
-    if not columns or any(column.ndim != 1 or len(column) != len(columns[0]) for column in columns) or not len(columns[0]):
-        raise RequestError("table: expected columns of one length, with a row for each member")
-    rows = np.ascontiguousarray(np.stack(columns, axis=1))
-    if not np.isfinite(rows).all():
-        raise RequestError("table: expected finite numbers")
-    return rows
-
-
-def _values(name: str, given: Any, members: int | None, drawn: bool) -> tuple[str, list[float]]:
-    """Kind and numbers of the values of a quantity."""
-    def refuse(expected: str) -> RequestError:
-        return RequestError(f"vary {name}: {given!r} is not accepted; expected {expected}")
-
-    if isinstance(given, Normal):
-        if not drawn:
-            raise refuse("a range or a list, or a seed= to draw with")
-        if not (math.isfinite(given.mean) and 0 <= given.deviation < math.inf):
-            raise refuse("a finite mean and a deviation that is not negative")
-        return "normal", [float(given.mean), float(given.deviation)]
-    try:
-        numbers = [float(number) for number in given]
-    except (TypeError, ValueError):
-        raise refuse("(low, high), (low, high, count), a list of values, or Normal(mean, deviation)") from None
-    if not numbers or not all(math.isfinite(number) for number in numbers):
-        raise refuse("finite numbers")
-    if not isinstance(given, tuple):
-        if drawn:
-            raise refuse("(low, high) or Normal(mean, deviation), as members are drawn")
-        return "list", numbers
-    if drawn:
-        if len(numbers) != 2:
-            raise refuse("(low, high): with seed= the number of members is members=")
-        return "uniform", numbers
-    if len(numbers) == 2 and members is not None:
-        return "spaced", [*numbers, float(members)]
-    if len(numbers) == 3 and numbers[2] == int(numbers[2]) > 0:
-        return "spaced", numbers
-    raise refuse("(low, high, count) with a positive whole number, or (low, high) and members=")
-
-
-def _count(values: list[tuple[str, str, list[float]]], members: int | None, drawn: bool) -> int:
-    """Number of members."""
-    if drawn:
-        if members is None or not values:
-            raise RequestError("seed: it needs members= and vary=, which name what is drawn")
-        return members
-    if not values and (members or 1) > 1:
-        raise RequestError("members: all members are equal; name what varies by vary= or table=")
-    count = math.prod(int(numbers[2]) if kind == "spaced" else len(numbers) for _, kind, numbers in values)
-    if members is not None and members != count:
-        raise RequestError(f"members: {members} is not accepted; expected {count}, the product of the counts in vary")
-    return count
-
-
-def density_of(
-    quantities: Sequence[str] | Mapping[str, tuple[float, float] | None] | None, bins: int | tuple[int, int], every: float, discard: float,
-) -> dict[str, Any] | None:
-    """A density as the extension module takes it."""
-    if quantities is None:
-        return None
-    ranges = quantities if isinstance(quantities, Mapping) else dict.fromkeys(quantities)
-    if isinstance(quantities, str) or len(ranges) != 2:
-        raise RequestError("density: expected two quantities, as (\"x\", \"y\") or {\"x\": (-1, 1), \"y\": None}")
-    for name, ends in ranges.items():
-        if ends is not None and not (len(ends) == 2 and all(map(math.isfinite, ends)) and ends[0] < ends[1]):
-            raise RequestError(f"density {name}: {ends!r} is not accepted; expected (low, high) with low below high")
-    if not (math.isfinite(every) and every > 0):
-        raise RequestError(f"every: {every} is not accepted; expected a positive number")
-    if not (math.isfinite(discard) and discard >= 0):
-        raise RequestError(f"discard: {discard} is not accepted; expected a number that is not negative")
-    numbers = (bins, bins) if isinstance(bins, int) else tuple(bins)
-    if len(numbers) != 2 or not all(isinstance(number, int) and number > 0 for number in numbers):
-        raise RequestError(f"bins: {bins!r} is not accepted; expected a positive whole number, or two")
-    axes = [(name, ends and [float(end) for end in ends], number) for (name, ends), number in zip(ranges.items(), numbers)]
-    return {"axes": axes, "every": float(every), "discard": float(discard)}
-
-
-def _identity(model: Model, spec: dict[str, Any], native: _native.NativeEnsemble, rows: np.ndarray | None) -> dict[str, Any]:
-    """What rows and sums depend on, and the names of the columns."""
-    varied = spec["varied"] | {"table": None if rows is None else hashlib.sha256(rows.tobytes()).hexdigest()}
-    return {
-        "version": _native.version(), "model": model.name, "scene": model._scene, "source": model.source,
-        "parameters": dict(model.parameters), **spec, "varied": varied, "columns": native.columns(),
-    }
-
-
-def _summary(kept: Directory, spec: dict[str, Any], native: _native.NativeEnsemble) -> dict[str, Any]:
-    """Sums over all parts: whole numbers, exact sums and extremes, which do not depend on how members are divided."""
-    parts = [kept.parts[first] for first in sorted(kept.parts)]
-    outcomes: dict[str, int] = {}
-    for part in parts:
-        for kind, number in part["outcomes"].items():
-            outcomes[kind] = outcomes.get(kind, 0) + number
-    names = [name for name, kind in native.columns() if kind != "text"]
-    statistics = {name: vars(_statistics([part["sums"][place] for part in parts])) for place, name in enumerate(names)}
-    return {
-        "members": sum(part["members"] for part in parts),
-        "outcomes": dict(sorted(outcomes.items())),
-        "not_reached": sum(part["not_reached"] for part in parts),
-        "first_not_reached": [told for part in parts for told in part["first_not_reached"]][:TOLD],
-        "energy_change": max(part["energy_change"] for part in parts),
-        "energy_change_relative": max(part["energy_change_relative"] for part in parts),
-        "statistics": statistics,
-        "density": _density(kept, spec, native),
-    }
-
-
-def _statistics(sums: list[list[Any]]) -> Statistics:
-    """Statistics from exact sums of numbers in units of 2^-1074 and of their squares in units of 2^-2148."""
-    def whole(digits: str) -> int:
-        return int.from_bytes(bytes.fromhex(digits), "little", signed=True)
-
-    sums = [item for item in sums if item[0] > 0]
-    count = sum(item[0] for item in sums)
-    if count == 0:
-        return Statistics(0, math.nan, math.nan, math.nan, math.nan)
-    total, squares = sum(whole(item[3]) for item in sums), sum(whole(item[4]) for item in sums)
-    std = math.nan
-    if count > 1:
-        try:
-            # A quotient of whole numbers is rounded once.
-            std = math.sqrt((count * squares - total * total) / (count * (count - 1) << 2148))
-        except OverflowError:
-            std = math.inf
-    extremes = min(item[1] for item in sums), max(item[2] for item in sums)
-    return Statistics(count, total / (count << 1074), std, *extremes)
-
-
-def _density(kept: Directory, spec: dict[str, Any], native: _native.NativeEnsemble) -> dict[str, Any] | None:
-    import numpy as np
-
-    if spec["density"] is None:
-        return None
-    counts = sum(np.frombuffer(part, dtype="<u8") for part in kept.counts())
-    states, outside = native.states(counts.tobytes())
-    keys = ("part", "states", "halves_of_time", "halves_of_members", "independent")
-    convergence = [dict(zip(keys, row)) for row in native.convergence(counts.tobytes())]
-    return {**spec["density"], "counts": states, "outside": outside, "convergence": convergence}
+        if not (math.isfinite(unit) and unit > 0):
+            raise RequestError(f"unit: {unit} is not accepted; expected a positive number of seconds")
+        for name, value, least in [("retries", retries, 0), ("workers", workers, 1)]:
+            if value is not None and not (isinstance(value, int) and value >= least):
+                raise RequestError(f"{name}: {value} is not accepted; expected a whole number from {least} on")
+        counted = density_of(density, bins, every, discard)
+        plan = Plan(unit, retries, workers)
+        return ensemble(cast("Model", self), vary or {}, table, members, seed, counted, executor, directory, plan, progress, course)
 
 
 def _numbers(told: Mapping[str, Any]) -> dict[str, Any]:
     """Numbers of a document, in which null stands for one that is not finite."""
     return {name: math.nan if value is None else value for name, value in told.items()}
-
-
-@contextmanager
-def _shown(shows: bool, count: int, name: str, done: int) -> Iterator[Callable[[int], Any]]:
-    """A function that shows how many members are done, by tqdm where it is installed."""
-    if not shows:
-        yield lambda members: None
-        return
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        raise RequestError("progress: it needs tqdm; install it, or leave progress out") from None
-    with tqdm(total=count, initial=done, desc=name, unit="members") as bar:
-        yield bar.update

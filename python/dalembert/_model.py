@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence
 
 from . import _events, _export, _native
 from ._errors import RequestError
-from ._ensemble import Ensemble, density_of, ensemble
+from ._ensemble import Swept
 from ._events import Event, Occurrence, StateFunction
 from ._request import array, floats, inputs as input_functions, laws, pairs, start
 from ._report import Derivation, Expression, Verdict, derivations
 from ._run import Run
-from ._units import Executor, Plan
 
 if TYPE_CHECKING:
     import casadi
@@ -55,7 +54,7 @@ class Parameter:
     documentation: str
 
 
-class Model:
+class Model(Swept):
     """A mechanical system with values for its parameters. Models do not change: other values make another model.
 
     Values of parameters are attributes: ``disk.m``. Names with dots are items of :attr:`parameters`.
@@ -428,96 +427,6 @@ class Model:
         }
         with _events.progress(progress, until or self.initial.get("until"), self.name) as shown:
             return Run(self, native.simulate(request | {"on_progress": shown}), wanted)
-
-    def ensemble(
-        self,
-        vary: Mapping[str, Any] | None = None,
-        *,
-        members: int | None = None,
-        seed: int | None = None,
-        table: Mapping[str, Sequence[float]] | None = None,
-        executor: Executor | Callable[[], Executor] | None = None,
-        directory: str | os.PathLike[str] | None = None,
-        density: Sequence[str] | Mapping[str, tuple[float, float] | None] | None = None,
-        bins: int | tuple[int, int] = 100,
-        every: float = 1.0,
-        discard: float = 0.0,
-        unit: float = 10.0,
-        retries: int = 3,
-        workers: int | None = None,
-        progress: bool = False,
-        **course: Any,
-    ) -> Ensemble:
-        """Run the model many times, each time with another start or other parameters, on any executor.
-
-        Rows and sums are the same, to the bit, for any executor, any number of workers and any sizes of units, after any losses and
-        interruptions; rows are those of the command ``ensemble``.
-
-        Parameters
-        ----------
-        vary : mapping of str to object, optional
-            Values of coordinates and velocities at the start and of parameters, by name. ``(low, high, count)`` are equally spaced
-            values, both ends included; ``(low, high)`` as many as `members`; a list is its values. Several names make all
-            combinations, the last one changing fastest. With `seed`, ``(low, high)`` is uniform and ``Normal(mean, deviation)``
-            normal.
-        members : int, optional
-            Number of members.
-        seed : int, optional
-            Draw the values at random. A member depends on the seed and on its index alone.
-        table : mapping of str to sequence of float, optional
-            Columns with a row for each member in place of `vary`; a table of pandas is one.
-        executor : executor or callable, optional
-            Anything with the `submit` of :mod:`concurrent.futures`: a pool of processes, ``client.get_executor()`` of Dask,
-            ``MPIPoolExecutor``, an executor of loky or submitit. A function that makes one is asked for another after a loss. All
-            processors of this machine by default.
-        directory : path, optional
-            Where the parts are kept. One that holds parts of the same ensemble is continued. A temporary one by default.
-        density : sequence or mapping, optional
-            Two quantities over which states of all members are counted: ``("x", "y")``, or with ranges ``{"x": (-1, 1), "y": None}``.
-            Ranges that are not given come from short runs of a few members.
-        bins : int or tuple of int, default 100
-            Cells along each.
-        every, discard : float, default 1 and 0
-            Time between the states that are counted, and before the first.
-        unit : float, default 10
-            Seconds that a call in a worker should take. Numbers of members come from the measured pace; no call goes on beyond six
-            times this, but for the member that it is at.
-        retries : int, default 3
-            Workers that one unit may lose before the ensemble is given up.
-        workers : int, optional
-            Number of workers, where the executor does not tell it.
-        progress : bool, default False
-            Show how many members are done, by tqdm.
-        **course
-            What members share, as for :meth:`simulate`: ``until``, ``impacts``, ``state``, ``tol``, ``integrator``, ``law`` and others.
-
-        Returns
-        -------
-        Ensemble
-            Columns, statistics and density. A member that does not reach its end is a row with its outcome.
-
-        Raises
-        ------
-        RequestError
-            Arguments that are refused; a directory of another ensemble.
-        EnsembleError
-            Workers that were lost too often, or failed. Parts that are done stay in the directory.
-
-        Examples
-        --------
-        >>> import dalembert
-        >>> drops = dalembert.models.bouncing_ball.ensemble({"x": (0.5, 2)}, members=4, until=10)
-        >>> drops.statistics["end.x"].count
-        4
-        """
-        if not (math.isfinite(unit) and unit > 0):
-            raise RequestError(f"unit: {unit} is not accepted; expected a positive number of seconds")
-        for name, value, least in [("retries", retries, 0), ("workers", workers, 1)]:
-            if value is not None and not (isinstance(value, int) and value >= least):
-                raise RequestError(f"{name}: {value} is not accepted; expected a whole number from {least} on")
-        counted = density_of(density, bins, every, discard)
-        plan = Plan(unit, retries, workers)
-        return ensemble(self, vary or {}, table, members, seed, counted, executor, directory, plan, progress, course)
 
     def evaluate(
         self,

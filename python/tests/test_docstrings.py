@@ -23,9 +23,9 @@ def public():
             found += [(f"{name}.{key}", value) for key, value in vars(item).items() if inspect.isfunction(value) and key[0] != "_"]
         elif inspect.isclass(item):
             found.append((name, item))
-            for key, value in vars(item).items():
+            for key, value in inspect.getmembers(item, callable):
                 value = getattr(value, "__func__", value)
-                if inspect.isfunction(value) and key[0] != "_":
+                if inspect.isfunction(value) and key[0] != "_" and value.__module__.startswith("dalembert"):
                     found.append((f"{name}.{key}", value))
     for name in ("jax", "torch"):
         try:

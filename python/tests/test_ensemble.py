@@ -1,27 +1,32 @@
 """Ensembles: rows of the command line; the same bytes on any executor, after losses and interruptions; arguments that are refused."""
 
 import csv
+import gc
 import io
+import itertools
 import json
 import math
+import multiprocessing
 import os
 import pickle
 import signal
 import threading
-import time
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
 from conftest import BALL
 
 import dalembert
-from dalembert import EnsembleError, Normal, RequestError, _ensemble, _units
+from dalembert import EnsembleError, Normal, RequestError, _sweep, _units
 
 #: Members whose runs differ in length, with some that cannot start.
 VARY = {"x": (-0.5, 3.5, 9), "x_dot": (-1.0, 1.0, 14)}
 FLAGS = ["--vary", "x=-0.5..3.5:9", "--vary", "x_dot=-1..1:14"]
+#: With `fork` a pool starts workers while others run, and may wait for ever for one that it starts while another is lost.
+SPAWN = multiprocessing.get_context("spawn")
 SMALL = {"unit": 0.001, "until": 6}
 DENSITY = {"density": {"x_dot": (-3, 3), "x": (0, 4)}, "bins": 8, "every": 0.25}
 
@@ -128,27 +133,26 @@ def test_a_pool_of_processes_that_loses_a_worker_is_replaced(whole, tmp_path):
     made = []
 
     def pool():
-        made.append(Deadly(ProcessPoolExecutor(2), tmp_path / "killed"))
+        made.append(Deadly(ProcessPoolExecutor(2, SPAWN), tmp_path / "killed"))
         return made[-1]
 
     assert files(drops(executor=pool, **SMALL, **DENSITY), tmp_path) == whole
     assert len(made) == 2 and (tmp_path / "killed").exists()
 
 
-def doomed_once(path):
-    """Begins a worker that is killed soon, if it is the first."""
-    try:
-        with open(path, "x"):
-            pass
-    except FileExistsError:
-        return
-    threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGKILL)).start()
+def doomed(path):
+    """Begins a worker, one of which is killed in its third unit."""
+    _sweep.run_unit = partial(killed_later, path, itertools.count(), _sweep.run_unit)
+
+
+def killed_later(path, calls, call, *arguments):
+    return call(*arguments) if next(calls) < 2 else killed_once(path, call, *arguments)
 
 
 def test_a_given_pool_of_processes_is_replaced_by_one_like_it(whole, tmp_path):
-    with ProcessPoolExecutor(2, initializer=doomed_once, initargs=(tmp_path / "killed",)) as pool:
+    with ProcessPoolExecutor(2, SPAWN, doomed, (tmp_path / "killed",)) as pool:
         assert files(drops(executor=pool, **SMALL, **DENSITY), tmp_path) == whole
-        time.sleep(0.1)
+        assert (tmp_path / "killed").exists()
         with pytest.raises(BrokenExecutor):
             pool.submit(os.getpid).result()
 
@@ -279,20 +283,20 @@ def test_an_interruption_keeps_what_is_done(whole, tmp_path):
 
 
 def test_long_units_end_soon_after_they_are_stopped():
-    spec = _ensemble._request(dalembert.models.rolling_disk, {"until": 1e9}) | {
+    spec = _sweep._request(dalembert.models.rolling_disk, {"until": 1e9}) | {
         "varied": {"values": [("theta_dot", "list", [10.0])], "seed": None, "count": 1}, "density": None,
     }
-    native = _ensemble._built(dalembert.models.rolling_disk, spec, None, 0)
+    native = _sweep._built(dalembert.models.rolling_disk, spec, None, 0)
     threading.Timer(0.1, native.stop).start()
     with pytest.raises(RequestError, match="stopped"):
         native.run(0, 1, math.inf)
 
 
 def test_a_unit_whose_time_is_over_leaves_its_other_members():
-    spec = _ensemble._request(dalembert.models.bouncing_ball, {"until": 6}) | {
+    spec = _sweep._request(dalembert.models.bouncing_ball, {"until": 6}) | {
         "varied": {"values": [("x", "spaced", [1.0, 2.0, 50])], "seed": None, "count": 50}, "density": None,
     }
-    native = _ensemble._built(dalembert.models.bouncing_ball, spec, None, 0)
+    native = _sweep._built(dalembert.models.bouncing_ball, spec, None, 0)
     assert [native.run(7, 50, seconds)["members"] for seconds in (0.0, math.inf)] == [1, 43]
 
 
@@ -326,7 +330,7 @@ def test_directories_that_are_not_this_ensemble_are_refused(tmp_path):
         drops({"x": (1, 2, 4)}, until=1, directory=tmp_path)
     with pytest.raises(RequestError, match="manifest.json is missing"):
         dalembert.Ensemble.open(tmp_path)
-    held = _ensemble.Directory(kept)
+    held = _sweep.Directory(kept)
     held.begin(held.manifest())
     with pytest.raises(RequestError, match="another run is writing"):
         drops({"x": (1, 2, 4)}, until=1, directory=kept)
@@ -409,7 +413,7 @@ def test_models_are_pickled_with_scene_and_parameters():
 
 def test_workers_with_another_version_are_refused():
     with pytest.raises(EnsembleError, match="the worker has dalembert .*, and the driver 0.0.1; install the same"):
-        _ensemble.run_unit(b"", 0, 1, 1.0, None, 0, "0.0.1")
+        _sweep.run_unit(b"", 0, 1, 1.0, None, 0, "0.0.1")
 
 
 def test_a_thousand_small_units_keep_their_order():
@@ -418,3 +422,12 @@ def test_a_thousand_small_units_keep_their_order():
                          _units.Plan(0.002, 0, 1))
     sizes = {first: result["members"] for first, result in units.results()}
     assert sum(sizes.values()) == 5000 and max(sizes.values()) > _units.FIRST and sizes[max(sizes)] == 1
+
+
+def test_temporary_directories_go_with_their_ensemble():
+    ensemble = drops({"x": [1.0]}, until=1)
+    path = ensemble.directory
+    assert path.exists()
+    del ensemble
+    gc.collect()
+    assert not path.exists()
