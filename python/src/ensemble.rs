@@ -47,6 +47,9 @@ pub struct Counted {
     discard: f64,
 }
 
+/// Part of the states of a density, their number, and the distances of its halves by time, by members and if independent.
+type Checked = (f64, u64, f64, f64, f64);
+
 /// An ensemble of runs of a model.
 #[pyclass(frozen, module = "dalembert._native")]
 pub struct NativeEnsemble {
@@ -173,7 +176,7 @@ impl NativeEnsemble {
     }
 
     /// How far a density has converged, from the counts of all members: part, states, distances of halves.
-    fn convergence(&self, counts: &[u8]) -> PyResult<Vec<(f64, u64, f64, f64, f64)>> {
+    fn convergence(&self, counts: &[u8]) -> PyResult<Vec<Checked>> {
         let checkpoints = convergence(&self.read(counts)?).into_iter();
         Ok(checkpoints
             .map(|it| {

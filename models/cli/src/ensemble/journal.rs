@@ -34,6 +34,9 @@ const SAVING: u32 = 20;
 /// Length of a line of `FILE.sums`, in bytes.
 const SUM: usize = 17;
 
+/// Receives rows, each with its line of CSV.
+pub type Receiver<'a> = &'a mut dyn FnMut(&[u8], &Row) -> Result<(), CliError>;
+
 /// The open and locked file.
 pub struct Journal {
     flag: &'static str,
@@ -315,7 +318,7 @@ pub fn read_shard(
     path: &Path,
     (columns, first_member): (&Columns, u64),
     counts: Option<&mut Counts>,
-    see: &mut dyn FnMut(&[u8], &Row) -> Result<(), CliError>,
+    see: Receiver<'_>,
 ) -> Result<u64, CliError> {
     let whole = |source| failed(flag, path, source);
     let mut file = File::open(path).map_err(whole)?;

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use dalembert_driver::ensemble::density::Counts;
-use dalembert_driver::ensemble::row::Row;
 use serde_json::{Map, Value};
 
-use super::journal;
+use super::journal::{self, Receiver};
 use super::output::Table;
 use crate::error::CliError;
 
@@ -32,7 +31,7 @@ pub fn read(
     table: &Table<'_>,
     members: u64,
     mut counts: Option<&mut Counts>,
-    see: &mut dyn FnMut(&[u8], &Row) -> Result<(), CliError>,
+    see: Receiver<'_>,
 ) -> Result<(), CliError> {
     let parts: Result<Vec<Part<'_>>, CliError> = files
         .iter()
