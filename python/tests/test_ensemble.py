@@ -58,7 +58,7 @@ def test_members_from_draws_and_tables_are_those_of_the_command(command, tmp_pat
     drawn = drops({"x": Normal(2, 0.1), "g": (1, 3)}, members=40, seed=7, until=2)
     assert files(drawn, tmp_path)[0].decode() == told
     table = {"x": drawn["in.x"], "g": drawn["in.g"]}
-    with ProcessPoolExecutor(2) as pool:
+    with ProcessPoolExecutor(2, SPAWN) as pool:
         listed = drops(None, table=table, until=2, executor=pool, unit=0.001)
     assert files(listed, tmp_path)[0].decode() == told
     listed = dalembert.models.bouncing_ball.with_parameters(g=2).ensemble({"x": [1, 2, 0.5]}, until=1)
@@ -101,7 +101,7 @@ def test_bytes_do_not_depend_on_workers_and_units(whole, tmp_path, monkeypatch, 
     monkeypatch.setattr(_units, "FIRST", 5 * count)
     assert files(drops(workers=count, directory=tmp_path / "kept", **SMALL, **DENSITY), tmp_path) == whole
     assert len(list((tmp_path / "kept").glob("part-*.csv"))) > 5
-    with ProcessPoolExecutor(count) as pool:
+    with ProcessPoolExecutor(count, SPAWN) as pool:
         assert files(drops(executor=pool, **SMALL, **DENSITY), tmp_path) == whole
 
 
