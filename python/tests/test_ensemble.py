@@ -431,3 +431,13 @@ def test_temporary_directories_go_with_their_ensemble():
     del ensemble
     gc.collect()
     assert not path.exists()
+
+
+def test_members_that_a_unit_leaves_are_run_by_others():
+    def halves(unit, longest):
+        return dict, ({"members": -(-(unit.last - unit.first) // 2), "seconds": 1e-3},)
+
+    units = _units.Units(Lossy(0), halves, [(3, 40), (50, 99)], _units.Plan(0.01, 0, 2))
+    found = sorted((first, first + result["members"]) for first, result in units.results())
+    members = [member for first, last in found for member in range(first, last)]
+    assert members == [*range(3, 40), *range(50, 99)]
