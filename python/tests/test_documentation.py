@@ -28,7 +28,7 @@ def blocks_of(page):
     return re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
 
 
-@pytest.mark.parametrize("page", ["README.md", "python/README.md", "docs/python.md", "docs/guide/cluster.md"])
+@pytest.mark.parametrize("page", ["README.md", "python/README.md", "docs/python.md", "docs/guide/cluster.md", "docs/guide/gradients.md"])
 def test_blocks_of_python_run_as_they_are(page, tmp_path, monkeypatch, capsys):
     matplotlib = pytest.importorskip("matplotlib")
     pytest.importorskip("pandas")
