@@ -24,7 +24,7 @@ AHEAD = 2
 #: Units over which the pace is measured, for each worker.
 RECENT = 4
 #: Names of the errors by which executors report a lost worker, beside those of the standard library.
-LOST = frozenset({"KilledWorker", "LostRun", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError"})
+LOST = frozenset({"KilledWorker", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError"})
 
 
 class Executor(Protocol):
