@@ -136,7 +136,8 @@ mod tests {
                 over = sum >> 8;
             }
         }
-        let terms = magnitude.iter().enumerate().map(|(place, byte)| {
+        let digits = magnitude.iter().enumerate().filter(|(_, byte)| **byte != 0);
+        let terms = digits.map(|(place, byte)| {
             // Two factors, so that neither leaves the range.
             let exponent = 8 * place as i32 - unit;
             f64::from(*byte) * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
