@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use dalembert::law::Law;
+use dalembert_driver::ensemble::row::INPUT;
 use dalembert_driver::ensemble::runner::Shared;
 use dalembert_driver::ensemble::{Members, Quantity};
 use dalembert_driver::{AnyModel, Component, Search, Settings};
@@ -14,7 +15,6 @@ use serde_json::{Map, Value, json};
 
 use crate::args::MapArgs;
 use crate::ensemble::common::Flags;
-use crate::ensemble::listed::INPUT;
 use crate::ensemble::members::{self, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::output::Table;

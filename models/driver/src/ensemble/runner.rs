@@ -316,6 +316,7 @@ fn spelt(fact: &Fact) -> String {
     match fact {
         Fact::Number(number) => format!("{number:?}"),
         Fact::Index(index) => index.to_string(),
+        Fact::Flag(flag) => flag.to_string(),
         Fact::Name(name) => (*name).to_owned(),
         Fact::List(facts) => {
             let facts: Vec<String> = facts
