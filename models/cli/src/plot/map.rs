@@ -165,7 +165,7 @@ impl Chart<'_> {
         let finite = |place: &&[f64; 2]| place.iter().all(|value| value.is_finite());
         let range = |axis: usize| {
             let values = places.iter().filter(finite).map(move |place| place[axis]);
-            style::padded(values, DOTS_ROOM)
+            padded(values, DOTS_ROOM)
         };
         let window = Window {
             x: range(0),
