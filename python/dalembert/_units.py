@@ -125,8 +125,7 @@ class Units:
             try:
                 future = self._executor.submit(function, *arguments)
             except BrokenExecutor as error:
-                self._again.appendleft(unit)
-                self._replace(self._executor, error)
+                self._lost(unit, self._executor, error)
                 continue
             self._flying[future] = unit, self._executor
         return bool(self._flying)

@@ -69,8 +69,9 @@ def test_members_from_draws_and_tables_are_those_of_the_command(command, tmp_pat
 def test_settings_are_those_of_the_command(command, tmp_path):
     disk = dalembert.models.rolling_disk
     ensemble = disk.ensemble({"theta_dot": (9, 11, 5)}, impacts=3, tol=1e-8, law="elastic", state={"phi": 1.3}, form="global")
-    flags = ["--vary", "theta_dot=9..11:5", "--impacts", "3", "--tol", "1e-8", "--law", "elastic", "--initial", "phi=1.3", "--form", "global"]
-    assert files(ensemble, tmp_path)[0].decode() == command("ensemble", "rolling_disk", *flags, "--csv", "-")
+    flags = ["--vary", "theta_dot=9..11:5", "--impacts", "3", "--tol", "1e-8", "--law", "elastic", "--initial", "phi=1.3"]
+    told = command("ensemble", "rolling_disk", *flags, "--form", "global", "--csv", "-")
+    assert files(ensemble, tmp_path)[0].decode() == told
     assert set(ensemble.outcomes) == {"impact_budget"} and ensemble.not_reached == []
 
 
@@ -259,6 +260,8 @@ def test_an_executor_that_broke_and_cannot_be_replaced_says_what_to_give():
 
     with pytest.raises(EnsembleError, match="all gone; give a function that makes one"):
         drops(executor=Broken())
+    with pytest.raises(EnsembleError, match="3 workers were lost with these members, the last by BrokenExecutor: all gone"):
+        drops(executor=lambda: Broken(), retries=2, workers=1)
 
 
 def test_an_interruption_keeps_what_is_done(whole, tmp_path):
