@@ -25,7 +25,7 @@ pub fn check_blows(comparison: &Comparison<'_>, program: &Program) -> Result<(),
                 Law::NonholonomicPlastic => 2.0 * constrained / free * gap_rate,
                 Law::ImpactPlastic => gap_rate,
                 Law::TotallyPlastic => constrained / free * gap_rate,
-                Law::Reset | Law::Transition => f64::NAN,
+                Law::Reset | Law::Stop | Law::Transition => f64::NAN,
             };
             let scaled = |size: f64, direction: &[f64]| -> Vec<f64> {
                 direction.iter().map(|component| size * component).collect()
