@@ -170,7 +170,7 @@ fn a_mode_has_stops_of_its_own() {
     let start = [&[0.0, 0.0][..], &[2.0, 1.0]];
     each(&HOPPER.model(), start, &ADAPTIVE, |name, end| {
         // Over the edge at 1/2 in flight, down to -1 at 1 + sqrt(3).
-        assert_stopped(name, end, 1, 1.0 + 3.0_f64.sqrt());
+        assert_stopped(name, end, 2, 1.0 + 3.0_f64.sqrt());
     });
 }
 

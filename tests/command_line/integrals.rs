@@ -99,7 +99,7 @@ fn impacts_add_nothing_and_show_the_value_of_their_time() {
     // A flight of speed 1 and time 2: the integral of (1 - t)^2/2 - t + t^2/2.
     let flight = -1.0 / 3.0;
     for (index, (event, action)) in marked.iter().enumerate() {
-        let flights = (index / 2 + 1) as f64;
+        let flights = (index + 1) as f64;
         assert!(
             (action - flights * flight).abs() < 1e-11,
             "{event}: {action}"
