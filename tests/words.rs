@@ -60,6 +60,7 @@ dalembert::model! {
             impact_plastic: x + 5 >= 0 => impact_plastic;
             totally_plastic: x + 6 >= 0 => totally_plastic;
             reset: x + 7 >= 0 => reset { dot(x) = -dot(x)/2; };
+            stop: x + 8 >= 0 => stop;
         }
     }
 }
