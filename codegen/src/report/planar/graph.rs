@@ -152,7 +152,7 @@ pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
             };
             let slope = match (&map, surface.law) {
                 (Some(map), _) => slope(node, surface.gap, map),
-                (None, law) => of_law(node, law, &surface),
+                (None, law) => of_law(node, law, surface),
             };
             edges.push(Edge {
                 from,
