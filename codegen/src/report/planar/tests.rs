@@ -177,9 +177,8 @@ fn what_is_missing_is_named() {
     let cases = [
         (format!("{line} {floor}"), 2, Decided::Open, "is no reset"),
         (
-            format!(
-                "coordinates {{ x: angle; }} lagrangian = dot(x)^2/2 + cos(x); impacts {{ w: cos(x) <= 1/2 => reset {{ dot(x) = -dot(x); }}; }}"
-            ),
+            "coordinates { x: angle; } lagrangian = dot(x)^2/2 + cos(x); impacts { w: cos(x) <= 1/2 => reset { dot(x) = -dot(x); }; }"
+                .to_owned(),
             0,
             Decided::Fails,
             "is an angle",
