@@ -132,7 +132,14 @@ type Reasoned = (Decided, String);
 pub fn shown(interval: Interval) -> String {
     let middle = 0.5 * interval.lo + 0.5 * interval.hi;
     match interval.hi - interval.lo <= 1e-8 * middle.abs() {
-        true => digits(format!("{middle:.7e}").parse().unwrap_or(middle)),
+        true => {
+            let rounded: f64 = format!("{middle:.7e}").parse().unwrap_or(middle);
+            let text = digits(rounded);
+            match text.contains('e') {
+                true => format!("{rounded:e}"),
+                false => text,
+            }
+        }
         false => format!("[{:?}, {:?}]", interval.lo, interval.hi),
     }
 }
