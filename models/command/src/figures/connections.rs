@@ -42,7 +42,7 @@ fn action() -> Figure {
         // Starts with no more than five impacts until then, and those that rise for the first time.
         let (slow, fast) = (time / 12.0 + 0.001, 0.5 * time + 0.45);
         let flags = format!(
-            "--vary x_dot={slow:.3}..{fast:.3}:2400 --set m=1 --initial x=0 --until {time} --returns 100 --class returns \
+            "--vary x_dot={slow:.3}..{fast:.3}:960 --set m=1 --initial x=0 --until {time} --returns 100 --class returns \
              --output 'S = integral(lagrangian)' --axes x,S --tol 1e-9"
         );
         Panel {
