@@ -175,7 +175,7 @@ impl NativeEnsemble {
         Ok(dict)
     }
 
-    /// How far a density has converged, from the counts of all members: part, states, distances of halves.
+    /// Convergence of a density from the counts of all members: part, states, distances of halves.
     fn convergence(&self, counts: &[u8]) -> PyResult<Vec<Checked>> {
         let checkpoints = convergence(&self.read(counts)?).into_iter();
         Ok(checkpoints

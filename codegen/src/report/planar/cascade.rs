@@ -34,7 +34,7 @@ pub struct Step {
     pub kept: Interval,
     /// The kinetic energy behind the impact, from the largest `R` on.
     pub reached: Interval,
-    /// What the next mode needs.
+    /// `R` of the next mode.
     pub next: Interval,
 }
 
