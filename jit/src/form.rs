@@ -8,7 +8,9 @@ use dalembert::Fault;
 use dalembert::erased::{Defaults, Form, Global, Held, Kinds, SeriesTable, Shared};
 use dalembert::jet::Work;
 use dalembert::kernels::{At, KernelTable, OfSurface, Plain};
-use dalembert::numbers::{Bent, ComplexInterval, Interval, Numbers, Rated, TaylorModel};
+use dalembert::numbers::{
+    Bent, ComplexInterval, Everywhere, Interval, Numbers, Rated, TaylorModel,
+};
 use dalembert::variations::Dual;
 use dalembert_codegen::model::{Model, Scene};
 use dalembert_codegen::spec::SURFACES;
@@ -108,6 +110,7 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Global) -> Arc<Form> {
             (may_be_narrow || varies).then(|| any(functions.table::<Rated>())),
             varies.then(|| any(functions.table::<Dual>())),
             varies.then(|| any(functions.table::<Interval>())),
+            may_be_narrow.then(|| any(functions.table::<Everywhere>())),
         ],
         series: match compiled {
             Some(compiled) => native_series(compiled.series),
@@ -118,6 +121,7 @@ fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Global) -> Arc<Form> {
             Some(any(series_table::<f64x8>(&series))),
             varies.then(|| any(series_table::<Interval>(&series))),
             varies.then(|| any(series_table::<Rated>(&series))),
+            None,
             None,
             None,
         ],

@@ -60,6 +60,7 @@ pub(crate) fn resolved<Sys: System, Step: Stepper<Sys>>(
         path: &path,
         length: step.length(),
         allowed: allowed(step, &path),
+        changes: changes(step.start(), &path),
         gained: [step.start().zeroed(); 2],
         has_pole: false,
     };
@@ -114,6 +115,39 @@ fn allowed<Sys: System, Step: Stepper<Sys>>(
     allowed
 }
 
+/// Width of the range of each rate over the whole step, by the fraction of the step.
+fn changes<S: StateVector>(like: &S, path: &Path<S>) -> S {
+    let mut changes = like.zeroed();
+    for (i, entry) in changes.as_mut_slice().iter_mut().enumerate() {
+        *entry = path.rated(i, [0.0, 1.0]).rate.width();
+    }
+    changes
+}
+
+/// Enclosures of all components on a part of a step: ends of their values, then ends of their rates.
+struct Motion<S>([S; 4]);
+
+impl<S: StateVector> Motion<S> {
+    fn on(path: &Path<S>, part: [f64; 2], like: &S) -> Self {
+        let mut ends = [like.zeroed(); 4];
+        for i in 0..like.count() {
+            let Rated { value, rate } = path.rated(i, part);
+            for (end, number) in ends.iter_mut().zip([value.lo, value.hi, rate.lo, rate.hi]) {
+                end.as_mut_slice()[i] = number;
+            }
+        }
+        Self(ends)
+    }
+
+    fn rated(&self, i: usize) -> Rated {
+        let [value_lo, value_hi, rate_lo, rate_hi] = self.0.each_ref().map(|end| end.as_slice()[i]);
+        Rated {
+            value: Interval::new(value_lo, value_hi),
+            rate: Interval::new(rate_lo, rate_hi),
+        }
+    }
+}
+
 /// Relation of the enclosed rates on a part of a step to those that it assumed.
 enum Rates {
     Assumed,
@@ -127,6 +161,8 @@ struct Along<'a, Sys: System> {
     path: &'a Path<Sys::State>,
     length: f64,
     allowed: Sys::State,
+    /// Change of each rate over the whole step.
+    changes: Sys::State,
     /// Bounds of the change of the components over the parts with bounded rates.
     gained: [Sys::State; 2],
     /// True if there are parts on which nothing is known of the rates.
@@ -148,7 +184,7 @@ impl<Sys: System> Along<'_, Sys> {
     /// Compares the rates on a part of the step with those that it assumed. If they agree, adds their integral to
     /// `gained`.
     fn compare(&mut self, part: [f64; 2]) -> Rates {
-        let (path, width) = (self.path, part[1] - part[0]);
+        let (path, changes, width) = (self.path, &self.changes, part[1] - part[0]);
         let mut gained = self.gained;
         let middle = 0.5 * (part[0] + part[1]);
         let mut state = self.allowed.zeroed();
@@ -162,15 +198,15 @@ impl<Sys: System> Along<'_, Sys> {
         }
         let (mut is_assumed, mut is_bounded) = (true, true);
         let length = Interval::point(self.length);
-        let component = |i: usize| path.rated(i, part);
+        let motion = Motion::on(path, part, &state);
+        let component = |i: usize| motion.rated(i);
         let mut take = |i: usize, rate: Rated| {
             let reach = (rate.rate.magnitude() * 0.5) * width;
             let centred = Interval::point(centre.as_slice()[i]).widened(reach);
             let rates = length * rate.value.intersection(centred).unwrap_or(rate.value);
-            let assumed = path.rated(i, part).rate;
+            let assumed = motion.rated(i).rate;
             let excess = (rates.hi - assumed.hi).max(assumed.lo - rates.lo);
-            let change = path.rated(i, [0.0, 1.0]).rate.width();
-            let wider = OF_CHANGE * change + OF_SIZE * assumed.magnitude();
+            let wider = OF_CHANGE * changes.as_slice()[i] + OF_SIZE * assumed.magnitude();
             let most = (wider * width).max(self.allowed.as_slice()[i]);
             // Written so that NaN fails the comparison.
             is_assumed &= excess * width <= most;

@@ -140,6 +140,8 @@ pub(crate) struct Progress<S> {
     /// True if the energy is checked: it is finite at the start, and the steps are of fixed size without an error
     /// estimate.
     watches_energy: bool,
+    /// True if steps are checked for forces that none of their stages has seen.
+    watches_rates: bool,
     pub(crate) t: f64,
     /// Part of the time that `t` cannot hold: lengths of steps and flights add up without losing it.
     rest: f64,
@@ -154,6 +156,7 @@ impl<S> Progress<S> {
         Self {
             is_begun: false,
             watches_energy: false,
+            watches_rates: false,
             t,
             rest: 0.0,
             flight: 0.0,
@@ -222,6 +225,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             state,
             counters,
             watches_energy,
+            watches_rates,
             ..
         } = &mut *self.progress;
         if let Some(component) = state.as_slice().iter().position(|value| !value.is_finite()) {
@@ -230,6 +234,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if let Some(coordinate) = self.system.outside_chart(state) {
             return Err(Outcome::LeftChart { coordinate });
         }
+        *watches_rates = self.system.can_be_narrow() && self.system.has_narrow_rates();
         *watches_energy = self.stepper.fixed_step().is_some() && has_energy(self.system, *t, state);
         let mut now = Moment {
             system: self.system,
@@ -292,7 +297,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         if self.system.can_lose_rank() && self.shorten_where_dependent()? {
             return Ok(Next::Step);
         }
-        if self.system.can_be_narrow() && forces.is_none() && self.shorten_where_narrow()? {
+        let is_checked = self.system.can_be_narrow() && self.progress.watches_rates;
+        if is_checked && forces.is_none() && self.shorten_where_narrow()? {
             return Ok(Next::Step);
         }
         let mut view = StepView {

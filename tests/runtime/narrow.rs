@@ -154,3 +154,48 @@ fn smooth_forces_cost_no_steps() {
     let counters = steps(1e-3);
     assert_eq!(counters.rejected, 0, "{counters:?}");
 }
+
+/// A cart with a pendulum, whose inertia changes by a factor of 1 + m as the pendulum turns.
+static CART: Text = Text::new(
+    "Cart {
+        coordinates { x; theta: angle; }
+        parameters { m > 0 = 1; }
+        lagrangian = (1 + m)*dot(x)^2/2 + m*(dot(theta)^2/2 + cos(theta)*dot(x)*dot(theta) + cos(theta));
+    }",
+);
+
+/// A cart that leaves a road for a field of needles.
+static ROUTE: Text = Text::new(
+    "Route {
+        coordinates { x; theta: angle; }
+        parameters { m > 0 = 1; s > 0 = 0.1; }
+        modes {
+            road { lagrangian = (1 + m*sin(theta)^2)*dot(x)^2/2 + dot(theta)^2/2; }
+            field { lagrangian = dot(x)^2/2 + dot(theta)^2/2 - exp(-(x/s)^2); }
+        }
+        transitions { off: road -> field when x >= 3; }
+    }",
+);
+
+/// Only 12 evaluations of the rates a step: none to check it.
+#[test]
+fn an_inertia_that_changes_little_costs_no_check() {
+    for (m, is_checked) in [(0.5, false), (2.9, false), (3.1, true), (100.0, true)] {
+        let cart = CART.with([("m", m)]);
+        assert_eq!(cart.has_narrow_rates(), is_checked, "m = {m}");
+        let counters = Course::from_state(&cart, vector(&[0.0, 1.0, 0.0, 0.0]), 10.0)
+            .tol(1e-10)
+            .observed(Integrator::Dop853, &mut ())
+            .counters;
+        let steps = counters.accepted + counters.rejected;
+        let checks = if is_checked { steps } else { 0 };
+        let stages = counters.rate_evaluations - checks;
+        assert!(stages <= 12 * steps + 2, "m = {m}: {counters:?}");
+        assert!(stages + 12 >= 12 * steps, "m = {m}: {counters:?}");
+    }
+}
+
+#[test]
+fn one_mode_with_narrow_rates_is_enough() {
+    assert!(ROUTE.model().has_narrow_rates());
+}

@@ -565,6 +565,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::bent::Bent;
     use crate::complex_interval::ComplexInterval;
+    use crate::everywhere::Everywhere;
     use crate::rated::Rated;
     use crate::taylor_model::TaylorModel;
 
@@ -577,6 +578,7 @@ pub(crate) mod tests {
         pub(crate) name: &'static str,
         pub(crate) plain: fn(f64) -> f64,
         pub(crate) interval: fn(Interval) -> Interval,
+        pub(crate) everywhere: fn(Everywhere) -> Everywhere,
         pub(crate) rated: fn(Rated) -> Rated,
         pub(crate) model: fn(TaylorModel) -> TaylorModel,
         pub(crate) bent: fn(Bent) -> Bent,
@@ -615,6 +617,7 @@ pub(crate) mod tests {
                 name: $name,
                 plain: |$x: f64| $value,
                 interval: |$x: Interval| $value,
+                everywhere: |$x: Everywhere| $value,
                 rated: |$x: Rated| $value,
                 model: |$x: TaylorModel| $value,
                 bent: |$x: Bent| $value,

@@ -9,6 +9,7 @@
 //! | `interval.rs` | intervals that contain every value, rounded outwards |
 //! | `smooth.rs` | functions with their derivatives, for numbers that carry derivatives |
 //! | `rated.rs` | intervals of values and of rates along a stretch of motion |
+//! | `everywhere.rs` | all values of a number, and whether it can be sharp |
 //! | `bent.rs` | intervals of values, rates and bends along lines through a box |
 //! | `complex_interval.rs` | rectangles of complex numbers about the real axis, which bound power series |
 //! | `taylor_model.rs` | cubics along a stretch of motion, with bounds of the distance of values and rates from them |
@@ -26,6 +27,7 @@ mod assumption;
 pub mod bent;
 pub mod complex_interval;
 pub mod description;
+pub mod everywhere;
 pub mod extended;
 pub mod held;
 pub mod interval;
@@ -42,6 +44,7 @@ pub mod taylor_model;
 
 pub use bent::Bent;
 pub use complex_interval::ComplexInterval;
+pub use everywhere::Everywhere;
 pub use extended::{Extended, MOST_PARTS, NotDecimal};
 pub use held::{Held, Shared};
 pub use interval::Interval;

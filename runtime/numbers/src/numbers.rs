@@ -10,6 +10,7 @@ use crate::math;
 
 pub use crate::bent::Bent;
 pub use crate::complex_interval::ComplexInterval;
+pub use crate::everywhere::Everywhere;
 pub use crate::interval::Interval;
 pub use crate::rated::Rated;
 pub use crate::taylor_model::TaylorModel;

@@ -75,6 +75,12 @@ pub trait VectorField {
         false
     }
 
+    /// True unless rates change about as steadily as sines, at the values of the parameters. Costs as much as a few
+    /// rates, so that a run asks once.
+    fn has_narrow_rates(&self) -> bool {
+        self.can_be_narrow()
+    }
+
     /// Encloses all rates along a stretch of motion. `component(i)` gives an enclosure of component `i` of the state;
     /// `rate(i, ..)` receives an enclosure of its rate. Does nothing where [`VectorField::can_be_narrow`] is false.
     ///

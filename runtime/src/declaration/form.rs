@@ -8,7 +8,7 @@ use crate::erased::{Expanded, Form, Global, Held, Kinds, MOST_FIRSTS, SeriesTabl
 use crate::error::Fault;
 use crate::jet::{Jets, LENGTH};
 use crate::kernels::{ConstantTable, KernelSet, KernelTable};
-use crate::numbers::{Bent, ComplexInterval, Numbers, Rated, Row, TaylorModel};
+use crate::numbers::{Bent, ComplexInterval, Everywhere, Numbers, Rated, Row, TaylorModel};
 use crate::variations::Dual;
 
 /// The form of a type, if its sizes fit into an erased system.
@@ -100,6 +100,12 @@ impl<S: Emitted> Of<S> {
             // NOTE: certified motion needs kernels over intervals, which take more compile time than all others;
             // forms that are loaded at run time have them.
             None,
+            match is_narrow {
+                false => None,
+                true => Some(Held::Static(
+                    const { &Self::kernels::<Everywhere>(KernelSet::OF_RATES) },
+                )),
+            },
         ]
     }
 
@@ -129,6 +135,7 @@ impl<S: Emitted> Of<S> {
             false => Some(Held::Static(const { &Self::series::<wide::f64x8>() })),
         },
         #[cfg(not(feature = "lanes"))]
+        None,
         None,
         None,
         None,

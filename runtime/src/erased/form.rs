@@ -32,7 +32,7 @@ pub const MOST_FIRSTS: usize = FIRSTS * CAPACITIES[CAPACITIES.len() - 1];
 pub(super) const GEOMETRY: usize = 64;
 
 /// Tables over other numbers than `f64`, each with its own type.
-pub type Kinds = [Option<Held<dyn Any + Send + Sync>>; 6];
+pub type Kinds = [Option<Held<dyn Any + Send + Sync>>; 7];
 
 /// A function that writes values of parameters.
 pub type Defaults = dyn Fn(&mut [f64]) + Send + Sync;

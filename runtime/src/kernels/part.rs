@@ -77,6 +77,15 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
+    /// All modes, or the model itself without modes.
+    pub(crate) fn all(system: &'s S) -> impl Iterator<Item = Self> {
+        let count = match has_modes(system) {
+            true => system.tables().modes.len(),
+            false => 1,
+        };
+        (0..count).map(|number| Self::numbered(system, number))
+    }
+
     /// The first part that has a surface of the model, and the place of the surface in it.
     pub(crate) fn of_surface(system: &'s S, surface: usize) -> Option<(Self, usize)> {
         if !has_modes(system) {

@@ -9,7 +9,7 @@ use crate::contract::{
 use crate::error::{Fault, ParameterError, StateError};
 use crate::generated::check_coefficient;
 use crate::nearest::nearest_by_steps;
-use crate::numbers::{Numbers, Rated, Row};
+use crate::numbers::{Everywhere, Numbers, Rated, Row};
 use crate::quadrature::line_integral;
 use crate::state::StateVector;
 
@@ -51,6 +51,14 @@ impl<S: Declared> VectorField for S {
         self.tables().can_be_narrow
     }
 
+    fn has_narrow_rates(&self) -> bool {
+        // NOTE: a constant, so that kernels over these numbers are compiled only where they are needed.
+        if const { !S::MAY_BE_NARROW } {
+            return false;
+        }
+        Part::all(self).any(|part| part.tables.can_be_narrow && has_sharp_rates(self, &part))
+    }
+
     fn rates_along(
         &self,
         t: Rated,
@@ -81,6 +89,22 @@ impl<S: Declared> VectorField for S {
         }
         Ok(())
     }
+}
+
+/// True if some rate of a part may be sharp at some state, or is not known at all states.
+fn has_sharp_rates<S: Declared>(system: &S, part: &Part<'_, S>) -> bool {
+    let mut state = S::Components::<Everywhere>::zeros(system.state_len());
+    state.as_mut_slice().fill(Everywhere::ANY);
+    let mut rates = state.zeroed();
+    let arguments: S::Arguments<Everywhere> = over_numbers(system);
+    let at = At {
+        parameters: arguments.as_slice(),
+        t: Everywhere::ANY,
+        first: state.as_slice(),
+        second: &[],
+    };
+    let entries = &mut rates.as_mut_slice()[..part.tables.dimensions.state];
+    part.kernels.rate(at, entries).is_err() || entries.iter().any(Everywhere::is_sharp)
 }
 
 /// The parameters as numbers of any kind.

@@ -35,6 +35,10 @@ impl<M: VectorField> VectorField for Unsure<M> {
         self.0.can_be_narrow()
     }
 
+    fn has_narrow_rates(&self) -> bool {
+        self.0.has_narrow_rates()
+    }
+
     fn rates_along(
         &self,
         t: Rated,
