@@ -162,13 +162,14 @@ impl<S: StateVector> Path<S> {
         let (start, end, [first, last]) = (step.start(), step.end(), step.rates());
         for i in 0..sway.padded().len() {
             let at = |state: &S| state.padded()[i];
-            let rates = [first, last].map(|rate| self.length * at(rate));
-            let bend = at(end) - at(start) - rates[0];
-            let twist = 2.0 * bend - (rates[1] - rates[0]);
-            let powers = [at(start), rates[0], bend + twist, -twist];
-            for (coefficient, power) in self.polynomials.coefficients.iter_mut().zip(powers) {
-                coefficient.padded_mut()[i] = power;
-            }
+            let (first, last) = (self.length * at(first), self.length * at(last));
+            let bend = at(end) - at(start) - first;
+            let twist = 2.0 * bend - (last - first);
+            let coefficients = &mut self.polynomials.coefficients;
+            coefficients[0].padded_mut()[i] = at(start);
+            coefficients[1].padded_mut()[i] = first;
+            coefficients[2].padded_mut()[i] = bend + twist;
+            coefficients[3].padded_mut()[i] = -twist;
         }
         self.polynomials.order = 3;
         self.polynomials.doubts = [*sway; 2];
@@ -182,12 +183,11 @@ impl<S: StateVector> Path<S> {
     #[inline(always)]
     fn add_rounding(&mut self) {
         let sums = self.polynomials.sum();
-        let roundings = [ROUNDING, 2.0 * ROUNDING];
-        let doubts = self.polynomials.doubts.iter_mut();
-        for (doubt, (sum, rounding)) in doubts.zip(sums.iter().zip(roundings)) {
-            let entries = doubt.padded_mut().iter_mut();
-            for (entry, sum) in entries.zip(sum.padded()) {
-                *entry += rounding * sum;
+        for (of, rounding) in [ROUNDING, 2.0 * ROUNDING].into_iter().enumerate() {
+            let sum = sums[of].padded();
+            let doubts = self.polynomials.doubts[of].padded_mut();
+            for i in 0..sum.len() {
+                doubts[i] += rounding * sum[i];
             }
         }
         match self.polynomials.order < 4 {
@@ -209,10 +209,10 @@ impl<S: StateVector> Path<S> {
         for first in 0..COUNT.saturating_sub(1) {
             for k in (first..COUNT - 1).rev() {
                 let above = powers[k + 1];
-                let power = powers[k].padded_mut().iter_mut();
-                power
-                    .zip(above.padded())
-                    .for_each(|(power, above)| *power += 0.5 * above);
+                let power = powers[k].padded_mut();
+                for i in 0..power.len() {
+                    power[i] += 0.5 * above.padded()[i];
+                }
             }
         }
         let Whole {

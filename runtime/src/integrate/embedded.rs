@@ -449,11 +449,12 @@ impl<F: VectorField, M: Scheme> Stepper<F> for Embedded<F::State, M> {
             twists.padded_mut()[i] = 2.0 * bend - gained;
         }
         let mut sway = stages[0].zeroed();
-        for (stage, &node) in stages[1..M::LAST].iter().zip(&M::NODES[1..]) {
+        for k in 1..M::LAST {
+            let node = M::NODES[k];
             for i in 0..first.len() {
                 let cubic =
                     node * (2.0 * bends.padded()[i] + (2.0 - 3.0 * node) * twists.padded()[i]);
-                let apart = (h * stage.padded()[i] - cubic).abs();
+                let apart = (h * stages[k].padded()[i] - cubic).abs();
                 let largest = &mut sway.padded_mut()[i];
                 *largest = largest.max(apart);
             }
