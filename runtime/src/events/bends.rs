@@ -110,12 +110,12 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         self.speed = path.length() / self.measured_time;
         self.turn = 0.0;
         for i in 0..self.room.positions() {
-            let motion = path.motion(i);
-            if motion == [0.0, 0.0] || !self.room.keeps(i) {
+            let [speed, turn] = path.motion(i);
+            if (speed, turn) == (0.0, 0.0) || !self.room.keeps(i) {
                 continue;
             }
             let inverse = 1.0 / self.measured.as_slice()[i];
-            let [speed, turn] = motion.map(|motion| motion * inverse);
+            let (speed, turn) = (speed * inverse, turn * inverse);
             // Written so that NaN is kept.
             self.speed = if speed <= self.speed {
                 self.speed

@@ -385,13 +385,8 @@ impl<Sys: Impacting> Watch<Sys> {
         self.steps = self.steps.saturating_add(1);
         self.errors += step.stepper.error();
         self.sizes_at_start = self.sizes;
-        for (size, value) in self
-            .sizes
-            .as_mut_slice()
-            .iter_mut()
-            .zip(step.end().as_slice())
-        {
-            *size = size.abs().max(value.abs());
+        for (i, size) in self.sizes.as_mut_slice().iter_mut().enumerate() {
+            *size = size.abs().max(step.end().as_slice()[i].abs());
         }
         self.path.take(step)?;
         if self.haven.holds(&mut self.path) {

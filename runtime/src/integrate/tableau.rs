@@ -63,8 +63,9 @@ pub(super) fn combine<S: StateVector>(
 #[inline(always)]
 pub(super) fn subtract_first<S: StateVector>(stages: &mut [S], stage: usize) {
     let first = stages[0];
-    for (entry, first) in stages[stage].padded_mut().iter_mut().zip(first.padded()) {
-        *entry -= first;
+    // NOTE: without an iterator over both, which each step of an erased system would call.
+    for i in 0..first.padded().len() {
+        stages[stage].padded_mut()[i] -= first.padded()[i];
     }
 }
 
@@ -81,7 +82,6 @@ pub(super) fn larger(largest: f64, value: f64) -> f64 {
     }
 }
 
-/// Checks of tables, for the tests of the schemes.
 /// Computes stages one after the other, each from its row of the tableau; `inside` is storage for a state.
 macro_rules! make_stages {
     ($field:ident, ($t:expr, $h:expr, $start:expr), $stages:ident, $inside:expr, $nodes:ident: $($index:literal $row:ident)*) => {$(
@@ -92,6 +92,7 @@ macro_rules! make_stages {
 }
 pub(super) use make_stages;
 
+/// Checks of tables, for the tests of the schemes.
 #[cfg(test)]
 pub(super) mod check {
     use super::Term;
