@@ -1,6 +1,8 @@
 //! Forces that act in a small part of a step are not passed over.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use dalembert::{Outcome, Run, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, vector};
@@ -47,10 +49,10 @@ static STEEP: Text = Text::new(
 fn run(
     model: &Model,
     integrator: Integrator,
-    start: [f64; 2],
+    start: impl AsRef<[f64]>,
     until: f64,
 ) -> Run<<Model as VectorField>::State> {
-    let course = Course::from_state(model, vector(&start), until).tol(1e-10);
+    let course = Course::from_state(model, vector(start.as_ref()), until).tol(1e-10);
     let course = match integrator.is_adaptive() {
         true => course,
         false => course.step(until / 200.0),
@@ -155,16 +157,36 @@ fn smooth_forces_cost_no_steps() {
     assert_eq!(counters.rejected, 0, "{counters:?}");
 }
 
-/// A cart with a pendulum, whose inertia changes by a factor of 1 + m as the pendulum turns.
-static CART: Text = Text::new(
-    "Cart {
+/// A pointer that turns, and a point whose rate changes by a factor of 1 + m in every turn.
+static POINTER: Text = Text::new(
+    "Pointer {
         coordinates { x; theta: angle; }
         parameters { m > 0 = 1; }
-        lagrangian = (1 + m)*dot(x)^2/2 + m*(dot(theta)^2/2 + cos(theta)*dot(x)*dot(theta) + cos(theta));
+        field { dot(x) = 1/(1 + m*sin(theta)^2); dot(theta) = 1; }
     }",
 );
 
-/// A cart that leaves a road for a field of needles.
+/// A point that is struck as a pointer beside it passes a place, in a range of angles about 2.4/sqrt(n).
+macro_rules! striker {
+    ($n:literal) => {
+        concat!(
+            "Striker {
+                coordinates { x; theta: angle; }
+                lagrangian = dot(x)^2/2 + dot(theta)^2/2;
+                forces { blow: cos(theta)^",
+            $n,
+            "*d(x); }
+            }"
+        )
+    };
+}
+static STRIKERS: [(u32, Text); 3] = [
+    (20, Text::new(striker!(20))),
+    (400, Text::new(striker!(400))),
+    (20_000, Text::new(striker!(20_000))),
+];
+
+/// A road that leads to a needle.
 static ROUTE: Text = Text::new(
     "Route {
         coordinates { x; theta: angle; }
@@ -179,11 +201,11 @@ static ROUTE: Text = Text::new(
 
 /// Only 12 evaluations of the rates a step: none to check it.
 #[test]
-fn an_inertia_that_changes_little_costs_no_check() {
+fn a_denominator_that_changes_little_costs_no_check() {
     for (m, is_checked) in [(0.5, false), (2.9, false), (3.1, true), (100.0, true)] {
-        let cart = CART.with([("m", m)]);
-        assert_eq!(cart.has_narrow_rates(), is_checked, "m = {m}");
-        let counters = Course::from_state(&cart, vector(&[0.0, 1.0, 0.0, 0.0]), 10.0)
+        let pointer = POINTER.with([("m", m)]);
+        assert_eq!(pointer.has_narrow_rates(), is_checked, "m = {m}");
+        let counters = Course::from_state(&pointer, vector(&[0.0, 1.0]), 10.0)
             .tol(1e-10)
             .observed(Integrator::Dop853, &mut ())
             .counters;
@@ -192,6 +214,24 @@ fn an_inertia_that_changes_little_costs_no_check() {
         let stages = counters.rate_evaluations - checks;
         assert!(stages <= 12 * steps + 2, "m = {m}: {counters:?}");
         assert!(stages + 12 >= 12 * steps, "m = {m}: {counters:?}");
+    }
+}
+
+/// A high power of a cosine is a bump, which a step from beside it does not see.
+#[test]
+fn a_blow_by_a_high_power_is_felt() {
+    for (n, text) in &STRIKERS {
+        // The integral of cos^n over half a turn: pi times the product of 1 - 1/(2 k).
+        let blow = (1..=n / 2).fold(PI, |product, k| product * (1.0 - 0.5 / f64::from(k)));
+        for integrator in [Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor] {
+            let model = text.model();
+            let run = run(&model, integrator, [0.0, -FRAC_PI_2, 0.0, 1.0], PI);
+            let gained = run.state.as_ref()[2];
+            assert!(
+                (gained - blow).abs() < 1e-7,
+                "{integrator:?}, n = {n}: {gained} for {blow}"
+            );
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbers at all states at once: the interval of all values that they have, and whether they can be sharp there.
 //!
 //! A function of the state is sharp if it may change within a range of its arguments that is small beside the range in
-//! which they change. Polynomials, sines and cosines of the state are not sharp. A quotient is not sharp while its
+//! which they change. Polynomials of low degree, sines and cosines of the state are not sharp. A quotient is not sharp while its
 //! denominator stays within a small factor, as that of an inverted inertia does; nor is a power of such a number.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -11,6 +11,9 @@ use crate::numbers::Numbers;
 
 /// Largest ratio of the values of a denominator that leaves its quotients as steady as the denominator.
 const MOST_RATIO: f64 = 4.0;
+
+/// Power from which on a quantity need not change as steadily as the quantity.
+const SHARP_POWER: u32 = 8;
 
 /// All values of a number.
 ///
@@ -32,6 +35,8 @@ pub struct Everywhere {
     /// True if the number depends on the state.
     varies: bool,
     is_sharp: bool,
+    /// Power to which some part of the number is raised.
+    power: u32,
 }
 
 impl Everywhere {
@@ -40,6 +45,7 @@ impl Everywhere {
         values: Interval::WHOLE,
         varies: true,
         is_sharp: false,
+        power: 1,
     };
 
     /// A number that does not depend on the state.
@@ -49,6 +55,7 @@ impl Everywhere {
             values,
             varies: false,
             is_sharp: false,
+            power: 1,
         }
     }
 
@@ -61,8 +68,17 @@ impl Everywhere {
     fn under(self, values: Interval, makes_sharp: bool) -> Self {
         Self {
             values,
-            varies: self.varies,
             is_sharp: self.is_sharp || (self.varies && makes_sharp),
+            ..self
+        }
+    }
+
+    /// This power, with these values.
+    fn raised(self, values: Interval, exponent: u32) -> Self {
+        let power = self.power.saturating_mul(exponent);
+        Self {
+            power,
+            ..self.under(values, power >= SHARP_POWER)
         }
     }
 
@@ -72,6 +88,7 @@ impl Everywhere {
             values,
             varies: self.varies || other.varies,
             is_sharp: self.is_sharp || other.is_sharp,
+            power: self.power.max(other.power),
         }
     }
 
@@ -143,7 +160,7 @@ impl Numbers for Everywhere {
     }
 
     fn square(self) -> Self {
-        self.under(self.values.square(), false)
+        self.raised(self.values.square(), 2)
     }
 
     fn sqrt(self) -> Self {
@@ -171,9 +188,12 @@ impl Numbers for Everywhere {
     }
 
     fn powf(self, exponent: f64) -> Self {
-        let is_polynomial = exponent >= 0.0 && crate::math::floor(exponent) == exponent;
-        let makes_sharp = !is_polynomial && !self.is_of_one_size();
-        self.under(self.values.powf(exponent), makes_sharp)
+        let values = self.values.powf(exponent);
+        match exponent >= 0.0 && crate::math::floor(exponent) == exponent {
+            // NOTE: the conversion saturates.
+            true => self.raised(values, exponent as u32),
+            false => self.under(values, !self.is_of_one_size()),
+        }
     }
 
     fn power(self, exponent: Self) -> Self {
@@ -190,7 +210,10 @@ const SEEN_EVERYWHERE: [&str; 2] = ["sin", "cos"];
 macro_rules! functions_at_all_states {
     ($($name:ident)+) => {$(
         fn $name(self) -> Self {
-            self.under(self.values.$name(), !SEEN_EVERYWHERE.contains(&stringify!($name)))
+            Self {
+                power: 1,
+                ..self.under(self.values.$name(), !SEEN_EVERYWHERE.contains(&stringify!($name)))
+            }
         }
     )+};
 }
@@ -223,6 +246,11 @@ mod tests {
         assert!(!inertia.sqrt().is_sharp());
         assert!(!inertia.powf(-1.5).is_sharp());
         assert!(!Everywhere::ANY.powf(3.0).is_sharp());
+        assert!(Everywhere::ANY.powf(40.0).is_sharp());
+        assert!(!Everywhere::of(0.3).powf(40.0).is_sharp());
+        let sine = Everywhere::ANY.powf(3.0).sin();
+        assert!(!sine.square().square().is_sharp());
+        assert!(sine.square().square().square().is_sharp());
         assert!(Everywhere::ANY.powf(-3.0).is_sharp());
         assert!(
             (Everywhere::of(1.0) + Everywhere::ANY.cos())
