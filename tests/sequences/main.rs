@@ -1,8 +1,8 @@
 //! Random starts of every shipped model with surfaces: all integrators meet the same surfaces in the same order.
 //!
 //! Two runs at a tolerance of 1e-13, by different methods, are the reference as far as they agree: up to there no error has grown yet, whatever
-//! chaos makes of it later. A run by another integrator is compared with it until its error reaches [`LOST`], or a graze is flagged. Impacts
-//! that are certified bound the times of the reference.
+//! chaos makes of it later. A run by another integrator is compared with it until its error reaches [`LOST`], at an impact or just before
+//! the one in question, or a graze is flagged. Impacts that are certified bound the times of the reference.
 
 mod runs;
 mod starts;
@@ -11,7 +11,7 @@ use dalembert::Outcome;
 use dalembert_driver::{Form, Integrator};
 use dalembert_tests::sampling::Random;
 
-use runs::{Course, IMPACTS, Way, apart, certified, error, run};
+use runs::{Course, IMPACTS, Way, apart, certified, error, run, state_at};
 use starts::{Case, Shipped};
 
 /// Differences of two references beyond which they are none.
@@ -126,11 +126,12 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     if outcome.kind() == "projection_failed" {
         return told("a projection failed");
     }
+    let lost_before = |t: f64| is_lost(case, way, [until, case.until], t);
     let mut worst: f64 = 0.0;
     for (k, there) in course.impacts[..*sure].iter().enumerate() {
         let Some(here) = measured.impacts.get(k) else {
             let is_out_of_depth = !way.integrator.is_adaptive() && !measured.ending.reached;
-            return match is_out_of_depth {
+            return match is_out_of_depth || lost_before(there.t) {
                 true => None,
                 false => told("an impact is missing"),
             };
@@ -140,7 +141,10 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
         }
         let is_near = (here.t - there.t).abs() <= 1e-2 * case.until;
         if here.surface != there.surface || !is_near {
-            return told("another impact");
+            return match lost_before(here.t.min(there.t)) {
+                true => None,
+                false => told("another impact"),
+            };
         }
         worst = worst.max(error(here, there, case.until));
         if worst > LOST {
@@ -148,12 +152,24 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
         }
     }
     let [ours, theirs] = [&measured, course].map(|one| &one.ending.last);
-    let is_lost = apart(&theirs.q, &ours.q).max(apart(&theirs.qdot, &ours.qdot)) > LOST;
-    let is_whole = *sure == course.impacts.len() && measured.ending.t == last && !is_lost;
+    let ends_lost = apart(&theirs.q, &ours.q).max(apart(&theirs.qdot, &ours.qdot)) > LOST;
+    let is_whole = *sure == course.impacts.len() && measured.ending.t == last && !ends_lost;
     match is_whole && measured.impacts.len() != *sure {
         true => told("an impact too many"),
         false => None,
     }
+}
+
+/// True if the error of a run reaches [`LOST`] just before a time. The run and its reference may last that long.
+fn is_lost(case: &Case, way: Way, [until, reference_until]: [f64; 2], t: f64) -> bool {
+    let before = t - 1e-9 * case.until;
+    let states = state_at(case, way, until, before).and_then(|(t, ours)| {
+        let (_, theirs) = state_at(case, references()[0], reference_until, t)?;
+        Some((ours, theirs))
+    });
+    states.is_none_or(|(ours, theirs)| {
+        apart(&theirs.q, &ours.q).max(apart(&theirs.qdot, &ours.qdot)) > LOST
+    })
 }
 
 /// The ways that a model is run in.

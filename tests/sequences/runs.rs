@@ -2,8 +2,8 @@
 
 use dalembert::Policies;
 use dalembert_driver::{
-    Certification, Certified, Contact, Ending, Form, Impact, Integrator, Piece, Settings, Strike,
-    Watch,
+    Certification, Certified, Contact, Ending, Form, Impact, Integrator, Piece, Point, Settings,
+    Strike, Watch,
 };
 
 use crate::starts::Case;
@@ -38,8 +38,50 @@ pub struct Way {
     pub tol: f64,
 }
 
+/// Waits for the state at a time.
+struct Moment {
+    t: f64,
+    point: Option<Point>,
+}
+
+impl Watch for Moment {
+    fn step(&mut self, piece: &dyn Piece) {
+        let (from, to) = piece.span();
+        if self.point.is_none() && from <= self.t && self.t <= to {
+            self.point = Some(piece.at(self.t));
+        }
+    }
+
+    fn impact(&mut self, _: Impact) {}
+
+    fn contact(&mut self, _: Contact) {}
+
+    fn is_over(&self) -> bool {
+        self.point.is_some()
+    }
+}
+
 /// Makes a run; `None` where the start is refused.
 pub fn run(case: &Case, way: Way, until: f64) -> Option<Course> {
+    let mut log = Log::default();
+    let ending = watched(case, way, until, &mut log)?;
+    Some(Course {
+        impacts: log.0,
+        ending,
+    })
+}
+
+/// The state at a time of a run, or its last state and the time of that if the run ends before.
+pub fn state_at(case: &Case, way: Way, until: f64, t: f64) -> Option<(f64, Point)> {
+    let mut moment = Moment { t, point: None };
+    let ending = watched(case, way, until, &mut moment)?;
+    Some(match moment.point {
+        Some(point) => (t, point),
+        None => (ending.t, ending.last),
+    })
+}
+
+fn watched(case: &Case, way: Way, until: f64, watch: &mut dyn Watch) -> Option<Ending> {
     let settings = Settings {
         form: way.form,
         integrator: way.integrator,
@@ -53,13 +95,7 @@ pub fn run(case: &Case, way: Way, until: f64) -> Option<Course> {
         policies: Policies::default(),
         projection: None,
     };
-    let mut log = Log::default();
-    let ending = case.model.simulate(&case.origin, &settings, &mut log);
-    let impacts = log.0;
-    Some(Course {
-        impacts,
-        ending: ending.ok()?,
-    })
+    case.model.simulate(&case.origin, &settings, watch).ok()
 }
 
 /// The first impacts as enclosures, as far as motion is certified; `None` where the model has no certified motion.
