@@ -269,6 +269,7 @@ fn the_project_stands_alone() {
         "models",
         "tests",
         "benches",
+        "examples",
         "python/src",
     ] {
         for (path, text) in sources(folder) {
