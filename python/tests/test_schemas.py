@@ -77,6 +77,8 @@ OUTPUTS = {
     "control": [
         ["control", "controlled_ball", "--impacts", "0..1", "--starts", "24"],
         ["control", "controlled_ball", "--initial", "x=1", "--end", "x=1,y=0", "--impacts", "1", "--starts", "48"],
+        ["control", "controlled_ball", "--impacts", "0", "--starts", "24", "--vary", "x=-1,1"],
+        ["control", "controlled_ball", "--impacts", "0..1", "--starts", "24", "--vary", "e=0.8,1"],
     ],
     "accuracy": [
         ["accuracy", "bouncing_ball", "--until", "2", "--rounds", "1", "--wanted", "1e-6"],

@@ -186,6 +186,34 @@ static STRIKERS: [(u32, Text); 3] = [
     (20_000, Text::new(striker!(20_000))),
 ];
 
+/// The same by products of factors that change little on their own: bumps of cosines, and quotients.
+static PRODUCTS: [Text; 2] = [
+    Text::new(
+        "Bumps {
+            coordinates { x; theta: angle; }
+            lagrangian = dot(x)^2/2 + dot(theta)^2/2;
+            let a = ((1 + cos(2*theta))/2)^6;
+            let b = ((1 + cos(2*theta + 1e-9))/2)^6;
+            let c = ((1 + cos(2*theta - 1e-9))/2)^6;
+            let d = ((1 + cos(2*theta + 2e-9))/2)^6;
+            let e = ((1 + cos(2*theta - 2e-9))/2)^6;
+            forces { blow: (a*b*c*d*e)^3*d(x); }
+        }",
+    ),
+    Text::new(
+        "Quotients {
+            coordinates { x; theta: angle; }
+            lagrangian = dot(x)^2/2 + dot(theta)^2/2;
+            let a = 1/(1 + 2.9*sin(theta)^2);
+            let b = 1/(1 + 2.9*sin(theta + 1e-9)^2);
+            let c = 1/(1 + 2.9*sin(theta - 1e-9)^2);
+            let d = 1/(1 + 2.9*sin(theta + 2e-9)^2);
+            let e = 1/(1 + 2.9*sin(theta - 2e-9)^2);
+            forces { blow: (a*b*c*d*e)^8*d(x); }
+        }",
+    ),
+];
+
 /// A road that leads to a needle.
 static ROUTE: Text = Text::new(
     "Route {
@@ -230,6 +258,32 @@ fn a_blow_by_a_high_power_is_felt() {
             assert!(
                 (gained - blow).abs() < 1e-7,
                 "{integrator:?}, n = {n}: {gained} for {blow}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_blow_by_a_product_is_felt() {
+    // The integrals over half a turn: of cos^180, and of (1 + 2.9 sin^2)^-40 by the midpoint rule, which is exact to rounding here.
+    let places = (0..1000).map(|k| PI * (f64::from(k) + 0.5) / 1000.0);
+    let blows = [
+        (1..=90).fold(PI, |product, k| product * (1.0 - 0.5 / f64::from(k))),
+        places
+            .map(|angle| (1.0 + 2.9 * angle.sin().powi(2)).powi(-40))
+            .sum::<f64>()
+            * PI
+            / 1000.0,
+    ];
+    for (text, blow) in PRODUCTS.iter().zip(blows) {
+        for integrator in [Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor] {
+            let model = text.model();
+            assert!(model.has_narrow_rates());
+            let run = run(&model, integrator, [0.0, -FRAC_PI_2, 0.0, 1.0], PI);
+            let gained = run.state.as_ref()[2];
+            assert!(
+                (gained - blow).abs() < 1e-7,
+                "{integrator:?}: {gained} for {blow}"
             );
         }
     }

@@ -1,14 +1,14 @@
 //! Detection of rates with narrow features, which a step may pass over: bumps, needles and walls of functions that are
 //! flat elsewhere. Sums, products, sines and cosines of steadily changing quantities change steadily themselves.
-//! Exponentials, quotients and high powers need not.
+//! Exponentials, quotients and long products need not.
 
 use std::collections::HashMap;
 
 use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
-/// Highest power of a quantity that changes about as steadily as the quantity. The 16th power of a sine is a bump a tenth
+/// Highest degree of a product that changes about as steadily as its factors. The 16th power of a sine is a bump a tenth
 /// as long as its period.
-const MOST_POWER: i64 = 8;
+const MOST_FACTORS: i64 = 12;
 
 /// True unless the expressions consist of polynomials of low degree, sines and cosines of the varying symbols.
 pub(super) fn can_be_narrow(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -> bool {
@@ -24,38 +24,29 @@ pub(super) fn can_be_narrow(pool: &Pool, expressions: &[ExprId], varying: &[Symb
     };
     let mut reachable = pool.reachable(expressions);
     reachable.reverse();
-    reachable.iter().any(is_narrow) || has_high_power(pool, &reachable, varying)
+    reachable.iter().any(is_narrow) || has_long_product(pool, &reachable, varying)
 }
 
-/// True if a varying quantity is raised to a high power, in one step or in several. The expressions come after their operands.
-fn has_high_power(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -> bool {
-    let mut powers: HashMap<ExprId, i64> = HashMap::new();
+/// True if some product has many varying factors, powers counted. The expressions come after their operands.
+fn has_long_product(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -> bool {
+    let mut degrees: HashMap<ExprId, i64> = HashMap::new();
     expressions.iter().any(|&id| {
-        let of = |operand: ExprId| powers.get(&operand).copied().unwrap_or(0);
-        let power = match pool.node(id) {
+        let of = |operand: ExprId| degrees.get(&operand).copied().unwrap_or(0);
+        let mut highest = 0;
+        let node = pool.node(id);
+        node.for_each_operand(|operand| highest = highest.max(of(operand)));
+        let degree = match node {
             Node::Number(_) | Node::Pi => 0,
             Node::Symbol(symbol) => i64::from(varying.contains(symbol)),
-            Node::Product(factors) => {
-                let raised = factors.iter().map(|(base, exponent)| {
-                    of(*base).saturating_mul(exponent.to_i64().unwrap_or(1))
-                });
-                raised.max().unwrap_or(0)
-            }
-            Node::Call(..) | Node::Atan2(..) => {
-                let mut varies = false;
-                pool.node(id)
-                    .for_each_operand(|operand| varies |= of(operand) > 0);
-                i64::from(varies)
-            }
-            Node::Sum { .. } => {
-                let mut highest = 0;
-                pool.node(id)
-                    .for_each_operand(|operand| highest = highest.max(of(operand)));
-                highest
-            }
+            Node::Product(factors) => factors.iter().fold(0, |degree: i64, (base, exponent)| {
+                let factor = of(*base).saturating_mul(exponent.to_i64().unwrap_or(1));
+                degree.saturating_add(factor)
+            }),
+            Node::Call(..) | Node::Atan2(..) => highest.min(1),
+            Node::Sum { .. } => highest,
         };
-        powers.insert(id, power);
-        power > MOST_POWER
+        degrees.insert(id, degree);
+        degree > MOST_FACTORS
     })
 }
 
@@ -75,12 +66,15 @@ mod tests {
         let fixed = pool.call(Function::Exp, constant);
         let quotient = pool.div(constant, along);
         let root = pool.pow(square, Rational::HALF);
-        let wall = pool.pow(along, Rational::from(9));
+        let wall = pool.pow(along, Rational::from(13));
         let one = pool.number(Rational::ONE);
         let raised = pool.add(one, sine);
         let third = pool.pow(raised, Rational::from(3));
         let sum = pool.add(one, third);
-        let ninth = pool.pow(sum, Rational::from(3));
+        let nested = pool.pow(sum, Rational::from(5));
+        let seventh = pool.pow(raised, Rational::from(7));
+        let other = pool.pow(sum, Rational::from(2));
+        let product = pool.mul(seventh, other);
         let of_constant = pool.pow(constant, Rational::from(40));
         for (id, expected) in [
             (square, false),
@@ -91,7 +85,9 @@ mod tests {
             (root, true),
             (wall, true),
             (third, false),
-            (ninth, true),
+            (nested, true),
+            (seventh, false),
+            (product, true),
             (of_constant, false),
         ] {
             assert_eq!(can_be_narrow(&pool, &[id], &[x]), expected);

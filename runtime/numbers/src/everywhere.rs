@@ -9,11 +9,11 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::interval::Interval;
 use crate::numbers::Numbers;
 
-/// Largest ratio of the values of a denominator that leaves its quotients as steady as the denominator.
+/// Largest factor by which divisors and bases of powers may change. Those of a product multiply.
 const MOST_RATIO: f64 = 4.0;
 
-/// Power from which on a quantity need not change as steadily as the quantity.
-const SHARP_POWER: u32 = 8;
+/// Largest number of factors of a product that changes as steadily as they do.
+const MOST_FACTORS: u32 = 12;
 
 /// All values of a number.
 ///
@@ -35,8 +35,10 @@ pub struct Everywhere {
     /// True if the number depends on the state.
     varies: bool,
     is_sharp: bool,
-    /// Power to which some part of the number is raised.
-    power: u32,
+    /// Largest number of varying factors of a product in it.
+    factors: u32,
+    /// Largest factor by which divisors and bases of powers in such a product change together.
+    ratio: f64,
 }
 
 impl Everywhere {
@@ -45,7 +47,8 @@ impl Everywhere {
         values: Interval::WHOLE,
         varies: true,
         is_sharp: false,
-        power: 1,
+        factors: 1,
+        ratio: 1.0,
     };
 
     /// A number that does not depend on the state.
@@ -55,7 +58,8 @@ impl Everywhere {
             values,
             varies: false,
             is_sharp: false,
-            power: 1,
+            factors: 0,
+            ratio: 1.0,
         }
     }
 
@@ -73,13 +77,49 @@ impl Everywhere {
         }
     }
 
-    /// This power, with these values.
-    fn raised(self, values: Interval, exponent: u32) -> Self {
-        let power = self.power.saturating_mul(exponent);
+    /// This power, with these values; the exponent is a whole number that is not negative.
+    fn raised(self, values: Interval, exponent: f64) -> Self {
+        // NOTE: the conversion saturates.
+        let factors = self.factors.saturating_mul(exponent as u32);
         Self {
-            power,
-            ..self.under(values, power >= SHARP_POWER)
+            factors,
+            ratio: crate::math::powf(self.ratio, exponent),
+            ..self.under(values, false)
         }
+        .judged()
+    }
+
+    /// The product with these values. Its factors change together.
+    fn multiplied(self, other: Self, values: Interval) -> Self {
+        Self {
+            factors: self.factors.saturating_add(other.factors),
+            ratio: self.ratio * other.ratio,
+            ..self.joined(other, values)
+        }
+        .judged()
+    }
+
+    /// The same number as a divisor, or as the base of a power with this exponent.
+    fn as_base(self, exponent: f64) -> Self {
+        let (least, most) = (self.values.mignitude(), self.values.magnitude());
+        let ratio = match self.values.excludes_zero() {
+            true => crate::math::powf(most / least, exponent),
+            false => f64::INFINITY,
+        };
+        Self {
+            ratio: match self.varies {
+                true => self.ratio * ratio,
+                false => 1.0,
+            },
+            ..self
+        }
+        .judged()
+    }
+
+    /// Sharp if it has many factors, or if they change much.
+    fn judged(self) -> Self {
+        let is_steady = self.ratio <= MOST_RATIO && self.factors <= MOST_FACTORS;
+        self.under(self.values, !is_steady)
     }
 
     /// A function of two numbers with these values, which is as sharp as the sharper of the two.
@@ -88,14 +128,9 @@ impl Everywhere {
             values,
             varies: self.varies || other.varies,
             is_sharp: self.is_sharp || other.is_sharp,
-            power: self.power.max(other.power),
+            factors: self.factors.max(other.factors),
+            ratio: self.ratio.max(other.ratio),
         }
-    }
-
-    /// True if all values are of one sign and within a small factor of each other.
-    fn is_of_one_size(self) -> bool {
-        let (least, most) = (self.values.mignitude(), self.values.magnitude());
-        self.values.excludes_zero() && most <= MOST_RATIO * least
     }
 }
 
@@ -127,7 +162,7 @@ impl Mul for Everywhere {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        self.joined(other, self.values * other.values)
+        self.multiplied(other, self.values * other.values)
     }
 }
 
@@ -135,8 +170,7 @@ impl Div for Everywhere {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        let divisor = other.under(other.values, !other.is_of_one_size());
-        self.joined(divisor, self.values / other.values)
+        self.multiplied(other.as_base(1.0), self.values / other.values)
     }
 }
 
@@ -160,11 +194,11 @@ impl Numbers for Everywhere {
     }
 
     fn square(self) -> Self {
-        self.raised(self.values.square(), 2)
+        self.raised(self.values.square(), 2.0)
     }
 
     fn sqrt(self) -> Self {
-        self.under(self.values.sqrt(), !self.is_of_one_size())
+        self.powf(0.5)
     }
 
     fn abs(self) -> Self {
@@ -188,17 +222,21 @@ impl Numbers for Everywhere {
     }
 
     fn powf(self, exponent: f64) -> Self {
-        let values = self.values.powf(exponent);
+        let values = match exponent == 0.5 {
+            true => self.values.sqrt(),
+            false => self.values.powf(exponent),
+        };
         match exponent >= 0.0 && crate::math::floor(exponent) == exponent {
-            // NOTE: the conversion saturates.
-            true => self.raised(values, exponent as u32),
-            false => self.under(values, !self.is_of_one_size()),
+            true => self.raised(values, exponent),
+            false => self
+                .as_base(crate::math::abs(exponent))
+                .under(values, false),
         }
     }
 
     fn power(self, exponent: Self) -> Self {
         let power = self.joined(exponent, self.values.power(exponent.values));
-        power.under(power.values, exponent.varies || !self.is_of_one_size())
+        power.under(power.values, true)
     }
 
     crate::functions_of_one_number!(functions_at_all_states);
@@ -211,7 +249,7 @@ macro_rules! functions_at_all_states {
     ($($name:ident)+) => {$(
         fn $name(self) -> Self {
             Self {
-                power: 1,
+                factors: self.factors.min(1),
                 ..self.under(self.values.$name(), !SEEN_EVERYWHERE.contains(&stringify!($name)))
             }
         }
@@ -244,19 +282,32 @@ mod tests {
     fn powers_are_sharp_where_their_bases_change_much() {
         let inertia = Everywhere::of(2.0) + Everywhere::ANY.cos();
         assert!(!inertia.sqrt().is_sharp());
-        assert!(!inertia.powf(-1.5).is_sharp());
+        assert!(!inertia.powf(-1.2).is_sharp());
+        assert!(inertia.powf(-1.5).is_sharp());
+        assert!(inertia.powf(-500.5).is_sharp());
         assert!(!Everywhere::ANY.powf(3.0).is_sharp());
         assert!(Everywhere::ANY.powf(40.0).is_sharp());
         assert!(!Everywhere::of(0.3).powf(40.0).is_sharp());
         let sine = Everywhere::ANY.powf(3.0).sin();
         assert!(!sine.square().square().is_sharp());
-        assert!(sine.square().square().square().is_sharp());
+        assert!(sine.square().square().square().square().is_sharp());
         assert!(Everywhere::ANY.powf(-3.0).is_sharp());
         assert!(
             (Everywhere::of(1.0) + Everywhere::ANY.cos())
                 .sqrt()
                 .is_sharp()
         );
+    }
+
+    #[test]
+    fn products_are_sharp_where_many_factors_change() {
+        let cosine = Everywhere::ANY.cos();
+        let sixth = cosine.square() * cosine.square() * cosine.square();
+        assert!(!sixth.is_sharp());
+        assert!((sixth * sixth * cosine).is_sharp());
+        assert!(!(inverse_inertia(0.9) * inverse_inertia(0.9)).is_sharp());
+        assert!((inverse_inertia(1.5) * inverse_inertia(1.5)).is_sharp());
+        assert!((inverse_inertia(2.9) / (Everywhere::of(2.0) + cosine)).is_sharp());
     }
 
     #[test]

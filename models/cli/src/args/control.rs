@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
 use clap::builder::ValueParser;
+use clap::{ArgGroup, Args};
 
 use super::{DynamicArgs, ModelArgs, SearchArgs};
 use crate::scalar;
@@ -35,10 +35,12 @@ More examples:
   dalembert control controlled_ball --initial x=2 --impacts 0..2 --plot balls.svg
   dalembert control controlled_ball --initial x=1 --end x=1,y=0 --impacts 0..1 --set e=0.8
   dalembert control controlled_ball --impacts 2 --inputs best.csv --json -
+  dalembert control controlled_ball --initial x=1 --end x=1,y=0 --impacts 1..2 --vary e=0.5..1:21 --plot loss.svg
   dalembert control controlled_ball --impacts 0..2 --dp x=0..3:61,y=-6..6:61,u=-4..4:17 --plot cost.svg";
 
 /// `control`
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("parallel").args(["dp", "vary"]).multiple(true))]
 pub struct ControlArgs {
     /// The model.
     #[command(flatten)]
@@ -52,6 +54,10 @@ pub struct ControlArgs {
     /// Time of the end. Default: the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
+    /// Search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`. --csv has the rows of all
+    /// values, --plot the costs over the values: a line of the least cost for each number of impacts, dots for the other extremals.
+    #[arg(long, value_name = "NAME=A..B:COUNT", allow_hyphen_values = true, conflicts_with_all = ["dp", "inputs", "axes"])]
+    pub vary: Option<String>,
     /// The search.
     #[command(flatten)]
     pub search: SearchArgs,

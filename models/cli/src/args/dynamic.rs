@@ -47,8 +47,8 @@ pub struct DynamicArgs {
     /// Quantity of the map.
     #[arg(long, value_enum, value_name = "QUANTITY", requires = "dp", default_value_t = Shown::Cost)]
     pub show: Shown,
-    /// Number of threads of dynamic programming. Default: the number that the machine runs in parallel.
-    #[arg(long, value_name = "N", requires = "dp", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..))]
+    /// Number of threads of --dp and --vary. Default: the number that the machine runs in parallel.
+    #[arg(long, value_name = "N", requires = "parallel", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 }
 

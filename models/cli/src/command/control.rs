@@ -5,6 +5,7 @@ mod dynamic;
 mod film;
 mod spreadsheet;
 mod summary;
+mod sweep;
 
 use dalembert::Tolerance;
 use dalembert::describe::Description;
@@ -82,6 +83,9 @@ pub fn run(
     if args.dynamic.is_wanted() {
         return dynamic::run(models, args, streams);
     }
+    if args.vary.is_some() {
+        return sweep::run(models, args, streams);
+    }
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
     quantity::check("--axes", args.axes.as_deref(), model.description())?;
@@ -124,6 +128,9 @@ pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
     if args.dynamic.is_wanted() {
         return dynamic::draw(models, args);
     }
+    if args.vary.is_some() {
+        return sweep::draw(models, args);
+    }
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
     quantity::check("--axes", args.axes.as_deref(), model.description())?;
@@ -136,20 +143,34 @@ pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
 
 /// The first-order model of the extremals, with the parameters of the flags.
 fn model_of_extremals(models: &[Entry], args: &ControlArgs) -> Result<Box<dyn AnyModel>, CliError> {
+    build(&entries(models, args)?, args, None)
+}
+
+/// The first-order model of the extremals.
+fn entries(models: &[Entry], args: &ControlArgs) -> Result<Vec<Entry>, CliError> {
     let (entry, part) = declared(models, args)?;
     let description = entry.description();
     let loaded = dalembert_jit::load_control(description.name, &description.source, part);
     let loaded = loaded.map_err(CliError::Declaration)?;
     let extremals: Vec<Entry> = loaded.iter().map(Entry::loaded).collect();
     extremals.iter().try_for_each(Entry::check_size)?;
+    Ok(extremals)
+}
+
+/// The model of the extremals with the parameters of the flags, and perhaps one more.
+fn build(
+    extremals: &[Entry],
+    args: &ControlArgs,
+    set: Option<String>,
+) -> Result<Box<dyn AnyModel>, CliError> {
     let args = ModelArgs {
-        model: description.name.to_owned(),
+        model: extremals.first().map_or("", Entry::name).to_owned(),
         scene: "all".to_owned(),
-        set: args.model.set.clone(),
+        set: args.model.set.iter().cloned().chain(set).collect(),
         no_claims: false,
         mode: None,
     };
-    build_model(&extremals, &args)
+    build_model(extremals, &args)
 }
 
 /// The declared model, and its scene if one is asked for.

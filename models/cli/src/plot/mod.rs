@@ -7,6 +7,7 @@ mod canvas;
 pub mod cloud;
 mod colours;
 pub mod contour;
+pub mod curves;
 pub mod density;
 pub mod field;
 pub mod film;

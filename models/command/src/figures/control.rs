@@ -56,6 +56,12 @@ fn least_cost() -> Figure {
         let flags = format!("{STRONG} --at {t} {THIRD}");
         panel(name, title, flags)
     };
+    let section = |name: &str, title: &str, until: &str| {
+        let flags = format!(
+            "--initial x=0.5 --vary y=-5..5:41 --until {until} --impacts 0..2 --starts 16 {THIRD}"
+        );
+        panel(name, title, flags)
+    };
     Figure {
         model: "controlled_ball",
         name: "least",
@@ -64,13 +70,18 @@ fn least_cost() -> Figure {
         highlight: None,
         caption: "The least cost from a height x and a momentum y to the end at $T = 5$, by dynamic programming, with $m = 2$, $g = 1$, \
                   $alpha = 10$ and forces from -4 to 4. The earlier, the more folds: dark valleys are motions that need almost no force with \
-                  one number of impacts. White: every motion leaves the grid. The line is the path from rest at 1/2."
+                  one number of impacts. White: every motion leaves the grid. The line is the path from rest at 1/2. Below, the cross-sections at \
+                  $x = 0.5$ by the maximum principle: all extremals that were found, with a line of the least cost for each number of impacts. The earlier, \
+                  the more values the cost has."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.5"),
         panels: vec![
             map("late", "One second before the end", "4"),
             map("half", "Half the time before the end", "2.5"),
             map("first", "At the start", "0"),
+            section("late_section", "One second before the end, x = 0.5", "1"),
+            section("half_section", "Half the time before the end, x = 0.5", "2.5"),
+            section("first_section", "At the start, x = 0.5", "5"),
         ],
     }
 }
@@ -99,6 +110,11 @@ fn restitution() -> Figure {
             format!("--initial x=1 --end x=1,y=0 --impacts 1..2 --starts 24 --set e={e} {QUARTER}");
         panel(&name, &title, flags)
     };
+    let costs = panel(
+        "costs",
+        "Costs over the coefficient of restitution",
+        "--initial x=1 --end x=1,y=0 --impacts 0..2 --starts 24 --vary e=0.5..1:21",
+    );
     Figure {
         model: "controlled_ball",
         name: "loss",
@@ -107,10 +123,10 @@ fn restitution() -> Figure {
         highlight: None,
         caption: "Extremals from rest at height 1 to rest at height 1 in time 5, with $m = 2$ and $g = 1$. The cheapest with one impact costs \
                   3.4667, 3.4923, 3.5841 and 3.7537 for the coefficients 1, 0.9, 0.8 and 0.7; to hold the ball costs $m^2*g^2*T/2 = 10$. \
-                  With two impacts the costs are 0.2743, 0.3695, 0.6877 and 1.2648."
+                  With two impacts the costs are 0.2743, 0.3695, 0.6877 and 1.2648. The last panel has the costs over the coefficient."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.7"),
-        panels: ["1", "0.9", "0.8", "0.7"].map(with).into(),
+        panels: ["1", "0.9", "0.8", "0.7"].map(with).into_iter().chain([costs]).collect(),
     }
 }
 

@@ -12,9 +12,17 @@ use crate::names;
 
 /// Writes the document.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
-    let (model, task) = (finished.model, &finished.task);
-    let controlled = &finished.controlled;
-    let mut document = Document::of_model(output, model, finished.scene)?;
+    let mut document = Document::of_model(output, finished.model, finished.scene)?;
+    write_task(&mut document, finished)?;
+    document.field("search", search(finished))?;
+    let rows = finished.controlled.extremals.iter();
+    document.rows("extremals", rows.map(|it| extremal(finished, it)))?;
+    document.end()
+}
+
+/// Writes the request.
+pub(super) fn write_task(document: &mut Document<'_>, finished: &Finished<'_>) -> io::Result<()> {
+    let task = &finished.task;
     document.field("from", named(finished.states(), &task.from))?;
     let to = finished.states().zip(&task.to);
     let to = to.filter_map(|(name, to)| to.map(|to| (name.to_owned(), number(to))));
@@ -22,23 +30,25 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     document.field("time", number(task.time))?;
     document.field("impacts", task.impacts.to_vec())?;
     document.field("tol", number(finished.tol))?;
-    document.field("seed", task.seed)?;
-    let search = json!({
-        "unknowns": task.from.len(),
+    document.field("seed", task.seed)
+}
+
+/// The extent of the search.
+pub(super) fn search(finished: &Finished<'_>) -> Value {
+    let controlled = &finished.controlled;
+    json!({
+        "unknowns": finished.task.from.len(),
         "directions": controlled.directions,
         "runs": controlled.runs,
         "bounded": controlled.is_bounded,
         "unresolved": controlled.unresolved,
         "given_up": controlled.given_up,
         "exhaustive": false,
-    });
-    document.field("search", search)?;
-    let rows = controlled.extremals.iter();
-    document.rows("extremals", rows.map(|it| extremal(finished, it)))?;
-    document.end()
+    })
 }
 
-fn extremal(finished: &Finished<'_>, extremal: &Extremal) -> Value {
+/// An extremal.
+pub(super) fn extremal(finished: &Finished<'_>, extremal: &Extremal) -> Value {
     let surface = |index: usize| names::surfaces(finished.description()).nth(index);
     let impacts = extremal.kicks.iter().map(|kick| {
         json!({

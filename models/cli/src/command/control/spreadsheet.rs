@@ -8,9 +8,20 @@ use super::Finished;
 use super::summary::verdict;
 use crate::{names, table};
 
-/// Writes number of impacts, cost, terminal cost, costate at the start, state and costate at the end, H*, residual,
-/// second-order test; then lists, with spaces between: times and surfaces of the impacts.
+/// Writes a row for each extremal: number of impacts, cost, terminal cost, costate at the start, state and costate at the end,
+/// H*, residual, second-order test; then lists, with spaces between: times and surfaces of the impacts.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    table::write_rows(output, |writer| {
+        writer.write_record(header(finished))?;
+        for extremal in &finished.controlled.extremals {
+            writer.write_record(row(finished, extremal))?;
+        }
+        Ok(())
+    })
+}
+
+/// The names of the columns.
+pub(super) fn header(finished: &Finished<'_>) -> Vec<String> {
     let mut header: Vec<String> = ["impacts", "cost", "terminal"].map(str::to_owned).into();
     header.extend(finished.states().map(|name| format!("costate.{name}")));
     header.extend(finished.states().map(|name| format!("end.{name}")));
@@ -23,20 +34,15 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
         "surfaces",
     ];
     header.extend(last.map(str::to_owned));
+    header
+}
+
+/// The row of an extremal.
+pub(super) fn row(finished: &Finished<'_>, extremal: &Extremal) -> Vec<String> {
     let surface = |index: usize| {
         let mut surfaces = names::surfaces(finished.description());
         surfaces.nth(index).unwrap_or_default()
     };
-    table::write_rows(output, |writer| {
-        writer.write_record(&header)?;
-        for extremal in &finished.controlled.extremals {
-            writer.write_record(row(extremal, &surface))?;
-        }
-        Ok(())
-    })
-}
-
-fn row<'a>(extremal: &Extremal, surface: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let Extremal { first, last, .. } = extremal;
     let numbers = [extremal.cost, extremal.terminal].into_iter();
     let ends = first.costate.iter().chain(&last.state).chain(&last.costate);

@@ -43,7 +43,8 @@ fn start(finished: &Finished<'_>) -> String {
     assignments(finished.states(), &finished.task.from)
 }
 
-fn end(finished: &Finished<'_>) -> String {
+/// The end.
+pub(super) fn end(finished: &Finished<'_>) -> String {
     let task = &finished.task;
     let given = finished.states().zip(&task.to);
     let given = given.filter_map(|(name, to)| to.map(|to| format!("{name} = {to:?}")));

@@ -1,0 +1,260 @@
+//! `control --vary`: the extremals for every value of a parameter or of a component of the start.
+
+mod document;
+mod picture;
+mod spreadsheet;
+mod summary;
+
+use dalembert_driver::ensemble::Quantity;
+use dalembert_driver::{AnyModel, Controlled, Extremal, Task};
+
+use super::{Finished, build, entries, refused, task};
+use crate::args::ControlArgs;
+use crate::ensemble::members;
+use crate::ensemble::pool::{Division, in_order};
+use crate::entry::Entry;
+use crate::error::CliError;
+use crate::exit::Exit;
+use crate::plot::Drawn;
+use crate::progress::Count;
+use crate::sink::Sink;
+use crate::{Streams, ends, error, run_request};
+
+/// Largest number of values.
+const MOST: u64 = 100_000;
+
+/// The searches for all values.
+struct Sweep<'a> {
+    /// The first-order model of the extremals, with the parameters of the flags. What is varied has any value in it.
+    model: &'a dyn AnyModel,
+    scene: &'a str,
+    name: String,
+    quantity: Quantity,
+    members: Vec<Member<'a>>,
+}
+
+/// The search for one value.
+struct Member<'a> {
+    value: f64,
+    /// The search, or the reason why there is none.
+    found: Result<Finished<'a>, String>,
+}
+
+impl Sweep<'_> {
+    /// The members whose search was made.
+    fn made(&self) -> impl Iterator<Item = (f64, &Finished<'_>)> + Clone {
+        let members = self.members.iter();
+        members.filter_map(|member| Some((member.value, member.found.as_ref().ok()?)))
+    }
+
+    /// Least and largest number of impacts that were asked for.
+    fn impacts(&self) -> std::ops::RangeInclusive<usize> {
+        let mut asked = self.made().map(|(_, finished)| finished.task.impacts);
+        let [least, most] = asked.next().unwrap_or([0, 0]);
+        least..=most
+    }
+
+    fn count(&self) -> usize {
+        let counts = self
+            .made()
+            .map(|(_, finished)| finished.controlled.extremals.len());
+        counts.sum()
+    }
+
+    /// Number of extremals and values in words.
+    fn counted(&self) -> String {
+        let extremals = error::counted(self.count(), "extremal");
+        let values = error::counted(self.members.len(), "value");
+        format!("{extremals} for {values}")
+    }
+}
+
+/// The extremal of least cost with this number of impacts.
+fn cheapest<'a>(finished: &'a Finished<'_>, impacts: usize) -> Option<&'a Extremal> {
+    // They are sorted by their cost.
+    let mut extremals = finished.controlled.extremals.iter();
+    extremals.find(|extremal| extremal.kicks.len() == impacts)
+}
+
+/// Carries out `control --vary`.
+///
+/// # Errors
+/// The errors of `control`; those of single values are told in the results, unless no value has a search.
+pub(super) fn run(
+    models: &[Entry],
+    args: &ControlArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let entries = entries(models, args)?;
+    let model = build(&entries, args, None)?;
+    let (name, quantity, values) = varied(model.as_ref(), args)?;
+    // Opened before the search, so that a path that cannot be written is reported at once.
+    let csv = Sink::open_given("--csv", args.csv.as_deref())?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    let plot = Sink::open_given("--plot", args.plot.as_deref())?;
+    let members = search(
+        &entries,
+        args,
+        model.as_ref(),
+        (&name, quantity, &values),
+        streams.terminal,
+    )?;
+    let sweep = Sweep {
+        model: model.as_ref(),
+        scene: &args.model.scene,
+        name,
+        quantity,
+        members,
+    };
+    if let Some(sink) = csv {
+        sink.write(streams, |output| spreadsheet::write(output, &sweep))?;
+    }
+    if let Some(sink) = json {
+        sink.write(streams, |output| document::write(output, &sweep))?;
+    }
+    if let Some(sink) = plot {
+        let svg = picture::draw(&sweep, args)?;
+        sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
+    }
+    if !run_request::uses_stdout([&args.csv, &args.json]) {
+        summary::write(streams.output, &sweep)?;
+    }
+    Ok(match sweep.count() {
+        0 => Exit::Other,
+        _ => Exit::Reached,
+    })
+}
+
+/// The picture of `control --vary`.
+///
+/// # Errors
+/// The errors of [`run`] except those of files.
+pub(super) fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
+    let entries = entries(models, args)?;
+    let model = build(&entries, args, None)?;
+    let (name, quantity, values) = varied(model.as_ref(), args)?;
+    let members = search(
+        &entries,
+        args,
+        model.as_ref(),
+        (&name, quantity, &values),
+        false,
+    )?;
+    let sweep = Sweep {
+        model: model.as_ref(),
+        scene: &args.model.scene,
+        name,
+        quantity,
+        members,
+    };
+    Ok(Drawn {
+        svg: picture::draw(&sweep, args)?,
+        outcome: sweep.counted(),
+    })
+}
+
+/// What is varied: its name, and its values in order.
+fn varied(
+    model: &dyn AnyModel,
+    args: &ControlArgs,
+) -> Result<(String, Quantity, Vec<f64>), CliError> {
+    let description = model.description();
+    let texts: Vec<String> = args.vary.iter().cloned().collect();
+    let members = members::varied(&texts, None, None, description)?;
+    let states = (description.coordinates.len() - 1) / 2;
+    let (name, quantity) = (&members.names()[0], members.quantities()[0]);
+    let refuse = |expected: &str| CliError::value("--vary", &texts[0], expected);
+    let given = match quantity {
+        Quantity::Position(index) if index < states => &args.initial,
+        Quantity::Parameter(_) => &args.model.set,
+        _ => {
+            return Err(refuse(
+                "a parameter or a component of the state at the start",
+            ));
+        }
+    };
+    let parts = given.iter().flat_map(|text| text.split(','));
+    let mut names = parts.filter_map(|text| text.split('=').next());
+    if names.any(|given| given.trim() == name) {
+        return Err(refuse("a quantity that no other flag gives"));
+    }
+    if members.count() > MOST {
+        return Err(refuse("at most 100000 values"));
+    }
+    let values = (0..members.count()).map(|member| members.values(member)[0]);
+    Ok((name.clone(), quantity, values.collect()))
+}
+
+/// Makes the searches, on several threads. The results do not depend on their number.
+fn search<'a>(
+    entries: &[Entry],
+    args: &'a ControlArgs,
+    model: &'a dyn AnyModel,
+    (name, quantity, values): (&str, Quantity, &[f64]),
+    terminal: bool,
+) -> Result<Vec<Member<'a>>, CliError> {
+    let count = values.len() as u64;
+    let mut progress = Count::new(count, terminal);
+    let mut members = Vec::with_capacity(values.len());
+    let (mut first_error, mut without) = (None, 0);
+    in_order(
+        0..count,
+        Division {
+            threads: args.dynamic.thread_count().min(count.max(1)),
+            block: 1,
+        },
+        || (),
+        |(), block| {
+            block
+                .map(|index| one(entries, args, (name, quantity, values[index as usize])))
+                .collect()
+        },
+        |first, results| {
+            for (result, &value) in results.into_iter().zip(&values[first as usize..]) {
+                let found = match result {
+                    Ok((task, controlled)) => {
+                        without += u64::from(controlled.extremals.is_empty());
+                        Ok(Finished {
+                            model,
+                            scene: &args.model.scene,
+                            tol: args.tol,
+                            task,
+                            controlled,
+                        })
+                    }
+                    Err(error) => {
+                        without += 1;
+                        let text = error.to_string();
+                        first_error.get_or_insert(error);
+                        Err(text)
+                    }
+                };
+                members.push(Member { value, found });
+                progress.done(without);
+            }
+            Ok::<(), CliError>(())
+        },
+    )?;
+    progress.finish();
+    match first_error {
+        Some(error) if members.iter().all(|member| member.found.is_err()) => Err(error),
+        _ => Ok(members),
+    }
+}
+
+/// The search for one value.
+fn one(
+    entries: &[Entry],
+    args: &ControlArgs,
+    (name, quantity, value): (&str, Quantity, f64),
+) -> Result<(Task, Controlled), CliError> {
+    let set = matches!(quantity, Quantity::Parameter(_)).then(|| format!("{name}={value:?}"));
+    let model = build(entries, args, set)?;
+    let mut task = task(model.as_ref(), args)?;
+    if let Quantity::Position(index) = quantity {
+        task.from[index] = value;
+    }
+    let about = (model.as_ref(), args.model.scene.as_str(), "--vary");
+    let controlled = ends::sought(about, false, |tell| model.control(&task, tell), refused)?;
+    Ok((task, controlled))
+}
