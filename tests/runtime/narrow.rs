@@ -227,7 +227,7 @@ static ROUTE: Text = Text::new(
     }",
 );
 
-/// Only 12 evaluations of the rates a step: none to check it.
+/// 12 evaluations of the rates a step, and none to check it.
 #[test]
 fn a_denominator_that_changes_little_costs_no_check() {
     for (m, is_checked) in [(0.5, false), (2.9, false), (3.1, true), (100.0, true)] {
@@ -237,11 +237,10 @@ fn a_denominator_that_changes_little_costs_no_check() {
             .tol(1e-10)
             .observed(Integrator::Dop853, &mut ())
             .counters;
-        let steps = counters.accepted + counters.rejected;
-        let checks = if is_checked { steps } else { 0 };
-        let stages = counters.rate_evaluations - checks;
-        assert!(stages <= 12 * steps + 2, "m = {m}: {counters:?}");
-        assert!(stages + 12 >= 12 * steps, "m = {m}: {counters:?}");
+        // A step that the error estimate rejects takes one evaluation less.
+        let most = 12 * counters.accepted + 11 * counters.rejected + 2;
+        let has_more = counters.rate_evaluations > most;
+        assert_eq!(has_more, is_checked, "m = {m}: {counters:?}");
     }
 }
 

@@ -22,8 +22,7 @@ pub(super) fn can_be_narrow(pool: &Pool, expressions: &[ExprId], varying: &[Symb
         }),
         Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => false,
     };
-    let mut reachable = pool.reachable(expressions);
-    reachable.reverse();
+    let reachable = pool.reachable(expressions);
     reachable.iter().any(is_narrow) || has_long_product(pool, &reachable, varying)
 }
 
@@ -90,7 +89,8 @@ mod tests {
             (product, true),
             (of_constant, false),
         ] {
-            assert_eq!(can_be_narrow(&pool, &[id], &[x]), expected);
+            let found = can_be_narrow(&pool, &[id], &[x]);
+            assert_eq!(found, expected, "{:?}", pool.node(id));
         }
     }
 }
