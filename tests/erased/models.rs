@@ -97,7 +97,7 @@ pub fn compared() -> &'static [Compiled] {
             models.extend(compiled! {
                 dalembert_models:
                 BallOnRotatingTable BallOnSwitchingTable BouncingBall Chain2 Chain3 Chain8 Chain16 ChaplyginSleigh
-                CompassWalker ConstantSpeed DimensionlessWalker DoublePendulum FilippovField HarmonicOscillator HolonomicBeadOnEllipses
+                CompassWalker ConstantSpeed DimensionlessWalker DoublePendulum FilippovField HarmonicOscillator HolonomicBeadOnEllipses Mathieu
                 PointBilliard RimlessWheelTen RollingBallEuler RollingBallWall
                 SmoothAndRoughPlane SpasmodicHamiltonian SphereInPlane SuperElasticStrip TwoWheelsArrested
                 TwoWheelsRod WalkerFootSlip

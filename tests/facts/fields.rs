@@ -1,5 +1,7 @@
 //! Discontinuous fields, media and metrics that change at a line, and a map that is a system of modes.
 
+use std::f64::consts::TAU;
+
 use dalembert::{EventLog, Fault, Outcome, System};
 use dalembert_cli::Integrator;
 use dalembert_stability::text::shipped;
@@ -46,6 +48,39 @@ fn angular_momentum_and_energy_are_kept_across_the_circle() -> Result<(), Fault>
     let drift = point.energy(3.0, &run.state)? - point.energy(0.0, &start)?;
     assert!(drift.abs() < 1e-12, "{drift:e}");
     Ok(())
+}
+
+/// The trace of the map of Mathieu's equation over a period, from the two motions that start as the axes do.
+fn trace_of_mathieu(delta: f64, eps: f64) -> f64 {
+    let equation = shipped("mathieu").with([("delta", delta), ("eps", eps)]);
+    let component = |index: usize| {
+        let mut from = [0.0; 3];
+        from[index] = 1.0;
+        let run = end(course(&equation, &from, &[0.0; 3], TAU).tol(1e-13));
+        assert_eq!((run.outcome, run.counters.impacts), (Outcome::Done, 1));
+        run.state.as_ref()[index]
+    };
+    component(0) + component(1)
+}
+
+#[test]
+fn without_amplitude_mathieu_s_equation_is_an_oscillator() {
+    for delta in [0.09_f64, 0.6, 2.0] {
+        let expected = 2.0 * (TAU * delta.sqrt()).cos();
+        let trace = trace_of_mathieu(delta, 0.0);
+        assert!((trace - expected).abs() < 1e-10, "{delta}: {trace}");
+    }
+}
+
+/// The series of both bounds, from 28.6(i) of the Digital Library of Mathematical Functions.
+#[test]
+fn the_first_tongue_of_mathieu_s_equation_lies_between_its_series() {
+    for eps in [-0.1, 0.1] {
+        let bound = 0.25 + eps / 2.0 - eps * eps / 8.0 - eps.powi(3) / 32.0 - eps.powi(4) / 384.0;
+        let trace = trace_of_mathieu(bound, eps);
+        assert!((trace + 2.0).abs() < 1e-6, "{eps}: {trace}");
+    }
+    assert!(trace_of_mathieu(0.25, 0.1) < -2.0);
 }
 
 /// Doubling is exact in binary: motions come to 1/2, from there to 1 and to 0, where they stay.

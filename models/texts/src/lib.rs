@@ -25,6 +25,7 @@ macro_rules! shipped {
             filippov_field: FilippovField,
             harmonic_oscillator: HarmonicOscillator,
             holonomic_bead_on_ellipses: HolonomicBeadOnEllipses,
+            mathieu: Mathieu,
             moving_wall_disk: MovingWallDisk,
             point_billiard: PointBilliard,
             refracted_particle: RefractedParticle,

@@ -25,6 +25,7 @@ pub fn all() -> Vec<Figure> {
     figures.extend(rolling_disk::figures());
     figures.extend(connections::figures());
     figures.extend(control::figures());
+    figures.extend(walker::tongues());
     figures.extend([
         zeno::bouncing_ball(),
         density::of_the_sleigh(),

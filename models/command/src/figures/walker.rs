@@ -1,4 +1,4 @@
-//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4 and 4.5), and gaits that double their period.
+//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4, 4.5, 10.1 and 10.2), and gaits that double their period.
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
@@ -9,6 +9,11 @@ const WALK: &str = "--returns 50 --fail 'theta > pi/2' --tol 1e-7";
 
 pub fn figures() -> Vec<Figure> {
     vec![gaits(), basin(), doubling()]
+}
+
+/// Tongues (Figures 10.1 and 10.2).
+pub fn tongues() -> Vec<Figure> {
+    vec![mathieu(), fixed_start()]
 }
 
 fn mapped(name: &str, title: &str, flags: String) -> Panel {
@@ -67,6 +72,57 @@ fn basin() -> Figure {
                 "--vary eta=-2..2:400 --vary xi=-3..1:400 {WALK} --contour 'xi = -0.988692*(sin(alpha) - eta)'"
             ),
         )],
+    }
+}
+
+fn mathieu() -> Figure {
+    Figure {
+        model: "mathieu",
+        name: "tongues",
+        title: "Tongues of Mathieu's equation",
+        chapter: chapters::TONGUES,
+        highlight: None,
+        caption: "Growth of solutions of $dot(dot(x)) + (delta + eps*cos(t))*x = 0$ per period in powers of e, the logarithm of the largest \
+                  multiplier of $x = 0$; dark is stable. Tongues of instability begin at $delta = 1/4$ and 1. The lines are the series of the \
+                  bounds of the first one to the third order in $eps$. The thesis sets the stable starts \
+                  of the walker beside it, the figure of its Fig. 4.5 above."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 10.1, right"),
+        panels: vec![mapped(
+            "",
+            "Growth over the plane of parameters",
+            "--vary delta=-0.5..1.75:120 --vary eps=0..1.2:96 --initial x=0 --returns 4 --until 1000 --tol 1e-8 --lyapunov 12 \
+             --class lyapunov --contour 'delta = 1/4 - eps/2 - eps^2/8 + eps^3/32' --contour 'delta = 1/4 + eps/2 - eps^2/8 - eps^3/32'"
+                .to_owned(),
+        )],
+    }
+}
+
+fn fixed_start() -> Figure {
+    let panel = |name: &str, title: &str, axes: &str| {
+        let start = "--initial xi=-1,eta=0 --start 'theta = delta'";
+        mapped(
+            name,
+            title,
+            format!("{axes} {start} {WALK} --lyapunov 2 --class lyapunov"),
+        )
+    };
+    Figure {
+        model: "dimensionless_walker",
+        name: "tongues",
+        title: "Slopes and steps for which a walker walks on from one start",
+        chapter: chapters::TONGUES,
+        highlight: None,
+        caption: "The walker with $mu = 5/2$ and $eps = 1/2$ after a step with $xi = -1$, $eta = 0$. Colours show the growth of a small deviation \
+                  per step in powers of e, white are walkers that fall within 50 steps. The bound is one line: steps that are too long for the \
+                  slope lead to falls. The thesis finds tongues of stability there, with a wrong sign of the centripetal term in its equations and without its \
+                  axes and parameters."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 10.2"),
+        panels: vec![
+            panel("all", "Slopes and steps", "--vary alpha=0.01..0.8:72 --vary delta=0.02..0.76:72"),
+            panel("part", "Gentle slopes", "--vary alpha=0.005..0.1:72 --vary delta=0.02..0.4:72"),
+        ],
     }
 }
 
