@@ -45,6 +45,12 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
             _ if name.starts_with("bouncing_ball-zeno") => "zeno at t = 9.8994949366",
             _ if name.starts_with("dimensionless_walker-basin") => "orbit 1 (period 1): ",
             _ if name.starts_with("dimensionless_walker-gaits") => "period 1: ",
+            _ if name.starts_with("dimensionless_walker-tongues") => "period 1: ",
+            "mathieu-tongues" => "period 1: 180",
+            "controlled_ball-loss-costs" => "21 extremals: 5 with 0 impacts, 11 with 1 impact",
+            "controlled_ball-sections-late" => "18 extremals: 9 with 0 impacts, 9 with 1",
+            "controlled_ball-sections-half" => "27 extremals: 8 with 0 impacts, 10 with",
+            "controlled_ball-sections-first" => "33 extremals: 7 with 0 impacts, 16 with",
             "bouncing_ball-connections-paths" => "7 motions: 1 with 0 impacts",
             "bouncing_ball-connections-bounds" => "6 motions: 2 with 1 impact",
             "controlled_ball-optimal-fixed" => "4 extremals: 1 with 0 impacts, 3 with 1 impact",
@@ -72,7 +78,9 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
         };
         assert!(outcome.starts_with(expected), "{name}: {outcome}");
     }
-    for source in ["4.4", "4.5", "6.2", "6.3", "6.4", "8.4", "8.5"] {
+    for source in [
+        "4.4", "4.5", "6.2", "6.3", "6.4", "8.4", "8.5", "9.5", "9.7", "10.1", "10.2",
+    ] {
         assert!(page.contains(&format!("W. Clark, thesis, Fig. {source}")));
     }
 }

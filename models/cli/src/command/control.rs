@@ -137,7 +137,7 @@ pub fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
     let finished = find(model.as_ref(), args, task, false)?;
     Ok(Drawn {
         svg: film::picture(&finished, args)?,
-        outcome: summary::counted(&finished),
+        outcome: summary::counted(finished.controlled.extremals.iter()),
     })
 }
 

@@ -58,7 +58,7 @@ pub enum Picture {
     Map(String),
     /// The picture that `connect` draws with these flags.
     Connect(String),
-    /// The picture that `control` draws with these flags.
+    /// The picture that `control` draws with these flags; a quick gallery takes an eighth of the values of `--vary`.
     Control(String),
     /// The picture that `orbit --continue` draws with these flags.
     Branch(String),

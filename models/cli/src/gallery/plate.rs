@@ -17,7 +17,7 @@ use crate::plot::Drawn;
 pub enum Effort {
     /// The effort that the captions state.
     Full,
-    /// A fiftieth of the positions of densities, an eighth of the values along each axis of maps, and no timed pictures.
+    /// A fiftieth of the positions of densities, an eighth of the values along each axis of `--vary`, and no timed pictures.
     Quick,
 }
 
@@ -82,10 +82,12 @@ impl<'a> Plate<'a> {
             Picture::Simulate(flags) => self.drawing("simulate", flags),
             Picture::Accuracy(flags) => self.drawing("accuracy", flags),
             Picture::Connect(flags) => self.drawing("connect", flags),
-            Picture::Control(flags) => self.drawing("control", flags),
+            Picture::Control(flags) if self.effort == Effort::Full || !flags.contains("--vary") => {
+                self.drawing("control", flags)
+            }
             Picture::Branch(flags) => self.drawing("orbit", flags),
             Picture::Map(flags) if self.effort == Effort::Full => self.drawing("map", flags),
-            Picture::Starts(_) | Picture::Density(_) | Picture::Map(_) => {
+            Picture::Starts(_) | Picture::Density(_) | Picture::Map(_) | Picture::Control(_) => {
                 let quick = match self.effort {
                     Effort::Quick => " --quick",
                     Effort::Full => "",
@@ -133,8 +135,13 @@ impl<'a> Plate<'a> {
                 Command::Connect(args) => connect::draw(models, &args),
                 _ => Err(self.refusal("no `connect`")),
             },
-            Picture::Control(_) => match self.parse(&self.command())? {
-                Command::Control(args) => control::draw(models, &args),
+            Picture::Control(flags) => match self.parse(&self.drawing("control", flags))? {
+                Command::Control(mut args) => {
+                    if self.effort == Effort::Quick {
+                        args.vary.iter_mut().for_each(|axis| *axis = coarser(axis));
+                    }
+                    control::draw(models, &args)
+                }
                 _ => Err(self.refusal("no `control`")),
             },
             Picture::Map(flags) => match self.parse(&self.drawing("map", flags))? {

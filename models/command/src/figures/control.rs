@@ -17,6 +17,7 @@ pub fn figures() -> Vec<Figure> {
         weak_forces(),
         controlled_ball(),
         least_cost(),
+        sections(),
         impacts(),
         restitution(),
     ]
@@ -56,12 +57,6 @@ fn least_cost() -> Figure {
         let flags = format!("{STRONG} --at {t} {THIRD}");
         panel(name, title, flags)
     };
-    let section = |name: &str, title: &str, until: &str| {
-        let flags = format!(
-            "--initial x=0.5 --vary y=-5..5:41 --until {until} --impacts 0..2 --starts 16 {THIRD}"
-        );
-        panel(name, title, flags)
-    };
     Figure {
         model: "controlled_ball",
         name: "least",
@@ -70,18 +65,41 @@ fn least_cost() -> Figure {
         highlight: None,
         caption: "The least cost from a height x and a momentum y to the end at $T = 5$, by dynamic programming, with $m = 2$, $g = 1$, \
                   $alpha = 10$ and forces from -4 to 4. The earlier, the more folds: dark valleys are motions that need almost no force with \
-                  one number of impacts. White: every motion leaves the grid. The line is the path from rest at 1/2. Below, the cross-sections at \
-                  $x = 0.5$ by the maximum principle: all extremals that were found, with a line of the least cost for each number of impacts. The earlier, \
-                  the more values the cost has."
+                  one number of impacts. White: every motion leaves the grid. The line is the path from rest at 1/2."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.5"),
         panels: vec![
             map("late", "One second before the end", "4"),
             map("half", "Half the time before the end", "2.5"),
             map("first", "At the start", "0"),
-            section("late_section", "One second before the end, x = 0.5", "1"),
-            section("half_section", "Half the time before the end, x = 0.5", "2.5"),
-            section("first_section", "At the start, x = 0.5", "5"),
+        ],
+    }
+}
+
+fn sections() -> Figure {
+    let section = |name: &str, left: &str, t: &str, most: u32| {
+        let title = format!("At t = {t}");
+        let flags = format!(
+            "--initial x=0.5 --vary y=-4..4:81 --until {left} --impacts 0..{most} --starts 48 {THIRD}"
+        );
+        panel(name, &title, flags)
+    };
+    Figure {
+        model: "controlled_ball",
+        name: "sections",
+        title: "Every cost that is left, at one height",
+        chapter: chapters::VARIATIONS,
+        highlight: None,
+        caption: "The costs of all extremals found from the height $x = 1/2$ with a momentum y to the end at $T = 5$, with $m = 2$, $g = 1$ and \
+                  $alpha = 10$. The cost has many values, the more the earlier; the line is the least of them, the section of the figure before. Colours are numbers \
+                  of impacts, with no more than two until the end, and than one in its last second. The thesis shows what comes backwards from \
+                  $x = 0.9$ to 1.1 and $y = -4$ to 4 at the end; here extremals to all ends are shown."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 9.5, right column"),
+        panels: vec![
+            section("late", "1", "4", 1),
+            section("half", "2.5", "2.5", 2),
+            section("first", "5", "0", 2),
         ],
     }
 }
@@ -110,10 +128,10 @@ fn restitution() -> Figure {
             format!("--initial x=1 --end x=1,y=0 --impacts 1..2 --starts 24 --set e={e} {QUARTER}");
         panel(&name, &title, flags)
     };
-    let costs = panel(
+    let curve = panel(
         "costs",
-        "Costs over the coefficient of restitution",
-        "--initial x=1 --end x=1,y=0 --impacts 0..2 --starts 24 --vary e=0.5..1:21",
+        "Costs over the coefficient",
+        "--initial x=1 --end x=1,y=0 --impacts 0..2 --starts 48 --vary e=0.5..1:41",
     );
     Figure {
         model: "controlled_ball",
@@ -123,10 +141,14 @@ fn restitution() -> Figure {
         highlight: None,
         caption: "Extremals from rest at height 1 to rest at height 1 in time 5, with $m = 2$ and $g = 1$. The cheapest with one impact costs \
                   3.4667, 3.4923, 3.5841 and 3.7537 for the coefficients 1, 0.9, 0.8 and 0.7; to hold the ball costs $m^2*g^2*T/2 = 10$. \
-                  With two impacts the costs are 0.2743, 0.3695, 0.6877 and 1.2648. The last panel has the costs over the coefficient."
+                  With two impacts the costs are 0.2743, 0.3695, 0.6877 and 1.2648. \
+                  The first picture has the costs of all extremals found over the coefficient."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.7"),
-        panels: ["1", "0.9", "0.8", "0.7"].map(with).into_iter().chain([costs]).collect(),
+        panels: [curve]
+            .into_iter()
+            .chain(["1", "0.9", "0.8", "0.7"].map(with))
+            .collect(),
     }
 }
 

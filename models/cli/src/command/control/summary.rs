@@ -17,7 +17,11 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     let runs = error::counted(controlled.runs as usize, "run");
     writeln!(output, "  search      {directions}, {runs}")?;
     writeln!(output, "  coverage    {}", doubt(finished))?;
-    writeln!(output, "  found       {}", counted(finished))?;
+    writeln!(
+        output,
+        "  found       {}",
+        counted(controlled.extremals.iter())
+    )?;
     for (index, extremal) in controlled.extremals.iter().enumerate() {
         writeln!(output)?;
         write_extremal(output, finished, index + 1, extremal)?;
@@ -57,8 +61,7 @@ pub(super) fn end(finished: &Finished<'_>) -> String {
 }
 
 /// The numbers of extremals by their number of impacts.
-pub(super) fn counted(finished: &Finished<'_>) -> String {
-    let extremals = finished.controlled.extremals.iter();
+pub(super) fn counted<'a>(extremals: impl Iterator<Item = &'a Extremal>) -> String {
     let mut counts: Vec<usize> = extremals.map(|it| it.kicks.len()).collect();
     counts.sort_unstable();
     let groups = counts.chunk_by(|left, right| left == right);

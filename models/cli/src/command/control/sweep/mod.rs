@@ -18,7 +18,7 @@ use crate::exit::Exit;
 use crate::plot::Drawn;
 use crate::progress::Count;
 use crate::sink::Sink;
-use crate::{Streams, ends, error, run_request};
+use crate::{Streams, ends, run_request};
 
 /// Largest number of values.
 const MOST: u64 = 100_000;
@@ -54,18 +54,15 @@ impl Sweep<'_> {
         least..=most
     }
 
-    fn count(&self) -> usize {
-        let counts = self
-            .made()
-            .map(|(_, finished)| finished.controlled.extremals.len());
-        counts.sum()
+    /// The extremals for all values.
+    fn extremals(&self) -> impl Iterator<Item = &Extremal> {
+        self.made()
+            .flat_map(|(_, finished)| &finished.controlled.extremals)
     }
 
-    /// Number of extremals and values in words.
+    /// Their numbers by their number of impacts.
     fn counted(&self) -> String {
-        let extremals = error::counted(self.count(), "extremal");
-        let values = error::counted(self.members.len(), "value");
-        format!("{extremals} for {values}")
+        super::summary::counted(self.extremals())
     }
 }
 
@@ -119,9 +116,9 @@ pub(super) fn run(
     if !run_request::uses_stdout([&args.csv, &args.json]) {
         summary::write(streams.output, &sweep)?;
     }
-    Ok(match sweep.count() {
-        0 => Exit::Other,
-        _ => Exit::Reached,
+    Ok(match sweep.extremals().next() {
+        None => Exit::Other,
+        Some(_) => Exit::Reached,
     })
 }
 

@@ -24,8 +24,10 @@ pub(super) fn write(output: &mut dyn Write, sweep: &Sweep<'_>) -> io::Result<()>
         output,
         "  coverage    scans sample costates, so extremals may be missed"
     )?;
-    writeln!(output, "  found       {}, least costs:", sweep.counted())?;
+    writeln!(output, "  values      {}", sweep.members.len())?;
+    writeln!(output, "  found       {}", sweep.counted())?;
     writeln!(output)?;
+    writeln!(output, "  least costs by number of impacts")?;
     write!(output, "  {:>24}", sweep.name)?;
     for impacts in sweep.impacts() {
         write!(output, "  {:>24}", error::counted(impacts, "impact"))?;
