@@ -75,7 +75,7 @@ fn without_amplitude_mathieu_s_equation_is_an_oscillator() {
 /// The series of both bounds, from 28.6(i) of the Digital Library of Mathematical Functions.
 #[test]
 fn the_first_tongue_of_mathieu_s_equation_lies_between_its_series() {
-    for eps in [-0.1, 0.1] {
+    for eps in [-0.1_f64, 0.1] {
         let bound = 0.25 + eps / 2.0 - eps * eps / 8.0 - eps.powi(3) / 32.0 - eps.powi(4) / 384.0;
         let trace = trace_of_mathieu(bound, eps);
         assert!((trace + 2.0).abs() < 1e-6, "{eps}: {trace}");
