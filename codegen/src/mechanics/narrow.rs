@@ -2,8 +2,6 @@
 //! flat elsewhere. Sums, products, sines and cosines of steadily changing quantities change steadily themselves.
 //! Exponentials, quotients and long products need not.
 
-use std::collections::HashMap;
-
 use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
 /// Highest degree of a product that changes about as steadily as its factors. The 16th power of a sine is a bump a tenth
@@ -28,9 +26,10 @@ pub(super) fn can_be_narrow(pool: &Pool, expressions: &[ExprId], varying: &[Symb
 
 /// True if some product has many varying factors, powers counted. The expressions come after their operands.
 fn has_long_product(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -> bool {
-    let mut degrees: HashMap<ExprId, i64> = HashMap::new();
+    let most = expressions.iter().map(|id| id.index()).max();
+    let mut degrees = vec![0_i64; most.map_or(0, |most| most + 1)];
     expressions.iter().any(|&id| {
-        let of = |operand: ExprId| degrees.get(&operand).copied().unwrap_or(0);
+        let of = |operand: ExprId| degrees[operand.index()];
         let mut highest = 0;
         let node = pool.node(id);
         node.for_each_operand(|operand| highest = highest.max(of(operand)));
@@ -44,7 +43,7 @@ fn has_long_product(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -
             Node::Call(..) | Node::Atan2(..) => highest.min(1),
             Node::Sum { .. } => highest,
         };
-        degrees.insert(id, degree);
+        degrees[id.index()] = degree;
         degree > MOST_FACTORS
     })
 }
