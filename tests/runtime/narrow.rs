@@ -183,7 +183,7 @@ macro_rules! striker {
 static STRIKERS: [(u32, Text); 3] = [
     (20, Text::new(striker!(20))),
     (400, Text::new(striker!(400))),
-    (20_000, Text::new(striker!(20_000))),
+    (4000, Text::new(striker!(4000))),
 ];
 
 /// The same by products of factors that change little on their own: bumps of cosines, and quotients.
@@ -192,24 +192,24 @@ static PRODUCTS: [Text; 2] = [
         "Bumps {
             coordinates { x; theta: angle; }
             lagrangian = dot(x)^2/2 + dot(theta)^2/2;
-            let a = ((1 + cos(2*theta))/2)^6;
-            let b = ((1 + cos(2*theta + 1e-9))/2)^6;
-            let c = ((1 + cos(2*theta - 1e-9))/2)^6;
-            let d = ((1 + cos(2*theta + 2e-9))/2)^6;
-            let e = ((1 + cos(2*theta - 2e-9))/2)^6;
-            forces { blow: (a*b*c*d*e)^3*d(x); }
+            let f1 = ((1 + cos(2*theta))/2)^6;
+            let f2 = ((1 + cos(2*theta + 1e-9))/2)^6;
+            let f3 = ((1 + cos(2*theta - 1e-9))/2)^6;
+            let f4 = ((1 + cos(2*theta + 2e-9))/2)^6;
+            let f5 = ((1 + cos(2*theta - 2e-9))/2)^6;
+            forces { blow: (f1*f2*f3*f4*f5)^3*d(x); }
         }",
     ),
     Text::new(
         "Quotients {
             coordinates { x; theta: angle; }
             lagrangian = dot(x)^2/2 + dot(theta)^2/2;
-            let a = 1/(1 + 2.9*sin(theta)^2);
-            let b = 1/(1 + 2.9*sin(theta + 1e-9)^2);
-            let c = 1/(1 + 2.9*sin(theta - 1e-9)^2);
-            let d = 1/(1 + 2.9*sin(theta + 2e-9)^2);
-            let e = 1/(1 + 2.9*sin(theta - 2e-9)^2);
-            forces { blow: (a*b*c*d*e)^8*d(x); }
+            let f1 = 1/(1 + 2.9*sin(theta)^2);
+            let f2 = 1/(1 + 2.9*sin(theta + 1e-9)^2);
+            let f3 = 1/(1 + 2.9*sin(theta - 1e-9)^2);
+            let f4 = 1/(1 + 2.9*sin(theta + 2e-9)^2);
+            let f5 = 1/(1 + 2.9*sin(theta - 2e-9)^2);
+            forces { blow: (f1*f2*f3*f4*f5)^8*d(x); }
         }",
     ),
 ];
