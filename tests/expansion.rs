@@ -32,7 +32,7 @@ struct Expansion {
 }
 
 /// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code. The chain of 16 takes
-/// 2.3 to 2.75 on one machine, by its clock and its load.
+/// up to 2.74, by the load of the machine.
 const READINGS: f64 = 3.0;
 /// On a slow machine, largest ratio of the time of a model's claims to that of an expansion without them.
 const EXPANSIONS: u32 = 10;

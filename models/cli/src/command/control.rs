@@ -277,8 +277,7 @@ fn find<'a>(
     task: Task,
     terminal: bool,
 ) -> Result<Finished<'a>, CliError> {
-    let about = (model, args.model.scene.as_str(), "--initial");
-    let controlled = ends::sought(about, terminal, |tell| model.control(&task, tell), refused)?;
+    let controlled = controlled(model, args, &task, terminal)?;
     Ok(Finished {
         model,
         scene: &args.model.scene,
@@ -286,6 +285,16 @@ fn find<'a>(
         task,
         controlled,
     })
+}
+
+fn controlled(
+    model: &dyn AnyModel,
+    args: &ControlArgs,
+    task: &Task,
+    terminal: bool,
+) -> Result<Controlled, CliError> {
+    let about = (model, args.model.scene.as_str(), "--initial");
+    ends::sought(about, terminal, |tell| model.control(task, tell), refused)
 }
 
 /// The error for a problem without extremals, in the model's names.

@@ -8,7 +8,7 @@ mod summary;
 use dalembert_driver::ensemble::Quantity;
 use dalembert_driver::{AnyModel, Controlled, Extremal, Task};
 
-use super::{Finished, build, entries, refused, task};
+use super::{Finished, build, controlled, entries, task};
 use crate::args::ControlArgs;
 use crate::ensemble::members;
 use crate::ensemble::pool::{Division, in_order};
@@ -18,14 +18,14 @@ use crate::exit::Exit;
 use crate::plot::Drawn;
 use crate::progress::Count;
 use crate::sink::Sink;
-use crate::{Streams, ends, run_request};
+use crate::{Streams, run_request};
 
 /// Largest number of values.
 const MOST: u64 = 100_000;
 
 /// The searches for all values.
 struct Sweep<'a> {
-    /// The first-order model of the extremals, with the parameters of the flags. What is varied has any value in it.
+    /// The first-order model of the extremals, with the parameters of the flags, without that of `--vary`.
     model: &'a dyn AnyModel,
     scene: &'a str,
     name: String,
@@ -84,25 +84,12 @@ pub(super) fn run(
 ) -> Result<Exit, CliError> {
     let entries = entries(models, args)?;
     let model = build(&entries, args, None)?;
-    let (name, quantity, values) = varied(model.as_ref(), args)?;
+    let axis = varied(model.as_ref(), args)?;
     // Opened before the search, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
-    let members = search(
-        &entries,
-        args,
-        model.as_ref(),
-        (&name, quantity, &values),
-        streams.terminal,
-    )?;
-    let sweep = Sweep {
-        model: model.as_ref(),
-        scene: &args.model.scene,
-        name,
-        quantity,
-        members,
-    };
+    let sweep = search(&entries, args, model.as_ref(), axis, streams.terminal)?;
     if let Some(sink) = csv {
         sink.write(streams, |output| spreadsheet::write(output, &sweep))?;
     }
@@ -129,28 +116,15 @@ pub(super) fn run(
 pub(super) fn draw(models: &[Entry], args: &ControlArgs) -> Result<Drawn, CliError> {
     let entries = entries(models, args)?;
     let model = build(&entries, args, None)?;
-    let (name, quantity, values) = varied(model.as_ref(), args)?;
-    let members = search(
-        &entries,
-        args,
-        model.as_ref(),
-        (&name, quantity, &values),
-        false,
-    )?;
-    let sweep = Sweep {
-        model: model.as_ref(),
-        scene: &args.model.scene,
-        name,
-        quantity,
-        members,
-    };
+    let axis = varied(model.as_ref(), args)?;
+    let sweep = search(&entries, args, model.as_ref(), axis, false)?;
     Ok(Drawn {
         svg: picture::draw(&sweep, args)?,
         outcome: sweep.counted(),
     })
 }
 
-/// What is varied: its name, and its values in order.
+/// Name of the varied quantity, the quantity, and its values in order.
 fn varied(
     model: &dyn AnyModel,
     args: &ControlArgs,
@@ -187,9 +161,9 @@ fn search<'a>(
     entries: &[Entry],
     args: &'a ControlArgs,
     model: &'a dyn AnyModel,
-    (name, quantity, values): (&str, Quantity, &[f64]),
+    (name, quantity, values): (String, Quantity, Vec<f64>),
     terminal: bool,
-) -> Result<Vec<Member<'a>>, CliError> {
+) -> Result<Sweep<'a>, CliError> {
     let count = values.len() as u64;
     let mut progress = Count::new(count, terminal);
     let mut members = Vec::with_capacity(values.len());
@@ -203,7 +177,7 @@ fn search<'a>(
         || (),
         |(), block| {
             block
-                .map(|index| one(entries, args, (name, quantity, values[index as usize])))
+                .map(|index| one(entries, args, (&name, quantity, values[index as usize])))
                 .collect()
         },
         |first, results| {
@@ -235,7 +209,13 @@ fn search<'a>(
     progress.finish();
     match first_error {
         Some(error) if members.iter().all(|member| member.found.is_err()) => Err(error),
-        _ => Ok(members),
+        _ => Ok(Sweep {
+            model,
+            scene: &args.model.scene,
+            name,
+            quantity,
+            members,
+        }),
     }
 }
 
@@ -251,7 +231,6 @@ fn one(
     if let Quantity::Position(index) = quantity {
         task.from[index] = value;
     }
-    let about = (model.as_ref(), args.model.scene.as_str(), "--vary");
-    let controlled = ends::sought(about, false, |tell| model.control(&task, tell), refused)?;
+    let controlled = controlled(model.as_ref(), args, &task, false)?;
     Ok((task, controlled))
 }

@@ -2,13 +2,14 @@
 
 use std::io::{self, Write};
 
+use super::super::summary::{end, title};
 use super::{Sweep, cheapest};
 use crate::error;
 
 /// Writes the summary.
 pub(super) fn write(output: &mut dyn Write, sweep: &Sweep<'_>) -> io::Result<()> {
     if let Some((_, finished)) = sweep.made().next() {
-        writeln!(output, "{}", super::super::summary::title(finished))?;
+        writeln!(output, "{}", title(finished))?;
     }
     writeln!(output, "  {}", subtitle(sweep))?;
     let runs: u64 = sweep
@@ -66,11 +67,7 @@ pub(super) fn subtitle(sweep: &Sweep<'_>) -> String {
             let fixed: Vec<String> = fixed
                 .map(|(name, value)| format!("{name} = {value:?}"))
                 .collect();
-            format!(
-                "from {} to {}, {varied}",
-                fixed.join(", "),
-                super::super::summary::end(finished)
-            )
+            format!("from {} to {}, {varied}", fixed.join(", "), end(finished))
         }
     }
 }
