@@ -124,30 +124,6 @@ fn changes<S: StateVector>(like: &S, path: &Path<S>) -> S {
     changes
 }
 
-/// Enclosures of all components on a part of a step: ends of their values, then ends of their rates.
-struct Motion<S>([S; 4]);
-
-impl<S: StateVector> Motion<S> {
-    fn on(path: &Path<S>, part: [f64; 2], like: &S) -> Self {
-        let mut ends = [like.zeroed(); 4];
-        for i in 0..like.count() {
-            let Rated { value, rate } = path.rated(i, part);
-            for (end, number) in ends.iter_mut().zip([value.lo, value.hi, rate.lo, rate.hi]) {
-                end.as_mut_slice()[i] = number;
-            }
-        }
-        Self(ends)
-    }
-
-    fn rated(&self, i: usize) -> Rated {
-        let [value_lo, value_hi, rate_lo, rate_hi] = self.0.each_ref().map(|end| end.as_slice()[i]);
-        Rated {
-            value: Interval::new(value_lo, value_hi),
-            rate: Interval::new(rate_lo, rate_hi),
-        }
-    }
-}
-
 /// Relation of the enclosed rates on a part of a step to those that it assumed.
 enum Rates {
     Assumed,
@@ -198,13 +174,16 @@ impl<Sys: System> Along<'_, Sys> {
         }
         let (mut is_assumed, mut is_bounded) = (true, true);
         let length = Interval::point(self.length);
-        let motion = Motion::on(path, part, &state);
-        let component = |i: usize| motion.rated(i);
+        let mut motion = Sys::State::each(state.count(), Rated::steady(Interval::point(0.0)));
+        for (i, rated) in motion.as_mut().iter_mut().enumerate() {
+            *rated = path.rated(i, part);
+        }
+        let component = |i: usize| motion.as_ref()[i];
         let mut take = |i: usize, rate: Rated| {
             let reach = (rate.rate.magnitude() * 0.5) * width;
             let centred = Interval::point(centre.as_slice()[i]).widened(reach);
             let rates = length * rate.value.intersection(centred).unwrap_or(rate.value);
-            let assumed = motion.rated(i).rate;
+            let assumed = motion.as_ref()[i].rate;
             let excess = (rates.hi - assumed.hi).max(assumed.lo - rates.lo);
             let wider = OF_CHANGE * changes.as_slice()[i] + OF_SIZE * assumed.magnitude();
             let most = (wider * width).max(self.allowed.as_slice()[i]);
