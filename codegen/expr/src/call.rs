@@ -1,4 +1,4 @@
-//! Constructors of functions: exact values, parity, and the few rewrites listed in `construct.rs`.
+//! Constructors of function calls: exact values, parity, and the rewrites listed in `construct.rs`.
 
 use crate::function::{Function, Parity};
 use crate::node::{ExprId, Node};
@@ -78,7 +78,7 @@ impl Pool {
         }
     }
 
-    /// `r` if the expression is `r pi`.
+    /// The rational `r`, if the expression is `r pi`.
     fn multiple_of_pi(&self, id: ExprId) -> Option<Rational> {
         match self.as_multiple(id) {
             (coefficient, term) if term == self.pi() => Some(coefficient),
@@ -87,7 +87,7 @@ impl Pool {
         }
     }
 
-    /// sin and cos of `x + k pi/2`, `k` not 0, in terms of `x`.
+    /// sin or cos of `x + k pi/2` for an integer `k`, in terms of sin or cos of `x`.
     fn remove_quarter_turns(&mut self, function: Function, argument: ExprId) -> Option<ExprId> {
         if !matches!(function, Function::Sin | Function::Cos) || argument == self.pi() {
             return None;
@@ -112,9 +112,9 @@ impl Pool {
     }
 }
 
-/// sin, cos or tan of `turns * pi` where it is rational.
+/// sin, cos or tan of `turns * pi`, if the value is rational.
 fn value_at_turns(function: Function, turns: &Rational) -> Option<Rational> {
-    // In units of pi/12, which hold the sixths and quarters.
+    // The unit pi/12 divides pi/6 and pi/4.
     let units = (turns * &Rational::from(12)).to_i64()?.rem_euclid(24);
     match function {
         Function::Sin => sine_at(units),
@@ -128,7 +128,7 @@ fn value_at_turns(function: Function, turns: &Rational) -> Option<Rational> {
     }
 }
 
-/// `sin(units * pi/12)` where it is rational.
+/// `sin(units * pi/12)`, if the value is rational.
 fn sine_at(units: i64) -> Option<Rational> {
     match units {
         0 | 12 => Some(Rational::ZERO),

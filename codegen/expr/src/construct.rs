@@ -1,37 +1,41 @@
-//! The constructors: the only way to build a node, and the list of every rewrite they make.
+//! Constructors of nodes, and the list of all their rewrites. There is no other way to build a node.
 //!
-//! A rewrite holds wherever both sides are defined and never enlarges the domain. *Known* means: seen from the
-//! structure and the assumptions, see [`Pool::sign`] and [`Pool::is_finite`].
+//! A rewrite holds wherever both sides are defined and never enlarges the domain. A property is *known* if it follows
+//! from the structure of the expression and the assumptions; see [`Pool::sign`] and [`Pool::is_finite`].
 //!
 //! **Sums** (`sum.rs`: [`Pool::add`], [`Pool::sub`], [`Pool::neg`], [`Pool::sum`])
 //! - numbers are added; `c x + d x -> (c+d) x`; `0 x -> 0` only if `x` is known finite, else the term stays with
 //!   coefficient 0;
-//! - a sum, and a multiple of a sum, is spliced into an enclosing sum of at least two summands, unless it is longer
-//!   than 256 terms;
+//! - a sum or a multiple of a sum is merged into an enclosing sum of at least two summands, unless it has more than 256
+//!   terms;
 //! - terms are ordered by id;
-//! - the common factor of the coefficients, with the sign of the first term's, is taken out:
-//!   `2 a - 4 b -> 2 (a - 2 b)`, `-a - b -> -(a + b)`. A number times a sum is therefore a coefficient on the shared
-//!   sum and never distributed.
+//! - the common factor of the coefficients, with the sign of the first coefficient, is taken out:
+//!   `2 a - 4 b -> 2 (a - 2 b)`, `-a - b -> -(a + b)`. A number times a sum is therefore a coefficient of the shared
+//!   sum and is never distributed.
 //!
 //! **Products and powers** (`product.rs`: [`Pool::mul`], [`Pool::div`], [`Pool::product`], [`Pool::pow`],
 //! [`Pool::sqrt`])
-//! - numeric coefficients move out into a sum of one term; products are spliced into products; factors are ordered
-//!   by id of the base;
-//! - `x^a x^b -> x^(a+b)` if the domain stays: exponents of one kind, a negative total, or a base known to be
-//!   nonzero or nonnegative as the exponents need. Otherwise the total is kept beside a guard: `x^3/x` is
-//!   `x^3 x^-1`, `x/x` is `x x^-1`, `sqrt(x)^2` is the square of `sqrt(x)`;
+//! - numeric coefficients move out into a sum of one term; nested products are merged; factors are ordered by id of the
+//!   base;
+//! - `x^a x^b -> x^(a+b)` if this does not change the domain: exponents of one kind, a negative total, or a base known
+//!   to be nonzero or nonnegative as the exponents require. Otherwise a factor that limits the domain is kept: `x^3/x`
+//!   is `x^3 x^-1`, `x/x` is `x x^-1`, `sqrt(x)^2` is the square of `sqrt(x)`;
 //! - `(x y)^n -> x^n y^n` for integers `n`; `(x^a)^b -> x^(a b)` for integers `b`, and for fractions `b` if `a` is an
 //!   odd integer or a fraction, or `x` is known nonnegative. The domain of `x^a` is guarded as above;
 //! - `(x^a y)^b -> x^(a b) y^b` for fractions `b` if `x` is known positive and `a b` is an integer;
 //! - powers of numbers are computed up to [`MAX_BITS`](crate::MAX_BITS) bits; rational roots are taken,
 //!   `2^(3/2) -> 2 sqrt(2)`; `(c x)^b -> c^b x^b` for fractions `b` if `c > 0` has a rational power;
+//! - `sqrt(a + b sqrt(r)) -> sqrt((a + c)/2) + sqrt((a - c)/2)` if `c = sqrt(a^2 - b^2 r)` is rational, with a minus
+//!   sign for a negative `b` (`constants.rs`); the reciprocal of such a root likewise;
 //! - `x^0 -> 1` if `x` is known finite, else `1 + 0 x`.
 //!
 //! **Functions** (`call.rs`: [`Pool::call`], [`Pool::atan2`])
 //! - `f(-x) -> -f(x)` for sin, tan, asin, atan, sinh, tanh; `f(-x) -> f(x)` for cos, cosh, abs;
-//! - sin and cos of `x + k pi/2` lose the multiple of `pi/2`; sin and cos of multiples of `pi` where they are
-//!   rational, tan where it is 0 or +-1;
-//! - values at 0 of exp, cosh, abs, acos and of all odd functions, at 1 of ln, asin, acos, atan, and acos at -1;
+//! - sin and cos of `x + k pi/2` become sin and cos of `x`, with a sign; sin and cos of rational multiples of `pi` if
+//!   the values are rational, tan if its value is 0 or +-1;
+//! - values at 0 of exp, cosh, abs and of all odd functions, and ln at 1;
+//! - asin, acos and atan of numbers and of square roots, if the angle is in the tables of `constants.rs` (multiples of
+//!   `pi/12`);
 //! - `ln(exp x) -> x`; `abs(x)` is `x` or `-x` if the sign of `x` is known; `abs(c x) -> |c| abs(x)`;
 //! - `atan2(0, x) -> 0` for `x` known positive and finite.
 
@@ -55,7 +59,7 @@ impl Pool {
         self.intern(Node::Symbol(symbol))
     }
 
-    /// Coefficient and term of an expression: `(c, x)` for a number times `x`, else `(1, self)`.
+    /// Coefficient and term of an expression: `(c, x)` if it is `c x` with a number `c`, otherwise `(1, id)`.
     pub fn as_multiple(&self, id: ExprId) -> (Rational, ExprId) {
         match self.node(id) {
             Node::Sum { constant, terms } => match &**terms {
@@ -66,8 +70,8 @@ impl Pool {
         }
     }
 
-    /// An expression as `constant + sum of coefficient * term`, multiples of sums distributed; no term is a number
-    /// or a sum.
+    /// An expression as `constant + sum of coefficient * term`. Multiples of sums are distributed, so no term is a
+    /// number or a sum.
     pub fn linear_form(&self, id: ExprId) -> (Rational, Vec<(Rational, ExprId)>) {
         let mut constant = Rational::ZERO;
         let mut linear = Vec::new();
@@ -94,7 +98,7 @@ mod tests {
     use crate::fixture::Fixture;
     use crate::{ExprId, Node, Pool, Rational};
 
-    /// Both texts build the same node.
+    /// Asserts that both texts of each pair build the same node.
     fn same(pairs: &[(&str, &str)]) {
         let mut fixture = Fixture::new();
         for (left, right) in pairs {
@@ -109,7 +113,7 @@ mod tests {
         }
     }
 
-    /// The texts build different nodes: the rewrite would enlarge the domain or is not made.
+    /// Asserts that the texts of each pair build different nodes: the rewrite would enlarge the domain or is not made.
     fn different(pairs: &[(&str, &str)]) {
         let mut fixture = Fixture::new();
         for (left, right) in pairs {

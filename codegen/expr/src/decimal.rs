@@ -1,4 +1,5 @@
-//! Rational numbers from decimal text and to doubles: exact, or rounded once.
+//! Conversion of decimal text to rational numbers, which is exact, and of rational numbers to doubles, which rounds
+//! once.
 
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
@@ -8,7 +9,7 @@ use crate::rational::{MAX_BITS, Rational};
 impl Rational {
     /// Reads a decimal number exactly: `12`, `0.1`, `1.25e-7`, `1e5`, `1_000`.
     ///
-    /// `None` if the text is not a decimal number or a part of the result exceeds [`MAX_BITS`] bits.
+    /// `None` if the text is not a decimal number, or if numerator or denominator would exceed [`MAX_BITS`] bits.
     pub fn from_decimal(text: &str) -> Option<Self> {
         let (mantissa, exponent) = match text.split_once(['e', 'E']) {
             Some((mantissa, exponent)) => (mantissa, parse_exponent(exponent)?),
@@ -27,7 +28,7 @@ impl Rational {
         Some(Self::from_big(value)).filter(|value| value.bits() <= MAX_BITS)
     }
 
-    /// The nearest double, ties to even; infinite beyond the range.
+    /// The nearest double, with ties to even; infinite if the number is beyond the range of doubles.
     pub fn to_f64(&self) -> f64 {
         const EXACT: u64 = 1 << 53;
         match self.to_small() {
@@ -39,8 +40,8 @@ impl Rational {
         }
     }
 
-    /// Four doubles that add up to the number, each the nearest to the remainder after those before it. Zeros follow the
-    /// first where the number is a double, or beyond the range.
+    /// Four doubles whose sum approximates the number. Each is the double nearest to the remainder after the previous
+    /// ones. If the number is a double or beyond the range of doubles, all but the first are 0.
     pub fn to_parts(&self) -> [f64; 4] {
         let mut left = self.clone();
         core::array::from_fn(|_| {
@@ -54,7 +55,7 @@ impl Rational {
     }
 }
 
-/// The exponent of a decimal number; beyond four digits no result fits [`MAX_BITS`].
+/// The exponent of a decimal number; `None` if it has more than four digits, since no result fits [`MAX_BITS`] then.
 fn parse_exponent(text: &str) -> Option<i64> {
     let digits = text
         .strip_prefix(['+', '-'])
@@ -73,17 +74,17 @@ fn decimal_digits(whole: &str, fraction: &str) -> Option<BigInt> {
     let well_formed = whole.starts_with(|c: char| c.is_ascii_digit())
         && (fraction.is_empty() || fraction.starts_with(|c: char| c.is_ascii_digit()))
         && digits.bytes().all(|b| b.is_ascii_digit());
-    // log2(10) > 3, so more digits cannot fit.
+    // log2(10) > 3, so a number with more digits exceeds `MAX_BITS`.
     if !well_formed || digits.len() as u64 > MAX_BITS / 3 {
         return None;
     }
     digits.parse().ok()
 }
 
-/// `numer / denom` rounded once, to the nearest double and ties to even, subnormal numbers included.
+/// `numer / denom`, rounded once to the nearest double, with ties to even. The result may be subnormal.
 ///
-/// The quotient is formed with at least 55 bits and a sticky last bit, then cut to the 53 bits (fewer below
-/// the normal range) that the result has room for.
+/// The quotient has at least 56 bits and a sticky bit. It is then rounded to the precision of the result: 53 bits, or
+/// fewer below the normal range.
 fn nearest_double(numer: &BigInt, denom: &BigInt) -> f64 {
     let negative = numer.sign() == Sign::Minus;
     let (numer, denom) = (numer.magnitude(), denom.magnitude());

@@ -1,4 +1,4 @@
-//! Partial derivatives, remembered per expression and symbol.
+//! Partial derivatives, cached per expression and symbol.
 
 use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
@@ -40,7 +40,7 @@ impl Pool {
         (position as usize).checked_sub(1).map(ExprId::from_index)
     }
 
-    /// The derivative of an operand: it was done before its users, or it is 0.
+    /// The derivative of an operand. It is in the cache, since operands come before their users, unless it is 0.
     fn derivative_of(&self, id: ExprId, symbol: SymbolId) -> ExprId {
         self.known_derivative(id, symbol).unwrap_or(self.zero())
     }
@@ -66,7 +66,7 @@ impl Pool {
         for (coefficient, term) in terms {
             summands.push((coefficient.clone(), self.derivative_of(*term, symbol)));
             if coefficient.is_zero() {
-                // A term kept for its domain limits the derivative as well.
+                // A term with coefficient 0 limits the domain. Keep it, so that it limits the domain of the derivative.
                 summands.push((coefficient.clone(), *term));
             }
         }

@@ -1,16 +1,16 @@
-//! Products of sums multiplied out, for presentation. [`Pool::simplify`] then collects and cancels the terms.
+//! Expansion of products of sums, for presentation. [`Pool::simplify`] then collects and cancels terms.
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::subst::Rebuilt;
 
-/// Products of more terms are left as they are.
+/// Largest number of terms of an expanded product. Products with more terms are not expanded.
 const MAX_TERMS: usize = 256;
 
 impl Pool {
-    /// An equal expression without products and positive whole powers of sums, inside of functions and divisors too;
-    /// products that would have too many terms are kept.
+    /// Expands products and positive integer powers of sums, also inside functions and divisors. Products that would
+    /// have too many terms are not expanded.
     pub fn multiply_out(&mut self, id: ExprId) -> ExprId {
         let mut results = Rebuilt::new(Some(&id));
         for part in self.reachable(&[id]) {
@@ -22,7 +22,7 @@ impl Pool {
         results.get(id)
     }
 
-    /// A product with its sums multiplied out; its operands are expanded.
+    /// Expands one product. Its operands are already expanded.
     fn distribute(&mut self, id: ExprId) -> ExprId {
         let (coefficient, product) = self.as_multiple(id);
         let Node::Product(factors) = self.node(product).clone() else {
@@ -50,7 +50,7 @@ impl Pool {
         self.combine(&terms)
     }
 
-    /// Terms times those of a sum; `None` if there are too many.
+    /// Products of `terms` with the terms of a sum; `None` if there are too many.
     fn multiplied(
         &mut self,
         terms: &[(Rational, ExprId)],

@@ -1,9 +1,9 @@
 //! Arithmetic modulo a prime just below 2^61.
 //!
 //! All primes are `p = 2^61 - c` with small `c`, so that a product is reduced by two multiplications by `c`. All are
-//! 3 modulo 4: of `u` and `-u` exactly one is a square, and on the squares, a group of odd order `(p-1)/2`, every
-//! root of a degree prime to that order is unique and multiplicative. Squares therefore take the place of the positive
-//! numbers: `sqrt(a b) = sqrt(a) sqrt(b)` holds for squares `a`, `b`.
+//! 3 modulo 4, so exactly one of `u` and `-u` is a square for `u != 0`. The nonzero squares form a group of odd order
+//! `(p-1)/2`. In this group, roots of a degree coprime to the order are unique and multiplicative. Squares therefore
+//! stand for positive numbers: `sqrt(a b) = sqrt(a) sqrt(b)` holds for squares `a`, `b`.
 
 use num_bigint::BigInt;
 
@@ -35,8 +35,8 @@ impl Modulus {
         Self::POSITIVE[7],
     ];
 
-    /// The largest primes below 2^61 for which 2, 3, 5, ..., 17 are squares, as positive numbers should be, and
-    /// `(p-1)/2` is prime to 2, 3, 5, 7 and 11, so that roots of these degrees exist (`p = 23 mod 24`).
+    /// The largest primes below 2^61 with two properties: 2, 3, 5, ..., 17 are squares, as positive numbers should be,
+    /// and `(p-1)/2` is coprime to 2, 3, 5, 7 and 11, so that roots of these degrees exist (`p = 23 mod 24`).
     pub const POSITIVE: [Self; 8] = [
         Self { deficit: 11_913 },
         Self { deficit: 116_673 },
@@ -73,7 +73,7 @@ impl Modulus {
         self.reduce(u128::from(a) * u128::from(b))
     }
 
-    /// The residue of any number of 128 bits.
+    /// The residue of a 128-bit number.
     pub(crate) fn reduce(self, wide: u128) -> u64 {
         // 2^61 = c mod p, c < 2^18: the first fold leaves less than 2^86, the second less than 2^61 + 2^43 < 2 p.
         let fold = u128::from(wide as u64 & MASK) + (wide >> BITS) * u128::from(self.deficit);
@@ -95,7 +95,7 @@ impl Modulus {
 
     /// `1 / a`; `None` for 0.
     pub fn inv(self, a: u64) -> Option<u64> {
-        // Extended Euclid: half the multiplications of a power, on machine words.
+        // The extended Euclidean algorithm needs half the multiplications of a power, on machine words.
         let p = self.prime() as i64;
         let (mut old, mut new) = ((a as i64, 1i64), (p, 0i64));
         while new.0 != 0 {
@@ -110,13 +110,13 @@ impl Modulus {
         self.pow(a, (self.prime() - 1) / 2) == 1
     }
 
-    /// The square root that is a square; `None` if `a` is none.
+    /// The square root that is itself a square; `None` if `a` is not a square.
     pub fn sqrt(self, a: u64) -> Option<u64> {
         let root = self.pow(a, self.prime().div_ceil(4));
         (self.mul(root, root) == a).then_some(root)
     }
 
-    /// The `degree`-th root of squares as a power: its exponent, if `degree` is prime to `(p-1)/2`.
+    /// The exponent `e` for which `a^e` is the `degree`-th root of a square `a`, if `degree` is coprime to `(p-1)/2`.
     pub(crate) fn root_exponent(self, degree: u64) -> Option<u64> {
         let order = i128::from((self.prime() - 1) / 2);
         let (mut old, mut new) = ((i128::from(degree), 1i128), (order, 0i128));
@@ -160,7 +160,7 @@ impl Modulus {
     }
 }
 
-/// A residue other than 0 that depends on all words and on nothing else: the same on every run.
+/// A pseudorandom nonzero residue. It is a function of the modulus and the words only, so it is the same in every run.
 pub(crate) fn draw(modulus: Modulus, words: &[u64]) -> u64 {
     let mut state = 0x243f_6a88_85a3_08d3; // the first digits of pi
     for word in words {

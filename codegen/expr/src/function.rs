@@ -1,8 +1,8 @@
 //! The functions of one argument: their table and their properties.
 //!
-//! The table names the functions, and the matches below describe them: the compiler requires an arm for each. Evaluation
-//! in other numbers has such matches too: residues (`modular.rs`), balls (`taylor/balls.rs`), Taylor series
-//! (`taylor/expand.rs`).
+//! A table names the functions. The matches below describe their properties, and the compiler requires an arm for each
+//! function. Other number types have such matches too: residues (`modular.rs`), balls (`taylor/balls.rs`), Taylor
+//! series (`taylor/expand.rs`).
 
 use std::ops::Mul;
 
@@ -12,8 +12,8 @@ use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::sign::Sign;
 
-/// Hands the table of functions to a macro: the meaning, the variant of [`Function`], and the name, which is that of `f64` and of all other
-/// numbers too.
+/// Passes the table of functions to a macro. A row has the meaning, the variant of [`Function`], and the name of the
+/// method of `f64` and of all other number types.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! with_functions {
@@ -66,9 +66,9 @@ macro_rules! functions {
 }
 with_functions!(functions);
 
-/// Notation of a function in LaTeX.
+/// LaTeX notation of a function.
 pub(crate) enum Notation {
-    /// By a command, before its argument.
+    /// A command before the argument.
     Command(&'static str),
     /// `e^x`
     PowerOfE,
@@ -83,11 +83,11 @@ pub(crate) enum Parity {
     Odd,
     /// `f(-x) = f(x)`
     Even,
-    /// Something else.
+    /// Neither odd nor even.
     Neither,
 }
 
-/// Arguments for which a function has a value.
+/// Domain of a function.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(crate) enum Arguments {
     /// All numbers.
@@ -100,27 +100,27 @@ pub(crate) enum Arguments {
     Unit,
 }
 
-/// The course of a function over all numbers.
+/// Monotonicity and bounds of a function over all real numbers.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum Course {
     /// Between -1 and 1.
     Wave,
     /// Increasing.
     Increasing,
-    /// Even, and increasing with the size of the argument.
+    /// Even, and increasing with the absolute value of the argument.
     Valley,
-    /// Without a value for some arguments.
+    /// Undefined for some arguments.
     Partial,
 }
 
-/// Form of a function modulo a prime, see `modular.rs`.
+/// Representation of a function modulo a prime; see `modular.rs`.
 #[derive(Copy, Clone, PartialEq, Eq)]
 pub(crate) enum Residue {
     /// A rational function of the half-angle tangents of base angles.
     Circular,
     /// A rational function of exponentials of base exponents.
     Exponential,
-    /// One atom for each value of the argument.
+    /// One independent random residue (atom) for each value of the argument.
     Atom,
     /// The argument or its opposite.
     Branch,
@@ -134,7 +134,7 @@ impl Residue {
 }
 
 impl Function {
-    /// The function of that name.
+    /// The function with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
             .into_iter()
@@ -179,7 +179,7 @@ impl Function {
         }
     }
 
-    /// The course over all numbers.
+    /// Monotonicity and bounds over all real numbers.
     pub fn course(self) -> Course {
         match self {
             Self::Sin | Self::Cos => Course::Wave,
@@ -209,7 +209,7 @@ impl Function {
         match self {
             Self::Exp | Self::Cosh => Sign::Positive,
             Self::Abs => Sign::known(argument.is_nonzero(), true, argument == Sign::Zero),
-            // Increasing and 0 at 0.
+            // These functions are increasing and 0 at 0.
             Self::Sinh | Self::Tanh | Self::Asinh => argument,
             Self::Atan | Self::Asin => argument,
             Self::Acos => Sign::NonNegative,
@@ -217,7 +217,7 @@ impl Function {
         }
     }
 
-    /// All values on an interval of arguments; `None` where one may be missing.
+    /// Enclosure of all values on an interval; `None` if the function may be undefined somewhere in the interval.
     pub(crate) fn range(self, x: Interval) -> Option<Interval> {
         let has_values = match self.arguments() {
             Arguments::All | Arguments::OffPoles => true,

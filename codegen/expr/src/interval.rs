@@ -1,18 +1,19 @@
-//! Closed intervals of doubles that contain every value of the quantity they enclose: each operation is rounded outwards.
+//! Closed intervals of doubles. Each operation rounds outwards, so an interval contains every value that it encloses.
 //!
 //! Sums, products, quotients and square roots of doubles are correctly rounded, so one step outwards encloses them.
-//! Elementary functions are those of `libm`, which may err by more than one unit in the last place: by 1.6 of them at random arguments
-//! (`sinh`), by more at those that searches find (P. Zimmermann, *Accuracy of Mathematical Functions in Single, Double, Extended Double and
-//! Quadruple Precision*, 2021). They are widened by [`STEPS`]. Endpoints may be infinite.
+//! Elementary functions are those of `libm`. Their errors may exceed one unit in the last place: up to 1.6 units at
+//! random arguments (`sinh`), and more at arguments found by searches for the largest error (P. Zimmermann, *Accuracy
+//! of Mathematical Functions in Single, Double, Extended Double and Quadruple Precision*, 2021). Their results are
+//! therefore widened by [`STEPS`] steps. Endpoints may be infinite.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Mul, Neg};
 
 use crate::rational::Rational;
 
-/// Steps outwards after an elementary function.
+/// Number of steps outwards after an elementary function; a step leads to the next double.
 const STEPS: usize = 4;
-/// Arguments of sin and cos beyond this size have the range `[-1, 1]`.
+/// For arguments with a larger absolute value, sin and cos give the range `[-1, 1]`.
 const FAR: f64 = 1e9;
 
 /// All numbers from `lo` to `hi`.
@@ -39,12 +40,12 @@ impl Interval {
         Self { lo, hi }
     }
 
-    /// One number.
+    /// The interval that contains one number only.
     pub fn point(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    /// An exact number.
+    /// Enclosure of an exact number.
     pub fn rational(value: &Rational) -> Self {
         match value.to_i64() {
             Some(integer) if integer.unsigned_abs() < 1 << 53 => Self::point(integer as f64),
@@ -52,7 +53,7 @@ impl Interval {
         }
     }
 
-    /// The circle's half circumference.
+    /// Enclosure of pi.
     pub fn pi() -> Self {
         Self::new(PI, PI.next_up())
     }
@@ -81,7 +82,7 @@ impl Interval {
             .then(|| outwards(1.0 / self.hi, 1.0 / self.lo, 1))
     }
 
-    /// `a^exponent`; `None` where there may be no value.
+    /// `a^exponent`; `None` if the power may be undefined somewhere in the interval.
     pub fn power(self, exponent: &Rational) -> Option<Self> {
         if exponent.is_negative() {
             return self.power(&-exponent)?.inverse();
@@ -95,7 +96,7 @@ impl Interval {
             }
             None => {
                 let power = |x: f64| libm::pow(x, exponent.to_f64());
-                // NOTE: the exponent is rounded too: `x^(e u)` differs from 1 by less than `746 u e` within the doubles.
+                // NOTE: the exponent is rounded too. For doubles `x`, `x^(e u)` differs from 1 by less than `746 u e`.
                 let (lo, hi) = (power(self.lo), power(self.hi));
                 let slack = 2e-13 * (1.0 + exponent.to_f64());
                 Some(Self::new(
@@ -111,7 +112,7 @@ impl Interval {
             true => self.abs(),
             false => self,
         };
-        // Odd powers increase, and even ones do where the base is not negative.
+        // Odd powers are increasing; even powers are increasing for a nonnegative base.
         let (mut lo, mut hi) = (Self::point(1.0), Self::point(1.0));
         for _ in 0..steps.min(64) {
             lo = lo * Self::point(base.lo);
@@ -132,7 +133,7 @@ impl Interval {
         }
     }
 
-    /// A function that does not decrease.
+    /// Range of a nondecreasing function.
     pub fn increasing(self, f: impl Fn(f64) -> f64) -> Self {
         outwards(f(self.lo), f(self.hi), STEPS)
     }
@@ -150,9 +151,10 @@ impl Interval {
         self.wave(libm::cos, 0.0)
     }
 
-    /// A sine with its greatest value at `crest`.
+    /// Range of a sine wave `f` with its maximum at `crest`.
     fn wave(self, f: fn(f64) -> f64, crest: f64) -> Self {
-        // A little more than half a circle: extreme values are then counted where they are near.
+        // Intervals of nearly a full period have the whole range. Shorter ones contain an extreme value if it is inside
+        // the interval, widened by a margin for the rounding of `place` and of multiples of 2 pi.
         if self.magnitude() > FAR || self.hi - self.lo > 6.2 {
             return Self::new(-1.0, 1.0);
         }
@@ -179,7 +181,7 @@ impl Interval {
         Self::new(range.lo.max(1.0), range.hi)
     }
 
-    /// The part from `lo` to `hi`, which it meets.
+    /// The intersection with `[lo, hi]`, which must not be empty.
     pub fn within(self, lo: f64, hi: f64) -> Self {
         Self::new(self.lo.clamp(lo, hi), self.hi.clamp(lo, hi))
     }
@@ -241,7 +243,7 @@ fn outwards(mut lo: f64, mut hi: f64, steps: usize) -> Interval {
 mod tests {
     use super::*;
 
-    /// A value as the product of a double with `1 + rest`, compared with an interval.
+    /// Asserts that an interval contains a value.
     fn contains(range: Interval, value: f64, what: &str) {
         assert!(
             range.lo <= value && value <= range.hi,

@@ -1,21 +1,21 @@
 //! Exact expressions for mechanics: hash-consed nodes, derivatives, zero tests, printing.
 //!
-//! Every expression lives in a [`Pool`] and is named by an [`ExprId`]. Equal expressions have equal ids, operands
-//! have smaller ids than their users, and ids are handed out in order of creation, so that passes run over ids in
-//! increasing order instead of recursing and every result is the same on every run.
+//! Every expression is stored in a [`Pool`] and identified by an [`ExprId`]. Equal expressions have equal ids. Ids are
+//! assigned in order of creation, so operands have smaller ids than their users. Passes iterate over ids in increasing
+//! order instead of recursing, and every result is the same in every run.
 //!
 //! | file | job |
 //! |---|---|
-//! | `rational.rs`, `decimal.rs` | exact numbers; from text, to doubles |
+//! | `rational.rs`, `decimal.rs` | exact numbers; conversion from text and to doubles |
 //! | `function.rs` | the functions of one argument and their properties |
 //! | `node.rs`, `pool.rs`, `intern.rs` | nodes of expressions and their storage |
 //! | `construct.rs`, `sum.rs`, `product.rs`, `call.rs`, `constants.rs` | the constructors and every rewrite they make |
 //! | `sign.rs` | signs and finiteness |
 //! | `diff.rs`, `subst.rs`, `eval.rs` | calculus and evaluation |
-//! | `taylor/` | truncated series, modulo a prime, in double precision or in ranges |
-//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `squares.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and the decisions it allows |
-//! | `ball/` | numbers of 76 digits with bounds of their errors |
-//! | `interval.rs`, `enclose.rs` | certified ranges, and expressions that are never 0 |
+//! | `taylor/` | truncated series modulo a prime, in doubles, in intervals or in balls |
+//! | `field.rs`, `point.rs`, `modular.rs`, `profile.rs`, `branch.rs`, `squares.rs`, `zero.rs`, `rank.rs` | exact evaluation modulo a prime, and decisions based on it |
+//! | `ball/` | numbers of 76 digits with error bounds |
+//! | `interval.rs`, `enclose.rs` | certified ranges; proofs that an expression is never 0 |
 //! | `simplify.rs`, `expand.rs`, `print/` | presentation |
 //!
 //! ```
@@ -37,7 +37,7 @@
 //! ```
 
 #![forbid(unsafe_code)]
-// A test may stop at the first surprise.
+// Tests may panic.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod ball;

@@ -1,13 +1,13 @@
-//! Exact evaluation modulo a prime, transcendental functions included.
+//! Exact evaluation of expressions modulo a prime, including transcendental functions.
 //!
-//! Symbols, pi and the following atoms are independent random residues, so that an identity between expressions that
-//! holds in them is an identity, up to the accident of a zero of a polynomial (Schwartz, Zippel):
-//! - sin, cos, tan of a rational combination `sum of c_i x_i`: each `x_i / N` is an angle with half-angle tangent `t`,
-//!   `sin = 2t/(1+t^2)`, `cos = (1-t^2)/(1+t^2)`, and multiples follow by angle addition; `N` is the common
-//!   denominator. Multiples of `pi/12` are exact;
-//! - exp, sinh, cosh, tanh: each `exp(x_i / N)` is a square, and `exp(ln x) = x`;
-//! - `x^(a/b)` is the root among the squares; `x` must be a square, else the point is refused. `abs(x)` is the one of
-//!   `x`, `-x` that is a square;
+//! Symbols, pi and the following atoms are independent random residues. If two expressions agree at such a point, they
+//! are identical, except with a small probability that the residues are a zero of their difference (Schwartz, Zippel):
+//! - sin, cos, tan of a rational combination `sum of c_i x_i`: each `x_i / N` is an angle with the random half-angle
+//!   tangent `t`, so that `sin = 2t/(1+t^2)` and `cos = (1-t^2)/(1+t^2)`. Multiples follow by angle addition. `N` is
+//!   the common denominator. Multiples of `pi/12` are exact;
+//! - exp, sinh, cosh, tanh: each `exp(x_i / N)` is a random square, and `exp(ln x) = x`;
+//! - `x^(a/b)` is the root among the squares. `x` must be a square; otherwise the point is refused. `abs(x)` is `x` or
+//!   `-x`, whichever is a square;
 //! - ln, asin, acos, atan, asinh, atan2: one atom for each value of the argument.
 
 use crate::function::Function;
@@ -22,7 +22,7 @@ impl Pool {
     /// The residues of `roots` at a point, in order.
     ///
     /// # Errors
-    /// If an expression has no value there; draw another point.
+    /// If an expression has no value at this point. It may have one at another point.
     pub fn modular_eval(
         &self,
         roots: &[ExprId],
@@ -31,7 +31,7 @@ impl Pool {
         self.modular_eval_ordered(&self.reachable(roots), roots, point)
     }
 
-    /// Same as [`Pool::modular_eval`]; `order` is [`Pool::reachable`] of the roots.
+    /// Same as [`Pool::modular_eval`], where `order` is the result of [`Pool::reachable`] for the roots.
     pub(crate) fn modular_eval_ordered(
         &self,
         order: &[ExprId],
@@ -183,7 +183,7 @@ impl Pool {
             let factor = match self.node(*term) {
                 Node::Call(Function::Ln, x) => point.power(values[x.index()], coefficient)?,
                 _ => {
-                    // NOTE: the argument is the number 1 for the constant, which `values` may not hold.
+                    // NOTE: for the constant, the term is the number 1. `values` may have no entry for it.
                     let x = if *term == self.one() {
                         1
                     } else {

@@ -1,4 +1,4 @@
-//! A point modulo a prime: residues of symbols and atoms, angles and their multiples.
+//! An evaluation point modulo a prime: residues of symbols and atoms, angles and their multiples.
 
 use std::collections::HashMap;
 
@@ -8,12 +8,12 @@ use crate::intern::WordHash;
 use crate::node::{Assumption, SymbolId};
 use crate::rational::Rational;
 
-/// Reason why expressions have no value at a point. They may have one at another.
+/// Reason why an expression has no value at a point. It may have one at another point.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum ModularFailure {
-    /// A denominator is 0 there.
+    /// A denominator is 0 at the point.
     DivisionByZero,
-    /// The argument of a root or `ln` is not a square there.
+    /// The argument of a root or of `ln` is not a square at the point.
     NotASquare,
     /// Roots of this degree are not unique modulo this prime.
     NoRoot,
@@ -22,7 +22,7 @@ pub enum ModularFailure {
     Denominator,
 }
 
-/// Residues for symbols and atoms: a modulus, a seed, and values that were set.
+/// Residues for symbols and atoms. They follow from a modulus, a seed, and explicitly set values.
 #[derive(Clone, Debug)]
 pub struct ModularPoint {
     modulus: Modulus,
@@ -57,8 +57,8 @@ impl Atom {
 }
 
 impl ModularPoint {
-    /// The point of a seed; different seeds give independent points. Coefficients inside sin, cos and exp may have
-    /// denominators that divide 12.
+    /// The point for a seed. Different seeds give independent points. Denominators of coefficients inside sin, cos and
+    /// exp must divide 12.
     pub fn new(modulus: Modulus, seed: u64) -> Self {
         Self::with_denominator(modulus, seed, 12)
     }
@@ -92,7 +92,7 @@ impl ModularPoint {
         matches!(self.values.get(symbol.index()), Some(Some(_)))
     }
 
-    /// The value of a symbol; a square if the symbol is assumed not to be negative.
+    /// The value of a symbol; a square if the symbol is assumed to be positive or nonnegative.
     pub fn value(&self, symbol: SymbolId, assumption: Assumption) -> u64 {
         if let Some(Some(value)) = self.values.get(symbol.index()) {
             return *value;
@@ -104,11 +104,12 @@ impl ModularPoint {
         }
     }
 
-    /// Replaces the value `x` of a symbol by `twelfths pi/12 + x` or, reflected, `twelfths pi/12 - x`; sines, cosines and, for
-    /// `-x`, exponentials of it are replaced to match.
+    /// Replaces the value `x` of a symbol by `twelfths pi/12 + x`, or by `twelfths pi/12 - x` if `is_reflected`.
+    /// Updates its sine and cosine, and for `-x` its exponential, accordingly.
     ///
     /// # Errors
-    /// If the angle is divided into parts that make half a turn no multiple of `pi/12`.
+    /// If the point's denominator does not divide `twelfths`: the shift of the base angle is then no multiple of
+    /// `pi/12`.
     pub fn move_symbol(
         &mut self,
         symbol: SymbolId,
@@ -166,7 +167,7 @@ impl ModularPoint {
         Ok((sine, cosine))
     }
 
-    /// `(exp, exp^-1)` of the base exponent `x / N`; a square, as exponentials are positive.
+    /// `(exp, exp^-1)` of the base exponent `x / N`; both are squares, since exponentials are positive.
     pub(crate) fn exponential(&mut self, x: u64) -> Result<(u64, u64), ModularFailure> {
         let key = (Atom::Exponential, x, 0);
         if let Some(pair) = self.atoms.get(&key) {
@@ -182,7 +183,7 @@ impl ModularPoint {
         Ok((value, inverse))
     }
 
-    /// An atom that is odd in its argument: drawn for the one of `x`, `-x` that is a square.
+    /// An atom of an odd function. The residue is drawn for `x` or `-x`, whichever is a square.
     pub(crate) fn odd_atom(&self, function: Function, x: u64) -> u64 {
         let field = self.modulus;
         match x {
@@ -245,14 +246,14 @@ pub(crate) fn multiple_angle(field: Modulus, (sine, cosine): (u64, u64), steps: 
     angle
 }
 
-/// `(sin, cos)` of `units * pi/12` with the roots of 2 and 3 that also `sqrt(2)` and `sqrt(3)` have.
+/// `(sin, cos)` of `units * pi/12`, with the same roots of 2 and 3 as the values of `sqrt(2)` and `sqrt(3)`.
 pub(crate) fn twelfths_of_pi(field: Modulus, units: i64) -> Result<(u64, u64), ModularFailure> {
     let root = |square| field.sqrt(square).ok_or(ModularFailure::NotASquare);
     let half = field.inv(2).ok_or(ModularFailure::DivisionByZero)?;
     let units = units.rem_euclid(24);
     let mut angle = (0, 1);
     if units % 3 != 0 {
-        // cos(pi/3) = 1/2; four units less or more leave a multiple of three.
+        // cos(pi/3) = 1/2. Subtracting `units % 3` times pi/3, which is four units, leaves a multiple of three units.
         let sine = field.mul(root(3)?, half);
         angle = multiple_angle(field, (sine, half), units % 3);
     }

@@ -1,4 +1,4 @@
-//! Storage of expressions: symbols, nodes, and the properties that the structure of each node shows.
+//! Storage of expressions: symbols, nodes, and the properties that follow from the structure of each node.
 
 use std::collections::HashMap;
 
@@ -9,8 +9,8 @@ use crate::sign::Sign;
 
 /// A set of expressions in which equal expressions have equal ids.
 ///
-/// A pool may have a budget of steps (see [`Pool::with_budget`]). When it is spent, every constructor gives the expression
-/// 1: computations end soon, without an answer, and [`Pool::is_exhausted`] is true.
+/// A pool may have a budget of steps (see [`Pool::with_budget`]). After the budget is spent, every constructor returns
+/// the expression 1 and [`Pool::is_exhausted`] is true. Computations then end soon, and their results are meaningless.
 #[derive(Clone, Debug)]
 pub struct Pool {
     symbols: Vec<Symbol>,
@@ -18,9 +18,9 @@ pub struct Pool {
     facts: Vec<Facts>,
     table: Table,
     sets: SymbolSets,
-    /// `derivatives[symbol][expression]`: id + 1 of the derivative, 0 where it is not known yet.
+    /// `derivatives[symbol][expression]`: id + 1 of the derivative, or 0 if it has not been computed.
     pub(crate) derivatives: Vec<Vec<u32>>,
-    /// Steps that were not spent yet.
+    /// Remaining steps.
     budget: u64,
 }
 
@@ -31,14 +31,14 @@ struct Symbol {
     assumption: Assumption,
 }
 
-/// Properties of a node, found at its creation.
+/// Properties of a node, computed at its creation.
 #[derive(Copy, Clone, Debug)]
 struct Facts {
     sign: Sign,
     finite: bool,
     /// Position in [`SymbolSets::sets`].
     symbols: u32,
-    /// Expressions within expressions.
+    /// Nesting depth; 0 without operands.
     depth: u32,
 }
 
@@ -54,8 +54,8 @@ impl Pool {
         Self::with_budget(u64::MAX)
     }
 
-    /// A pool that makes expressions for this many steps: one for each expression that is made, one for each of its
-    /// operands, and one for each word of its numbers.
+    /// A pool with a budget of steps. Making an expression costs one step, plus one for each operand and one for each
+    /// word of its numbers.
     pub fn with_budget(budget: u64) -> Self {
         let mut pool = Self {
             symbols: Vec::new(),
@@ -73,7 +73,7 @@ impl Pool {
         pool
     }
 
-    /// True if the budget is spent. Expressions made since then are not the ones that were asked for.
+    /// True if the budget is spent. Expressions made after that are not the requested ones.
     pub fn is_exhausted(&self) -> bool {
         self.budget == 0
     }
@@ -83,17 +83,17 @@ impl Pool {
         self.budget = u64::MAX;
     }
 
-    /// Depth of nesting of an expression; 0 for one without parts.
+    /// Nesting depth of an expression; 0 for an expression without operands.
     pub fn depth(&self, id: ExprId) -> usize {
         self.facts[id.index()].depth as usize
     }
 
-    /// The bits of the longest number that stands in an expression itself, not in its parts.
+    /// Bits of the longest number in the node of an expression, without its operands.
     pub fn number_bits(&self, id: ExprId) -> u64 {
         self.node(id).number_bits()
     }
 
-    /// A new symbol; `name` and `latex` are how it is printed and need not be unique.
+    /// A new symbol. `name` and `latex` are its printed forms; they need not be unique.
     pub fn symbol(&mut self, name: &str, latex: &str, assumption: Assumption) -> SymbolId {
         let id = SymbolId::from_index(self.symbols.len());
         self.symbols.push(Symbol {
@@ -135,7 +135,7 @@ impl Pool {
         self.nodes.len()
     }
 
-    /// Never: a pool holds at least 0, 1 and pi.
+    /// Always false: a pool holds at least 0, 1 and pi.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
@@ -155,7 +155,7 @@ impl Pool {
         ExprId::from_index(2)
     }
 
-    /// The number, if the expression is one.
+    /// The value of an expression that is a number.
     pub fn as_number(&self, id: ExprId) -> Option<&Rational> {
         match self.node(id) {
             Node::Number(value) => Some(value),
@@ -168,7 +168,7 @@ impl Pool {
         id == self.zero()
     }
 
-    /// The sign of an expression wherever it is defined, as far as its structure shows it.
+    /// The sign of an expression where it is defined, as far as it follows from the structure of the expression.
     pub fn sign(&self, id: ExprId) -> Sign {
         self.facts[id.index()].sign
     }
@@ -203,7 +203,7 @@ impl Pool {
         self.reachable_where(roots, |_| true)
     }
 
-    /// Same as [`Pool::reachable`], through expressions that satisfy `keep` only.
+    /// Same as [`Pool::reachable`], but visits only expressions that satisfy `keep`.
     pub(crate) fn reachable_where(
         &self,
         roots: &[ExprId],
@@ -236,7 +236,7 @@ impl Pool {
         found
     }
 
-    /// The id of a node; a new one if the node is new. Constructors have brought it into normal form.
+    /// The id of a node; assigns an id if the node is new. The node must be in the normal form of the constructors.
     pub(crate) fn intern(&mut self, node: Node) -> ExprId {
         self.budget = self.budget.saturating_sub(node.steps());
         if self.is_exhausted() {
@@ -280,7 +280,7 @@ impl Pool {
     }
 }
 
-/// Sets of symbols, each kept once; unions are remembered, because few distinct sets occur.
+/// Sets of symbols. Each distinct set is stored once, and unions are cached, since few distinct sets occur.
 #[derive(Clone, Debug)]
 struct SymbolSets {
     /// Bit sets without trailing zero words.

@@ -1,6 +1,6 @@
-//! Bounds in double precision: each result is at least the exact one. Operands are not negative, and may be infinite.
+//! Upper bounds in double precision, and a lower bound of differences. Operands are nonnegative and may be infinite.
 
-/// Upper bound of `a + b`; exact if one is 0.
+/// Upper bound of `a + b`; exact if a summand is 0.
 pub(super) fn sum(a: f64, b: f64) -> f64 {
     match (a == 0.0, b == 0.0) {
         (true, _) => b,
@@ -9,7 +9,7 @@ pub(super) fn sum(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Upper bound of `a b`; 0 if one is 0.
+/// Upper bound of `a b`; 0 if a factor is 0.
 pub(super) fn product(a: f64, b: f64) -> f64 {
     match a == 0.0 || b == 0.0 {
         true => 0.0,
@@ -17,7 +17,7 @@ pub(super) fn product(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Upper bound of `a/b`; infinite if `b` is 0, and 0 if only `a` is.
+/// Upper bound of `a/b`; infinite if `b` is 0 or `a` is infinite, and 0 if only `a` is 0.
 pub(super) fn quotient(a: f64, b: f64) -> f64 {
     match (a == 0.0, b > 0.0 && a.is_finite()) {
         (_, false) => f64::INFINITY,
@@ -35,7 +35,7 @@ pub(super) fn difference(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Upper bound of `2^exponent`: exact where that is a double that is not subnormal.
+/// Upper bound of `2^exponent`; exact if the power is a normal double.
 pub(super) fn power_of_two(exponent: i32) -> f64 {
     match exponent {
         1024.. => f64::INFINITY,

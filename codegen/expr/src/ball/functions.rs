@@ -7,7 +7,8 @@
 //! atan x    y by Newton's method;  atan x - y = atan u,  u = (x cos y - sin y)/(cos y + x sin y),   |atan u| <= |u|
 //! ```
 //!
-//! The terms left out of a sum add up to at most twice the first of them, by size: terms fall at least as fast as `2^-k`.
+//! The omitted terms of a sum add up to at most twice the absolute value of the first of them, since each term is at
+//! most half of the previous one.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -16,16 +17,16 @@ use super::bound;
 use super::number::{Ball, NEWTON_STEPS};
 use super::wide::Wide;
 
-/// Bits of the arguments of sums are shifted until they are below `2^-SMALL`.
+/// Arguments of sums are halved until they are below `2^-SMALL`.
 const SMALL: i32 = 8;
-/// Terms of a sum in `t^k`, and in `t^(2k)`: those that are left out are below `2^-256`.
+/// Numbers of terms of sums in `t^k` and in `t^(2k)`. Omitted terms are below `2^-256`.
 const TERMS: u64 = 22;
 const SQUARES: u64 = 11;
-/// Size of arguments beyond which exponentials are out of reach and sines have only the bounds -1 and 1.
+/// Largest absolute value of arguments. Beyond it `exp` gives `None`, and sines and cosines have the bounds -1 and 1.
 const FAR: f64 = 1e6;
 
 impl Ball {
-    /// `exp(self)`; `None` where it is out of reach.
+    /// `exp(self)`; `None` if the argument or the result is too large.
     pub fn exp(self) -> Option<Self> {
         let (small, halvings) = self.reduced()?;
         let one = Self::integer(1);
@@ -63,13 +64,13 @@ impl Ball {
         (sine, cosine)
     }
 
-    /// `(sinh(self), cosh(self))`; `None` where they are out of reach.
+    /// `(sinh(self), cosh(self))`; `None` if the argument or a result is too large.
     pub fn sinh_cosh(self) -> Option<(Self, Self)> {
         let (above, below) = (self.exp()?, self.neg().exp()?);
         Some((above.sub(below).shifted(-1), above.add(below).shifted(-1)))
     }
 
-    /// `ln(self)`; `None` where there may be none.
+    /// `ln(self)`; `None` if the ball may contain numbers without a logarithm.
     pub fn ln(self) -> Option<Self> {
         if self.sign()? == Ordering::Less {
             return None;
@@ -89,7 +90,7 @@ impl Ball {
         (rest <= 0.5).then(|| logarithm.widened(bound::product(2.0, rest)))
     }
 
-    /// `atan(self)`; `None` where it is out of reach.
+    /// `atan(self)`; `None` if it cannot be enclosed.
     pub fn atan(self) -> Option<Self> {
         if self.is_zero() {
             return Some(self);
@@ -99,7 +100,7 @@ impl Ball {
         if !start.is_finite() {
             return None;
         }
-        // `u`, where the difference of the angles is less than a quarter turn.
+        // `u`, if the angles differ by less than a quarter turn.
         let rest = |tangent: Self, angle: Self| {
             let (sine, cosine) = angle.sin_cos();
             let below = cosine.add(tangent.mul(sine));
@@ -114,22 +115,22 @@ impl Ball {
             angle = angle.add(rest(middle, angle)?).midpoint();
         }
         let radius = rest(self, angle)?.magnitude();
-        // An angle further away could be off by a turn.
+        // A larger angle could be wrong by a full turn.
         (angle.magnitude() < 1.6).then(|| angle.widened(radius))
     }
 
-    /// `asin(self)`; `None` where there may be none.
+    /// `asin(self)`; `None` unless all numbers of the ball are strictly between -1 and 1.
     pub fn asin(self) -> Option<Self> {
         let below = Self::integer(1).sub(self.mul(self)).sqrt()?;
         self.mul(below.inverse()?).atan()
     }
 
-    /// `acos(self)`; `None` where there may be none.
+    /// `acos(self)`; `None` unless all numbers of the ball are strictly between -1 and 1.
     pub fn acos(self) -> Option<Self> {
         Some(Self::pi().shifted(-1).sub(self.asin()?))
     }
 
-    /// The angle of the point `(x, self)`; `None` where it may be one at which the angle jumps.
+    /// The angle of the point `(x, self)`; `None` if a point of the balls may lie where the angle jumps.
     pub fn atan2(self, x: Self) -> Option<Self> {
         let quarter = Self::pi().shifted(-1);
         match (x.sign(), self.sign()) {
@@ -147,7 +148,8 @@ impl Ball {
         }
     }
 
-    /// The ball over a power of 2 that makes it small, and the exponent; `None` if it is large.
+    /// The ball divided by a power of 2 so that it is small, and the exponent; `None` if the ball is larger than
+    /// [`FAR`].
     fn reduced(self) -> Option<(Self, i32)> {
         let size = self.magnitude();
         if size > FAR || !size.is_finite() {
@@ -162,7 +164,7 @@ impl Ball {
     }
 }
 
-/// Upper bound of `2 t^k/k!` for every `t` inside.
+/// Upper bound of `2 |t|^k/k!` for every `t` in the ball.
 fn left_out(ball: Ball, k: u64) -> f64 {
     let size = ball.magnitude();
     let mut term = 2.0;
@@ -183,7 +185,7 @@ mod tests {
         fractions.collect()
     }
 
-    /// Asserts that a difference encloses 0, and nothing beyond 70 digits.
+    /// Asserts that a difference encloses 0 and is smaller than 1e-70.
     fn vanishes(difference: Ball, what: &str) {
         assert_eq!(
             difference.sign(),

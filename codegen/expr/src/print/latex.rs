@@ -1,4 +1,4 @@
-//! Layouts in LaTeX.
+//! LaTeX output of layouts.
 
 use super::layout::Layout;
 use crate::function::{Function, Notation};
