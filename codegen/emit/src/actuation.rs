@@ -1,11 +1,12 @@
-//! `Actuated`: inputs that the caller supplies. `Powered`: rates of change of the energy, by cause.
+//! `Actuated`: inputs that the caller supplies. `Powered`: the power of each named force and of every other cause that
+//! changes the energy.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Context;
 
-/// `impl Actuated`, if there are inputs.
+/// `impl Actuated`, if inputs are declared.
 pub(super) fn emit_actuated(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let inputs: Vec<usize> = context.form.model.inputs().map(|(k, _)| k).collect();

@@ -1,11 +1,11 @@
-//! Methods of forms with constraints.
+//! Emits the methods that models with constraints override.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Context;
 
-/// The nearest velocities by Newton's steps.
+/// Emits `nearest_by_steps`: nearest admissible velocities by Newton's method.
 pub(super) fn emit_nearest() -> TokenStream {
     quote! {
         fn nearest_by_steps(
@@ -19,7 +19,7 @@ pub(super) fn emit_nearest() -> TokenStream {
     }
 }
 
-/// The positions by the equations of positions among the constraints.
+/// Emits `completed_position`: solves the position-level constraints for positions that are not given.
 pub(super) fn emit_positions() -> TokenStream {
     quote! {
         fn completed_position(
@@ -33,7 +33,7 @@ pub(super) fn emit_positions() -> TokenStream {
     }
 }
 
-/// The velocities that constraints admit, and those that they choose.
+/// Emits `admits`, which checks velocities, and `completed_velocity`, which computes velocities that are not given.
 pub(super) fn emit_velocities() -> TokenStream {
     quote! {
         fn admits(
@@ -57,7 +57,7 @@ pub(super) fn emit_velocities() -> TokenStream {
     }
 }
 
-/// Methods of a form with constraints, in place of the defaults that accept every state.
+/// Emits the methods of a form with constraints. They override defaults that accept every state.
 pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
     let Some(functions) = &context.form.program.constrained else {
         return TokenStream::new();
@@ -69,7 +69,7 @@ pub(super) fn emit_hooks(context: &Context<'_>) -> TokenStream {
     quote!(#drop #positions #nearest #velocities)
 }
 
-/// `rank_drop` of a system whose forms may become dependent.
+/// Emits `rank_drop_along` for a system whose constraint forms may become dependent.
 fn emit_rank_drop(context: &Context<'_>) -> TokenStream {
     let (m, n) = (
         context.form.model.constraints.len(),

@@ -1,11 +1,11 @@
-//! `Declared`: the types of a form's vectors, and the values of its parameters.
+//! `Declared`: vector types of a form, and values of its parameters.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::{Context, kernels};
 
-/// `impl Declared`, and the traits for the parts of the form.
+/// `impl Declared`, and the marker traits for constraints, surfaces and divergence.
 pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
     let (type_name, kernels) = (&context.names.type_name, kernels::type_name(context));
     let places = &context.names.parameters;
@@ -61,7 +61,7 @@ pub(super) fn emit_declared(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// Traits for the parts of the form besides its motion.
+/// Marker traits of the form: `HasConstraints`, `HasSurfaces`, `HasDivergence`.
 fn emit_parts(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let program = context.form.program;

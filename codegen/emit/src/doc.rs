@@ -6,7 +6,7 @@ use quote::quote;
 use super::Context;
 use dalembert_codegen::program::{Cost, Form};
 
-/// A doc comment from lines.
+/// A doc comment with these lines.
 pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
     let lines = lines.iter().map(|line| {
         let text = line.as_ref();
@@ -20,12 +20,12 @@ pub(super) fn lines<S: AsRef<str>>(lines: &[S]) -> TokenStream {
     quote!(#(#lines)*)
 }
 
-/// A doc comment that says formula and cost.
+/// A doc comment with a formula and its operation count.
 pub(super) fn formula(text: &str, cost: &Cost) -> TokenStream {
     lines(&[format!("`{text}`"), String::new(), format!("{cost}.")])
 }
 
-/// The order of the components of the state: `x, y, p_x, p_y`, or `x, y, theta, v, omega`.
+/// The components of the state, in order: `x, y, p_x, p_y`, or `x, y, theta, v, omega`.
 pub(super) fn state_order(context: &Context<'_>) -> String {
     let names = |prefix: &str| -> Vec<String> {
         let coordinates = context.form.model.coordinates.iter();

@@ -1,4 +1,5 @@
-//! The last stage, emit: the programs of a model as Rust. One file per emitted item. Every mathematical decision was taken before.
+//! The last stage, emit: writes the programs of a model as Rust code. There is one file per emitted item. Earlier
+//! stages have made every mathematical decision.
 //!
 //! Generated code names only public items of `::dalembert`, `::dalembert::__private` and `::core`.
 
@@ -33,7 +34,8 @@ use dalembert_codegen::tables::FormOf;
 use dalembert_codegen::{Compiled, compile_modes, compile_spec, read};
 use names::Names;
 
-/// The whole pipeline: the body of a `model!` in, Rust items out; on mistakes, compile errors and nothing else.
+/// The whole pipeline: takes the body of a `model!` and returns Rust items. If the body has errors, returns compile
+/// errors only.
 pub fn expand(input: TokenStream) -> TokenStream {
     match try_expand(input) {
         Ok(items) => items,
@@ -41,15 +43,16 @@ pub fn expand(input: TokenStream) -> TokenStream {
     }
 }
 
-/// The pipeline, with its diagnostics.
+/// Same as [`expand`], but returns errors as diagnostics.
 ///
 /// # Errors
-/// Every mistake of the first stage that found any.
+/// All errors of the first stage that fails.
 pub fn try_expand(input: TokenStream) -> Result<TokenStream, Diagnostics> {
     expand_declaration(read(input)?)
 }
 
-/// The whole pipeline, for the models of a file: the input of a `model_file!`, whose path begins at this folder.
+/// The whole pipeline for the models of a file. `input` is the body of a `model_file!`; its path is relative to
+/// `folder`.
 pub fn expand_file(input: TokenStream, folder: &std::path::Path) -> TokenStream {
     file::expand(input, folder)
 }
@@ -76,8 +79,8 @@ struct Context<'a> {
     names: Names,
 }
 
-/// The generated items of a model: those of its type and of the types of its scenes, and where one of them is reduced
-/// to D, those of the type of its global form.
+/// The generated items of a model: the items of its type and of the types of its scenes. A type that is reduced to D
+/// also has a type for its global form.
 pub fn tokens(compiled: &Compiled) -> TokenStream {
     let model = &compiled.model;
     let contexts = contexts(compiled, &model.scenes, |names| names);
@@ -108,14 +111,14 @@ pub fn tokens(compiled: &Compiled) -> TokenStream {
     }
 }
 
-/// Implementations for the types of a model, a scene or a mode; it shares kernels with `base`.
+/// Implementations for the types of a model, a scene or a mode. They share kernels with `base`.
 fn forms(
     contexts: &[Context<'_>],
     base: &[Context<'_>],
     written: &mut kernels::Written,
 ) -> TokenStream {
     let items = contexts.iter().enumerate().flat_map(|(index, context)| {
-        // The global form of a scene is like that of the model, the global form of a model like its own.
+        // A global form shares kernels with the global form of `base`; without a base, with its own reduced form.
         let base = base.get(index).or(base.first());
         let base = base.or(contexts[..index].first());
         implementations(context, base, written)
@@ -123,7 +126,7 @@ fn forms(
     items.collect()
 }
 
-/// Contexts of a model or a scene: that of its own form, then that of the global form where the two differ.
+/// Contexts of a model or a scene: first its own form, then the global form if it is different.
 fn contexts<'a>(
     compiled: &'a Compiled,
     scenes: &'a [Scene],
@@ -142,7 +145,7 @@ fn contexts<'a>(
     forms.map(context).collect()
 }
 
-/// Contexts of a scene, see [`contexts`].
+/// Contexts of a scene; see [`contexts`].
 fn contexts_of_scene<'a>(
     model: &'a Model,
     scene: &'a Scene,
@@ -177,8 +180,8 @@ fn attributes() -> TokenStream {
     quote!(#[automatically_derived])
 }
 
-/// Lints that generated code allows: it was not written by hand, so lints on style have nothing to say, and a function need not use
-/// all that the contract hands it.
+/// Lints that generated code allows. Lints on style do not apply to generated code, and a function may leave arguments
+/// of its trait unused.
 fn allowances() -> TokenStream {
     quote! {
         #[allow(non_snake_case, unused_variables, clippy::all, clippy::pedantic, clippy::nursery)]

@@ -1,4 +1,4 @@
-//! The model's type: its parameters as public fields, and their defaults.
+//! Type of a model: a struct with the parameters as public fields, and its defaults.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -8,7 +8,7 @@ use dalembert_codegen::model::{Assumption, Model, Parameter};
 use dalembert_codegen::program::Form;
 use dalembert_codegen::tables::default_value;
 
-/// The struct, and `Default` when every parameter has one.
+/// Emits the struct, and `Default` if every parameter has a default.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let model = context.form.model;
     let type_name = &context.names.model_type;
@@ -27,7 +27,7 @@ pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// A field for each parameter or family of them.
+/// A field for each parameter and for each family of parameters.
 pub(super) fn emit_fields(model: &Model) -> TokenStream {
     let families = families(&model.parameters).into_iter();
     families
@@ -35,7 +35,7 @@ pub(super) fn emit_fields(model: &Model) -> TokenStream {
         .collect()
 }
 
-/// The type of the global form, where the form of the model's or the scene's own type is reduced.
+/// Emits the type of the global form, if the model or scene itself has the reduced form.
 pub(super) fn emit_global(
     context: &Context<'_>,
     type_name: &str,
@@ -61,7 +61,7 @@ pub(super) fn emit_global(
     }
 }
 
-/// Documentation of the type of a model or a scene.
+/// Documentation lines for the type of a model or a scene.
 pub(super) fn documentation(context: &Context<'_>) -> Vec<String> {
     let model = context.form.model;
     let mut lines = model.documentation.clone();
@@ -104,20 +104,20 @@ fn describe(model: &Model, parameter: &Parameter) -> String {
     }
 }
 
-/// Parameters grouped into scalars and whole families.
+/// Parameters in groups: single parameters and families.
 pub(super) fn families(parameters: &[Parameter]) -> Vec<&[Parameter]> {
     parameters
         .chunk_by(|a, b| a.name.member.is_some() && a.name.field == b.name.field)
         .collect()
 }
 
-/// The struct with declared defaults, NaN where there is none.
+/// Struct expression with the declared defaults; NaN for parameters without a default.
 pub(super) fn with_defaults(model: &Model) -> TokenStream {
     let fields = default_fields(model);
     quote!(Self { #fields })
 }
 
-/// The fields with declared defaults, each with a comma behind it.
+/// Fields with the declared defaults, each followed by a comma.
 pub(super) fn default_fields(model: &Model) -> TokenStream {
     let fields = families(&model.parameters).into_iter().map(|family| {
         let field = Ident::new(&family[0].name.field, Span::call_site());

@@ -1,4 +1,4 @@
-//! Scenes: a type for each in the module of indices, which holds the model with its parameters.
+//! Scenes: one type per scene, in the module of indices. The type wraps the model with its parameters.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -6,7 +6,7 @@ use quote::quote;
 use super::{Context, doc, indices, parameters};
 use dalembert_codegen::model::{Model, Scene};
 
-/// The types of all scenes, each with the items beside it; `contexts` are those of the scenes, in order.
+/// The types of all scenes with their additional items. `contexts` has the contexts of the scenes, in order.
 pub(super) fn emit_types(model: &Model, contexts: &[Vec<Context<'_>>]) -> Vec<TokenStream> {
     let scenes = model.scenes.iter().zip(contexts);
     scenes
@@ -54,7 +54,7 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
     }
 }
 
-/// `Default` of a type that holds the model, when every parameter has one.
+/// `Default` of a type that wraps the model, if every parameter has a default.
 pub(super) fn emit_default(
     model: &Model,
     holder: &Ident,
@@ -73,7 +73,7 @@ pub(super) fn emit_default(
     }
 }
 
-/// `show_scenes`, of the model's own type.
+/// `show_scenes` for the type of the model.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     if context.form.scenes.is_empty() || context.names.held.is_some() {
         return TokenStream::new();

@@ -6,7 +6,7 @@ use quote::quote;
 use super::Context;
 use dalembert_codegen::program::Form;
 
-/// Items of a form that variations need, where they are asked for. A type that holds a reduced model in its global form has none.
+/// Items that variations need, if the form supports variations. The global form of a reduced model does not.
 pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
     if !context.form.varies() {
         return TokenStream::new();
@@ -36,7 +36,7 @@ pub(super) fn emit_variations(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// `show_variational`, where variations are asked for.
+/// `show_variational`, if the form supports variations.
 pub(super) fn emit_visit(context: &Context<'_>) -> TokenStream {
     if !context.form.varies() {
         return TokenStream::new();

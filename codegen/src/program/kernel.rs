@@ -1,5 +1,5 @@
-//! Quantities that several functions of a model share, computed at most once per function: velocity, factorisations,
-//! multipliers.
+//! Quantities that several functions of a model need: velocity, factorisations, multipliers. A function computes each
+//! of them at most once.
 
 use dalembert_expr::{ExprId, Sign, SymbolId};
 
@@ -20,8 +20,8 @@ pub enum Arguments {
     Momenta,
     /// `(t, q, qdot)`
     Velocities,
-    /// `(t, q, p)` with `qdot` computed beforehand: for functions that would repeat the solve of a function that
-    /// exists anyway.
+    /// `(t, q, p)` and `qdot`. The caller has computed `qdot` with the velocity function, so that this function does
+    /// not repeat its solve.
     Both,
     /// `(t, q, u)`
     Quasi,
@@ -37,7 +37,7 @@ impl Form {
         }
     }
 
-    /// The same for a function that would repeat the solve for the velocities.
+    /// Same as [`Form::state`], with velocities as arguments where the function would have to solve for them.
     pub fn state_with_velocity(self) -> Arguments {
         match self {
             Self::Global => Arguments::Both,
@@ -54,11 +54,13 @@ pub struct Kernel<'a> {
     pub(super) builder: Builder,
     expressions: Expressions<'a>,
     arguments: Arguments,
-    /// True if constraint forms are taken without common numbers. Multipliers are then not those of the declaration.
+    /// True if constraint forms are divided by the common numeric factor of their components. Multipliers then differ
+    /// from those of the declaration.
     pub(super) primitive: bool,
-    /// True if functions end with a fault where the instantaneous constraints of a surface depend on each other.
+    /// True if the function returns a fault where the instantaneous constraints of a surface are dependent.
     pub(super) guards_surfaces: bool,
-    /// True if velocities come from written-out expressions, rather than from one solve after the other.
+    /// True if velocities are explicit expressions in the quasi-velocities. Otherwise they follow from successive
+    /// solves.
     pub(super) written: bool,
     ldlt: Option<Ldlt>,
     pub(super) constraint_factors: Option<ConstraintFactors>,
@@ -71,7 +73,7 @@ pub struct Kernel<'a> {
 }
 
 impl<'a> Kernel<'a> {
-    /// A kernel whose positions, parameters and time are bound, and velocities too if they are arguments.
+    /// A kernel with bound positions, parameters and time; velocities are bound as well if they are arguments.
     pub fn new(model: &'a Model, derivation: &'a Derivation, arguments: Arguments) -> Self {
         let mut kernel = Self {
             model,
@@ -105,7 +107,7 @@ impl<'a> Kernel<'a> {
         kernel
     }
 
-    /// The same for a function whose results hold no multipliers.
+    /// Allows other scalings of the constraint forms, for a function whose results do not include multipliers.
     #[must_use]
     pub fn without_multipliers(self) -> Self {
         Self {
@@ -114,7 +116,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// The same for a function that evaluates surfaces: it gives NaN where an impulse does not exist.
+    /// Omits the guards of surfaces. The function then gives NaN where an impulse does not exist.
     #[must_use]
     pub fn without_surface_guards(self) -> Self {
         Self {
@@ -123,7 +125,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// The same with velocities as they are written out in quasi-velocities.
+    /// Uses explicit expressions of the velocities in the quasi-velocities.
     #[must_use]
     pub fn written_out(self) -> Self {
         Self {
@@ -142,7 +144,7 @@ impl<'a> Kernel<'a> {
         self.expressions.bind(symbol, value);
     }
 
-    /// The value of a symbol that is bound; 0 if it is not.
+    /// The value of a bound symbol; 0 if the symbol is not bound.
     pub fn symbol(&mut self, symbol: SymbolId) -> Value {
         let bound = self.expressions.bound(symbol);
         bound.unwrap_or_else(|| self.builder.zero())
@@ -250,7 +252,7 @@ impl<'a> Kernel<'a> {
         self.with_ldlt(|builder, ldlt| ldlt.solve(builder, b))
     }
 
-    /// Runs `work` with the metric's factors.
+    /// Calls `work` with the factors of the metric.
     pub fn with_ldlt<T>(&mut self, work: impl FnOnce(&mut Builder, &Ldlt) -> T) -> T {
         let ldlt = match self.ldlt.take() {
             Some(ldlt) => ldlt,

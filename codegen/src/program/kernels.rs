@@ -1,14 +1,14 @@
-//! The functions of a program by their names in the runtime.
+//! The functions of a program, each with its name in the runtime.
 
 use dalembert_numbers::Kernel;
 
 use super::{Constrained, Form, Function, Impacting, Program};
 
 impl Program {
-    /// Every function with its name, except the power series. Functions of mechanics that do not exist for a first-order system are
-    /// left out.
+    /// Every function with its name, except the power series. For a first-order system, functions without a meaning
+    /// there, such as the energy, are left out.
     pub fn kernels(&self) -> Vec<(Kernel, &Function)> {
-        // Velocities come first: other functions read them.
+        // The velocity comes first, because other functions use it.
         let mut kernels = vec![
             (Kernel::Velocity, &self.velocity),
             (Kernel::Rate, &self.rate),

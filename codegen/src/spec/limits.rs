@@ -1,20 +1,21 @@
-//! Limits on what is written. They are counts, never times, so that a build gives the same result everywhere.
+//! Limits on the size of declarations. All are counts rather than times, so that a build gives the same result on every
+//! machine.
 
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::diagnostics::{Diagnostics, Location};
 
-/// Brackets within brackets, and exponents of exponents.
+/// Nesting depth of brackets, and of exponents.
 pub const NESTING: usize = 256;
-/// Letters of a name.
+/// Characters of a name.
 pub const NAME_LENGTH: usize = 64;
 /// Digits of a literal.
 pub const LITERAL_DIGITS: usize = 40;
-/// Coordinates of a model, families expanded.
+/// Coordinates of a model, after the expansion of families.
 pub const COORDINATES: usize = 64;
-/// Parameters of a model, families expanded.
+/// Parameters of a model, after the expansion of families.
 pub const PARAMETERS: usize = 256;
-/// Impact surfaces of a model, families expanded.
+/// Impact surfaces of a model, after the expansion of families.
 pub const SURFACES: usize = 256;
 /// Scenes of a model; each is derived and emitted like a model of its own.
 pub const SCENES: usize = 32;
@@ -26,16 +27,16 @@ pub const EXPONENT_DENOMINATOR_BITS: u64 = 12;
 pub const NUMBER_BITS: u64 = 4096;
 /// Nodes of the shared expressions.
 pub const EXPRESSIONS: usize = 1 << 20;
-/// Steps of algebra for one model: expressions made, their parts and the words of their numbers.
+/// Steps of algebra for one model: one for each expression, for each of its operands and for each word of its numbers.
 pub const STEPS: u64 = 1 << 21;
-/// Members of a family of definitions, terms of a `sum`.
+/// Members of a family of definitions, and terms of a `sum`.
 pub const FAMILY: i64 = 4096;
-/// Parts of expressions visited while definitions and sums are written out.
+/// Subexpressions visited while definitions and sums are expanded.
 pub const RESOLVED_PARTS: usize = 1 << 20;
-/// Expressions within expressions, definitions written out.
+/// Nesting depth of an expression after the expansion of definitions.
 pub const RESOLVED_DEPTH: usize = 1024;
 
-/// Refuses brackets nested deeper than [`NESTING`] without recursion: everything later may recurse.
+/// Refuses brackets that are nested deeper than [`NESTING`]. The check does not recurse; later stages may.
 pub(super) fn check_nesting(tokens: &TokenStream) -> Result<(), Diagnostics> {
     let mut deepest = 0;
     let mut culprit = None;

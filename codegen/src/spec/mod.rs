@@ -1,11 +1,11 @@
-//! Stage 1, parse: from tokens to what was written, with the place of every part.
+//! Stage 1, parse: turns tokens into a syntax tree with the source location of every part.
 //!
 //! ```text
 //! model      = docs visibility Name { declaration* }
 //! declaration = section { (entry ;)* } | let .. = e ; | const N = e ; | lagrangian = e ;
 //! ```
 //!
-//! Mistakes in one entry do not hide those in the next: reading goes on behind the next `;`.
+//! After an error in an entry, parsing continues after the next `;`, so that later errors are reported as well.
 
 mod ast;
 mod cursor;

@@ -1,4 +1,4 @@
-//! Sizes, conditions and laws of a form.
+//! Tables of a form: sizes, conditions and laws.
 
 use dalembert_numbers::law::Law;
 use dalembert_numbers::tables::{self, Chart, Condition, Dimensions, Level, Surface, Tables, Work};
@@ -10,7 +10,7 @@ use crate::program::jet::degree::Degree;
 use crate::program::{Form, Function, Input, Op};
 
 impl FormOf<'_> {
-    /// Its tables.
+    /// The tables of the form.
     pub fn tables(&self) -> Tables {
         let Self { model, program, .. } = *self;
         let constrained = program.constrained.as_ref();
@@ -53,7 +53,7 @@ impl FormOf<'_> {
         }
     }
 
-    /// Its functions by name, that of velocities first.
+    /// The functions of the form with their names. The velocity comes first.
     pub fn kernels(&self) -> Vec<(Kernel, &Function)> {
         let mut kernels = self.program.kernels();
         let has_impulses = !self.model.is_nonlinear();
@@ -61,13 +61,13 @@ impl FormOf<'_> {
         kernels
     }
 
-    /// Levels of constraints.
+    /// Number of integrable constraints whose function (level) is known.
     pub fn levels(&self) -> usize {
         let constrained = self.program.constrained.as_ref();
         constrained.map_or(0, |constraints| constraints.levels.outputs.len())
     }
 
-    /// Numbers of the largest kernel that gives several things at once.
+    /// Number of outputs of the largest kernel that computes several quantities at once.
     pub fn room(&self) -> usize {
         let kernels = self.program.kernels().into_iter();
         let several = kernels.filter(|(kernel, _)| {
@@ -85,25 +85,25 @@ impl FormOf<'_> {
             )
         });
         let counts = several.map(|(_, function)| function.outputs.len());
-        // NOTE: callers ask for blows and contacts even where there are none.
+        // NOTE: callers request blows and contacts even for models without them.
         let least = 5 + self.motion_dimension();
         counts.max().unwrap_or(0).max(least)
     }
 
-    /// True if states drift off constraints and runs bring them back. A state reduced to D can only drift off the
-    /// positions of integrable constraints.
+    /// True if rounding and truncation errors make states drift off the constraints and runs project them back. A state
+    /// reduced to D can only drift off the level sets of integrable constraints.
     pub fn drifts(&self) -> bool {
         let is_constrained = self.program.constrained.is_some();
         let drifts = is_constrained && (self.program.form == Form::Global || self.levels() > 0);
         drifts && self.model.extras.projection
     }
 
-    /// True if its runs can be varied.
+    /// True if runs of the form have variations (derivatives of the motion).
     pub fn varies(&self) -> bool {
         self.model.extras.variations && !self.is_wrapped()
     }
 
-    /// Work of expansions of the motion.
+    /// Work of the Taylor expansions of the motion.
     pub fn work(&self) -> Work {
         let jet = &self.program.jet;
         let values = jet.function.cost.multiplications_alike();
@@ -129,7 +129,8 @@ impl FormOf<'_> {
         })
     }
 
-    /// True if nothing but a Lagrangian without time moves a system with surfaces: its energy is kept between impacts.
+    /// True if a system with surfaces is known to conserve energy between impacts: it has no forces and no constraints,
+    /// and its Lagrangian does not depend on time or inputs.
     fn conserves_energy(&self) -> bool {
         let model = self.model;
         let lagrangian = model.lagrangian.whole;
@@ -142,7 +143,7 @@ impl FormOf<'_> {
         self.program.impacting.is_some() && is_free && is_steady
     }
 
-    /// The constraint of each level, where some are declared to be 0.
+    /// The constraint of each level. Empty unless a constraint is an equation of positions, which makes its level 0.
     fn declared_levels(&self) -> impl Iterator<Item = Level> {
         let functions = self.program.constrained.as_ref();
         let are_declared = functions.is_some_and(|constraints| constraints.level_scales.is_some());
@@ -176,7 +177,8 @@ impl FormOf<'_> {
     }
 }
 
-/// True if a kernel belongs to impulses and discrete principles. Constraints that are not linear in the velocities define none.
+/// True for kernels of impulses and discrete principles. They do not exist for constraints that are not linear in the
+/// velocities.
 fn is_of_impulses(kernel: Kernel) -> bool {
     matches!(
         kernel,
@@ -184,7 +186,7 @@ fn is_of_impulses(kernel: Kernel) -> bool {
     )
 }
 
-/// The law, with a coefficient of 0 where it has one.
+/// The law in the tables. Its coefficient, if it has one, is 0.
 fn law(declared: model::Law) -> Law {
     match declared {
         model::Law::Elastic => Law::Elastic,
@@ -205,7 +207,7 @@ fn conditions(declared: &[model::Condition]) -> Held<[Condition]> {
     }))
 }
 
-/// The coordinates that a function reads, by bits; all from the last bit on share it.
+/// Bit mask of the coordinates that a function reads. Coordinates with index 63 and above share the last bit.
 fn coordinates_of(function: &Function) -> u64 {
     let taken = function.ops.iter().filter_map(|op| match op {
         Op::Input(Input::Coordinate(i)) => Some(1_u64 << i.min(&63)),

@@ -1,8 +1,8 @@
-//! `TaylorField`: coefficients of the motion's power series, order after order, and of the gaps along it.
+//! `TaylorField`: Taylor coefficients of the motion and of the gaps along it, order after order.
 //!
-//! Order 0 is straight-line code like every other function. Above it one loop over the orders holds a statement for
-//! each value that varies; sums over products of kept coefficients are calls ([`layout`]). Both are written over
-//! `L: Numbers`: of one motion or of several side by side.
+//! Order 0 is straight-line code like every other function. For higher orders, one loop contains a statement for each
+//! value that varies. Sums over products of stored coefficients are calls ([`layout`]). Both parts are generic over
+//! `L: Numbers`: one motion, or several motions in SIMD lanes.
 
 mod layout;
 mod recurrence;
@@ -86,22 +86,22 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// The parts of an expansion.
+/// The parts of the generated expansion.
 struct Expansion {
-    /// Order 0.
+    /// Statements of order 0.
     begin: TokenStream,
     /// Number of values known at order 0.
     known: usize,
-    /// The orders above.
+    /// Statements of all higher orders.
     advance: TokenStream,
-    /// The type of the room for coefficients.
+    /// Type of the array that stores coefficients.
     room: TokenStream,
 }
 
 impl Expansion {
     fn of(jet: &Jet, context: &Context<'_>) -> Self {
-        // The kept coefficients are known once the orders are written, and the orders depend on their storage: the orders
-        // of a small expansion are written twice.
+        // The first pass finds the coefficients to store. The statements depend on the storage layout, so a small
+        // expansion is written a second time.
         let mut writer = Writer::of(jet, context);
         let mut orders = writer.orders();
         if !writer.is_large() {
@@ -143,7 +143,7 @@ fn begin(jet: &Jet, outputs: Vec<Value>, context: &Context<'_>) -> TokenStream {
     joined([bindings, statements, quote!(*firsts = [#(#outputs),*];)])
 }
 
-/// The first coefficients, and the loop over the others.
+/// Statements for the first coefficients, and the loop over the higher orders.
 fn advance(
     start: &TokenStream,
     orders: &TokenStream,

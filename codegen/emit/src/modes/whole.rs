@@ -1,4 +1,5 @@
-//! `Declared` of the whole, its tables and series: lengths of vectors, and the place of each mode's quantities among those of the model.
+//! `Declared`, tables and power series of a model with modes: lengths of vectors, and positions of each mode's
+//! quantities among those of the model.
 
 use dalembert_numbers::tables::Dimensions;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -9,7 +10,7 @@ use crate::constants::{Constant, Record};
 use crate::describe::emitted;
 use crate::{attributes, constraint, kernels};
 
-/// `impl Declared`, and the traits for the parts of the model.
+/// `impl Declared`, and the marker traits for constraints and surfaces.
 pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
     let type_name = whole.type_name();
     let attributes = attributes();
@@ -90,7 +91,7 @@ pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
     }
 }
 
-/// Methods of modes with constraints, in place of the defaults that accept every state.
+/// Emits the methods of a model whose modes have constraints. They override defaults that accept every state.
 fn emit_hooks(whole: &Whole<'_>) -> TokenStream {
     let drop = whole.known.tables().can_lose_rank.then(|| {
         let types = emit_list(whole);
@@ -121,14 +122,14 @@ fn emit_hooks(whole: &Whole<'_>) -> TokenStream {
     quote!(#drop #positions #nearest #velocities)
 }
 
-/// The types of the modes as a list: `(First, (Second, ()))`.
+/// The types of the modes as a nested list: `(First, (Second, ()))`.
 fn emit_list(whole: &Whole<'_>) -> TokenStream {
     let types = whole.types();
     let types = types.iter().rev();
     types.fold(quote!(()), |others, mode| quote!((#mode, #others)))
 }
 
-/// Tables of the whole. Those of its modes stand with their types.
+/// Tables of the model. They refer to the tables of the modes, which are constants of the modes' types.
 pub(super) fn emit_tables(whole: &Whole<'_>) -> TokenStream {
     let tables = whole.known.tables();
     let types = whole.types();
@@ -160,7 +161,7 @@ pub(super) fn emit_forms(whole: &Whole<'_>) -> TokenStream {
     )),*])
 }
 
-/// `From` the whole for each mode.
+/// `impl From<Model>` for the type of each mode.
 pub(super) fn emit_conversions(whole: &Whole<'_>) -> TokenStream {
     let type_name = whole.type_name();
     let attributes = attributes();
@@ -248,7 +249,7 @@ pub(super) fn emit_taylor(whole: &Whole<'_>) -> TokenStream {
     }
 }
 
-/// Items of the whole that variations need.
+/// Items of the model that variations need.
 pub(super) fn emit_variations(whole: &Whole<'_>) -> TokenStream {
     let type_name = whole.type_name();
     let attributes = attributes();
@@ -287,7 +288,7 @@ pub(super) fn emit_choice(whole: &Whole<'_>) -> TokenStream {
     quote!(match mode { #(#arms)* _ => {} })
 }
 
-/// Report of the present mode.
+/// Emits `inspect_mode`, which reports the quantities of one mode.
 pub(super) fn emit_inspection(whole: &Whole<'_>) -> TokenStream {
     let list = emit_list(whole);
     quote! {

@@ -1,6 +1,7 @@
-//! One case for each error of the check: the message, and the part of the text it points at, marked `«..»`.
+//! One test case for each error of the check. A case has the message and a source text; `«..»` marks the location of
+//! the error.
 
-#![allow(clippy::unwrap_used)] // a test may stop at the first surprise
+#![allow(clippy::unwrap_used)] // tests may panic
 
 mod bounds;
 mod impacts;
@@ -45,7 +46,7 @@ fn accepted(source: &str) {
     }
 }
 
-/// Exactly one error, with this message, at the marked place.
+/// Asserts that the source has exactly one error, with this message at the marked place.
 #[track_caller]
 fn refused(source: &str, message: &str) {
     let (source, marked) = unmarked(source);

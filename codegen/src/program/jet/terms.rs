@@ -1,6 +1,7 @@
-//! Coefficient `k` of one value from those it follows from, as an expression.
+//! Coefficient `k` of a value as an expression of the coefficients that it depends on.
 //!
-//! The range of a sum, and the last factor to enter a product, are decided here, once for all code that computes series.
+//! This file alone decides the range of each sum and the order of the factors of a product. All code that computes
+//! series uses these expressions.
 
 use dalembert_expr::Rational;
 
@@ -8,9 +9,9 @@ use super::degree::Degree;
 use super::{History, Jet, Recurrence};
 use crate::program::Value;
 
-/// Largest number of kept series for which values of order `k` are locals and sums are computed side by side. A larger
-/// expansion calls one shared sum and goes through memory: a compiler spends stack on every local of a function of that
-/// length.
+/// Largest number of stored series for which values of order `k` are locals and sums are computed side by side. A
+/// larger expansion calls one shared function for sums and keeps its values in memory, because a compiler would use
+/// stack for every local of such a long function.
 const LARGE: usize = 128;
 
 /// An expression of coefficients, at order `k`.
@@ -18,7 +19,7 @@ const LARGE: usize = 128;
 pub enum Term {
     /// 0
     Zero,
-    /// The unit of time at order 1, else 0.
+    /// The unit of time at order 1; 0 at higher orders.
     Time,
     /// A constant.
     Number(Rational),
@@ -40,9 +41,9 @@ pub enum Term {
     Sub(Box<[Term; 2]>),
     /// `a b`
     Mul(Box<[Term; 2]>),
-    /// `a b + c`, rounded as multiplications and additions in one.
+    /// `a b + c`, with the rounding of `Numbers::mul_add`.
     MulAdd(Box<[Term; 3]>),
-    /// `a` with its sign turned where `b` is negative.
+    /// `a`, negated if `b` is negative.
     Turned(Box<[Term; 2]>),
     /// `sum a_j b_(k-j)` for `j` in `1..k`.
     Middle(History, History),
@@ -50,12 +51,12 @@ pub enum Term {
     Half(Value),
     /// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond an order.
     Short(History, History, usize),
-    /// `a_1 b_(k-1)`: the same where `a` grows steadily.
+    /// `a_1 b_(k-1)`: the same sum for a value `a` that is affine in time.
     Steady(Value, Value),
 }
 
 impl Term {
-    /// Shows the term and all its subterms.
+    /// Calls `see` for the term and all its subterms.
     pub fn walk(&self, see: &mut impl FnMut(&Self)) {
         see(self);
         match self {
@@ -98,12 +99,13 @@ fn signed(negative: bool, a: Term) -> Term {
 }
 
 impl Jet {
-    /// True if the number of kept coefficients is so large that they go through memory.
+    /// True if the number of stored series exceeds `LARGE`, so that values are kept in memory.
     pub fn is_large(&self) -> bool {
         self.histories.len() > LARGE
     }
 
-    /// Coefficient `k` of a value. That of a component of the state is known.
+    /// Coefficient `k` of a value. For a component of the state the result is [`Term::Zero`]; its coefficient is known
+    /// from the previous order.
     pub fn term(&self, value: Value) -> Term {
         let (next, first, inverse) = (Term::Next, Term::First, Term::Inverse);
         match &self.recurrences[value.index()] {
@@ -155,7 +157,7 @@ impl Jet {
 
     /// `sum a_j b_(k-j)` for `j` in `0..=k`.
     fn product(&self, a: Value, b: Value) -> Term {
-        // The value that is known last enters the sum last.
+        // The factor that is computed last comes second.
         let (a, b) = match (self.degree_of(a), a.index()) > (self.degree_of(b), b.index()) {
             true => (b, a),
             false => (a, b),
@@ -169,7 +171,7 @@ impl Jet {
         mul_add(first, next, self.upper_sum(a, b))
     }
 
-    /// True if coefficient `k` of a value is known when order `k` begins, before the sums over lower orders.
+    /// True if coefficient `k` of a value is known at the start of order `k`, before the sums over lower orders.
     fn is_early(&self, value: Value) -> bool {
         matches!(
             self.recurrences[value.index()],
@@ -194,7 +196,8 @@ impl Jet {
             .unwrap_or_else(|| mul_add(Term::Next(a), Term::First(b), Term::Middle(rising, other)))
     }
 
-    /// `a_k b_0`, the only term of a sum where one of the two is constant.
+    /// The sum of `a_j b_(k-j)` for `j` in `1..=k` if `a` or `b` is constant: 0 for a constant `a`, `a_k b_0` for a
+    /// constant `b`.
     fn product_with_constant(&self, a: Value, b: Value) -> Option<Term> {
         let is_constant = |value: Value| self.recurrences[value.index()] == Recurrence::Constant;
         match (is_constant(a), is_constant(b)) {
@@ -233,7 +236,7 @@ impl Jet {
     fn short(&self, a: History, b: History) -> Option<Term> {
         match self.degree_of(a.value) {
             Degree::Endless => None,
-            // NOTE: the only coefficient above order 0 is that of order 1, which equals its product with the order.
+            // NOTE: above order 0, `a` has a coefficient of order 1 only. Its weight is 1 in weighted sums as well.
             Degree::AtMost(1) if !self.is_large() => Some(Term::Steady(a.value, b.value)),
             Degree::AtMost(degree) => Some(Term::Short(a, b, degree as usize)),
         }

@@ -1,9 +1,10 @@
-//! A forward invariant set between two energies, for modes of one degree of freedom that follow each other in a cycle: W. Clark,
-//! thesis, (4.13) to (4.15).
+//! A forward invariant set between two energies, for modes of one degree of freedom that follow each other in a cycle
+//! (W. Clark, thesis, (4.13) to (4.15)).
 //!
-//! `E` is the kinetic energy behind an impact. A mode gains `P = V(entry) - V(exit)` on its way, needs `R = max V - V(entry)` to get
-//! over it, and its impact keeps the share `K` of what arrives: `eta(E) = K (E + P)`. From the largest `R` on, every `eta` must give
-//! more than the next mode needs.
+//! `E` is the kinetic energy after an impact. In a mode the motion gains the kinetic energy `P = V(entry) - V(exit)`.
+//! It needs the kinetic energy `R = max V - V(entry)` at its entry to reach the exit. The impact at the exit keeps the
+//! fraction `K` of the kinetic energy: `eta(E) = K (E + P)`. Start with the largest `R` and apply `eta` of each mode in
+//! turn: every result must exceed the `R` of the next mode.
 
 use dalembert_expr::{Interval, SymbolId};
 
@@ -11,35 +12,35 @@ use super::graph::{Edge, Node, Passage};
 use super::{Decided, Reasoned, shown};
 use crate::model::Topology;
 
-/// Parts into which the way of a mode is divided at most, to bound its potential.
+/// Largest number of subintervals for the bound of a potential.
 const PARTS: usize = 4096;
 
-/// Width of the bound of a potential, relative to its size, at which the division ends.
+/// Relative width of the bound of a potential at which the subdivision ends.
 const CLOSE: f64 = 1e-10;
 
-/// One mode of the round.
+/// One mode of the cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// Index of the mode.
     pub mode: usize,
-    /// The surface at its end.
+    /// Name of the surface at its exit.
     pub surface: String,
-    /// Places of entry and exit.
+    /// Coordinates of entry and exit.
     pub places: [Interval; 2],
-    /// `R`: the kinetic energy that its way needs.
+    /// `R`: the kinetic energy at the entry that the motion needs to reach the exit.
     pub needed: Interval,
-    /// `P`: the kinetic energy that it gains.
+    /// `P`: the kinetic energy gained between entry and exit.
     pub gained: Interval,
-    /// `K`: the share that the impact keeps.
+    /// `K`: the fraction of the kinetic energy that the impact keeps.
     pub kept: Interval,
-    /// The kinetic energy behind the impact, from the largest `R` on.
+    /// The kinetic energy after the impact, for a cycle that starts with the largest `R`.
     pub reached: Interval,
     /// `R` of the next mode.
     pub next: Interval,
 }
 
 impl Step {
-    /// The inequality of (4.13): `None` where the intervals overlap.
+    /// True if the inequality (4.13) holds; `None` if the intervals overlap.
     pub fn holds(&self) -> Option<bool> {
         match (
             self.reached.lo > self.next.hi,
@@ -52,18 +53,18 @@ impl Step {
     }
 }
 
-/// The energies of one round through the modes.
+/// The energies of one cycle through the modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cascade {
-    /// The steps, from the mode with the largest `R` on.
+    /// The steps, starting with the mode that has the largest `R`.
     pub steps: Vec<Step>,
     /// The product of all `K`: the multiplier of the periodic orbit.
     pub multiplier: Interval,
-    /// The kinetic energy of the periodic orbit behind the impact into the first mode, where it is known.
+    /// The kinetic energy of the periodic orbit after the impact into the first mode, if it is known.
     pub energy: Option<Interval>,
 }
 
-/// The steps of the cycle of modes; the reason where there is none.
+/// The energies of the cycle of modes, or the reason why there are none.
 pub(super) fn cascade(nodes: &[Node], edges: &[Edge]) -> Result<Cascade, String> {
     let cycle = cycle(nodes.len(), edges)?;
     let mut passages = Vec::new();
@@ -95,7 +96,7 @@ pub(super) fn cascade(nodes: &[Node], edges: &[Edge]) -> Result<Cascade, String>
     Ok(run_through(steps))
 }
 
-/// The surfaces of the cycle that the first mode leads to.
+/// The surfaces of the cycle that is reached from the first mode.
 fn cycle(count: usize, edges: &[Edge]) -> Result<Vec<&Edge>, String> {
     let mut seen: Vec<(usize, &Edge)> = Vec::new();
     let mut mode = 0;
@@ -113,7 +114,7 @@ fn cycle(count: usize, edges: &[Edge]) -> Result<Vec<&Edge>, String> {
     Err("the modes are no cycle".to_owned())
 }
 
-/// The energies of one mode, and whether its motion goes up in the coordinate.
+/// The energies of one mode, and true if the coordinate increases during the motion.
 fn step(
     from: &Node,
     to: &Node,
@@ -185,7 +186,7 @@ fn step(
     Ok((step, goes_up))
 }
 
-/// Checks that no surface ends the motion on the way, and that its coordinate stays in its interval.
+/// Checks that no surface ends the motion before the exit, and that the coordinate stays in its declared interval.
 fn stays(node: &Node, position: SymbolId, hull: Interval) -> Result<(), String> {
     let model = &node.model;
     for surface in model
@@ -219,7 +220,7 @@ fn stays(node: &Node, position: SymbolId, hull: Interval) -> Result<(), String> 
     Ok(())
 }
 
-/// The largest value of a potential on an interval.
+/// Enclosure of the maximum of a potential on an interval, by bisection.
 fn highest(hull: Interval, potential: &dyn Fn(Interval) -> Option<Interval>) -> Option<Interval> {
     let mut parts = vec![(hull, potential(hull)?)];
     let mut low = f64::NEG_INFINITY;
@@ -244,7 +245,7 @@ fn highest(hull: Interval, potential: &dyn Fn(Interval) -> Option<Interval>) -> 
     Some(Interval::new(low, high.fold(low, f64::max)))
 }
 
-/// The cascade from the largest `R` on.
+/// The cascade of a cycle that starts with the largest `R`.
 fn run_through(mut steps: Vec<Step>) -> Cascade {
     let largest =
         (0..steps.len()).max_by(|&a, &b| steps[a].needed.hi.total_cmp(&steps[b].needed.hi));
@@ -320,7 +321,7 @@ pub(super) fn transverse(cascade: &Result<Cascade, String>) -> Reasoned {
     )
 }
 
-/// A hypothesis that the invariant set brings with it.
+/// The verdict on a hypothesis that follows from the invariant set.
 fn follows(cascade: &Result<Cascade, String>, reason: &str) -> Reasoned {
     match invariant(cascade) {
         (Decided::Holds, _) => (Decided::Holds, reason.to_owned()),

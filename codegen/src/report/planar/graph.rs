@@ -1,14 +1,15 @@
-//! Modes as nodes, and the surfaces that lead from one to another as edges: `q -> place`, `v -> factor v`.
+//! Graph of the modes. Nodes are modes. Edges are the surfaces that lead from a mode to another, with maps of the form
+//! `q -> entry`, `v -> factor v`.
 
 use dalembert_expr::{ExprId, Interval, SymbolId};
 
 use super::{Decided, Reasoned};
 use crate::model::{Assumption, Beside, Law, Model, Reset, Surface, Topology, Transition};
 
-/// A mode at values of the parameters.
+/// A mode with values or ranges of its parameters.
 pub(super) struct Node {
     pub(super) model: Model,
-    /// The parameters with their values.
+    /// Ranges of the parameters; points for given values.
     parameters: Vec<(SymbolId, Interval)>,
 }
 
@@ -38,7 +39,7 @@ impl Node {
         self.model.is_first_order()
     }
 
-    /// The range of an expression where symbols lie in these ranges; `None` where it may have no value.
+    /// The range of an expression for symbols in the ranges `at`; `None` if the expression may be undefined there.
     pub(super) fn range(&self, expr: ExprId, at: &[(SymbolId, Interval)]) -> Option<Interval> {
         let mut domain = self.parameters.clone();
         domain.extend_from_slice(at);
@@ -74,7 +75,7 @@ impl Node {
         Some([self.range(root, &[])?, self.range(slope, &[])?])
     }
 
-    /// All expressions of the declaration that decide about the motion.
+    /// All expressions of the declaration that the motion depends on.
     fn expressions(&self) -> Vec<ExprId> {
         let model = &self.model;
         let mut found = vec![model.lagrangian.whole];
@@ -98,19 +99,19 @@ impl Node {
     }
 }
 
-/// A surface that leads from a mode to another, or back into the same.
+/// A surface that leads from a mode to another one, or back to the same mode.
 pub(super) struct Edge {
     pub(super) from: usize,
     pub(super) to: usize,
     pub(super) name: String,
-    /// The place of the surface, of the entry behind it, and the factor of the velocity there; the reason where they are not
+    /// Coordinate of the surface, coordinate after it, and factor of the velocity; or the reason why they are not
     /// known.
     pub(super) passage: Result<Passage, String>,
     /// Derivative of the map along the surface.
     slope: Slope,
 }
 
-/// A passage from one place to another.
+/// Jump of a mode with one coordinate at a surface: from `exit` to `entry`, with the velocity times `factor`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passage {
     pub(super) exit: Interval,
@@ -120,15 +121,15 @@ pub(super) struct Passage {
     pub(super) slope: Interval,
 }
 
-/// Derivative of a map along its surface.
+/// Derivative of the map of a surface along that surface.
 enum Slope {
-    /// Its range.
+    /// Range of the derivative.
     Within(Interval),
-    /// It is not known.
+    /// The derivative is not known, for this reason.
     Unknown(String),
 }
 
-/// All surfaces at which the motion goes on.
+/// All surfaces after which the motion continues.
 pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
     let mut edges = Vec::new();
     for from in 0..nodes.len() {
@@ -166,7 +167,7 @@ pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
     edges
 }
 
-/// The map of a reset, with what stays.
+/// The complete map of a reset: components that it does not name keep their values.
 fn filled(node: &mut Node, reset: &Reset) -> (Vec<ExprId>, Vec<ExprId>) {
     let coordinates = node.model.coordinates.clone();
     let pool = &mut node.model.pool;
@@ -181,7 +182,7 @@ fn filled(node: &mut Node, reset: &Reset) -> (Vec<ExprId>, Vec<ExprId>) {
     (q, qdot)
 }
 
-/// The passage of a mode with one coordinate.
+/// The passage at a surface of a mode with one coordinate; `None` if the map does not have that form.
 fn passage(
     node: &mut Node,
     gap: ExprId,
@@ -213,11 +214,11 @@ fn passage(
     })
 }
 
-/// The derivative of a map along its surface.
+/// The derivative of the map of a surface along that surface.
 fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -> Slope {
     let unknown = |why: &str| Slope::Unknown(why.to_owned());
     let coordinates: Vec<SymbolId> = node.model.coordinates.iter().map(|it| it.q).collect();
-    // A surface of one coordinate is a line; the other component of the state runs along it.
+    // The surface fixes one component of the state, so it is a line. The other component is a parameter along the line.
     let (across, along, images) = match (node.symbols(), &coordinates[..]) {
         (Some([position, velocity]), _) => (position, velocity, [&q[..], &qdot[..]].concat()),
         (None, &[x, y]) if node.is_first_order() => {
@@ -251,14 +252,15 @@ fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -
     }
 }
 
-/// The factor of the velocity by the law of an impulse: the gap rate of a mode with one coordinate.
+/// The derivative for an impulsive law. In a mode with one coordinate, the law multiplies the velocity by a factor, as
+/// it does the gap rate.
 fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
     let within = |range: Option<Interval>| match range {
         Some(range) => Slope::Within(range),
         None => Slope::Unknown("the coefficient is not known".to_owned()),
     };
     match law {
-        // Without a map the position stays.
+        // Without a map, the state does not change.
         _ if node.is_first_order() => within(Some(Interval::point(1.0))),
         _ if node.symbols().is_none() => {
             Slope::Unknown("the states are not part of a plane".to_owned())
@@ -266,7 +268,7 @@ fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
         _ if !surface.instantaneous.is_empty() => {
             Slope::Unknown("it has instantaneous constraints".to_owned())
         }
-        // Without constraints the nonholonomic plastic law is the elastic one.
+        // Without constraints, the nonholonomic plastic law equals the elastic law.
         Law::Elastic | Law::NonholonomicPlastic => within(Some(Interval::point(1.0))),
         Law::Restitution(e) | Law::Newton(e) => within(node.range(e, &[])),
         Law::ImpactPlastic | Law::TotallyPlastic => within(Some(Interval::ZERO)),

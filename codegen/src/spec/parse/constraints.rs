@@ -12,7 +12,7 @@ pub(super) fn constraint(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     Ok(())
 }
 
-/// Reads one equation of the kind that messages call `entry`.
+/// Reads one equation; error messages call it `entry`.
 pub(super) fn equation(cursor: &mut Cursor<'_>, spec: &mut Spec, entry: &str) -> Read<Equation> {
     const FORM: &str = "name: d(x) - R*d(theta) = 0;";
     let (documentation, declared) = labelled(cursor, entry, FORM)?;
