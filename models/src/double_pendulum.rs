@@ -1,6 +1,6 @@
-//! A planar double pendulum: two point masses on two rods, absolute angles from the downward vertical.
+//! A planar double pendulum: two point masses on two rods, with absolute angles from the downward vertical.
 //!
-//! Facts: the energy is constant; small oscillations of equal masses on equal rods have the frequencies
+//! Facts: the energy is constant. For equal masses on equal rods, small oscillations have the angular frequencies
 //! `sqrt((2 -+ sqrt 2) g/l)`.
 
 dalembert::model_file!("src/double_pendulum.dal");

@@ -1,8 +1,9 @@
-//! A rimless wheel of five spokes of different lengths that rolls down a slope: a mode for each spoke that stands.
+//! A rimless wheel with five spokes of different lengths rolls down a slope. There is one mode for each standing spoke.
 //!
-//! Facts: on one spoke the wheel is a pendulum upside down; where the next one lands speed is lost, and the square of the rate is
-//! mapped affinely from turn to turn, so that there is one limit cycle and every motion that goes on tends to it.
-//! Source: W. Clark, thesis, section 4.3 and Table 4.1, with the angles of the triangles between feet and hub by the law of
-//! cosines.
+//! Facts: on one spoke the wheel is an inverted pendulum, and it loses speed when the next spoke lands. The square of
+//! the angular rate changes from turn to turn by an affine map. There is therefore one limit cycle, and every motion
+//! that does not stop converges to it.
+//! Source: W. Clark, thesis, section 4.3 and Table 4.1. The angles of the triangles between feet and hub follow from
+//! the law of cosines.
 
 dalembert::model_file!("src/rimless_wheel_five.dal");

@@ -1,4 +1,4 @@
-//! Trait of a model whose type is erased.
+//! Object-safe traits of a model with an erased type.
 
 use dalembert::describe::{Description, Instance, Report};
 use dalembert::law::Law;
@@ -77,10 +77,10 @@ pub struct Start {
     pub until: Option<f64>,
 }
 
-/// Values of a state for tables and pictures; NaN if a quantity does not exist.
+/// Values of a state for tables and plots; NaN if a quantity does not exist.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// The name of the mode, of a model with modes.
+    /// The name of the mode; `None` for a model without modes.
     pub mode: Option<&'static str>,
     /// Positions, one per coordinate.
     pub q: Vec<f64>,
@@ -90,7 +90,7 @@ pub struct Point {
     pub p: Vec<f64>,
     /// Kinetic plus potential energy.
     pub energy: f64,
-    /// The declared outputs, in their order. Integrals are those from the start of the run.
+    /// The declared outputs, in order. Integrals are taken from the start of the run.
     pub outputs: Vec<f64>,
     /// The point that the declared view shows.
     pub view: Option<[f64; 2]>,
@@ -114,28 +114,28 @@ impl Point {
 
 /// A model with values for its parameters. States are those of its global form, positions and momenta.
 pub trait AnyModel: Runs {
-    /// The way in which the model's functions are called.
+    /// Kind of code behind the functions of the model.
     fn code(&self) -> Code;
     /// Names, shapes and documentation of the declared quantities.
     fn description(&self) -> &Description;
-    /// The names of the inputs, whose values are the parameters after those of the description.
+    /// The names of the inputs. Their values are parameters that follow those of the description.
     fn inputs(&self) -> &[&'static str];
-    /// The value of a parameter; inputs come after those of the description.
+    /// The value of a parameter. Inputs follow the parameters of the description.
     fn parameter(&self, index: usize) -> f64;
     /// Sets a parameter. Its value is checked when a state is made.
     fn set_parameter(&mut self, index: usize, value: f64);
-    /// Sets the mode, by number, of states that are made later.
+    /// Sets the mode, by number, of states that are created after this call.
     fn set_mode(&mut self, mode: usize);
     /// Checks the parameters against their declaration.
     ///
     /// # Errors
-    /// [`ParameterError`] of the first parameter with a value that the declaration rules out.
+    /// [`ParameterError`] for the first parameter whose value violates the declaration.
     fn check_parameters(&self) -> Result<(), ParameterError>;
     /// The declared initial condition.
     fn initial(&self) -> Start;
-    /// Completes positions: constraints that are equations of positions determine those that are not `placed`.
+    /// Completes positions: constraints on positions determine the positions that are not `placed`.
     fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError>;
-    /// Completes velocities: the constraints determine those that are not `named`.
+    /// Completes velocities: the constraints determine the velocities that are not `named`.
     fn complete_velocity(
         &self,
         q: &[f64],
@@ -152,9 +152,10 @@ pub trait AnyModel: Runs {
     /// # Errors
     /// [`StateError`] under the same conditions as for the start of a run.
     fn point(&self, origin: &Origin) -> Result<Point, StateError>;
-    /// The declared outputs at a time, positions and velocities, NaN for integrals along a run; `None` where they do not exist.
+    /// The declared outputs at a time, positions and velocities; NaN for integrals along a run. `None` if the outputs
+    /// do not exist there.
     fn outputs(&self, t: f64, q: &[f64], qdot: &[f64]) -> Option<Vec<f64>>;
-    /// The declared region's function, positive where motion is allowed; `None` without a region.
+    /// The function of the declared region, positive where motion is allowed; `None` if no region is declared.
     fn region(&self, t: f64, q: &[f64]) -> Option<f64>;
     /// Reports every derived quantity at a state of the global form.
     ///
@@ -181,7 +182,8 @@ pub trait Runs {
         settings: &Settings,
         watch: &mut dyn Watch,
     ) -> Result<Ending, Refusal>;
-    /// Makes a run with inputs that are functions; see [`steer`](crate::steer). `None` for a model without a form, too.
+    /// Makes a run with inputs that are functions of time and state. `None` for a model without a form, and in the
+    /// cases of [`steer`](crate::steer).
     ///
     /// # Errors
     /// [`Refusal`] if the run does not start.
@@ -192,15 +194,15 @@ pub trait Runs {
         control: &Control<'_>,
         watch: &mut dyn Watch,
     ) -> Option<Result<Ending, Refusal>>;
-    /// Makes several runs as [`Runs::simulate`] does, at once and with Taylor series; `looks_inside` is true if watches
-    /// evaluate states inside steps.
+    /// Makes several runs at once in SIMD lanes, with Taylor series. Otherwise the same as [`Runs::simulate`] for each
+    /// run. `looks_inside` is true if watches evaluate states inside steps.
     fn simulate_abreast(
         &self,
         runs: Vec<Together<'_>>,
         settings: &Settings,
         looks_inside: bool,
     ) -> Vec<Result<Ending, Refusal>>;
-    /// Measures the cost of accuracy from this state on; calls `tell` before each measurement.
+    /// Measures error and cost of integrators in runs from this state. Calls `tell` before each measurement.
     fn study(
         &self,
         origin: &Origin,
@@ -208,22 +210,24 @@ pub trait Runs {
         plan: &Plan,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Study, Refusal>;
-    /// Measures the error of the run with this ending.
+    /// Measures the error of the run that ended with `ending`.
     fn verify(
         &self,
         origin: &Origin,
         settings: &Settings,
         ending: &Ending,
     ) -> Result<Verified, Refusal>;
-    /// Finds a periodic orbit near the first arrival from this state; `None` for a scene without variations.
+    /// Finds a periodic orbit near the first arrival at the section from this state; `None` for a scene without
+    /// variations.
     fn orbit(
         &self,
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
-    /// Follows the periodic orbit near the first arrival from this state over a parameter, and reports the points of its
-    /// branch as they are found; `None` for a scene without variations. If the model's value lies outside of the range,
-    /// the orbit is followed to the nearest end of the range first; a branch without points has not come there.
+    /// Continues the periodic orbit near the first arrival from this state in a parameter, and reports the points of
+    /// the branch as they are found; `None` for a scene without variations. If the model's value is outside the range,
+    /// the orbit is first continued to the nearest end of the range. If it does not reach the range, the branch has no
+    /// points.
     fn branch(
         &self,
         origin: &Origin,
@@ -238,18 +242,18 @@ pub trait Runs {
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<[Point; 2], OrbitError>>, Refusal>;
-    /// The largest Lyapunov exponent per return, over the returns of the search from the first arrival after this state;
-    /// `None` for a scene without variations.
+    /// The largest Lyapunov exponent per return. It is measured over the returns of the search, from the first arrival
+    /// after this state. `None` for a scene without variations.
     fn exponent(
         &self,
         origin: &Origin,
         search: &Search,
     ) -> Result<Option<Result<f64, OrbitError>>, Refusal>;
-    /// Searches all motions between two configurations; `None` for a scene without variations. Calls `tell` with the
-    /// progress.
+    /// Searches for all motions between two configurations; `None` for a scene without variations. Calls `tell` with
+    /// the progress.
     ///
     /// # Errors
-    /// [`Refusal`] for a start that the system refuses. The inner error explains why nothing can be sought.
+    /// [`Refusal`] for a start that the system refuses. The inner error explains why the search is not possible.
     fn connect(
         &self,
         boundary: &Boundary,
@@ -264,20 +268,21 @@ pub trait Runs {
         origin: &Origin,
         place: &Place,
     ) -> Result<Option<Result<Linearisation, Unlinear>>, Refusal>;
-    /// Searches all extremals of a model of extremals; `None` for a scene without variations. Calls `tell` with the progress.
+    /// Searches for all extremals of a model of extremals; `None` for a scene without variations. Calls `tell` with the
+    /// progress.
     ///
     /// # Errors
-    /// [`Refusal`] for a start that the system refuses. The inner error explains why nothing can be sought.
+    /// [`Refusal`] for a start that the system refuses. The inner error explains why the search is not possible.
     fn control(
         &self,
         task: &Task,
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal>;
-    /// Makes motions over a step from these states, with each of the inputs, of a model with held inputs; `None` for a scene
-    /// without variations. A motion is `None` if it does not get to the end of the step.
+    /// Computes the motion over one step from each of these states with each of the inputs, for a model with held
+    /// inputs; `None` for a scene without variations. A motion is `None` if it does not reach the end of the step.
     ///
     /// # Errors
-    /// [`Refusal`] for parameters that the declaration rules out.
+    /// [`Refusal`] for parameters that violate the declaration.
     fn legs(
         &self,
         leg: &Leg<'_>,
@@ -286,7 +291,7 @@ pub trait Runs {
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors
-    /// [`Refusal`] if no motion of the model can be certified. [`Certified::lost`] explains an early end of
+    /// [`Refusal`] if no motion of the model can be certified. [`Certified::lost`] explains an early end of the
     /// certification.
     fn certify(
         &self,
@@ -306,7 +311,7 @@ pub struct Together<'w> {
     pub watch: &'w mut dyn Watch,
 }
 
-/// The data of a contact as `inspect` reports them.
+/// The data of a contact, as reported by `inspect`.
 #[derive(Debug, Clone)]
 pub struct Contacted {
     /// `dh(qdot) + d_t h` before the impact.
@@ -335,7 +340,7 @@ pub enum Code {
 }
 
 impl Code {
-    /// The name of the way, as printed after a time.
+    /// The name that is printed after a time.
     pub fn name(self) -> &'static str {
         match self {
             Self::Inlined => "inlined",

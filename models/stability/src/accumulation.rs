@@ -1,4 +1,4 @@
-//! Section B, second part: accumulations that are elastic, faster than geometric or algebraic, and sliding.
+//! Section B, second part: accumulations of impacts that are elastic, super-elastic, algebraic, or end in a blow-up.
 
 use core::ops::ControlFlow;
 
@@ -12,7 +12,7 @@ use super::course::{Course, U, location};
 use super::text::{Model, Text, shipped};
 use super::zeno::accumulates;
 
-/// A point between a wall at rest and a piston that approaches it.
+/// A point mass between a fixed wall and a piston that approaches the wall.
 pub static PISTON: Text = Text::new(
     "Piston {
         coordinates { x; }
@@ -25,8 +25,7 @@ pub static PISTON: Text = Text::new(
 /// Index of the piston's surface.
 const STROKE: usize = 1;
 
-/// A point thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`; the treads are horizontal at each
-/// impact.
+/// A point mass that is thrown over treads along the curve `y = a^2 x (sqrt(2) v0 - a^2 x)`. Each tread is horizontal.
 static TREADS: Text = Text::new(
     "Treads {
         coordinates { x; y; }
@@ -105,7 +104,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Elastic treads along `y = a^2 x (sqrt(2) - a^2 x)`, met at horizontal speed 1 and slope `v0 = 1`.
+/// Elastic treads along `y = a^2 x (sqrt(2) - a^2 x)`, with horizontal speed 1 and initial vertical speed `v0 = 1`.
 fn treads(setting: Setting, report: &mut Report) {
     for a in [0.5, 0.7, 0.8, 0.84] {
         let k = 2.0_f64.sqrt() * a * a;
@@ -116,7 +115,7 @@ fn treads(setting: Setting, report: &mut Report) {
         accumulates(report, &format!("a = {a}"), &end, 1.0 / k, bound);
         let late = |(n, hit): (usize, &super::course::Hit)| {
             let speed = r.powi(n as i32 + 1);
-            // With gravity 1, an error of the time is an equal error of the speed; errors add up over flights.
+            // With gravity 1, an error of the time causes an equal error of the speed. Errors add up over flights.
             let bound = location(hit.t, end.eta(2.0), (1.0 + k) * speed, 1.0) * (n + 1) as f64;
             (hit.after[1] - speed).abs() / bound
         };
@@ -217,7 +216,7 @@ fn escape(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Counts impacts on the piston down from a number, and keeps the position of the last one.
+/// Observer that counts impacts on the piston down to 0, stores the position of the last one, and then ends the run.
 struct Strokes<'a> {
     system: &'a Model,
     left: u64,

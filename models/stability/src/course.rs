@@ -1,4 +1,4 @@
-//! Runs of a case: a system, a start and an end, under a given setting.
+//! Runs of a case. A run has a system, a start, an end and a setting.
 
 use core::mem;
 use core::ops::ControlFlow;
@@ -89,10 +89,11 @@ pub struct End {
 }
 
 impl<'a, M: Driven> Course<'a, M> {
-    /// A run from these positions and velocities at time 0 to `until`; velocities off the constraints are projected.
+    /// A run from these positions and velocities at time 0 to `until`. Positions and velocities that violate the
+    /// constraints are projected.
     ///
     /// # Panics
-    /// If the system refuses the start; cases about refused starts do not use this function.
+    /// If the system refuses the start. Cases of refused starts use other functions.
     pub fn new(system: &'a M, q: &[f64], qdot: &[f64], until: f64) -> Self {
         let state = system
             .state_projected(0.0, &vector(q), &vector(qdot))
@@ -137,13 +138,13 @@ impl<'a, M: Driven> Course<'a, M> {
         self
     }
 
-    /// Sets the length of steps; for an adaptive integrator the largest length.
+    /// Sets the step size; for an adaptive integrator, the largest step size.
     pub fn step(mut self, length: f64) -> Self {
         self.step = Some(length);
         self
     }
 
-    /// Sets the order of power series, instead of the order of least work.
+    /// Sets the order of power series. By default the integrator uses the order with the least work.
     pub fn order(mut self, order: usize) -> Self {
         self.order = Some(order);
         self
@@ -201,7 +202,7 @@ impl<'a, M: Driven> Course<'a, M> {
         self.effects(M::Effects::default())
     }
 
-    /// Makes the run; the end has all impacts.
+    /// Makes the run. The result lists all impacts and all holds.
     pub fn run(self, setting: Setting) -> End {
         let mut log = Log {
             system: self.system,
@@ -213,7 +214,7 @@ impl<'a, M: Driven> Course<'a, M> {
         end
     }
 
-    /// Makes the run with an observer; the end has no impacts.
+    /// Makes the run with an observer. The result lists no impacts and no holds.
     pub fn follow(self, setting: Setting, observer: &mut dyn Observer<M>) -> End {
         let system = self.system;
         let run = system.drive(&mut self.under(setting), observer);
@@ -237,7 +238,7 @@ impl<'a, M: Driven> Course<'a, M> {
         self.with_effects(integrator, observer).0
     }
 
-    /// Makes the run as [`Course::observed`] does, and returns the effects after the run as well.
+    /// Same as [`Course::observed`], but also returns the effects after the run.
     pub fn with_effects(
         self,
         integrator: Integrator,
@@ -305,9 +306,9 @@ pub fn state<M: System>(system: &M, q: &[f64], qdot: &[f64]) -> M::State {
     state.expect("an admissible start")
 }
 
-/// Systems whose runs are compiled in this crate, so that a case or a test only calls them.
+/// Systems whose runs are compiled once, in this crate, and called by cases and tests.
 pub trait Driven: Scene + TaylorField {
-    /// Makes a run with an observer; `drive` has the effects after the run.
+    /// Makes a run with an observer. Afterwards `drive` contains the effects in their final state.
     fn drive(&self, drive: &mut Drive<Self>, observer: &mut dyn Observer<Self>)
     -> Run<Self::State>;
 }
@@ -319,7 +320,7 @@ pub struct Drive<M: Scene> {
     pub setting: Setting,
     /// The tolerance.
     pub tolerance: Tolerance,
-    /// The length of steps; for an adaptive integrator the largest length.
+    /// The step size; for an adaptive integrator, the largest step size.
     pub step: Option<f64>,
     /// The order of power series.
     pub order: Option<usize>,
@@ -362,7 +363,7 @@ macro_rules! run {
 impl<M: Scene + TaylorField + Lagrangian> Drive<M> {
     /// Runs with any integrator.
     fn every(&mut self, system: &M, observer: &mut dyn Observer<M>) -> Run<M::State> {
-        // An infinite length sets no limit.
+        // Integrators with a fixed step ignore an infinite step size and use their default.
         let (tolerance, step) = (self.tolerance, self.step.unwrap_or(f64::INFINITY));
         macro_rules! fixed {
             ($stepper:ident) => {
@@ -429,8 +430,8 @@ impl<M: Scene + TaylorField> Drive<M> {
     }
 }
 
-/// True for an integrator of the discrete Lagrange-d'Alembert principle. It does not apply to first-order systems and
-/// to constraints that are not linear.
+/// True for an integrator of the discrete Lagrange-d'Alembert principle. Such an integrator does not apply to
+/// first-order systems or to constraints that are not linear in the velocities.
 pub const fn is_discrete(integrator: Integrator) -> bool {
     matches!(integrator, Integrator::Dla2 | Integrator::Dla4)
 }
@@ -440,7 +441,7 @@ pub fn vector<V: StateVector>(values: &[f64]) -> V {
     V::of(values)
 }
 
-/// Keeps every impact.
+/// Observer that records every impact and every hold.
 struct Log<'a, M> {
     system: &'a M,
     hits: Vec<Hit>,
@@ -477,7 +478,7 @@ impl<M: Scene + TaylorField> Observer<M> for Log<'_, M> {
     }
 }
 
-/// An observer that reads the dense output in every step, if the setting asks for it, before it forwards the step.
+/// Observer that evaluates the dense output in every step, if the setting requests it, and then forwards the step.
 struct Reader<'a, M: Scene> {
     dense: bool,
     observer: &'a mut dyn Observer<M>,
@@ -509,8 +510,8 @@ impl End {
         self.hits.iter().map(|hit| hit.t).collect()
     }
 
-    /// Bound on the rounding errors of a gap: `32 u` times `terms`, the sum of the absolute values of its terms, and
-    /// `u` times `terms` per step, which rounding of the state may add.
+    /// Bound on the rounding errors of a gap: `32 u` times `terms`, where `terms` is the sum of the absolute values of
+    /// the terms of the gap. Each step adds `u` times `terms` for rounding of the state.
     pub fn eta(&self, terms: f64) -> f64 {
         U * terms * (32.0 + self.counters.accepted as f64)
     }

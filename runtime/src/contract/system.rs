@@ -1,4 +1,4 @@
-//! Mechanical systems, and the principle that gives their motions.
+//! Mechanical systems, and the terms of the principle that determines their motion.
 
 use super::{Along, Chart, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
@@ -87,9 +87,9 @@ pub trait System: VectorField {
     /// A [`Fault`], for states that do not hold momenta themselves.
     fn momentum(&self, t: f64, state: &Self::State) -> Result<Self::Vector, Fault>;
 
-    /// The state with these positions and velocities, without checks. A state reduced to D holds only velocities that
-    /// satisfy the constraints: there the quasi-velocities of `qdot` are taken, and its deviation from the
-    /// constraints is lost.
+    /// The state with these positions and velocities, without checks. A state reduced to D only represents velocities
+    /// that satisfy the constraints. It takes the quasi-velocities of `qdot` and loses the deviation of `qdot` from the
+    /// constraints.
     ///
     /// # Errors
     /// [`Fault`] where the state cannot be formed.
@@ -133,7 +133,7 @@ pub trait System: VectorField {
     /// The first [`ParameterError`], in order of declaration.
     fn check_parameters(&self) -> Result<(), ParameterError>;
 
-    /// Number of components of a state, the positions, before its momenta or quasi-velocities.
+    /// Number of position components of a state: the index of its first momentum or quasi-velocity.
     fn motion_start(&self, state: &Self::State) -> usize {
         let _ = state;
         self.coordinate_count()
@@ -145,35 +145,37 @@ pub trait System: VectorField {
         0
     }
 
-    /// The first coordinate outside the open interval of its chart. None by default.
+    /// The first coordinate outside the open interval of its chart. `None` by default.
     fn outside_chart(&self, state: &Self::State) -> Option<usize> {
         let _ = state;
         None
     }
 
-    /// The interval of this number that the chart has at a state: one component of the state must stay in it. None by default, whatever
-    /// [`System::outside_chart`] says: a run looks at the ends of its steps then, and not inside them.
+    /// The interval with this number among those of the chart at a state: a component of the state and the bounds it
+    /// must keep. `None` by default, even if [`System::outside_chart`] is implemented. A run then checks the chart at
+    /// the ends of its steps, but not inside them.
     fn chart(&self, state: &Self::State, number: usize) -> Option<Chart> {
         let _ = (state, number);
         None
     }
 
-    /// True if the constraint forms may become dependent somewhere: not proved otherwise while building. A run watches such
-    /// systems in every step, and only them.
+    /// True if the constraint forms may become dependent somewhere, because the build has not proved them independent.
+    /// A run checks the rank in every step of such a system, and never for other systems.
     #[inline(always)]
     fn can_lose_rank(&self) -> bool {
         false
     }
 
-    /// True if the constraint forms are certainly independent all along a stretch of motion. False by default: nothing is known, and
-    /// [`System::rank_drop`] looks at places of the whole step.
+    /// True if the constraint forms are proved to be independent along a whole stretch of motion. False by default,
+    /// which means not known: [`System::rank_drop`] then samples the whole step.
     fn keeps_rank(&self, along: Along<'_>) -> bool {
         let _ = along;
         false
     }
 
-    /// The first place in `[0, reach]` along a piece of smooth motion at which the constraint forms become dependent;
-    /// `motion` gives time and state at a fraction of it. `None` where [`System::can_lose_rank`] is false.
+    /// The first position in `[0, reach]` along a piece of smooth motion at which the constraint forms become
+    /// dependent. `motion` gives time and state at a fraction of the piece. `None` if [`System::can_lose_rank`] is
+    /// false.
     fn rank_drop(
         &self,
         motion: impl Fn(f64) -> (f64, Self::State),
@@ -183,9 +185,8 @@ pub trait System: VectorField {
         None
     }
 
-    /// Refuses positions that violate an equation among the constraints, and velocities that violate the constraints,
-    /// by more than 1e-9 of the sum of the absolute values of its terms. Systems without constraints accept every
-    /// state.
+    /// Refuses positions and velocities that violate a constraint by more than 1e-9 of the sum of the absolute values
+    /// of its terms. Systems without constraints accept every state.
     ///
     /// # Errors
     /// [`StateError::OffPosition`] for an equation of positions, [`StateError::OffConstraint`] for a constraint.
@@ -207,8 +208,9 @@ pub trait System: VectorField {
         self.state_unchecked(t, q, qdot)
     }
 
-    /// Completes positions: those whose `placed` is not 1 are moved to satisfy the equations of positions among the
-    /// constraints. Without such equations, returns `q` unchanged. With every position placed, `q` is only checked.
+    /// Completes positions: moves the positions whose `placed` is not 1 so that all positions satisfy the constraints
+    /// on positions. Returns `q` unchanged if there are no such constraints. If every position is placed, only checks
+    /// `q`.
     ///
     /// # Errors
     /// [`StateError::OffPosition`] if no such positions were found.
@@ -222,8 +224,8 @@ pub trait System: VectorField {
         Ok(*q)
     }
 
-    /// Completes velocities: those whose `named` is not 1 are chosen so that all velocities satisfy the constraints.
-    /// Without constraints, returns `qdot` unchanged.
+    /// Completes velocities: chooses the velocities whose `named` is not 1 so that all velocities satisfy the
+    /// constraints. Without constraints, returns `qdot` unchanged.
     ///
     /// # Errors
     /// [`StateError::OffConstraint`] where the named velocities contradict the constraints; [`StateError::Fault`]
@@ -273,9 +275,9 @@ pub trait System: VectorField {
         Ok(self.state_nearest(t, &q, qdot)?)
     }
 
-    /// The state of this system that continues a state of `from`, the same system with other parameters. A state that
-    /// is passed on directly keeps its components instead: momenta in the global form, so that velocities jump with
-    /// the masses, and quasi-velocities on D.
+    /// The state of this system that continues a state of `from`, the same system with other parameters. `keep` selects
+    /// the quantity that stays the same. Without this conversion, a state keeps its components: momenta in the global
+    /// form, so that velocities jump with the masses, and quasi-velocities on D.
     ///
     /// # Errors
     /// The errors of [`System::state`]; [`Fault::FirstOrder`] for momenta of a first-order system.
@@ -334,7 +336,7 @@ pub(crate) fn carried<S: System + ?Sized>(
 /// A place at which constraint forms become dependent along a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankDrop {
-    /// The last place before it, as a fraction of the motion.
+    /// The last position before it, as a fraction of the motion.
     pub theta: f64,
     /// Index of the constraint that depends on the earlier ones there, or vanishes.
     pub constraint: usize,
@@ -371,7 +373,7 @@ pub trait Lagrangian: System {
     /// M numbers, one per constraint, in the order of declaration; none without constraints.
     type Reactions: StateVector;
 
-    /// M, the number of constraints; 0 without constraints. The default is correct for reactions of fixed number.
+    /// M, the number of constraints; 0 without constraints. The default is correct for reactions of fixed size.
     #[inline(always)]
     fn reaction_count(&self) -> usize {
         Self::Reactions::CAPACITY
@@ -390,7 +392,8 @@ pub trait Lagrangian: System {
     fn reaction_force(&self, t: f64, q: &Self::Vector, reactions: &Self::Reactions)
     -> Self::Vector;
 
-    /// The velocity at the momenta `p + mu_a eta^a`, with the `mu` for which it satisfies the constraints; and `mu`.
+    /// The velocity of the momenta `p + mu_a eta^a`, with `mu` such that the velocity satisfies the constraints. Also
+    /// returns `mu`.
     ///
     /// # Errors
     /// A [`Fault`] where the metric or the constraints are singular.

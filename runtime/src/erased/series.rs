@@ -1,4 +1,4 @@
-//! Power series behind pointers.
+//! Power series whose functions are called through pointers.
 
 use dalembert_numbers::Held;
 
@@ -17,10 +17,10 @@ use crate::numbers::{Numbers, Row};
 /// remaining values.
 pub type Begin<L> = dyn Fn(&[L], L, &[L], &mut [L]) -> Result<(), Fault> + Send + Sync;
 
-/// Receives the coefficients of an order: those of the state, those of the gaps.
+/// Receives an order and its coefficients: those of the state, then those of the gaps.
 pub type Expanded<'a, L> = &'a mut dyn FnMut(usize, &[L], &[L]);
 
-/// Computes a series from parameters, a state and the initial values there, in a unit of time, up to an order.
+/// Computes a series up to an order, in a unit of time, from parameters, a state and the initial values at that state.
 pub type Advance<L> = dyn Fn([&[L]; 3], (L, usize), Expanded<'_, L>) + Send + Sync;
 
 /// Power series over one kind of number.
@@ -78,7 +78,7 @@ fn advance<L: Numbers, const C: usize>(
     gaps: &mut [Bounded<L, C>; LENGTH],
 ) {
     let Some(series) = form.series::<L>() else {
-        // Such a series is never begun.
+        // `begin` has failed for such a form, so this is never reached.
         return;
     };
     let state = coefficients[0];
@@ -94,8 +94,8 @@ impl<const C: usize> TaylorField for Erased<'_, C> {
     type Row<L: Numbers> = Bounded<L, C>;
     type Gaps<L: Numbers> = Bounded<L, C>;
     type Firsts<L: Numbers> = Wide<L, C, FIRSTS>;
-    // NOTE: the intermediate values of a series differ from model to model; they lie on the stack of the function
-    // that computes it.
+    // NOTE: the number of intermediate values depends on the model. They are on the stack of the function that computes
+    // the series.
     type Jets<L: Numbers> = ();
 
     fn work(&self) -> Option<Work> {

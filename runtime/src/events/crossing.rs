@@ -1,11 +1,13 @@
-//! Signs of a polynomial from its Bernstein coefficients: they bound it (convex hull), and their sign changes bound
-//! the number of its roots (Descartes). A coefficient smaller than the error of the polynomial has no certain sign.
+//! Signs of a polynomial from its Bernstein coefficients. The coefficients bound the polynomial (convex hull), and the
+//! number of their sign changes bounds the number of roots (Descartes). A coefficient smaller than the error of the
+//! polynomial has no certain sign.
 
 /// Number of coefficients.
 pub(crate) const COUNT: usize = 9;
 
-/// Conversion of powers to Bernstein coefficients: `C(j, k) / C(8, k)` of power `k` in coefficient `j`. Row `k`
-/// belongs to a power and begins with coefficient 1; coefficient 0 is power 0.
+/// Conversion of power coefficients to Bernstein coefficients. Row `k`, column `j - 1` is `C(j, k) / C(8, k)`: the
+/// weight of power coefficient `k` in Bernstein coefficient `j`. Bernstein coefficient 0 equals power coefficient 0 and
+/// has no column.
 pub(crate) const FROM_POWERS: [[f64; COUNT - 1]; COUNT] = {
     let mut table = [[0.0; COUNT - 1]; COUNT];
     let mut j = 1;
@@ -21,7 +23,7 @@ pub(crate) const FROM_POWERS: [[f64; COUNT - 1]; COUNT] = {
     table
 };
 
-/// The signs of a function on a stretch.
+/// Signs of a function on an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Signs {
     /// Positive throughout.
@@ -36,9 +38,10 @@ pub(crate) enum Signs {
     Unclear,
 }
 
-/// Signs from Bernstein coefficients, at most 32 of them. Coefficients within `doubt` have no sign.
+/// Signs from at most 32 Bernstein coefficients. A coefficient with an absolute value of at most `doubt` is uncertain.
 ///
-/// One uncertain coefficient at a change of sign hides no root; any other may hide two.
+/// A single uncertain coefficient between a positive and a negative one does not hide a root. Any other uncertain
+/// coefficient may hide two roots.
 #[inline(always)]
 pub(crate) fn read(coefficients: &[f64], doubt: f64) -> Signs {
     // One bit per coefficient, the first one lowest.

@@ -1,4 +1,4 @@
-//! Surfaces that touch at an impact: their gaps are 0 there, and they were not approached before it.
+//! Surfaces in contact at an impact: their gaps are 0, and their gap rates were not negative before the impact.
 
 use super::glance::finite;
 use super::hits::Hits;
@@ -9,7 +9,7 @@ use crate::outcome::Outcome;
 use crate::state::StateVector;
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Adds the touching surfaces that are approached at these rates, after an impulse.
+    /// Adds the surfaces in contact that an impulse leaves with negative gap rates, and resets their grazing data.
     pub(super) fn touch(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -23,7 +23,7 @@ impl<Sys: Impacting> Watch<Sys> {
         self.add_touching(hits, rates, now)?;
         for surface in 0..rates.count() {
             if hits.is_at_hand(surface) != before.is_at_hand(surface) {
-                // The data of the last hit on it belong to another place.
+                // These data belong to the last hit on the surface, at another state.
                 self.grazes[surface] = Graze::None;
                 self.bends.as_mut_slice()[surface] = 0.0;
             }
@@ -31,7 +31,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Same as [`Watch::touch`], without recording the surfaces as hit.
+    /// Same as [`Watch::touch`], but leaves the grazing data of the surfaces unchanged.
     pub(super) fn add_touching(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -49,8 +49,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// True if the gap of a surface is 0 within rounding, or so small that it is closed at this rate in no measurable
-    /// time.
+    /// True if the surface is active and its gap is 0 within rounding. False if the gap needs more than the fraction
+    /// [`BESIDE`] of the last step to close at this rate.
     fn touches(
         &mut self,
         surface: usize,

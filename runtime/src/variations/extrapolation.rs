@@ -1,4 +1,4 @@
-//! Variations along a field without power series, by extrapolation of the midpoint rule.
+//! Variations along the motion of a field that has no power series, by extrapolation of the midpoint rule.
 //!
 //! Reference: E. Hairer, S. Norsett, G. Wanner, *Solving Ordinary Differential Equations I* (1993), section II.9.
 
@@ -10,24 +10,24 @@ use crate::integrate::controller::least_step;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// Number of midpoint rules, with 2, 4, 6, .. parts, that are combined.
+/// Number of combined midpoint rules. They divide a step into 2, 4, 6, .. parts.
 const RULES: usize = 8;
 
 /// Index of the first rule that is tested for convergence: earlier rules may agree by accident.
 const LEAST: usize = 3;
 
-/// Allowed difference of the last two combinations, in units of the change: well above the rounding errors of the
-/// sums.
+/// Allowed difference of the last two extrapolated values, relative to the size of the state or of the direction. It is
+/// well above the rounding errors of the sums.
 const LAST: f64 = 512.0 * f64::EPSILON;
 
-/// Allowed distance of the end of a stretch from the state of the run, relative to its largest component. The local
-/// error of an integrator is smaller at any useful tolerance; the effect of a force that is not included here is
-/// larger.
+/// Allowed distance between the computed end state and the state of the run, relative to its largest component. The
+/// local error of an integrator is smaller at any useful tolerance. The effect of a force that this field does not
+/// include is larger.
 const KNOWN: f64 = 1e-2;
 
 impl<Sys: Variational> Flow<Sys> {
-    /// Propagates some directions along held motion, from the state at the first of two times to the second, where
-    /// the run's state is `end`.
+    /// Propagates some directions along held motion, from the state `start` at the first of two times to the second
+    /// time. `end` is the state of the run at the second time.
     pub(super) fn follow_held(
         &mut self,
         system: &Sys,
@@ -60,7 +60,7 @@ impl<Sys: Variational> Flow<Sys> {
             .iter()
             .fold(0.0, |size: f64, component| size.max(component.abs()));
         let mut pairs = state.as_slice().iter().zip(end.as_slice());
-        // Another force holds the motion as well.
+        // A difference means that another force acts on the motion.
         if !pairs.all(|(component, end)| (component.value - end).abs() <= KNOWN * size) {
             return Err(holder.undefined(until));
         }
@@ -88,7 +88,7 @@ impl<Sys: Variational> Flow<Sys> {
                 let rate = self.rate(system, parameters, holder, t + part as f64 * h, &there)?;
                 (before, now) = (now, sum(&before, &rate, 2.0 * h));
             }
-            // Aitken-Neville scheme, in the square of the length of a part.
+            // Aitken-Neville scheme in the square of the length of a part.
             for (k, entry) in combined[..rule].iter_mut().enumerate() {
                 let ratio = parts as f64 / (2 * (rule - k)) as f64;
                 let next = sum(&now, &sum(&now, entry, -1.0), 1.0 / (ratio * ratio - 1.0));

@@ -1,4 +1,4 @@
-//! The saltation matrix of a transition, applied to variations at fixed times.
+//! The saltation matrix of a transition, applied to variations at a fixed time.
 
 use super::along::Neighbours;
 use super::flow::{Flow, dual_parameters, dual_state, take_slopes};
@@ -15,19 +15,18 @@ use crate::state::StateVector;
 /// component before and after. Corrections of rounding errors are far smaller; any other cause is far larger.
 const LAWFUL: f64 = 1e-6;
 
-/// Maximum number of transitions at one moment that are processed: more are two modes that pass the motion back and
-/// forth.
+/// Maximum number of transitions at one moment. A longer sequence means that two modes pass the motion back and forth.
 const SEQUENCE: usize = 8;
 
-/// Quantities of an arrival at a surface.
+/// Rates at an arrival at a surface.
 pub(crate) struct Arrival<Sys: Variational> {
-    /// The rate of the state before.
+    /// The rate of the state before the transition.
     rate: Sys::State,
     /// The rate of the gap.
     pub(crate) gap_rate: f64,
 }
 
-/// Propagates all directions across transitions at one moment, for the holders of the motion before and after.
+/// Propagates all directions across transitions at one moment. `holders` hold the motion before and after them.
 pub(super) fn cross<Sys: Variational>(
     system: &Sys,
     sequence: &Sequence<Sys::State>,
@@ -125,7 +124,7 @@ pub(super) fn arrive<Sys: Variational>(
     Ok(())
 }
 
-/// A generic time, at which rates with respect to time do not vanish by accident.
+/// A generic time. Derivatives with respect to time are unlikely to vanish there by coincidence.
 const SOME_TIME: f64 = 0.739_085_133_215_160_7;
 
 /// True if the motion, the gaps or the transition of an event depend on time explicitly.
@@ -153,7 +152,10 @@ fn passing(t: f64) -> Dual {
     Dual::new(t, [1.0, 0.0, 0.0, 0.0])
 }
 
-/// Quantities of an arrival by free motion. Refuses an arrival without derivative.
+/// Rates at an arrival by free motion.
+///
+/// # Errors
+/// If the arrival has no derivative: a grazing impact or a corner.
 pub(crate) fn arrival<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -163,7 +165,7 @@ pub(crate) fn arrival<Sys: Variational>(
     arrival_at(system, event, rate)
 }
 
-/// Quantities of an arrival by motion at this rate.
+/// Rates at an arrival by a motion with this rate of the state.
 fn arrival_at<Sys: Variational>(
     system: &Sys,
     event: &Event<Sys::State>,
@@ -268,8 +270,8 @@ impl Strike {
         self.chosen.unwrap_or(declared)
     }
 
-    /// The state after the law; `None` if it is not available over this kind of number, or not certain for all the
-    /// values of it.
+    /// The state after the law. `None` if the map of the law is not available for this number type, or if the sign of
+    /// the gap rate after the instantaneous constraints is not the same for all values of the numbers.
     ///
     /// # Errors
     /// A [`Fault`] of the impact or of the reset.
@@ -295,7 +297,7 @@ impl Strike {
         if focused.is_some() {
             match collision.as_slice()[0].is_below_zero() {
                 Some(true) => {}
-                // The instantaneous constraints alone have reversed the motion.
+                // The impulse of the instantaneous constraints alone has reversed the approach.
                 Some(false) => return Ok(Some(after)),
                 None => return Ok(None),
             }

@@ -2,8 +2,8 @@
 
 use plotters::style::RGBColor;
 
-/// Colours of the map viridis (S. van der Walt and N. Smith, public domain) at equal distances: colour-blind people can
-/// distinguish them, and their order is kept in grey.
+/// Equally spaced colours of the map viridis (S. van der Walt and N. Smith, public domain). Colour-blind people can
+/// distinguish them, and their order is visible in greyscale.
 const COLOURS: [RGBColor; 9] = [
     RGBColor(68, 1, 84),
     RGBColor(71, 45, 123),

@@ -1,4 +1,4 @@
-//! Extended numbers from decimal text and as decimal text.
+//! Conversion of extended numbers from and to decimal text.
 
 use core::f64::consts;
 use core::fmt;
@@ -8,18 +8,19 @@ use super::functions::Wide;
 use super::number::Extended;
 use crate::math;
 
-/// Decimal digits of a number with this count of parts: 16 for each, less those that sums lose.
+/// Decimal digits of a number with this many parts: 15.9 per part, minus one.
 const fn digits(parts: usize) -> usize {
     (159 * parts - 10) / 10
 }
 
-/// Digits that a number in 6 parts holds exactly in every case.
+/// Number of decimal digits that a number with 6 parts always represents exactly.
 const EXACT: u32 = 95;
 
-/// Largest exponent of a text, up to sign.
+/// Largest absolute value of an exponent in a text.
 const EXPONENTS: i32 = 400;
 
-/// A text that is not a decimal number such as `-12`, `0.1` or `1.25e-7`, or has an exponent beyond 400.
+/// Error for a text that is not a decimal number such as `-12`, `0.1` or `1.25e-7`, or whose exponent exceeds 400 in
+/// absolute value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotDecimal;
 
@@ -35,7 +36,7 @@ impl core::error::Error for NotDecimal {}
 fn shifted(mut number: Wide, exponent: i32) -> Wide {
     let ten = Wide::plain(10.0);
     let mut left = exponent.unsigned_abs();
-    // In factors that are in range where the number is.
+    // Several factors, each of them within the range of doubles.
     while left > 0 {
         let mut power = Wide::plain(1.0);
         let now = left.min(200);
@@ -54,7 +55,7 @@ fn shifted(mut number: Wide, exponent: i32) -> Wide {
 impl<const PARTS: usize> FromStr for Extended<PARTS> {
     type Err = NotDecimal;
 
-    /// Reads a decimal number, with every digit that the parts can hold.
+    /// Reads a decimal number to the full precision of the parts.
     fn from_str(text: &str) -> Result<Self, NotDecimal> {
         let (mantissa, exponent) = match text.split_once(['e', 'E']) {
             Some((mantissa, exponent)) => (mantissa, exponent.parse().map_err(|_| NotDecimal)?),
@@ -87,7 +88,8 @@ impl<const PARTS: usize> FromStr for Extended<PARTS> {
 }
 
 impl<const PARTS: usize> fmt::Display for Extended<PARTS> {
-    /// In scientific form: with as many digits behind the point as asked for (`{:.20}`), or about as many as there are.
+    /// Writes scientific notation. The number of digits after the decimal point is the precision (`{:.20}`), by default
+    /// about the number of significant digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let leading = self.nearest();
         if leading == 0.0 || !leading.is_finite() {
@@ -103,7 +105,7 @@ impl<const PARTS: usize> fmt::Display for Extended<PARTS> {
             .min(EXACT as usize - 5);
         let [one, ten] = [1.0, 10.0].map(Wide::plain);
         let mut exponent = math::floor(math::ln(size.nearest()) * consts::LOG10_E) as i32;
-        // The estimate is off by one near powers of ten.
+        // The estimate may be wrong by one near powers of ten.
         let mut left = shifted(size, -exponent);
         if left >= ten || left < one {
             exponent += if left < one { -1 } else { 1 };

@@ -1,4 +1,4 @@
-//! Extremals in a few lines of text.
+//! Text summary of the extremals.
 
 use std::io::{self, Write};
 
@@ -38,7 +38,7 @@ pub(super) fn title(finished: &Finished<'_>) -> String {
     }
 }
 
-/// Both ends.
+/// Subtitle: the start and the end of the task.
 pub(super) fn subtitle(finished: &Finished<'_>) -> String {
     format!("from {} to {}", start(finished), end(finished))
 }
@@ -47,7 +47,7 @@ fn start(finished: &Finished<'_>) -> String {
     assignments(finished.states(), &finished.task.from)
 }
 
-/// The end.
+/// The end of the task: its given components and its time.
 pub(super) fn end(finished: &Finished<'_>) -> String {
     let task = &finished.task;
     let given = finished.states().zip(&task.to);
@@ -60,7 +60,7 @@ pub(super) fn end(finished: &Finished<'_>) -> String {
     format!("{state} at t = {}", task.time)
 }
 
-/// The numbers of extremals by their number of impacts.
+/// Number of extremals, in total and by number of impacts.
 pub(super) fn counted<'a>(extremals: impl Iterator<Item = &'a Extremal>) -> String {
     let mut counts: Vec<usize> = extremals.map(|it| it.kicks.len()).collect();
     counts.sort_unstable();
@@ -79,14 +79,14 @@ pub(super) fn counted<'a>(extremals: impl Iterator<Item = &'a Extremal>) -> Stri
     }
 }
 
-/// Reasons for which the search is not exhaustive.
+/// Reasons why the search is not exhaustive.
 fn doubt(finished: &Finished<'_>) -> String {
     let controlled = &finished.controlled;
     let doubts = ends::doubts(controlled.unresolved, controlled.given_up);
     format!("a scan samples costates, so extremals may be missed{doubts}")
 }
 
-/// The second-order test: its word, and what it says.
+/// Result of the second-order test: a keyword and a sentence.
 pub(super) fn verdict(extremal: &Extremal) -> (&'static str, String) {
     match extremal.second_order {
         SecondOrder::Minimum => (
@@ -123,7 +123,7 @@ fn write_extremal(
     writeln!(output, "    second    {}", verdict(extremal).1)
 }
 
-/// Values by name.
+/// Values with their names: `x = 1.0, y = 2.0`.
 fn assignments(names: impl Iterator<Item = &'static str>, values: &[f64]) -> String {
     let pairs = names.zip(values);
     let parts: Vec<String> = pairs

@@ -1,4 +1,4 @@
-//! Extremals over a varied quantity in a few lines and a table of least costs.
+//! Text summary of the extremals over a varied quantity, with a table of least costs.
 
 use std::io::{self, Write};
 
@@ -51,7 +51,7 @@ pub(super) fn write(output: &mut dyn Write, sweep: &Sweep<'_>) -> io::Result<()>
     Ok(())
 }
 
-/// The fixed components of the start, the end, and the range of what is varied.
+/// The fixed components of the start, the end, and the range of the varied quantity.
 pub(super) fn subtitle(sweep: &Sweep<'_>) -> String {
     let values = || sweep.members.iter().map(|member| member.value);
     let [least, most] = values().fold(
