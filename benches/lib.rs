@@ -1,6 +1,6 @@
-//! Items that the benchmarks share: the same mechanics written by hand, problems with known solutions, tables.
+//! Items shared by the benchmarks: the same mechanics written by hand, problems with known solutions, tables.
 //!
-//! Their use, their measurements and the limits of those: `benches/README.md`.
+//! `benches/README.md` describes their use, the measurements, and the limits of the measurements.
 
 #![forbid(unsafe_code)]
 

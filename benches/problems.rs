@@ -1,6 +1,6 @@
-//! Problems with known solutions: each is solved, and the error of the result is measured.
+//! Problems with known solutions. Each problem is solved, and the error of the result is measured.
 //!
-//! The definitions and where the solutions are from: `benches/README.md`.
+//! `benches/README.md` has the definitions and the sources of the solutions.
 
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them.
+    /// All integrators.
     pub const ALL: [Self; 8] = [
         Self::Dop853,
         Self::DormandPrince5,
@@ -48,7 +48,7 @@ impl Method {
         Self::Dla4,
     ];
 
-    /// The name the command line gives it.
+    /// The name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Dop853 => "dop853",
@@ -62,8 +62,8 @@ impl Method {
         }
     }
 
-    /// The power of ten of the smallest tolerance that is tried: below it, the steps that a method of fixed step takes from
-    /// it are too many to wait for.
+    /// The exponent of 10 of the smallest tolerance that is tried. At smaller tolerances, an integrator with a fixed
+    /// step takes too many steps.
     pub const fn finest(self) -> i32 {
         match self {
             Self::Dop853 | Self::DormandPrince5 | Self::Taylor => -13,
@@ -81,7 +81,7 @@ pub struct Manner {
     pub method: Method,
     /// The tolerance, relative and absolute.
     pub tolerance: Tolerance,
-    /// Number of repetitions; the time is that of one of them.
+    /// Number of repetitions; the reported time is their mean.
     pub times: u32,
 }
 
@@ -92,24 +92,24 @@ pub struct Solved {
     pub outcome: Outcome,
     /// Time of the end.
     pub t: f64,
-    /// Distance from the known solution; NaN if the run ended for another reason than it should have.
+    /// Distance from the known solution; NaN if the run did not end with the expected outcome.
     pub error: f64,
-    /// The work.
+    /// Counts of work.
     pub counters: Counters,
     /// The wall time of one run.
     pub time: Duration,
 }
 
-/// A problem: its name, and how it is solved.
+/// A problem: its name and its solver.
 #[derive(Clone, Copy)]
 pub struct Problem {
-    /// Snake case.
+    /// Name in snake case.
     pub name: &'static str,
-    /// Solves it.
+    /// Solves the problem.
     pub solve: fn(Manner) -> Solved,
 }
 
-/// All of them.
+/// All problems.
 pub const ALL: [Problem; 5] = [
     Problem {
         name: "disk_billiard",
@@ -136,7 +136,7 @@ pub const ALL: [Problem; 5] = [
 /// Impacts after which the billiards are compared.
 const IMPACTS: u64 = 20;
 
-/// Longer than any billiard takes to its last impact.
+/// End time of the billiards, later than their last impact.
 const LATE: f64 = 200.0;
 
 /// The disk on the elliptical table, up to impact 20.
@@ -162,7 +162,7 @@ fn disk_billiard(manner: Manner) -> Solved {
     })
 }
 
-/// The sleigh without table: it turns round once and slides away.
+/// The sleigh without a table: it turns around once and slides away.
 fn sleigh(manner: Manner) -> Solved {
     let sleigh = ChaplyginSleigh {
         a: 0.3,
@@ -201,7 +201,7 @@ fn sleigh_billiard(manner: Manner) -> Solved {
     })
 }
 
-/// The double pendulum from high up, for ten seconds.
+/// The double pendulum from rest with raised bobs, for ten seconds.
 fn double_pendulum(manner: Manner) -> Solved {
     let pendulum = DoublePendulum::default();
     let state = pendulum.state(0.0, &[2.0, 2.5].into(), &[0.0, 0.0].into());
@@ -221,7 +221,7 @@ fn double_pendulum(manner: Manner) -> Solved {
     })
 }
 
-/// The ball that loses a tenth of its speed at each impact, up to where the impacts accumulate.
+/// The ball that loses a tenth of its speed at each impact, up to the accumulation of its impacts.
 fn bouncing_ball(manner: Manner) -> Solved {
     let ball = BouncingBall { m: 1.0, g: 9.81 };
     let state = ball.state(0.0, &[1.0].into(), &[0.0].into());
@@ -242,7 +242,7 @@ fn bouncing_ball(manner: Manner) -> Solved {
     })
 }
 
-/// The declared effects, up to the last impact.
+/// The declared effects, with a budget of [`IMPACTS`] impacts.
 fn billiard<S: Scene>(system: &S) -> S::Effects {
     let mut effects = system.effects();
     effects.set_impact_budget(Some(IMPACTS));
@@ -255,7 +255,7 @@ fn largest(differences: &[f64]) -> f64 {
         .fold(0.0, |largest, difference| largest.max(difference.abs()))
 }
 
-/// Runs from `t = 0`.
+/// Makes the run with the integrator of `manner`, from `t = 0`.
 fn solve<S: Lagrangian + TaylorField, E: Effect<S> + Clone>(
     system: &S,
     state: State<S>,
@@ -276,7 +276,7 @@ fn solve<S: Lagrangian + TaylorField, E: Effect<S> + Clone>(
     repeat!(Dop853 DormandPrince5 Taylor Rk4 Gauss4 Gauss6 Dla2 Dla4)
 }
 
-/// Runs as often as asked for; the last run and the mean time.
+/// Makes the run `times` times; returns the last run and the mean time.
 fn repeat<S: System, Step: Stepper<S> + Copy, E: Effect<S> + Clone>(
     system: &S,
     state: State<S>,
@@ -298,7 +298,7 @@ fn repeat<S: System, Step: Stepper<S> + Copy, E: Effect<S> + Clone>(
     (run, time / times)
 }
 
-/// Measures the error of a run, if it ended as it should have.
+/// Measures the error of a run; NaN unless the run ended with the expected outcome.
 fn solved<S: Copy>(
     (run, time): (Run<S>, Duration),
     expected: Outcome,
@@ -318,9 +318,9 @@ fn solved<S: Copy>(
 mod tests {
     use super::*;
 
-    /// Every integrator comes closer to every stored solution from 1e-4 to its finest tolerance, by 0.4 digits and more for
-    /// each of the tolerance, or to the 1e-10 that billiards make of rounding errors: were a stored digit wrong that matters
-    /// there, it would not.
+    /// Between the tolerance 1e-4 and its finest one, every integrator gains at least 0.4 digits of every stored
+    /// solution per digit of tolerance, or reaches an error of 1e-10, to which billiards amplify rounding errors. A
+    /// wrong digit in a stored solution would make this test fail.
     #[test]
     fn errors_fall_with_the_tolerance() {
         for problem in ALL {

@@ -1,4 +1,5 @@
-//! Ten thousand pendulums of slightly different lengths on all cores, eight at a time on each: how their phases spread.
+//! Distribution of the phases of ten thousand pendulums with slightly different lengths. The pendulums run on all
+//! cores, eight at a time in SIMD lanes.
 //!
 //! `cargo run --release -p dalembert-examples --example ensemble`
 
@@ -22,7 +23,7 @@ const MEMBERS: usize = 10_000;
 const UNTIL: f64 = 100.0;
 const BINS: usize = 16;
 
-/// The angles at the end of the members of one share.
+/// Final angles of the pendulums of one thread.
 fn ends(pendulums: &[Pendulum]) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
     let tolerance = Tolerance::new(1e-10)?;
     let mut members = Vec::with_capacity(pendulums.len());

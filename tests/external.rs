@@ -1,15 +1,15 @@
-//! A crate outside the workspace that depends on `dalembert` and `dalembert-cli` alone declares a new constrained
-//! system with an impact and has every command for it.
+//! A crate outside the workspace declares a new constrained system with an impact and runs the commands for it. The
+//! crate depends on `dalembert` and `dalembert-cli` only.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// Builds the crate in `tests/external` and gives the path of its binary.
+/// Builds the crate in `tests/external` and returns the path of its binary.
 fn build() -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("external");
-    // Crates outside the workspace are built in one folder, so that they share their dependencies.
+    // All crates outside the workspace use one target folder, so that they share compiled dependencies.
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("outside");
     let status = Command::new(env!("CARGO"))
         .args(["build", "--quiet", "--manifest-path"])
@@ -58,7 +58,7 @@ fn a_users_crate_has_every_command_for_its_own_model() {
         String::from_utf8_lossy(&evaluated.stderr)
     );
     let values: Value = serde_json::from_slice(&evaluated.stdout).expect("JSON");
-    // Along the skate's heading gravity alone acts: a = g sin(slope).
+    // Only gravity acts along the heading of the skate: a = g sin(slope).
     let along = values[0]["acceleration"][0].as_f64().expect("a number");
     assert!((along - 9.81 * 0.1_f64.sin()).abs() < 1e-12, "{along}");
     // The edge turns the velocity: yddot = v thetadot.

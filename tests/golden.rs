@@ -1,4 +1,4 @@
-//! The expansion of a few models, formatted. Read the difference before accepting it:
+//! Compares the formatted expansion of some models with stored files. Read a difference before you accept it with
 //! `ACCEPT=1 cargo test --release -p dalembert-tests --test golden`.
 
 use dalembert::Described;
@@ -10,7 +10,7 @@ use dalembert_tests::golden;
 fn expansion(source: &str) -> String {
     let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect("a model");
     let text = prettyplease::unparse(&syn::parse2(tokens).expect("items"));
-    // The spelling of the declaration depends on the program that turned it into tokens.
+    // The text of the declaration depends on the tokeniser, so it is not compared.
     let mut is_source = false;
     let kept = text.lines().filter(|line| {
         is_source |= line.trim_start().starts_with("source: ");

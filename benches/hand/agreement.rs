@@ -1,11 +1,11 @@
-//! Asserts that two ways to compute a function of the state give the same, rounding aside.
+//! Asserts that two implementations of a function of the state agree up to rounding.
 
 use dalembert::{Described, StateVector};
 use dalembert_tests::sampling;
 
 use crate::State;
 
-/// Differences allowed, in units of the largest component: fifty times the largest that occurs.
+/// Largest allowed difference, relative to the largest component: fifty times the largest difference that occurs.
 const ROUNDING: f64 = 1e-13;
 
 /// Random states that satisfy the constraints.
@@ -13,7 +13,7 @@ fn states<S: Described>(system: &S) -> Vec<State<S>> {
     sampling::states(system, 200, 1)
 }
 
-/// The largest component, each measured by its own unit.
+/// The largest absolute component, each component divided by its unit.
 fn largest(components: &[f64], units: &[f64]) -> f64 {
     let measured = components
         .iter()

@@ -4,7 +4,7 @@ use dalembert_models::BouncingBall;
 
 use super::number::{Number, parameters};
 
-/// Free fall.
+/// Rate of the state in free fall.
 #[inline(always)]
 pub fn rate<T: Number>(ball: &BouncingBall, [_, p]: [T; 2]) -> [T; 2] {
     let [m, g] = parameters::<T, _>([ball.m, ball.g]);
@@ -18,7 +18,7 @@ pub fn energy<T: Number>(ball: &BouncingBall, [x, p]: [T; 2]) -> T {
     (p * p / m).times(0.5) + m * g * x
 }
 
-/// The momentum is turned round.
+/// State after an elastic impact: the momentum is reversed.
 #[inline(always)]
 pub fn impact<T: Number>(_: &BouncingBall, [x, p]: [T; 2]) -> [T; 2] {
     [x, -p]

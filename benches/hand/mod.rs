@@ -1,9 +1,9 @@
-//! The shipped models as one would write them by hand: functions of the components of the generated states.
+//! Shipped models as a programmer would write them by hand: functions of the components of the generated states.
 //!
-//! `rate`, `energy` and `impact` use the formulas of the generated code, written out for one model: the metric
-//! factorised, the multipliers solved for. Where somebody who knows the model would do better, that is written too:
-//! `rate_in_frame`, `rate_by_links`, .. use facts that the declaration does not say. Functions are generic over their
-//! [`Number`](number::Number), so that their operations can be counted.
+//! `rate`, `energy` and `impact` use the formulas of the generated code, written out for one model: they factorise the
+//! metric and solve for the multipliers. Some models also have faster functions (`rate_in_frame`, `rate_by_links`, ..)
+//! that use facts which the declaration does not state. Functions are generic over their [`Number`](number::Number), so
+//! that their operations can be counted.
 
 pub mod bead;
 pub mod bouncing_ball;

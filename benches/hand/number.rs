@@ -1,8 +1,8 @@
-//! Numbers of the functions written by hand: plain, or counting their operations.
+//! Number type of the functions written by hand: plain doubles, or numbers that count their operations.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number.
+/// A number type with the operations that the functions need.
 pub trait Number:
     Copy
     + Neg<Output = Self>

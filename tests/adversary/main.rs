@@ -1,16 +1,17 @@
-//! Declarations built so that a false theorem may be proved, or a true one refuted. Their answers are known by construction.
+//! Random declarations that are likely to reveal a wrong proof or a wrong refutation. Their answers are known by
+//! construction.
 //!
 //! | family | contents |
 //! |---|---|
-//! | `potential` | drags that are differentials of a known function, with periods, curls in a box, curls of 1e-15 |
-//! | `leaf` | curves that wind towards a circle, anywhere, or to none |
-//! | `quantity` | forces that are 0 by an identity, act in a box, or are far below rounding |
+//! | `potential` | drags from a known potential; some have a period, a curl in a box, or a curl of 1e-15 |
+//! | `leaf` | curves that wind towards a circle at some position, or towards none |
+//! | `quantity` | forces that are 0 by an identity, act only in a box, or are far below rounding errors |
 //! | `systems` | known systems in other coordinates |
-//! | `gauge` | translations of Lagrangians with an exact form, or another one, added |
-//! | `exceptional` | parameters whose default is an exception |
+//! | `gauge` | translations of Lagrangians with an added form, exact or not |
+//! | `exceptional` | parameters whose default value is exceptional, and others |
 //! | `wall` | impacts on a part of a curve |
 //!
-//! The quick test draws from fixed seeds. `ADVERSARY_SEED` begins elsewhere, `ADVERSARY_CASES` asks for another number. A
+//! The quick test uses fixed seeds. `ADVERSARY_SEED` sets the first seed, and `ADVERSARY_CASES` the number of cases. A
 //! wrong verdict is printed with its declaration.
 
 mod draw;
@@ -25,7 +26,7 @@ use dalembert_tests::claim::verdict;
 use draw::Draw;
 use families::{Case, case};
 
-/// Largest part of the decidable cases that may stay open.
+/// Bound on the fraction of all cases that are decidable and stay open.
 const OPEN: f64 = 0.05;
 
 /// Verdicts on cases of one family.
@@ -33,11 +34,11 @@ const OPEN: f64 = 0.05;
 struct Tally {
     right: usize,
     open: usize,
-    /// Cases left open although decidable.
+    /// Open cases that are decidable.
     missed: usize,
 }
 
-/// Error of the verdict on a case, if there is one; else the case is counted.
+/// Counts the verdict on a case. Fails if the verdict is wrong.
 fn judged(seed: u64, case: &Case, tally: &mut Tally) -> Result<(), String> {
     let source = format!(
         "Case{seed} {{ {} claims {{ {}; }} }}",
@@ -60,7 +61,7 @@ fn judged(seed: u64, case: &Case, tally: &mut Tally) -> Result<(), String> {
     }
 }
 
-/// Judges as many cases as asked for, and prints the counts of the verdicts.
+/// Judges this many cases, unless the environment sets another number, and prints the counts of the verdicts.
 fn judge(cases: u64) {
     let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let first = asked("ADVERSARY_SEED").unwrap_or(0_u64);

@@ -1,11 +1,11 @@
-//! No proof by an accident of evaluation: domains, branches, jumps, rounding, angles, hidden parts of surfaces, models
-//! without states. Every claim here is proved because it is true, refused, or undecided.
+//! Claims that a careless evaluation would prove or refute wrongly: domains, branches, jumps, rounding, angles,
+//! parameters with special defaults. Every claim that is proved here is true.
 
 use dalembert_codegen::claims::Verdict;
 use dalembert_tests::claim::Outcome::{Proved, Refused, Refuted, Undecided};
 use dalembert_tests::claim::{Outcome, check, verdict};
 
-/// A free particle: everything made of velocities is conserved, and nothing else but straight lines.
+/// A free particle. Functions of the velocities are conserved, and moments such as `x*dot(y) - y*dot(x)`.
 const FREE: &str = "coordinates { x; y; theta: angle; } parameters { m > 0 = 1; k > 0 = 2; z = 0; }
     lagrangian = m/2*(dot(x)^2 + dot(y)^2 + dot(theta)^2);";
 
@@ -93,7 +93,7 @@ fn a_rate_of_zero_does_not_hide_a_jump() {
     ] {
         free(claim, Undecided(place));
     }
-    // The quantity that would jump is itself constant, or of one sign.
+    // Here the argument of the function that jumps is itself constant.
     free("conserved: atan2(y*dot(x) - x*dot(y), dot(x))", Proved);
     free("conserved: abs(dot(x))/dot(x)", Proved);
     free("conserved: abs(dot(x))/(1 + dot(y)^2)", Proved);
@@ -105,7 +105,7 @@ fn absolute_values_are_those_of_real_numbers() {
     free("conserved: abs(dot(x))", Proved);
     free("conserved: abs(x)", Refuted("d/dt(abs(x)) = 0.5"));
     free("conserved: abs(x) - sqrt(x^2)", Proved);
-    // `x` is positive at the first points that are tried: the quantity is 0 there, up to rounding.
+    // `x` is positive at the first sample points, where the quantity is 0 up to rounding.
     free(
         "conserved: abs(x) - x",
         Refuted("d/dt(abs(x) - x) = 3\nat x = -0.28"),
@@ -185,7 +185,7 @@ fn angles_are_not_taken_for_numbers() {
         "conserved: sin(theta)^2 + cos(theta)^2 + dot(theta)",
         Proved,
     );
-    // On a line the same field is a rotation.
+    // If theta is a coordinate on a line, the same field is a rotation.
     let line = FREE.replace("theta: angle", "theta");
     check(
         &line,

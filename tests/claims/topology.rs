@@ -1,4 +1,4 @@
-//! From local to global: circles, singular configurations, conditions on parameters.
+//! Local and global existence of densities: circles, singular configurations, conditions on parameters.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use dalembert_tests::verdict::{Answer, Decided, Existence, answer};
 use dalembert_tests::verified::verified;
 use dalembert_tests::visible::{declaration, visible_system};
 
-/// A system of the file with some of its circles replaced by lines.
+/// A system of the collection, with some of its angles replaced by coordinates on a line.
 fn unwrapped(name: &str, angles: &[&str]) -> String {
     let mut source = declaration(&visible_system(name));
     for angle in angles {
@@ -19,7 +19,7 @@ fn unwrapped(name: &str, angles: &[&str]) -> String {
     source
 }
 
-/// Checks a density relative to `mu_C` by differences.
+/// Asserts by finite differences that a density relative to `mu_C` is invariant.
 fn assert_invariant(source: &str, density: &dyn Fn(&[f64]) -> f64) {
     let decided = Decided::of(source);
     let (n, m) = (
@@ -77,8 +77,8 @@ fn robot(wheels: &str) -> String {
     )
 }
 
-/// With the speed `v = r (psi1dot + psi2dot)/2` and `w = thetadot` the robot is a sleigh, `(I_eff) wdot = -m a v w`, so that
-/// `div = -m a v/I_eff`, and `G = kappa (psi1 + psi2)`.
+/// With the speed `v = r (psi1dot + psi2dot)/2` and `w = thetadot`, the robot moves like a sleigh:
+/// `I_eff wdot = -m a v w`. Hence `div = -m a v/I_eff`, and the density is `exp(G)` with `G = kappa (psi1 + psi2)`.
 #[test]
 fn the_wheels_of_a_robot_decide_whether_there_is_a_density() {
     let circles = robot(": angle");
@@ -103,8 +103,9 @@ fn the_wheels_of_a_robot_decide_whether_there_is_a_density() {
     assert_invariant(&robot(""), &|q| f64::exp(kappa * (q[3] + q[4])));
 }
 
-/// With `dx = x dy` every density is `f(C) m/|x|`, `C` the leaf. On both sides of `x = 0` the form is the same, and on
-/// that leaf it is `exp(-y)`, which is many-valued if `y` is an angle.
+/// With `dx = x dy` every density for `x != 0` is `f(C) m/|x|`, where `C` labels the leaf `x = C exp(y)` and
+/// `m = 1 + x^2` is the constraint mass. The density form is the same on both sides of `x = 0`. On the leaf `x = 0` the
+/// density is `exp(-y)`, which is not single-valued if `y` is an angle.
 #[test]
 fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
     let leaves = |y: &str| {
@@ -115,7 +116,7 @@ fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
     };
     assert_eq!(verified(&leaves("")), Existence::Global);
     assert_eq!(verified(&leaves(": angle")), Existence::Local);
-    // Everything is drawn to y = 0.
+    // All motions converge to y = 0.
     let attracted = "Attracted { coordinates { x; y; } parameters { k > 0 = 2; }
         lagrangian = (dot(x)^2 + dot(y)^2)/2; constraints { c: dot(y) = -k*y; } }";
     assert_eq!(verified(attracted), Existence::LocalAtLeast);
@@ -124,7 +125,7 @@ fn densities_that_are_singular_somewhere_are_none_of_all_of_q() {
     assert_eq!(verified(half), Existence::Global);
 }
 
-/// The snakeboard has no equations where both its forms are the same.
+/// The equations of the snakeboard are not defined where its two constraint forms coincide.
 #[test]
 fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     let snakeboard = |phi: &str| {
@@ -148,7 +149,7 @@ fn circles_that_leave_the_regular_domain_leave_the_question_open() {
     assert_eq!(verified(&snakeboard(": angle")), Existence::LocalAtLeast);
 }
 
-/// A particle in the plane on the curves of `d(x) = f d(y)`, whose density is `1/f`.
+/// A particle in the plane that moves on the curves `d(x) = f d(y)`. Its density is `1/f`.
 fn curves(coordinates: &str, f: &str) -> String {
     format!(
         "Curves {{ coordinates {{ {coordinates} }} parameters {{ c > 0 = 3; }}
@@ -156,7 +157,7 @@ fn curves(coordinates: &str, f: &str) -> String {
     )
 }
 
-/// A closed orbit that attracts or repels exists where `f` vanishes: no density is finite there.
+/// Where `f` has a simple zero, there is an attracting or repelling closed orbit, so that no density is finite there.
 #[test]
 fn densities_that_are_singular_somewhere_are_not_proved() {
     let exact = |x: &str, f: &str| answer(&curves(&format!("{x}; y: angle;"), f), "density: exact");
@@ -172,7 +173,7 @@ fn densities_that_are_singular_somewhere_are_not_proved() {
         let answer = exact(x, f);
         assert!(matches!(answer, Answer::Refuted(_)), "{f}: {answer:?}");
     }
-    // A double zero neither attracts nor repels in first order.
+    // At a double zero, the orbit neither attracts nor repels to first order.
     for (x, f) in [
         ("x", "x^2 - x/2 + 1/16"),
         ("x", "cosh(x) - 1"),
@@ -192,7 +193,7 @@ fn densities_that_are_singular_somewhere_are_not_proved() {
     }
 }
 
-/// `G = m o R/(J + m o^2) theta`: the centre of mass is a distance `o` ahead.
+/// The centre of mass is a distance `o` ahead of the contact. The density is `exp(G)` with `G = m o R/(J + m o^2) th`.
 #[test]
 fn a_default_does_not_hide_a_period() {
     for o in ["0", "1e-12", "0.00001", "0.1"] {
@@ -211,8 +212,9 @@ fn a_default_does_not_hide_a_period() {
     }
 }
 
-/// Friction quadratic in the velocity: the density is `exp` of an integral over the circle, which vanishes. Its numeric
-/// value refutes nothing, and proves nothing either unless a symmetry of the searched kinds makes it 0.
+/// Friction that is quadratic in the velocity. The density is `exp(G)`, and the period of `G` around the circle is an
+/// integral that vanishes. A numeric value near 0 refutes nothing. It proves nothing either, unless one of the searched
+/// symmetries makes the integral 0.
 #[test]
 fn periods_that_converge_to_zero_refute_nothing() {
     for f in [
@@ -231,7 +233,7 @@ fn periods_that_converge_to_zero_refute_nothing() {
     }
 }
 
-/// Friction along a circle that a reflection turns into its opposite.
+/// Friction along a circle that changes its sign under a reflection.
 #[test]
 fn periods_that_a_reflection_makes_vanish_are_proved_to() {
     for f in [

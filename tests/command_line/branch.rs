@@ -1,4 +1,4 @@
-//! Branches of orbits: bifurcations, ends and multipliers that are known in closed form, and flags that are refused.
+//! Branches of periodic orbits: bifurcations, ends and multipliers known in closed form, and refused flags.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -8,7 +8,7 @@ use dalembert_driver::BranchEnd;
 use super::tables::{Folder, column, numbers_of};
 use super::*;
 
-/// A clock at whose ticks a number takes its next value.
+/// The logistic map: a clock ticks once per unit of time, and each tick applies the map.
 const LOGISTIC: &str = "
     Logistic {
         coordinates { x; tau; }
@@ -19,7 +19,7 @@ const LOGISTIC: &str = "
         outputs { square: x^2; }
     }";
 
-/// A parabola: a fold at `r = 0`, a flip at `r = 1`.
+/// A parabola of fixed points, with a fold at `r = 0` and a flip at `r = 1`.
 const PARABOLA: &str = "
     Parabola {
         coordinates { x; tau; }
@@ -29,7 +29,7 @@ const PARABOLA: &str = "
         initial { x = 0.7; until = 10; }
     }";
 
-/// The delayed logistic map, whose fixed point loses its stability to a circle at `r = 2`.
+/// The delayed logistic map. Its fixed point has a Neimark-Sacker bifurcation at `r = 2`.
 const DELAYED: &str = "
     Delayed {
         coordinates { x; y; tau; }
@@ -49,7 +49,7 @@ const CIRCLE: &str = "
         initial { x = 0.9; until = 10; }
     }";
 
-/// A fixed point that gives its stability to two others at `r = 1`.
+/// A pitchfork bifurcation at `r = 1`: the fixed point 0 becomes unstable, and two stable ones appear.
 const PITCHFORK: &str = "
     Pitchfork {
         coordinates { x; tau; }
@@ -59,7 +59,7 @@ const PITCHFORK: &str = "
         initial { x = 0.7; until = 10; }
     }";
 
-/// An arc of height `r` between two ticks, and a ceiling at the height 1.
+/// A motion that rises by `r` and falls between two ticks, below a ceiling at height 1.
 const ARC: &str = "
     Arc {
         coordinates { y; tau; }
@@ -69,7 +69,7 @@ const ARC: &str = "
         initial { until = 10; }
     }";
 
-/// An oscillator that is driven against a stop.
+/// A driven oscillator with a stop.
 const STOP: &str = "
     Stop {
         coordinates { x; v; phi: angle; }
@@ -79,7 +79,8 @@ const STOP: &str = "
         initial { x = 2; v = -5; phi = 2.7; until = 100; }
     }";
 
-/// Fixed points on a spiral whose sheets are `pi/118` apart: `x/r` is the tangent of 237 times the radius.
+/// Fixed points on a spiral with two arms: `x/r = tan(237 rho)` with the radius `rho = sqrt(x^2 + r^2)`. Neighbouring
+/// sheets are `pi/237` apart.
 const SPIRAL: &str = "
     Spiral {
         coordinates { x; tau; }
@@ -114,7 +115,7 @@ fn assert_near(found: f64, expected: f64, bound: f64) {
     assert!((found - expected).abs() < bound, "{found} for {expected}");
 }
 
-/// Asserts kinds and places of all bifurcations.
+/// Asserts kinds and parameters of all bifurcations.
 fn assert_bifurcations(table: &str, parameter: &str, expected: &[(&str, f64)], bound: f64) {
     let found = bifurcations(table, parameter);
     let kinds: Vec<&str> = found.iter().map(|(kind, _)| kind.as_str()).collect();
@@ -125,7 +126,7 @@ fn assert_bifurcations(table: &str, parameter: &str, expected: &[(&str, f64)], b
     }
 }
 
-/// Asserts the first and last parameter of a table.
+/// Asserts the first and the last value of the parameter in a table.
 fn assert_ends(table: &str, parameter: &str, ends: [f64; 2]) {
     let values = numbers_of(table, &format!("in.{parameter}"));
     assert_eq!([values[0], values[values.len() - 1]], ends);
@@ -231,7 +232,7 @@ fn sheets_that_lie_close_together_are_not_confused() {
             panic!("{pair:?}")
         };
         assert_eq!([first, second], ["fold", "fold"]);
-        // Half a turn between them.
+        // Consecutive folds are half a turn of the spiral apart.
         assert!(at * next < 0.0, "{at} and {next}");
         assert_near(
             (next.abs() - at.abs()).abs(),
@@ -305,9 +306,9 @@ fn a_branch_ends_where_its_parameter_may_not_go() {
     assert!(first.unwrap().contains("idle = 2: the end of the range"));
 }
 
-/// Orbits of one impact per period of the force: with `G = 1/(1 - w^2)`, `t = tan(pi/w)` and
-/// `k = w (1 + e)/(t (1 - e))` the stop is at `d = G (cos phi + k sin phi)` for the phase `phi` of the impact, and the impact
-/// has the speed `-2 G w sin(phi)/(1 - e)`. So there is a fold at `d = |G| sqrt(1 + k^2)`, and the impact grazes at `d = |G|`.
+/// Orbits with one impact per period of the force. Let `G = 1/(1 - w^2)`, `t = tan(pi/w)`, `k = w (1 + e)/(t (1 - e))`,
+/// and let `phi` be the phase at the impact. The stop is then at `d = G (cos phi + k sin phi)`, and the impact has the
+/// speed `-2 G w sin(phi)/(1 - e)`. There is a fold at `d = |G| sqrt(1 + k^2)` and a grazing impact at `d = |G|`.
 #[test]
 fn the_driven_oscillator_folds_and_grazes_where_formulas_say() {
     let (w, e) = (1.6, 0.8);
@@ -343,7 +344,7 @@ fn the_driven_oscillator_folds_and_grazes_where_formulas_say() {
         let multipliers = point["multipliers"].as_array().unwrap().iter();
         let parts = multipliers.map(|it| [&it["re"], &it["im"]].map(|part| part.as_f64().unwrap()));
         let [re, _] = parts.fold([1.0, 0.0], |[a, b], [c, d]| [a * c - b * d, a * d + b * c]);
-        // The force does no volume, and the impact contracts positions and velocities by `e` each.
+        // The forced motion preserves area. The impact scales deviations of position and of velocity by `e` each.
         if speed > 0.1 {
             assert_near(re, e * e, 1e-7);
         }
@@ -379,7 +380,7 @@ fn files_tell_the_same_branch() {
     ] {
         assert!(svg.contains(word), "{word}");
     }
-    // The name of the axis stands on its line.
+    // The label of the axis is on a line of its own.
     assert!(svg.lines().any(|line| line == "r"), "{svg}");
     for line in [
         "continued    r from 2 to 3.5",
@@ -388,7 +389,7 @@ fn files_tell_the_same_branch() {
     ] {
         assert!(done.output.contains(line), "{line} in {}", done.output);
     }
-    // One line for each point under the names.
+    // The table has one line for each point, below the header.
     let lines = done
         .output
         .lines()
@@ -411,7 +412,7 @@ fn few_steps_end_a_branch_early() {
     );
 }
 
-/// The guide and the schema of branches name the ends that the code knows.
+/// The guide and the schema list the same kinds of ends as the code.
 #[test]
 fn every_end_is_in_the_guide_and_in_the_schema() {
     let page = include_str!("../../docs/guide/continuation.md");

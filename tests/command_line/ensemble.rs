@@ -1,5 +1,4 @@
-//! Ensembles: the same rows whatever the threads, the shard or the interruption; members that fail; densities that are
-//! known.
+//! Ensembles: rows that do not depend on threads, shards or interruptions; members that fail; known densities.
 
 mod merge;
 #[cfg(feature = "parquet")]
@@ -36,7 +35,7 @@ impl Drop for Folder {
     }
 }
 
-/// Balls of which every ninth begins below the floor.
+/// An ensemble of balls. One ninth of them start below the floor.
 const BALLS: &str = "ensemble bouncing_ball --vary x=-0.5..3.5:9 --vary x_dot=-1..1:14 --until 6";
 
 /// The rows on the standard output.
@@ -62,7 +61,7 @@ fn numbers_of(table: &str, name: &str) -> Vec<f64> {
     column.iter().map(|text| text.parse().unwrap()).collect()
 }
 
-/// One that makes its runs one after the other, and the one that makes them abreast.
+/// An integrator that makes runs one after the other, and the one that makes them in SIMD lanes.
 const INTEGRATORS: [&str; 2] = ["dop853", "taylor"];
 
 #[test]
@@ -158,7 +157,7 @@ fn assert_bad_members_are_rows(integrator: &str) {
     assert_eq!((bad, outcomes.len()), (14, 126));
     assert!(outcomes[14..].iter().all(|outcome| outcome == "done"));
     assert!(column(&done.output, "reason")[0].contains("surface floor, gap -0.5"));
-    // The others are as without it.
+    // The other members are the same as in an ensemble without the bad ones.
     let good = "ensemble bouncing_ball --vary x=0..3.5:8 --vary x_dot=-1..1:14 --until 6 --csv -";
     let good = run(good).output;
     assert_eq!(column(&good, "end.x"), column(&done.output, "end.x")[14..]);
@@ -237,7 +236,7 @@ fn members_are_read_from_tables() {
         column(&folder.read("run.csv"), "x_dot")
     );
 
-    // What an ensemble wrote, again.
+    // The rows of an ensemble are valid input.
     let first = rows("ensemble bouncing_ball --vary x=1..2:3 --vary g=1,2 --until 1");
     fs::write(folder.0.join("rows.csv"), &first).unwrap();
     let again = rows(&format!(
@@ -271,7 +270,7 @@ fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
             whole.len(),
         ] {
             fs::write(folder.0.join("rows.csv"), &whole.as_bytes()[..cut]).unwrap();
-            // Counts of a density are known of as many rows as are there, or of none.
+            // The file of counts belongs to the complete table, so a shorter table must not have it.
             let _ = fs::remove_file(folder.0.join("rows.csv.counts"));
             if cut == 0 {
                 fs::remove_file(folder.0.join("rows.csv.meta.json")).unwrap();
@@ -281,7 +280,7 @@ fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
             assert_eq!(folder.read("rows.csv.meta.json"), meta);
         }
     }
-    // Rows that were done are not done again.
+    // Complete rows are not computed again.
     let done = run(&format!(
         "{BALLS} {density} --resume --csv {}",
         folder.path("rows.csv")
@@ -334,7 +333,7 @@ fn a_file_that_another_run_is_writing_is_refused() {
         drop(other);
         assert_eq!(run(&line).exit, before.exit);
     }
-    // The same file by two names.
+    // Two paths to the same file.
     let twice = format!(
         "{BALLS} --csv {} --json {}/./rows",
         folder.path("rows"),
@@ -360,7 +359,7 @@ fn a_row_that_was_altered_is_not_continued() {
         run(&line);
         let resumed = || run(&format!("{line} --resume"));
         let whole = folder.read("rows.csv");
-        // A digit of the energy of member 20.
+        // Position of a digit in the energy of member 20.
         let row = whole.lines().nth(21).unwrap();
         let energy = column(&whole, "energy")[20].clone();
         let place = whole.find(row).unwrap() + row.find(&energy).unwrap() + energy.len() - 1;
@@ -435,8 +434,8 @@ fn rows_whose_checksums_were_cut_off_are_run_again() {
 #[test]
 fn a_ball_has_every_speed_for_the_same_time() {
     let folder = Folder::new("density");
-    // Thrown up from the floor at speed 1, thrice a flight of length 2: all speeds from -1 to 1 alike. No sample falls on an impact, where
-    // rounding decides whether the speed is one of them.
+    // The ball starts upwards from the floor at speed 1, and each flight lasts 2. It has every speed from -1 to 1 for
+    // the same time. The interval of the samples avoids the impacts, where rounding would decide the sign of the speed.
     let done = run(&format!(
         "ensemble bouncing_ball --q 0 --qdot 1 --until 40000 --every 0.01230001 --discard 2 --density x_dot=-1..1,x=0..0.51:10x20 \
          --cells {} --plot {} --json {}",
@@ -455,7 +454,7 @@ fn a_ball_has_every_speed_for_the_same_time() {
     for count in speeds {
         assert!((count / all - 0.1).abs() < 2e-5, "{speeds:?}");
     }
-    // Where the ball is at this speed: x = (1 - v^2)/2.
+    // Height of the ball at this speed: x = (1 - v^2)/2.
     let (v, x) = (numbers_of(&cells, "x_dot"), numbers_of(&cells, "x"));
     for (index, density) in numbers_of(&cells, "density").into_iter().enumerate() {
         let right = (1.0 - v[index] * v[index]) / 2.0;
@@ -467,7 +466,7 @@ fn a_ball_has_every_speed_for_the_same_time() {
     assert_eq!(convergence.len(), 5);
     let last = &convergence[4];
     assert_eq!(last["states"].as_f64(), Some(all));
-    // Far more even than independent states would be.
+    // The distribution is far more uniform than one of independent states.
     assert!(last["halves_of_time"].as_f64() < last["independent"].as_f64());
     assert!(last["halves_of_members"].is_null());
     let svg = folder.read("density.svg");
@@ -492,7 +491,7 @@ fn counts_do_not_depend_on_threads_and_tell_of_what_is_outside() {
     let outside = document["density_outside"].as_f64().unwrap();
     assert_eq!(inside + outside, 112.0 * 60.0);
     assert!(outside > 1000.0);
-    // The range that was not given holds everything that was seen.
+    // The range that is not given covers all samples.
     let range = numbers(&document["density"]["axes"][0]["range"]);
     assert!(range[0] < -2.0 && range[1] > 2.0, "{range:?}");
     let text = run(&format!("{BALLS} --density x_dot,x=0..1:7")).output;

@@ -1,4 +1,4 @@
-//! Outputs that are integrals along a run, declared and as flags, against closed forms.
+//! Outputs that are integrals along a run, declared or given as flags, compared with closed forms.
 
 use std::fs;
 
@@ -15,7 +15,7 @@ const BALL: &str = "
         initial { until = 5; }
     }";
 
-/// A particle that is pulled in the second of two layers.
+/// A particle that a constant force pulls in the second of two layers.
 const LAYERS: &str = "
     Layers {
         coordinates { x; }
@@ -37,7 +37,7 @@ const PUSHED: &str = "
         initial { until = 2; }
     }";
 
-/// Motions of the ball to x = 0.2 at t = 5 after no impact and after one: the speed at the start, and the action.
+/// Initial speed and action of the motions of the ball from x = 0 to x = 0.2 at t = 5, with no impact and with one.
 const ACTIONS: [(f64, f64); 2] = [
     (2.54, -5.704_333_333_333_333),
     (1.291_369_123_503_562, -1.539_814_194_880_541),
@@ -96,7 +96,7 @@ fn impacts_add_nothing_and_show_the_value_of_their_time() {
         .filter(|(event, _)| !event.is_empty())
         .collect();
     assert!(marked.len() >= 2, "{table}");
-    // A flight of speed 1 and time 2: the integral of (1 - t)^2/2 - t + t^2/2.
+    // Action of a flight that starts with speed 1 and lasts 2: the integral of (1 - t)^2/2 - t + t^2/2.
     let flight = -1.0 / 3.0;
     for (index, (event, action)) in marked.iter().enumerate() {
         let flights = (index + 1) as f64;
@@ -166,7 +166,7 @@ fn flags_add_outputs() {
     let x = numbers_of(&done.output, "x");
     let doubles = numbers_of(&done.output, "double");
     assert!(x.iter().zip(&doubles).all(|(x, double)| 2.0 * x == *double));
-    // The action is that along the way without the energy times the time.
+    // The abbreviated action W is the action plus the energy times the time.
     let energy = 2.54 * 2.54 / 2.0;
     let expected = last(&done.output, "S") + 5.0 * energy;
     assert!((last(&done.output, "W") - expected).abs() < 1e-9);

@@ -1,10 +1,10 @@
-//! Values of expressions as written in claims, by a separate reader that uses nothing of the generator.
+//! Evaluates expressions of claims with a separate parser that shares no code with the generator.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::numeric::Snapshot;
 
-/// Meaning of names.
+/// Meanings of the names in an expression.
 pub struct Scope<'s> {
     /// Names of coordinates.
     pub coordinates: &'s [&'s str],
@@ -14,7 +14,7 @@ pub struct Scope<'s> {
     pub definitions: &'s [(String, TokenStream)],
     /// The state.
     pub state: &'s Snapshot,
-    /// The coordinate `x` for which `partial(x)` is 1, the others being 0.
+    /// Index of the coordinate `x` for which `partial(x)` is 1. For other coordinates it is 0.
     pub partial: Option<usize>,
 }
 
@@ -34,7 +34,7 @@ pub fn value(text: &str, scope: &Scope<'_>) -> f64 {
     value
 }
 
-/// The definitions `let NAME = ..;` of a declaration, of single names.
+/// The definitions `let NAME = ..;` of a declaration. Families and functions are left out.
 pub fn definitions(source: &str) -> Vec<(String, TokenStream)> {
     let tokens: TokenStream = source.parse().expect("tokens");
     let body = tokens.into_iter().find_map(|token| match token {

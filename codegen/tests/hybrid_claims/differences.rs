@@ -1,7 +1,8 @@
-//! Factors by differences: a motion is followed through an impact with the method of Runge and Kutta, and the determinant of the derivative
-//! of its end by its start is taken by central differences, times the densities of the volume at both ends.
+//! Volume factors by finite differences. A Runge-Kutta method follows a motion through an impact. Central differences
+//! give the derivative of its end with respect to its start. The factor is the determinant of that derivative times the
+//! ratio of the densities at both ends.
 //!
-//! Nothing of the generator takes part but the verdict.
+//! The generator is used for the verdict only.
 
 use crate::Expected::True;
 use crate::check;
@@ -10,7 +11,7 @@ use crate::systems::{crossing, grooves, media, particle, spokes, walker};
 pub(super) type State = Vec<f64>;
 type Density<'h> = &'h dyn Fn(&[f64]) -> f64;
 
-/// A motion before and after an impact, with the surface and the map.
+/// Vector fields before and after an impact, with the gap of the surface and the map of the impact.
 pub(super) struct Hybrid<'h> {
     pub(super) before: &'h dyn Fn(&[f64]) -> State,
     pub(super) gap: &'h dyn Fn(&[f64]) -> f64,
@@ -38,7 +39,7 @@ pub(super) fn run(rate: &dyn Fn(&[f64]) -> State, z: &[f64], time: f64) -> State
 }
 
 impl Hybrid<'_> {
-    /// The state at a time, after one impact before it.
+    /// The state at a time, for a motion with one impact before that time.
     pub(super) fn end(&self, start: &[f64], time: f64) -> State {
         // The secant method finds the time of the impact.
         let gap_at = |t: f64| (self.gap)(&run(self.before, start, t));
@@ -75,7 +76,7 @@ impl Hybrid<'_> {
             .collect()
     }
 
-    /// By how much the volume is multiplied.
+    /// Factor by which the motion multiplies the volume.
     pub(super) fn factor(&self, start: &[f64], time: f64) -> f64 {
         let [before, after] = self.densities;
         determinant(self.columns(start, time)).abs() * after(&self.end(start, time)) / before(start)
@@ -132,7 +133,8 @@ fn a_strip_that_multiplies_velocities() {
     );
 }
 
-/// Positions are stretched by `3 + 3 x^2`, the normal velocity is multiplied by 0.7, and so is the flux.
+/// The reset stretches positions by `3 + 3 x^2` and multiplies the normal velocity by 0.7, which scales the flux
+/// through the surface by 0.7 as well.
 #[test]
 fn a_reset_that_moves_the_position() {
     let free = |z: &[f64]| vec![z[2], z[3], 0.0, -1.0];
@@ -152,7 +154,7 @@ fn a_reset_that_moves_the_position() {
     };
     let (x, time) = (0.2, 1.0);
     let start = [x, 0.1, 0.5, -0.4];
-    // The height 0.1 is fallen through at (-0.4 + sqrt(0.36))/1.
+    // The particle falls from the height 0.1 to the floor in the time (-0.4 + sqrt(0.36))/1.
     let hit = x + 0.5 * (-0.4 + 0.36_f64.sqrt());
     assert_close(floor.factor(&start, time), 3.0 * (1.0 + hit * hit) * 0.49);
     let declared =
@@ -243,7 +245,8 @@ fn a_refraction() {
     check(&model, "density under rightward: factor = 1", True);
 }
 
-/// Velocities along `(1, a)` become those along `(1, b)` that are nearest: `(1 + a b)/(1 + b^2)` times the speed along x.
+/// A velocity along `(1, a)` becomes the nearest velocity along `(1, b)`: its x component is multiplied by
+/// `(1 + a b)/(1 + b^2)`.
 #[test]
 fn a_groove_that_turns() {
     let groove = |slope: f64| move |z: &[f64]| vec![z[2], slope * z[2], 0.0];

@@ -1,6 +1,6 @@
-//! Declarations with a place for a claim.
+//! Declarations with the placeholder `CLAIM` for a claim.
 
-/// A ball above a floor of a law.
+/// A ball above a floor with this impact law.
 pub(super) fn ball(law: &str) -> String {
     format!(
         "pub Ball {{ coordinates {{ x; }} parameters {{ m > 0 = 1; g > 0 = 1; c in [0, 1] = 0.7; k > 0 = 2; }}
@@ -8,7 +8,7 @@ pub(super) fn ball(law: &str) -> String {
     )
 }
 
-/// A particle in the plane with surfaces of its own.
+/// A particle in the plane with these surfaces.
 pub(super) fn particle(surfaces: &str) -> String {
     format!(
         "pub Particle {{ coordinates {{ x; y; }} parameters {{ a > 0 = 5/4; b > 0 = 16/25; d1 = 1/3; }}
@@ -16,7 +16,7 @@ pub(super) fn particle(surfaces: &str) -> String {
     )
 }
 
-/// A walker without friction whose step is a reset with this rate of the angle.
+/// A walker without friction. Its step is a reset that sets the rate of the angle to `rate`.
 pub(super) fn walker(rate: &str) -> String {
     format!(
         "pub Walker {{ coordinates {{ x_c; theta; }}
@@ -28,7 +28,7 @@ pub(super) fn walker(rate: &str) -> String {
     )
 }
 
-/// A rolling disk with a wall of a law.
+/// A rolling disk with this wall.
 pub(super) fn disk(wall: &str) -> String {
     format!(
         "pub Disk {{ coordinates {{ x; y; theta: angle; phi: angle; }}
@@ -46,7 +46,7 @@ pub(super) fn field(rates: &str, impacts: &str) -> String {
     )
 }
 
-/// Constant fields on both sides of `x = 0`, the claim on the right, with densities on both.
+/// Constant fields on both sides of `x = 0`. The claim is in the right mode; the left mode claims `density`.
 pub(super) fn crossing(right: [&str; 2], left: [&str; 2], density: &str) -> String {
     let field = |[x, y]: [&str; 2]| format!("field {{ dot(x) = {x}; dot(y) = {y}; }}");
     format!(
@@ -57,7 +57,7 @@ pub(super) fn crossing(right: [&str; 2], left: [&str; 2], density: &str) -> Stri
     )
 }
 
-/// Two media of a particle, the claim on the left.
+/// A particle in two media; the claim is in the left mode.
 pub(super) fn media(left: &str, right: &str) -> String {
     format!(
         "pub Media {{ coordinates {{ x; y; }} parameters {{ m1 > 0 = 1; m2 > 0 = 2; V = 1/5; }}
@@ -66,7 +66,7 @@ pub(super) fn media(left: &str, right: &str) -> String {
     )
 }
 
-/// A particle in grooves of different directions on both sides of `x = 0`, the claim on the left.
+/// A particle in grooves of different directions on both sides of `x = 0`; the claim is in the left mode.
 pub(super) fn grooves(left: &str, right: &str) -> String {
     format!(
         "pub Grooves {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
@@ -75,7 +75,7 @@ pub(super) fn grooves(left: &str, right: &str) -> String {
     )
 }
 
-/// A wheel that changes its spoke: a reset into a mode of another metric.
+/// A wheel that changes its standing spoke: a reset into a mode with another metric.
 pub(super) fn spokes(rate: &str) -> String {
     format!(
         "pub Spokes {{ coordinates {{ x; }} parameters {{ l1 > 0 = 1.7; l2 > 0 = 1.9; h > 0 = 0.65; g > 0 = 1; }}
