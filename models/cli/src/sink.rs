@@ -44,20 +44,33 @@ pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Resu
     }
 }
 
-/// Opens a file as [`claim`] does, and empties it.
-fn claim_empty(flag: &'static str, path: &Path) -> Result<File, CliError> {
-    let file = claim(flag, path, &mut OpenOptions::new())?;
-    let emptied = match file.metadata() {
-        Ok(metadata) if metadata.is_file() => file.set_len(0),
-        other => other.map(drop),
-    };
-    match emptied {
-        Ok(()) => Ok(file),
-        Err(source) => Err(CliError::File {
-            flag,
-            path: path.to_owned(),
-            source,
-        }),
+/// A file whose old content is lost with the first write, not before.
+struct Replaced {
+    file: File,
+    is_emptied: bool,
+}
+
+impl Replaced {
+    /// The file, emptied.
+    fn emptied(&mut self) -> io::Result<&mut File> {
+        if !self.is_emptied {
+            // Devices and pipes have no length.
+            if self.file.metadata()?.is_file() {
+                self.file.set_len(0)?;
+            }
+            self.is_emptied = true;
+        }
+        Ok(&mut self.file)
+    }
+}
+
+impl Write for Replaced {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.emptied()?.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.emptied()?.flush()
     }
 }
 
@@ -77,7 +90,8 @@ pub enum Sink {
 }
 
 impl Sink {
-    /// Opens the file before any computation, so that a path that cannot be written is reported at once.
+    /// Opens the file before any computation, so that a path that cannot be written is reported at once. The file keeps
+    /// its content until the output is written: a command that is refused later loses nothing.
     ///
     /// # Errors
     /// The file cannot be written, or another run is writing it.
@@ -88,7 +102,7 @@ impl Sink {
         Ok(Self::File {
             flag,
             path: path.to_owned(),
-            file: claim_empty(flag, path)?,
+            file: claim(flag, path, &mut OpenOptions::new())?,
         })
     }
 
@@ -131,7 +145,10 @@ impl Sink {
                 file: None,
             },
             Self::File { flag, path, file } => Stream {
-                output: Box::new(file),
+                output: Box::new(Replaced {
+                    file,
+                    is_emptied: false,
+                }),
                 file: Some((flag, path)),
             },
         }
