@@ -449,3 +449,60 @@ fn a_model_with_several_surfaces_or_none_needs_a_word() {
         none.errors
     );
 }
+
+/// A neuron whose state after a firing is always the same, while the current depends on time.
+const FIRING: &str = "
+    Firing {
+        coordinates { v; }
+        parameters { drive = 1.5; A = 0.4; w = 0.5; }
+        field { dot(v) = drive - v + A*cos(w*t); }
+        impacts { threshold: v <= 1 => reset { v = 0; }; }
+        initial { until = 1000; }
+    }";
+
+#[test]
+fn returns_at_uneven_times_are_no_orbit() {
+    let map = |flags: &str| {
+        let line = format!("map - --vary v=0..0.5:2 --returns 60 --csv - {flags}");
+        let done = run_on(FIRING, &line.split_whitespace().collect::<Vec<_>>());
+        assert_eq!((done.exit, done.errors.as_str()), (Exit::Reached, ""));
+        done.output
+    };
+    // The firings follow one another in times from 0.77 to 2.23.
+    assert_eq!(numbers_of(&map(""), "period"), [0.0, 0.0]);
+    // With a constant current they are even.
+    assert_eq!(numbers_of(&map("--set A=0"), "period"), [1.0, 1.0]);
+    // A motion that depends on time has no exponent on its section.
+    let exponents = numbers_of(&map("--lyapunov 3"), "exponent");
+    assert!(exponents.iter().all(|it| it.is_nan()), "{exponents:?}");
+}
+
+#[test]
+fn exponents_of_orbits_are_means_over_whole_periods() {
+    let text = "
+        Logistic {
+            coordinates { x; tau; }
+            parameters { r = 3.5; }
+            field { dot(x) = 0; dot(tau) = 1; }
+            impacts { tick: tau <= 1 => reset { x = r*x*(1 - x); tau = 0; }; }
+            initial { x = 0.4; until = 10000; }
+        }";
+    let (mut x, mut expected) = (0.4_f64, 0.0);
+    for made in 0..4004 {
+        if made >= 4000 {
+            expected += (3.5 * (1.0 - 2.0 * x)).abs().ln() / 4.0;
+        }
+        x *= 3.5 * (1.0 - x);
+    }
+    for count in ["1", "3", "4", "5"] {
+        let line = format!("map - --vary x=0.3..0.4:2 --returns 400 --csv - --lyapunov {count}");
+        let done = run_on(text, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(numbers_of(&done.output, "period"), [4.0, 4.0]);
+        for exponent in numbers_of(&done.output, "exponent") {
+            assert!(
+                (exponent - expected).abs() < 1e-9,
+                "{exponent} for {expected}"
+            );
+        }
+    }
+}

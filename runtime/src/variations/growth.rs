@@ -59,11 +59,14 @@ where
         is_first: bool,
     ) -> Result<(f64, Sys::State), OrbitError> {
         let length = chart.size(deviation);
-        if length == 0.0 {
+        // A section of a single point has no deviations, but may depend on time.
+        if length == 0.0 && !is_first {
             return Ok((0.0, *deviation));
         }
         let mut unit = self.system.zero_state();
-        add(&mut unit, 1.0 / length, deviation);
+        if length > 0.0 {
+            add(&mut unit, 1.0 / length, deviation);
+        }
         let mut tangents = [Tangent::of_state(unit)];
         let event = self.pass(point, self.returns, &mut tangents)?.event;
         if is_first && transition::depends_on_time(self.system, &event)? {

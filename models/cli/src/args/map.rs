@@ -94,7 +94,8 @@ pub struct MapArgs {
     )]
     pub ignore: Vec<String>,
     /// Compute the Lyapunov exponent of each cell: the mean growth of a small deviation over this many further returns,
-    /// per return, in powers of e. Of an orbit it is the logarithm of its largest multiplier.
+    /// per return, in powers of e. On an orbit it is the logarithm of its largest multiplier, divided by its period; N is
+    /// rounded up to whole periods.
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "returns", value_parser = clap::value_parser!(u32).range(1..))]
     pub lyapunov: Option<u32>,
     /// Threads and rows.

@@ -7,7 +7,7 @@ use dalembert_driver::{
     Contact, Ending, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,
 };
 
-use super::orbits;
+use super::orbits::{self, Return};
 use super::request::{Request, Returns};
 use crate::names;
 use dalembert_driver::ensemble::runner::{Runner, details};
@@ -76,9 +76,9 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
     let returned = returned.filter(|_| outcome == RETURNED);
     let (mut cycle, mut exponent, mut reason) = (Vec::new(), f64::NAN, String::new());
     if let Some(returns) = returned {
-        let recent: Vec<Vec<f64>> = seen.recent.iter().cloned().collect();
+        let recent: Vec<Return> = seen.recent.iter().cloned().collect();
         cycle = orbits::cycle(&recent, returns.period, components);
-        match grown(runner, returns, end) {
+        match grown(runner, returns, cycle.len(), end) {
             Some(Ok(grown)) => exponent = grown,
             Some(Err(missed)) => reason = missed.replace(['\n', '\r'], " "),
             None => {}
@@ -113,15 +113,24 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
     }
 }
 
-/// The Lyapunov exponent from the last return on, if it is asked for; the error explains why there is none.
-fn grown(runner: &Runner<'_>, returns: &Returns, last: &Point) -> Option<Result<f64, String>> {
-    let search = returns.exponent.as_ref()?;
+/// The Lyapunov exponent from the last return on, if it is asked for; the error explains why there is none. On an orbit
+/// of some period it is the mean over whole periods.
+fn grown(
+    runner: &Runner<'_>,
+    returns: &Returns,
+    period: usize,
+    last: &Point,
+) -> Option<Result<f64, String>> {
+    let mut search = returns.exponent.clone()?;
+    let period = u32::try_from(period).unwrap_or(1).max(1);
+    let whole = search.returns.checked_next_multiple_of(period);
+    search.returns = whole.unwrap_or(search.returns);
     let origin = Origin {
         q: last.q.clone(),
         rates: Rates::Velocities(last.qdot.clone()),
         policy: OffConstraint::Keep,
     };
-    Some(match runner.model().exponent(&origin, search) {
+    Some(match runner.model().exponent(&origin, &search) {
         Ok(Some(Ok(exponent))) => Ok(exponent),
         Ok(Some(Err(error))) => Err(error.to_string()),
         Ok(None) => Err("the scene has no variations".to_owned()),
@@ -136,9 +145,11 @@ struct Seen<'a> {
     has_failed: bool,
     returns: u64,
     /// The last returns, as many as two of the longest periods have.
-    recent: VecDeque<Vec<f64>>,
+    recent: VecDeque<Return>,
     /// The last return.
     last: Option<Point>,
+    /// The time of the return before; NaN before the first.
+    before: f64,
 }
 
 impl<'a> Seen<'a> {
@@ -150,6 +161,7 @@ impl<'a> Seen<'a> {
             returns: 0,
             recent: VecDeque::new(),
             last: None,
+            before: f64::NAN,
         }
     }
 
@@ -190,9 +202,12 @@ impl Watch for Seen<'_> {
         // Only the last returns are compared.
         let left = returns.count.saturating_sub(self.returns);
         if left < 2 * returns.period as u64 {
-            self.recent
-                .push_back(self.request.components.values(&impact.after));
+            self.recent.push_back(Return {
+                state: self.request.components.values(&impact.after),
+                duration: impact.t - self.before,
+            });
         }
+        self.before = impact.t;
         if left == 0 {
             self.last = Some(impact.after);
         }

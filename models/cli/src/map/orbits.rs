@@ -9,16 +9,29 @@ const APART: f64 = 1000.0;
 /// Largest number of orbits that are told apart.
 const MOST: usize = 1000;
 
+/// A return to the surface.
+#[derive(Debug, Clone)]
+pub struct Return {
+    /// The state after it.
+    pub state: Vec<f64>,
+    /// The time since the return before; NaN for the first.
+    pub duration: f64,
+}
+
 /// The points of the orbit that the last of some returns repeat, the last return first; empty if they do not. Needs two
-/// periods of returns.
-pub fn cycle(recent: &[Vec<f64>], longest: usize, components: &Components) -> Vec<Vec<f64>> {
+/// periods of returns. Durations are compared too: where the motion depends on time, equal states are not enough.
+pub fn cycle(recent: &[Return], longest: usize, components: &Components) -> Vec<Vec<f64>> {
     let last = |back: usize| &recent[recent.len() - 1 - back];
+    let are_same = |one: &Return, other: &Return| {
+        components.are_same(&one.state, &other.state, 1.0)
+            && !components.differ(one.duration, other.duration)
+    };
     let repeats = |period: usize| {
         2 * period <= recent.len()
-            && (0..period).all(|back| components.are_same(last(back), last(back + period), 1.0))
+            && (0..period).all(|back| are_same(last(back), last(back + period)))
     };
     match (1..=longest).find(|&period| repeats(period)) {
-        Some(period) => (0..period).map(|back| last(back).clone()).collect(),
+        Some(period) => (0..period).map(|back| last(back).state.clone()).collect(),
         None => Vec::new(),
     }
 }

@@ -156,6 +156,12 @@ impl Components {
         point.q.iter().chain(rates).copied().collect()
     }
 
+    /// True if two numbers are known and do not count as the same.
+    pub fn differ(&self, first: f64, second: f64) -> bool {
+        let scale = f64::max(1.0, f64::max(first.abs(), second.abs()));
+        (first - second).abs() > self.near * scale
+    }
+
     /// True if two states differ by less than `factor` times what counts as the same.
     pub fn are_same(&self, first: &[f64], second: &[f64], factor: f64) -> bool {
         let pairs = first.iter().zip(second).zip(&self.kinds);
