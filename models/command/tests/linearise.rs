@@ -331,3 +331,30 @@ fn flags_that_make_no_sense_are_refused() {
         );
     }
 }
+
+/// A pendulum whose torque just holds it level: two equilibria meet there. The tangent has no negative real part at their meeting, and the
+/// state is known to half of its digits.
+#[test]
+fn the_stability_of_a_fold_is_open() {
+    let text = "
+        Buckling {
+            coordinates { th: angle; }
+            parameters { T = 1; c = 0.5; }
+            lagrangian = dot(th)^2/2 + cos(th);
+            forces { torque: T*d(th) - c*dot(th)*d(th); }
+            initial { th = 1; }
+        }";
+    let stability = |flags: &str| {
+        let done = run_on(text, &format!("linearise - --trim {flags}"));
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        done.output
+    };
+    for torque in ["T=1", "T=1.000000000001"] {
+        let told = stability(&format!("--set {torque}"));
+        assert!(told.contains("not decided"), "{told}");
+    }
+    // Below, the lower equilibrium is stable and the upper one is not.
+    assert!(stability("--set T=0.9").contains("stable: all real parts are negative"));
+    let upper = stability("--set T=0.9 --initial th=2");
+    assert!(upper.contains("unstable"), "{upper}");
+}

@@ -33,6 +33,9 @@ pub use trim::Trim;
 /// Largest rate of an equilibrium, as a fraction of the rates of its terms.
 const AT_REST: f64 = 1e-9;
 
+/// Distance of the neighbours of an equilibrium, in Newton steps. At a double root one step leads half of the way.
+const BEYOND: f64 = 4.0;
+
 /// Largest real part that counts as 0, as a fraction of the largest entry of A.
 const NEUTRAL: f64 = 1e-9;
 
@@ -63,6 +66,9 @@ pub struct Linearisation {
     pub d: Vec<Vec<f64>>,
     /// The eigenvalues of A, real and imaginary parts; `None` if they are not found.
     pub eigenvalues: Option<Vec<[f64; 2]>>,
+    /// The eigenvalues at states on both sides of this one, beyond the equilibrium that Newton's next step leads to. Where
+    /// two equilibria meet, the rates hardly tell which state is one, and the stability of the neighbours differs.
+    pub(crate) nearby: Vec<Vec<[f64; 2]>>,
     /// Indices of the components whose rates are not 0 up to rounding, without those of [`Trim::moving`].
     pub unsteady: Vec<usize>,
     /// Number of equations that keep the positions on the constraints: as many eigenvalues 0 belong to directions off them.
@@ -91,14 +97,21 @@ impl Linearisation {
             .eigenvalues
             .as_ref()
             .filter(|_| self.unsteady.is_empty())?;
-        let largest = largest(self.a.iter().flatten());
-        let count = |is_counted: &dyn Fn(f64) -> bool| {
-            let real = eigenvalues.iter().map(|[re, _]| *re);
-            real.filter(|re| is_counted(*re)).count()
+        let margin = NEUTRAL * largest(self.a.iter().flatten());
+        // What is the same at all states that may be the equilibrium.
+        let least = |is_counted: &dyn Fn(f64) -> bool| {
+            let count = |spectrum: &Vec<[f64; 2]>| {
+                let real = spectrum.iter().map(|[re, _]| *re);
+                real.filter(|re| is_counted(*re)).count()
+            };
+            let others = self.nearby.iter().map(count);
+            others.fold(count(eigenvalues), usize::min)
         };
-        let growing = count(&|re| re > NEUTRAL * largest);
+        let growing = least(&|re| re > margin);
+        let decaying = least(&|re| re < -margin);
         // Eigenvalues of directions off the constraints are 0, and belong to no motion.
-        let neutral = count(&|re| re.abs() <= NEUTRAL * largest).saturating_sub(self.levels);
+        let moving = eigenvalues.len().saturating_sub(self.levels);
+        let neutral = moving.saturating_sub(growing + decaying);
         Some(match (growing, neutral) {
             (0, 0) => Tendency::Stable,
             (0, neutral) => Tendency::Neutral(neutral),
@@ -238,6 +251,10 @@ fn linearise<S: Instance + Scene + Variational>(
     let sample = plant.at(&state, &inputs)?;
     let moving = place.trim.as_ref().map_or(&[][..], |trim| &trim.moving);
     let unsteady = unsteady(&sample, &state, &inputs, moving);
+    let nearby = match unsteady.is_empty() {
+        true => nearby(&plant, &sample, (&state, &inputs), moving),
+        false => Vec::new(),
+    };
     let description = system.description();
     let n = state.len();
     let [a, b] = split(&sample.by_rates, n);
@@ -259,6 +276,7 @@ fn linearise<S: Instance + Scene + Variational>(
         b,
         c,
         d,
+        nearby,
         unsteady,
         levels: sample.levels.len(),
         rates: sample.rates,
@@ -285,19 +303,58 @@ fn split(rows: &[Vec<f64>], columns: usize) -> [Vec<Vec<f64>>; 2] {
 
 /// Components whose rates are not 0 up to the rounding of their terms.
 fn unsteady(sample: &Sample, state: &[f64], inputs: &[f64], moving: &[usize]) -> Vec<usize> {
-    let values: Vec<f64> = state.iter().chain(inputs).copied().collect();
-    let rates = sample.rates.iter().zip(&sample.by_rates).enumerate();
+    let sizes = sizes(sample, state, inputs);
+    let rates = sample.rates.iter().zip(&sizes).enumerate();
     rates
-        .filter(|(index, (rate, slopes))| {
-            let terms = slopes
-                .iter()
-                .zip(&values)
-                .map(|(slope, value)| slope * value.abs().max(1.0));
-            let size = terms.fold(1.0_f64, |most, term| most.max(term.abs()));
-            !moving.contains(index) && rate.abs() > AT_REST * size
+        .filter(|(index, (rate, size))| {
+            !moving.contains(index) && rate.abs() > AT_REST * size.max(1.0)
         })
         .map(|(index, _)| index)
         .collect()
+}
+
+/// The largest term of each rate.
+fn sizes(sample: &Sample, state: &[f64], inputs: &[f64]) -> Vec<f64> {
+    let values: Vec<f64> = state.iter().chain(inputs).copied().collect();
+    let size = |slopes: &Vec<f64>| {
+        let terms = slopes.iter().zip(&values);
+        let terms = terms.map(|(slope, value)| slope * value.abs().max(1.0));
+        terms.fold(0.0_f64, |most, term| most.max(term.abs()))
+    };
+    sample.by_rates.iter().map(size).collect()
+}
+
+/// The eigenvalues at the states a few Newton steps away in both directions, where the equations are defined. A rate counts
+/// as at least the rounding of its terms.
+fn nearby<S: Instance + Variational>(
+    plant: &Plant<'_, S>,
+    sample: &Sample,
+    (state, inputs): (&[f64], &[f64]),
+    moving: &[usize],
+) -> Vec<Vec<[f64; 2]>> {
+    let n = state.len();
+    let sizes = sizes(sample, state, inputs);
+    let rates = sample.rates.iter().zip(&sizes).enumerate();
+    let residuals: Vec<f64> = rates
+        .map(|(index, (rate, size))| match moving.contains(&index) {
+            true => 0.0,
+            false => rate.abs().max(f64::EPSILON * size).copysign(*rate),
+        })
+        .collect();
+    let columns: Vec<Vec<f64>> = (0..n)
+        .map(|j| sample.by_rates.iter().map(|row| row[j]).collect())
+        .collect();
+    let damping = f64::EPSILON.sqrt() * largest(columns.iter().flatten());
+    let Some(step) = trim::damped(&columns, &residuals, damping) else {
+        return Vec::new();
+    };
+    let beside = |factor: f64| {
+        let moved = state.iter().zip(&step);
+        let moved: Vec<f64> = moved.map(|(value, step)| value + factor * step).collect();
+        let sample = plant.at(&moved, inputs).ok()?;
+        spectrum::<S>(&split(&sample.by_rates, n)[0])
+    };
+    [-BEYOND, BEYOND].into_iter().filter_map(beside).collect()
 }
 
 /// The eigenvalues of a square matrix, by rows.

@@ -177,7 +177,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
 }
 
 /// The vector with the least `|J x - r|^2 + damping^2 |x|^2`.
-fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
+pub(super) fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
     let count = columns.len();
     let rows: Vec<Vec<f64>> = (columns.iter().enumerate())
         .map(|(j, column)| {
