@@ -312,9 +312,10 @@ fn motions_of_springs_meet_after_half_their_periods() {
     );
     let conjugate = motion["conjugate"].as_array().unwrap();
     let times: Vec<f64> = conjugate.iter().map(|it| number(&it["t"])).collect();
-    // sin(t) sin(2 t)/2 passes through 0 at pi/2 alone; at pi it touches it.
-    assert_eq!(times.len(), 1, "{times:?}");
+    // sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches it at pi, where both motions meet.
+    assert_eq!(times.len(), 2, "{times:?}");
     assert_near(times[0], std::f64::consts::FRAC_PI_2, 1e-10);
+    assert_near(times[1], std::f64::consts::PI, 1e-7);
 }
 
 #[test]
@@ -566,4 +567,36 @@ fn what_cannot_be_sought_is_refused() {
         "- --to x=1,y=1 --time 1",
         "--to: the constraint `rod` keeps a value that differs by 1 there",
     );
+}
+
+/// All neighbours of a motion meet it at once, so that the determinant touches 0 and keeps its sign.
+#[test]
+fn conjugate_points_of_multiplicity_two() {
+    let round = "
+        Round { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2 - (x^2 + y^2)/2; }";
+    let turning = "
+        Turning {
+            coordinates { x; y; }
+            lagrangian = (dot(x)^2 + dot(y)^2)/2 + (x*dot(y) - y*dot(x))/2;
+        }";
+    let cases = [
+        (
+            round,
+            "--from x=1,y=0 --to x=0.2,y=0.5 --time 4",
+            std::f64::consts::PI,
+        ),
+        (
+            turning,
+            "--from x=0,y=0 --to x=1,y=0 --time 8",
+            std::f64::consts::TAU,
+        ),
+    ];
+    for (text, flags, known) in cases {
+        let found = motions_on(text, &format!("- {flags}"));
+        assert_eq!(found.len(), 1);
+        let conjugate = found[0]["conjugate"].as_array().unwrap();
+        let times: Vec<f64> = conjugate.iter().map(|it| number(&it["t"])).collect();
+        assert_eq!(times.len(), 1, "{times:?}");
+        assert_near(times[0], known, 1e-7);
+    }
 }

@@ -1,11 +1,21 @@
-//! Conjugate points: zeros of the determinant along a motion, between impacts. An impact turns its sign, which is no
-//! zero.
+//! Conjugate points: zeros of the determinant along a motion, between impacts, of even order too. An impact turns its
+//! sign, which is no zero.
 
 /// Longest step along which the determinant is compared, as a fraction of the time.
 pub(super) const LONGEST: f64 = 1.0 / 128.0;
 
 /// Time after an impact at which the determinant is first looked at, as a fraction of the time.
 const AFTER: f64 = 1e-9;
+
+/// Largest value of the parabola through three values of the determinant, as a fraction of the outer ones, from which on its least
+/// value is sought.
+const SHALLOW: f64 = 0.2;
+
+/// Number of sections of an interval with a least value, the ratio of a section, and the largest least value that counts as 0, as
+/// a fraction of the values at the ends of the interval.
+const SECTIONS: u32 = 60;
+const GOLDEN: f64 = 0.381_966_011_250_105;
+const TOUCHING: f64 = 1e-10;
 
 /// Number of halvings of an interval with a zero.
 const HALVINGS: u32 = 60;
@@ -19,25 +29,89 @@ pub(super) struct Mark {
     pub is_cut: bool,
 }
 
-/// The times in (0, `time`) at which the determinant passes through 0. `at` computes it at any time.
+/// The times in (0, `time`) at which the determinant is 0. `at` computes it at any time.
 pub(super) fn zeros(marks: &[Mark], time: f64, at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     let mut zeros = Vec::new();
-    let mut last: Option<(f64, f64)> = None;
+    // The last two times since the last impact, with their values.
+    let mut before: [Option<(f64, f64)>; 2] = [None; 2];
     for mark in marks {
-        if let Some((from, before)) = last
-            && from < mark.t
-            && before * mark.determinant < 0.0
+        let here = (mark.t, mark.determinant);
+        if let [_, Some(last)] = before
+            && last.0 < here.0
+            && last.1 * here.1 < 0.0
         {
-            zeros.push(zero([from, mark.t], before, at));
+            zeros.push(zero([last.0, here.0], last.1, at));
         }
-        let after = mark.t + AFTER * time;
-        last = Some(match mark.is_cut {
-            true => (after, at(after)),
-            false => (mark.t, mark.determinant),
-        });
+        if let [Some(first), Some(middle)] = before {
+            zeros.extend(touched([first, middle, here], at));
+        }
+        before = match mark.is_cut {
+            true => {
+                let after = mark.t + AFTER * time;
+                [None, Some((after, at(after)))]
+            }
+            false => [before[1], Some(here)],
+        };
     }
     zeros.retain(|t| *t < time * (1.0 - AFTER));
     zeros
+}
+
+/// The zeros near the middle of three times, at which the determinant is nearer to 0 than before and after: two where it
+/// passes through 0 and back, one where it touches 0, as it does where two neighbouring motions meet the first one at once.
+fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
+    let [(from, first), (middle, least), (to, last)] = three;
+    let is_alike = first * least > 0.0 && least * last > 0.0;
+    let size = f64::max(first.abs(), last.abs());
+    let is_dip = least.abs() < first.abs() && least.abs() <= last.abs();
+    if !is_alike || !is_dip || lowest(three) > SHALLOW * size {
+        return Vec::new();
+    }
+    let sign = least.signum();
+    let mut value = |t: f64| sign * at(t);
+    let (mut low, mut high) = (from, to);
+    let mut best = (middle, least.abs());
+    for _ in 0..SECTIONS {
+        // The golden section of the longer side.
+        let is_left = best.0 - low > high - best.0;
+        let t = match is_left {
+            true => best.0 - GOLDEN * (best.0 - low),
+            false => best.0 + GOLDEN * (high - best.0),
+        };
+        let there = value(t);
+        if there < 0.0 {
+            return vec![zero([from, t], first, at), zero([t, to], sign * there, at)];
+        }
+        match (there < best.1, is_left) {
+            (true, true) => (high, best) = (best.0, (t, there)),
+            (true, false) => (low, best) = (best.0, (t, there)),
+            (false, true) => low = t,
+            (false, false) => high = t,
+        }
+    }
+    if best.1.is_nan() || best.1 > TOUCHING * size {
+        return Vec::new();
+    }
+    // The root of the determinant passes through 0 there.
+    let mut t = best.0;
+    for share in [1e-2, 1e-3] {
+        let distance = share * (to - from);
+        let [left, right] = [t - distance, t + distance].map(|t| value(t).abs().sqrt());
+        t += distance * (left - right) / (left + right);
+    }
+    vec![t]
+}
+
+/// The least absolute value of the parabola through three values of one sign; 0 where it passes through 0.
+fn lowest([(a, first), (b, middle), (c, last)]: [(f64, f64); 3]) -> f64 {
+    let [first, middle, last] = [first, middle, last].map(f64::abs);
+    let slopes = [(middle - first) / (b - a), (last - middle) / (c - b)];
+    let bend = (slopes[1] - slopes[0]) / (c - a);
+    let slope = slopes[0] + bend * (b - a);
+    match bend > 0.0 {
+        true => (middle - slope * slope / (4.0 * bend)).max(0.0),
+        false => middle,
+    }
 }
 
 /// The zero between two times of different sign; `before` is the value at the first of them.
@@ -92,5 +166,35 @@ mod tests {
         for (found, expected) in found.iter().zip(expected) {
             assert!((found - expected).abs() < 1e-14, "{found}");
         }
+    }
+
+    /// Marks of a function along (0, 7] without impacts.
+    fn marks(value: impl Fn(f64) -> f64) -> Vec<Mark> {
+        let times = (1..=70).map(|k| 0.1 * f64::from(k));
+        times
+            .map(|t| Mark {
+                t,
+                determinant: value(t),
+                is_cut: false,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn zeros_of_even_order_count_and_dips_above_zero_do_not() {
+        let touching = |t: f64| t.sin().powi(2) * (1.0 + 0.1 * t);
+        let found = zeros(&marks(touching), 7.0, &mut { touching });
+        let expected = [std::f64::consts::PI, std::f64::consts::TAU];
+        assert_eq!(found.len(), 2, "{found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-8, "{found}");
+        }
+        // Two zeros between neighbouring marks, and none.
+        let close = |t: f64| (t - 3.02) * (t - 3.05);
+        let found = zeros(&marks(close), 7.0, &mut { close });
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!((found[0] - 3.02).abs() < 1e-12 && (found[1] - 3.05).abs() < 1e-12);
+        let above = |t: f64| (t - 3.03).powi(2) + 1e-8;
+        assert!(zeros(&marks(above), 7.0, &mut { above }).is_empty());
     }
 }
