@@ -351,6 +351,86 @@ fn the_driven_oscillator_folds_and_grazes_where_formulas_say() {
     }
 }
 
+/// A ball on a floor that adds `w` to its speed after each impact. The orbit has the speed `2 w` and the period `4 w`.
+const KICKED: &str = "
+    Kicked {
+        coordinates { x; v; }
+        parameters { w = 0.5; }
+        field { dot(x) = v; dot(v) = -1; }
+        impacts { floor: x >= 0 => reset { v = -v/2 + w; }; }
+        initial { x = 5; until = 500; }
+    }";
+
+#[test]
+fn periods_may_change_by_any_factor_in_both_directions() {
+    for range in ["w=0.02..4", "w=4..0.02"] {
+        let done = follow(
+            KICKED,
+            &format!("--surface floor --continue {range} --json -"),
+        );
+        let document = done.json();
+        let ends = document["ends"].as_array().unwrap();
+        assert!(
+            ends.iter().all(|end| end["kind"] == "range"),
+            "{range}: {ends:?}"
+        );
+        for point in document["points"].as_array().unwrap() {
+            let [w, period] = ["parameter", "period"].map(|key| point[key].as_f64().unwrap());
+            assert_near(period, 4.0 * w, 1e-9);
+        }
+    }
+}
+
+/// Two equal maps side by side, whose multipliers pass the unit circle in pairs, and two that are nearly equal.
+#[test]
+fn multipliers_that_pass_the_circle_together_are_a_bifurcation() {
+    let twin = |factor: &str, apart: &str| {
+        format!(
+            "Twin {{
+                coordinates {{ x; y; tau; }}
+                parameters {{ r = 0.5; }}
+                field {{ dot(x) = 0; dot(y) = 0; dot(tau) = 1; }}
+                impacts {{ tick: tau <= 1 => reset {{
+                    x = {factor}r*x + x^3; y = {factor}(r - {apart})*y + y^3; tau = 0;
+                }}; }}
+                initial {{ until = 10; }}
+            }}"
+        )
+    };
+    for (factor, kind) in [("-", "flip"), ("", "branch_point")] {
+        let flags = "--surface tick --continue r=0.3..2";
+        let table = rows(&twin(factor, "0"), flags);
+        assert_bifurcations(&table, "r", &[(kind, 1.0)], 1e-8);
+        let table = rows(&twin(factor, "0.001"), flags);
+        assert_bifurcations(&table, "r", &[(kind, 1.0), (kind, 1.001)], 1e-8);
+    }
+}
+
+/// A driven oscillator whose amplitude `F/sqrt((1 - w^2)^2 + c^2 w^2)` reaches a wall that its orbit does not meet.
+#[test]
+fn an_orbit_grazes_a_wall_that_it_has_not_met() {
+    let text = "
+        Driven {
+            coordinates { x; v; phi: angle; }
+            parameters { F = 0.5; w = 2; c = 0.2; e = 0.5; }
+            field { dot(x) = v; dot(v) = -c*v - x + F*cos(phi); dot(phi) = w; }
+            impacts { round: sin(phi) >= 0 => reset { }; wall: x <= 1 => reset { v = -e*v; }; }
+            initial { phi = 1; until = 500; }
+        }";
+    for w in [1.5_f64, 2.0, 3.0] {
+        let flags = format!("--surface round --continue F=0.1..10 --set w={w} --json -");
+        let document = follow(text, &flags).json();
+        let end = &document["ends"][1];
+        assert_eq!(
+            [&end["kind"], &end["surface"]],
+            ["grazing", "wall"],
+            "{end}"
+        );
+        let known = f64::hypot(1.0 - w * w, 0.2 * w);
+        assert_near(end["parameter"].as_f64().unwrap(), known, 1e-6);
+    }
+}
+
 #[test]
 fn files_tell_the_same_branch() {
     let folder = Folder::new("branch");
@@ -461,4 +541,23 @@ fn unusable_flags_are_refused() {
         "--surface tick --initial x=0.6,tau=2 --continue r=2..3 --json -",
     );
     assert_ne!(done.exit, Exit::Reached);
+}
+
+#[test]
+fn a_branch_that_is_not_found_leaves_old_files() {
+    let folder = Folder::new("kept");
+    let csv = folder.path("old.csv");
+    fs::write(&csv, "old").unwrap();
+    let done = follow(
+        LOGISTIC,
+        &format!("--surface tick --initial x=0.6,tau=2 --continue r=2..3 --csv {csv}"),
+    );
+    assert_ne!(done.exit, Exit::Reached);
+    assert_eq!(folder.read("old.csv"), "old");
+    let done = follow(
+        LOGISTIC,
+        &format!("--surface tick --continue r=2..3 --csv {csv}"),
+    );
+    assert_eq!(done.exit, Exit::Reached);
+    assert!(folder.read("old.csv").starts_with("in.r,"));
 }

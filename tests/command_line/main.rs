@@ -7,6 +7,7 @@ mod accuracy;
 mod branch;
 mod certify;
 mod check;
+mod curves;
 mod derive;
 mod ensemble;
 mod eval;

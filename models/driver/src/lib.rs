@@ -55,7 +55,9 @@ pub mod words;
 pub use beginning::{Beginning, Component};
 pub use certify::{Certification, Certified, Ranges, Strike};
 pub use connect::{Bounce, Boundary, Conjugate, Connected, Connection, Stage, Unjoined};
-pub use continuation::{Bifurcation, Branch, BranchEnd, Continuation, Member, Stability};
+pub use continuation::{
+    Bifurcation, BifurcationCurve, Branch, BranchEnd, Continuation, Extent, Member, Stability,
+};
 pub use control::{Controlled, Extremal, Kick, Moment, SecondOrder, Task, Unsought};
 pub use dynamic::{Axis, Choice, Hit, Landing, Lattice, Leg, Move, choose};
 pub use grid::{Grid, padded};

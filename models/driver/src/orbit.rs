@@ -11,6 +11,7 @@ use dalembert::{
     Instance, Policies, Scene, SceneEffects, StateError, StateVector, Taylor, Tolerance,
 };
 
+use crate::continuation::curves::{Plane, curves};
 use crate::continuation::family::Failure;
 use crate::continuation::indicator::Precision;
 use crate::continuation::orbits::Orbits;
@@ -169,21 +170,34 @@ impl Work for ForBranch<'_> {
         search: &Search,
     ) -> Result<Branch, OrbitError> {
         let orbit = orbit(system, start, search)?;
-        let parameter = self.request.parameter;
-        let mut family = Orbits::new(system, search, parameter, &orbit)?;
+        let Continuation {
+            extent,
+            across,
+            points,
+        } = self.request;
+        let mut family = Orbits::new(system, search, extent.parameter, &orbit)?;
         let precision = Precision::of(search.tolerance.relative());
-        let mut tracer = Tracer::new(&mut family, self.request, self.watch, precision);
-        let value = system.parameter(parameter);
+        let mut tracer = Tracer::new(&mut family, extent, points, self.watch, precision);
+        let value = system.parameter(extent.parameter);
         let state = orbit.point.before;
         let branch = tracer.branch(state.as_slice(), value);
-        branch.map_err(|failure| match failure {
+        let mut branch = branch.map_err(|failure| match failure {
             Failure::Missed(error) => error,
             Failure::NotKnown => OrbitError::NoMultipliers,
             _ => OrbitError::NotConverged {
                 residual: orbit.residual,
                 iterations: orbit.iterations,
             },
-        })
+        })?;
+        if let Some(across) = across {
+            let plane = Plane {
+                extents: [extent, across],
+                value: system.parameter(across.parameter),
+                points,
+            };
+            branch.curves = curves(&mut family, &branch, plane, self.watch, precision);
+        }
+        Ok(branch)
     }
 }
 

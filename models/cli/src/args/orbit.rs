@@ -31,8 +31,13 @@ Derivatives in the state and in the parameter are exact across impacts. Bifurcat
 A branch may end inside of the range: at a surface that the orbit grazes, where the map is not defined, or where the parameter
 leaves the values of its declaration. What was found before is kept, and the exit status is 0.
 
+--across follows each of these bifurcations over a second parameter, at which they bound the regions of stability. A curve ends
+where a parameter leaves its range, and for the same reasons as a branch; that of a neimark_sacker also at a strong resonance,
+where its two multipliers meet.
+
 More examples:
   dalembert orbit compass_walker --surface heel --continue gamma=0.001..0.017 --plot gaits.svg --axis omega
+  dalembert orbit mathieu --surface period --initial x=0 --continue delta=0.1..0.6 --across eps=0.1..1 --plot tongue.svg
   dalembert orbit walker_foot_slip --surface step --modulo 'partial(x_c)'
   dalembert orbit dimensionless_walker --surface step --set alpha=0.3 --initial xi=-0.9 --json -
   dalembert orbit point_billiard --surface wall --period 2 --set ta=2 --initial x=0,y=0,x_dot=0,y_dot=1";
@@ -81,7 +86,17 @@ pub struct BranchArgs {
         allow_hyphen_values = true
     )]
     pub range: Option<String>,
-    /// Largest number of steps along the branch in either direction.
+    /// Follow the bifurcations of the branch over a second parameter: curves in the plane of both parameters. --csv has a
+    /// row for every point of a curve, --plot draws the plane.
+    #[arg(
+        long,
+        value_name = "NAME=A..B",
+        requires = "continue",
+        conflicts_with = "axis",
+        allow_hyphen_values = true
+    )]
+    pub across: Option<String>,
+    /// Largest number of steps along the branch, and along each curve, in either direction.
     #[arg(long, value_name = "N", requires = "continue", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000)]
     pub points: u32,
     /// Write a row for every point of the branch. `-` is the standard output.

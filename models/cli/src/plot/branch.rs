@@ -26,11 +26,11 @@ const ARCS: [(Stability, RGBColor); 3] = [
 ];
 
 /// Bifurcations in the order of the legend.
-const MARKS: [(Bifurcation, &str, RGBColor); 4] = [
-    (Bifurcation::Fold, "fold", PALETTE[4]),
-    (Bifurcation::Flip, "flip", PALETTE[3]),
-    (Bifurcation::NeimarkSacker, "Neimark-Sacker", PALETTE[2]),
-    (Bifurcation::BranchPoint, "branch point", PALETTE[7]),
+const MARKS: [(Bifurcation, &str, usize); 4] = [
+    (Bifurcation::Fold, "fold", 4),
+    (Bifurcation::Flip, "flip", 3),
+    (Bifurcation::NeimarkSacker, "Neimark-Sacker", 2),
+    (Bifurcation::BranchPoint, "branch point", 7),
 ];
 
 /// Quantity along y.
@@ -132,7 +132,8 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
                 plane.path(drawn, path.filter(is_finite), colour(stability))?;
             }
             let marked = chart.branch.points.iter().zip(&points);
-            let marked = marked.filter_map(|(it, at)| Some((*at, mark(it.bifurcation?).2)));
+            let marked =
+                marked.filter_map(|(it, at)| Some((*at, PALETTE[mark(it.bifurcation?).1])));
             plane::dots(drawn, marked, 4.5)?;
             let rings = chart.open_ends().map(|(_, at, _)| at).filter(is_finite);
             drawn.draw_series(rings.map(plane::ring)).map_err(message)?;
@@ -150,9 +151,11 @@ fn colour(stability: Stability) -> RGBColor {
     found.map_or(style::INK, |(_, colour)| *colour)
 }
 
-fn mark(bifurcation: Bifurcation) -> (Bifurcation, &'static str, RGBColor) {
+/// The words of a bifurcation, and the number of its colour.
+pub fn mark(bifurcation: Bifurcation) -> (&'static str, usize) {
     let found = MARKS.iter().find(|(known, ..)| *known == bifurcation);
-    found.copied().unwrap_or(MARKS[0])
+    let (_, words, colour) = found.copied().unwrap_or(MARKS[0]);
+    (words, colour)
 }
 
 impl Chart<'_> {
@@ -204,7 +207,7 @@ impl Chart<'_> {
         let points = &self.branch.points;
         for (bifurcation, text, colour) in MARKS {
             if points.iter().any(|it| it.bifurcation == Some(bifurcation)) {
-                items.push(Item::new(Symbol::Dot, colour, text));
+                items.push(Item::new(Symbol::Dot, PALETTE[colour], text));
             }
         }
         let mut texts: Vec<&str> = self.open_ends().map(|(_, _, text)| text).collect();

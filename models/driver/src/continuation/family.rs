@@ -10,6 +10,9 @@ use crate::linear::{add, dot, norm};
 pub(crate) trait Family {
     /// The map at the point of the section near a state.
     fn local(&mut self, state: &[f64], parameter: f64) -> Result<Local, Failure>;
+
+    /// Prepares for members near this one, however different the last one was.
+    fn begin(&mut self, member: &Member);
 }
 
 /// Reason why a point is no member.
@@ -21,6 +24,8 @@ pub(crate) enum Failure {
     Missed(OrbitError),
     /// Multipliers, or what is computed of them, are no numbers.
     NotKnown,
+    /// No complex pair of multipliers is left.
+    Real,
     /// Newton's method does not converge, or ends elsewhere.
     Diverged,
     /// The orbit meets this surface more or less often than those before it.
@@ -35,9 +40,7 @@ pub(crate) enum Failure {
 pub(crate) struct Local {
     /// The point as a member, if it is one.
     pub member: Member,
-    /// The state.
-    pub state: Vec<f64>,
-    /// The units of its components.
+    /// The units of the components of the state.
     pub scale: Vec<f64>,
     /// The directions of the section, orthonormal in these units.
     pub directions: Vec<Vec<f64>>,
@@ -91,7 +94,7 @@ impl Local {
     /// State and parameter after a step.
     pub fn moved(&self, width: f64, step: &[f64]) -> (Vec<f64>, f64) {
         let (along, steps) = step.split_last().unwrap_or((&0.0, &[]));
-        let mut state = self.state.clone();
+        let mut state = self.member.state.clone();
         for (factor, direction) in steps.iter().zip(&self.directions) {
             add(&mut state, *factor, direction);
         }
@@ -107,7 +110,7 @@ impl Local {
 
     /// The change to a state and a parameter, in their units.
     pub fn change_to(&self, width: f64, state: &[f64], parameter: f64) -> Vec<f64> {
-        let pairs = state.iter().zip(&self.state).zip(&self.scale);
+        let pairs = state.iter().zip(&self.member.state).zip(&self.scale);
         let mut change: Vec<f64> = pairs
             .map(|((to, from), scale)| (to - from) / scale)
             .collect();
@@ -186,6 +189,11 @@ impl Node {
 
     pub fn parameter(&self) -> f64 {
         self.local.member.parameter
+    }
+
+    /// The last component of the state.
+    pub fn last(&self) -> f64 {
+        self.local.member.state.last().copied().unwrap_or(f64::NAN)
     }
 
     /// The component of the direction in the parameter.

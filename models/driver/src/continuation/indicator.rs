@@ -19,6 +19,16 @@ pub(crate) struct Precision {
 }
 
 impl Precision {
+    /// The value of a test function of slope 1 that counts as 0.
+    pub const fn zero(&self) -> f64 {
+        1e-3 * self.on_circle
+    }
+
+    /// A narrow and a wide distance from the unit circle beyond which multipliers lie outside.
+    pub const fn margins(&self) -> [f64; 2] {
+        [self.always, self.on_circle]
+    }
+
     /// The distances at a tolerance; those at 1e-14 are the least.
     pub fn of(tolerance: f64) -> Self {
         let on_circle = f64::max(1e-6, 10.0 * tolerance.sqrt());
@@ -130,12 +140,12 @@ impl Test {
 }
 
 /// True if a member is a bifurcation up to rounding, or lies among a family.
-pub(super) fn is_degenerate(node: &Node, width: f64, precision: Precision) -> bool {
+pub(super) fn is_degenerate(node: &Node, tests: &[Test], width: f64, precision: Precision) -> bool {
     let is_zero = |test: &Test| {
         let value = test.value(node, width, precision);
         value.abs() < precision.on_circle && test.is_met(node, precision)
     };
-    node.dimension > 1 || Test::ALL.iter().any(is_zero)
+    node.dimension > 1 || tests.iter().any(is_zero)
 }
 
 /// Pairs of different multipliers.
@@ -160,12 +170,23 @@ fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
     })
 }
 
-/// Number of multipliers outside the unit circle.
-pub(super) fn outside(multipliers: &[[f64; 2]], precision: Precision) -> usize {
+/// Number of multipliers outside the unit circle by more than a margin.
+pub(super) fn outside(multipliers: &[[f64; 2]], margin: f64) -> usize {
     let moduli = multipliers.iter().map(|&[re, im]| f64::hypot(re, im));
-    moduli
-        .filter(|modulus| *modulus > 1.0 + precision.on_circle)
-        .count()
+    moduli.filter(|modulus| *modulus > 1.0 + margin).count()
+}
+
+/// The bifurcation at which the multiplier farthest from 1, among those near the unit circle, passes it.
+pub(super) fn passing(multipliers: &[[f64; 2]], precision: Precision) -> Option<Bifurcation> {
+    let on_circle = multipliers
+        .iter()
+        .filter(|&&[re, im]| (f64::hypot(re, im) - 1.0).abs() < precision.near);
+    let farthest = on_circle.min_by(|one, other| one[0].total_cmp(&other[0]))?;
+    Some(match *farthest {
+        [re, im] if im.abs() < precision.near && re < 0.0 => Bifurcation::Flip,
+        [_, im] if im.abs() < precision.near => Bifurcation::BranchPoint,
+        _ => Bifurcation::NeimarkSacker,
+    })
 }
 
 /// The stability by the multipliers; `None` if one of them is no number.

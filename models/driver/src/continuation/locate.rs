@@ -1,9 +1,10 @@
 //! Bifurcations between two members of a branch: zeros of test functions.
 
 use super::family::{Failure, Node, Unknowns};
-use super::indicator::{Test, outside};
+use super::indicator::{Test, outside, passing};
 use super::trace::{REACH, Tracer};
 use super::{Bifurcation, Member};
+use crate::linear::norm;
 
 /// Length of steps down to which bifurcations that were not seen are looked for.
 const REFINED: f64 = 1e-4;
@@ -33,18 +34,28 @@ impl Tracer<'_, '_> {
         length: f64,
     ) -> Result<Vec<Located>, Failure> {
         let mut located: Vec<Located> = Vec::new();
-        let mut passing = 0;
-        for test in Test::ALL {
+        let mut passed = 0;
+        if self.tests.is_empty() {
+            return Ok(located);
+        }
+        for &test in self.tests {
             if let Some(values) = test.change([node, next], self.width, self.precision)? {
-                passing += test.passing();
-                located.extend(self.zero(test, [node, next], values, length)?);
+                // A sign may change without a bifurcation, as where the product of two real multipliers passes 1.
+                if let Some(found) = self.zero(test, [node, next], values, length)? {
+                    passed += test.passing();
+                    located.push(found);
+                }
             }
         }
+        let [_, on_circle] = self.precision.margins();
         let [before, after] =
-            [node, next].map(|node| outside(&node.local.member.multipliers, self.precision));
-        if before.abs_diff(after) > passing && length > REFINED {
+            [node, next].map(|node| outside(&node.local.member.multipliers, on_circle));
+        if before.abs_diff(after) > passed {
             // Two test functions, or one of them twice, have changed their sign inside.
-            return Err(Failure::TooLong);
+            if length > REFINED {
+                return Err(Failure::TooLong);
+            }
+            located.extend(self.together([node, next], length)?);
         }
         let is_crossing =
             |located: &Located| located.member.bifurcation == Some(Bifurcation::BranchPoint);
@@ -99,6 +110,59 @@ impl Tracer<'_, '_> {
         Ok(Some(Located { fraction, member }))
     }
 
+    /// The member between two others at which several multipliers pass the unit circle at once, as those of equal parts
+    /// of a system do: an even number leaves the sign of a test function. `None` if none of them is near the circle.
+    fn together(
+        &mut self,
+        [node, next]: [&Node; 2],
+        length: f64,
+    ) -> Result<Option<Located>, Failure> {
+        let precision = self.precision;
+        let count = |node: &Node, margin| outside(&node.local.member.multipliers, margin);
+        let change = |margin| count(node, margin).abs_diff(count(next, margin));
+        // Multipliers that lie on the circle all along may be seen on either side of it by the narrow margin.
+        let [narrow, wide] = precision.margins();
+        let margin = if change(narrow) == change(wide) {
+            narrow
+        } else {
+            wide
+        };
+        let before = count(node, margin);
+        let passed = |node: &Node| {
+            if count(node, margin) == before {
+                -1.0
+            } else {
+                1.0
+            }
+        };
+        let place = self.place([node, next], length, passed)?;
+        let fraction = place.distance / next.distance;
+        let mut member = place.local.member;
+        member.bifurcation = passing(&member.multipliers, precision);
+        Ok(member.bifurcation.map(|_| Located { fraction, member }))
+    }
+
+    /// The member between two others at which a number along the branch is 0.
+    pub(super) fn place(
+        &mut self,
+        [node, next]: [&Node; 2],
+        length: f64,
+        number: impl Fn(&Node) -> f64,
+    ) -> Result<Node, Failure> {
+        let mut bracket = Bracket::new([node, next].map(&number));
+        for _ in 0..ZOOM {
+            let fraction = bracket.guess();
+            let mut found = self.on_arc([node, next], fraction, REACH * length)?;
+            let value = number(&found);
+            if value == 0.0 || bracket.narrow(fraction, value) * length < LOCATED {
+                let state = &found.local.member.state;
+                found.distance = norm(&node.local.change_to(self.width, state, found.parameter()));
+                return Ok(found);
+            }
+        }
+        Err(Failure::Diverged)
+    }
+
     /// The place where another branch crosses, between members on both sides of it. Nearer to that place members of both
     /// branches differ by rounding alone, and a test function has half the digits.
     fn crossing(
@@ -114,9 +178,9 @@ impl Tracer<'_, '_> {
         let [a, b, c, d] = sides;
         let sides = [a?, b?, c?, d?];
         let place = self.root(&sides);
-        let components = 0..node.local.state.len();
+        let components = 0..node.local.member.state.len();
         let state: Vec<f64> = components
-            .map(|index| interpolated(place, |k| sides[k].local.state[index]))
+            .map(|index| interpolated(place, |k| sides[k].local.member.state[index]))
             .collect();
         let parameter = interpolated(place, |k| sides[k].parameter());
         Ok(self.family.local(&state, parameter)?.member)
@@ -164,9 +228,9 @@ pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f
         parts[0] + parts[1]
     };
     let members = [node, next];
-    let state = (0..node.local.state.len()).map(|index| {
+    let state = (0..node.local.member.state.len()).map(|index| {
         at(
-            members.map(|it| it.local.state[index]),
+            members.map(|it| it.local.member.state[index]),
             members.map(|it| it.heading[index]),
             members.map(|it| it.local.scale[index]),
         )

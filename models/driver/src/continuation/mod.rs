@@ -1,14 +1,17 @@
-//! Continuation: a branch of periodic orbits over one parameter, with its bifurcations.
+//! Continuation: a branch of periodic orbits over one parameter, with its bifurcations, and the curves of these
+//! bifurcations over two parameters.
 //!
 //! | file | |
 //! |---|---|
 //! | `family` | one member of a branch and its neighbours, without the type of the system |
 //! | `orbits` | the members that are periodic orbits of a section |
+//! | `curves` | the members that are bifurcations over two parameters |
 //! | `trace` | pseudo-arclength continuation with steps adapted to the branch |
 //! | `indicator` | test functions of bifurcations |
 //! | `locate` | the places where they are 0 |
 //! | `rotated` | linear equations with more unknowns than equations |
 
+pub(crate) mod curves;
 pub(crate) mod family;
 pub(crate) mod indicator;
 mod locate;
@@ -20,13 +23,35 @@ use dalembert::{OrbitError, ParameterError};
 
 use crate::model::Point;
 
+/// A parameter and its range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// The index of the parameter.
+    pub parameter: usize,
+    /// Both ends of the range; the second one may be the lower one.
+    pub range: [f64; 2],
+}
+
+impl Extent {
+    /// The length of the range, the unit of the parameter.
+    pub(crate) fn width(&self) -> f64 {
+        (self.range[1] - self.range[0]).abs()
+    }
+
+    /// The range in increasing order.
+    pub(crate) fn limits(&self) -> [f64; 2] {
+        let [first, last] = self.range;
+        [f64::min(first, last), f64::max(first, last)]
+    }
+}
+
 /// Request for a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Continuation {
-    /// The index of the parameter.
-    pub parameter: usize,
-    /// The range of the parameter; the second end may be the lower one.
-    pub range: [f64; 2],
+    /// The parameter over which the orbit is followed.
+    pub extent: Extent,
+    /// A second parameter, over which the bifurcations of the branch are followed.
+    pub across: Option<Extent>,
     /// Largest number of points in either direction.
     pub points: u32,
 }
@@ -38,6 +63,20 @@ pub struct Branch {
     pub points: Vec<Member>,
     /// Both ends of the branch.
     pub ends: [BranchEnd; 2],
+    /// The curves of its bifurcations over two parameters, if they are asked for. A curve on which several of them lie is
+    /// here once.
+    pub curves: Vec<BifurcationCurve>,
+}
+
+/// A curve of bifurcations in the plane of two parameters.
+#[derive(Debug, Clone)]
+pub struct BifurcationCurve {
+    /// The bifurcation.
+    pub bifurcation: Bifurcation,
+    /// Its points in their order along the curve. The first ones lie towards the first end of the second range.
+    pub points: Vec<Member>,
+    /// Both ends of the curve.
+    pub ends: [BranchEnd; 2],
 }
 
 /// A point of a branch.
@@ -45,6 +84,8 @@ pub struct Branch {
 pub struct Member {
     /// The value of the parameter.
     pub parameter: f64,
+    /// The value of the second parameter, on a curve of bifurcations.
+    pub second: Option<f64>,
     /// The period.
     pub period: f64,
     /// The point of the section.
@@ -61,6 +102,8 @@ pub struct Member {
     pub stability: Stability,
     /// The bifurcation at this point.
     pub bifurcation: Option<Bifurcation>,
+    /// The state, in the components of its family.
+    pub(crate) state: Vec<f64>,
 }
 
 /// Stability to first order.
@@ -128,6 +171,8 @@ pub enum BranchEnd {
     Missed(OrbitError),
     /// Multipliers of the next point, or its test functions, are no finite numbers: its stability is not known.
     NotKnown,
+    /// The two multipliers of a Neimark-Sacker bifurcation meet at 1 or -1: a strong resonance.
+    Resonance,
     /// Newton's method does not converge at the smallest step.
     NotConverged,
     /// The largest number of points was reached.
@@ -138,13 +183,14 @@ pub enum BranchEnd {
 
 impl BranchEnd {
     /// All kinds.
-    pub const KINDS: [&'static str; 9] = [
+    pub const KINDS: [&'static str; 10] = [
         "range",
         "grazing",
         "closed",
         "parameter",
         "missed",
         "not_known",
+        "resonance",
         "not_converged",
         "points",
         "turned",
@@ -159,6 +205,7 @@ impl BranchEnd {
             Self::Parameter(_) => "parameter",
             Self::Missed(_) => "missed",
             Self::NotKnown => "not_known",
+            Self::Resonance => "resonance",
             Self::NotConverged => "not_converged",
             Self::Points => "points",
             Self::Turned => "turned",
@@ -186,6 +233,7 @@ mod tests {
             BranchEnd::Parameter(error),
             BranchEnd::Missed(OrbitError::DependsOnTime),
             BranchEnd::NotKnown,
+            BranchEnd::Resonance,
             BranchEnd::NotConverged,
             BranchEnd::Points,
             BranchEnd::Turned,

@@ -52,22 +52,42 @@ impl<'a, S: Instance + Scene + Variational> Orbits<'a, S> {
 
 impl<S: Instance + Scene + Variational> Family for Orbits<'_, S> {
     fn local(&mut self, state: &[f64], parameter: f64) -> Result<Local, Failure> {
-        self.system.set_parameter(self.parameter, parameter);
+        self.along(state, self.parameter, parameter)
+    }
+
+    fn begin(&mut self, member: &Member) {
+        self.expect(member.period);
+    }
+}
+
+impl<S: Instance + Scene + Variational> Orbits<'_, S> {
+    /// Gives a parameter a value, at which it stays.
+    pub fn hold(&mut self, parameter: usize, value: f64) {
+        self.system.set_parameter(parameter, value);
+    }
+
+    /// Expects returns that take about as long as this period.
+    fn expect(&mut self, period: f64) {
+        self.horizon = f64::min(self.search.horizon, PATIENCE * period);
+    }
+
+    /// The return map near a state at a value of a parameter, with its derivative in that parameter.
+    pub fn along(&mut self, state: &[f64], parameter: usize, value: f64) -> Result<Local, Failure> {
+        self.hold(parameter, value);
         self.system.check_parameters().map_err(Failure::Parameter)?;
         let mut near = self.system.zero_state();
         near.as_mut_slice().copy_from_slice(state);
         let mut stepper = Taylor::new(self.search.tolerance);
         let mut section = section(&self.system, self.search, self.horizon, &mut stepper)
             .with_returns(self.search.returns);
-        let image = section.image(&self.anchor, &near, self.parameter);
+        let image = section.image(&self.anchor, &near, parameter);
         drop(section);
         let image = image.map_err(Failure::Missed)?;
         let precision = Precision::of(self.search.tolerance.relative());
-        let mut local = local(&self.system, &image, parameter, precision)?;
+        let mut local = local(&self.system, &image, value, precision)?;
         local.member.element = self.search.factors(&image.element);
         if local.is_closed {
-            let longest = PATIENCE * local.member.period;
-            self.horizon = f64::min(self.search.horizon, longest);
+            self.expect(local.member.period);
         }
         Ok(local)
     }
@@ -97,6 +117,7 @@ fn local<S: Instance + Variational>(
     Ok(Local {
         member: Member {
             parameter,
+            second: None,
             period: image.image.time,
             before: point(system, 0.0, &image.point),
             after: point(system, 0.0, &image.image.after),
@@ -105,8 +126,8 @@ fn local<S: Instance + Variational>(
             stability: stability(&multipliers, precision).ok_or(Failure::NotKnown)?,
             multipliers,
             bifurcation: None,
+            state: all(&image.point),
         },
-        state: all(&image.point),
         scale: all(&image.scale),
         directions: image.directions.as_ref()[..n].iter().map(all).collect(),
         shift: all(&image.shift),

@@ -5,9 +5,9 @@
 //! at a constant parameter too.
 
 use super::family::{Failure, Family, Local, Node, Unknowns};
-use super::indicator::{Precision, is_degenerate};
+use super::indicator::{Precision, Test, is_degenerate};
 use super::locate::{Located, arc};
-use super::{Branch, BranchEnd, Continuation, Member};
+use super::{Branch, BranchEnd, Extent, Member};
 use crate::linear::{dot, norm};
 
 /// First, largest and smallest length of a step.
@@ -50,37 +50,79 @@ pub(crate) type Watch<'a> = &'a mut dyn FnMut(&Member);
 /// Continuation under way.
 pub(crate) struct Tracer<'a, 'w> {
     pub(super) family: &'a mut dyn Family,
-    request: Continuation,
+    extent: Extent,
+    /// Largest number of steps in either direction.
+    points: u32,
     /// The unit of the parameter: the length of the range.
     pub(super) width: f64,
     watch: Watch<'w>,
     pub(super) precision: Precision,
+    /// The test functions whose zeros are located.
+    pub(super) tests: &'static [Test],
+    /// The range of the last component of the state, if it has one.
+    window: Option<[f64; 2]>,
+    /// Members that may lie on the branch.
+    sought: Vec<Sought>,
+}
+
+/// A member that may lie on a branch.
+struct Sought {
+    /// The member; `None` if there is none near the given state.
+    local: Option<Local>,
+    is_met: bool,
 }
 
 impl<'a, 'w> Tracer<'a, 'w> {
     pub fn new(
         family: &'a mut dyn Family,
-        request: Continuation,
+        extent: Extent,
+        points: u32,
         watch: Watch<'w>,
         precision: Precision,
     ) -> Self {
-        let [first, last] = request.range;
         Self {
             family,
-            request,
-            width: (last - first).abs(),
+            extent,
+            points,
+            width: extent.width(),
             watch,
             precision,
+            tests: &Test::ALL,
+            window: None,
+            sought: Vec::new(),
         }
+    }
+
+    /// The branch ends where the last component of the state leaves this range too, and no bifurcations are located on it.
+    pub fn within(&mut self, window: [f64; 2]) {
+        self.window = Some(window);
+        self.tests = &[];
+    }
+
+    /// Watches whether the branch passes through the members near these states, all at one value of the parameter.
+    pub fn seek(&mut self, states: &[Vec<f64>], parameter: f64) {
+        let found = states.iter().map(|state| {
+            let local = self.corrected(state, parameter, Unknowns::State, f64::INFINITY);
+            Sought {
+                local: local.ok(),
+                is_met: false,
+            }
+        });
+        self.sought = found.collect();
+    }
+
+    /// For each of the members that were sought, whether the branch passes through it.
+    pub fn met(&self) -> impl Iterator<Item = bool> {
+        self.sought.iter().map(|sought| sought.is_met)
     }
 
     /// The branch through the member near a state.
     pub fn branch(&mut self, state: &[f64], parameter: f64) -> Result<Branch, Failure> {
         let local = self.corrected(state, parameter, Unknowns::State, f64::INFINITY)?;
-        let mut rising = vec![0.0; local.state.len()];
+        let mut rising = vec![0.0; local.member.state.len()];
         rising.push(1.0);
         let start = Node::new(local, self.width, &rising);
-        let [low, high] = self.limits();
+        let [low, high] = self.extent.limits();
         let is_outside = start.parameter() < low || start.parameter() > high;
         let start = match is_outside {
             true => match self.approached(start)? {
@@ -89,6 +131,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     return Ok(Branch {
                         points: Vec::new(),
                         ends: [end; 2],
+                        curves: Vec::new(),
                     });
                 }
             },
@@ -98,15 +141,9 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Ok(self.both_ways(&start))
     }
 
-    /// The range in increasing order.
-    fn limits(&self) -> [f64; 2] {
-        let [first, last] = self.request.range;
-        [f64::min(first, last), f64::max(first, last)]
-    }
-
     /// The member at the nearest end of the range, on the branch through a member outside of it; or the end of the way there.
     fn approached(&mut self, start: Node) -> Result<Result<Node, BranchEnd>, Failure> {
-        let [low, high] = self.limits();
+        let [low, high] = self.extent.limits();
         let from = start.parameter();
         // As far to the other side.
         let (limits, is_rising) = match from < low {
@@ -130,16 +167,16 @@ impl<'a, 'w> Tracer<'a, 'w> {
 
     /// The member, or the next one if it is a bifurcation itself, so that this lies between two members.
     fn shifted(&mut self, start: Node) -> Node {
-        if !is_degenerate(&start, self.width, self.precision) {
+        if !is_degenerate(&start, self.tests, self.width, self.precision) {
             return start;
         }
-        let is_room = start.parameter() + FIRST * self.width < self.limits()[1];
+        let is_room = start.parameter() + FIRST * self.width < self.extent.limits()[1];
         let length = if is_room { FIRST } else { -FIRST };
         self.reached(&start, length, None).unwrap_or(start)
     }
 
     fn both_ways(&mut self, start: &Node) -> Branch {
-        let is_rising = self.request.range[0] < self.request.range[1];
+        let is_rising = self.extent.range[0] < self.extent.range[1];
         let falling = start.reversed();
         let [back, forth] = match is_rising {
             true => [&falling, start],
@@ -157,12 +194,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Branch {
             points,
             ends: [first, last],
+            curves: Vec::new(),
         }
     }
 
     /// The branch from a member on, with its bifurcations, and its end.
     fn side(&mut self, start: &Node) -> (Vec<Member>, BranchEnd) {
-        let limits = self.limits();
+        let limits = self.extent.limits();
         let mut side: Vec<(Member, f64)> = Vec::new();
         let mut way = 0.0;
         let end = self.followed(start, limits, &mut |tracer, located, next| {
@@ -191,12 +229,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
         limits: [f64; 2],
         take: &mut dyn FnMut(&mut Self, &[Located], &Node),
     ) -> BranchEnd {
+        self.family.begin(&start.local.member);
         let mut node = start.clone();
         let mut before = start.clone();
         let (mut length, mut made) = (FIRST, 0);
         let mut failures = Vec::new();
-        while made < self.request.points {
-            if leaves(&node, limits) {
+        while made < self.points {
+            if self.leaves(&node, limits) {
                 return BranchEnd::Range;
             }
             let (next, located) = match self.stride(&node, length, limits) {
@@ -213,6 +252,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
             failures.clear();
             made += 1;
             take(self, &located, &next);
+            self.meet(&next, length);
             if made > 5 && self.is_back(&next, start, length) {
                 return BranchEnd::Closed;
             }
@@ -222,36 +262,59 @@ impl<'a, 'w> Tracer<'a, 'w> {
             length = f64::min(length, WIDEST / next.rise().abs());
             before = std::mem::replace(&mut node, next);
         }
-        match leaves(&node, limits) {
+        match self.leaves(&node, limits) {
             true => BranchEnd::Range,
             false => BranchEnd::Points,
         }
     }
 
-    /// True if the branch leads from a member, within a step, to the first one: not to a neighbouring sheet.
+    /// True if the branch leads from a member, within a step, to the first one in the same direction.
     fn is_back(&mut self, node: &Node, start: &Node, length: f64) -> bool {
+        dot(&node.heading, &start.heading) > TURN && self.leads(node, &start.local, length)
+    }
+
+    /// True if the branch leads from a member, within a step, to another one: not to a neighbouring sheet.
+    fn leads(&mut self, node: &Node, to: &Local, length: f64) -> bool {
         let width = self.width;
-        let from_start = |node: &Node| {
-            start
-                .local
-                .change_to(width, &node.local.state, node.parameter())
-        };
-        let to = from_start(node);
-        if norm(&to) >= length || dot(&node.heading, &start.heading) <= TURN {
+        let way = |node: &Node| to.change_to(width, &node.local.member.state, node.parameter());
+        if norm(&way(node)) >= length {
             return false;
         }
         let mut near = node.clone();
         for _ in 0..RETURNS {
-            let to = from_start(&near);
-            if norm(&to) < SAME {
+            let way = way(&near);
+            if norm(&way) < SAME {
                 return true;
             }
-            match self.reached(&near, -dot(&to, &near.heading), None) {
+            match self.reached(&near, -dot(&way, &near.heading), None) {
                 Ok(nearer) => near = nearer,
                 Err(_) => return false,
             }
         }
-        norm(&from_start(&near)) < SAME
+        norm(&way(&near)) < SAME
+    }
+
+    /// Notes which of the members that are sought lie within a step of this one.
+    fn meet(&mut self, node: &Node, length: f64) {
+        for index in 0..self.sought.len() {
+            let sought = &self.sought[index];
+            let Some(local) = sought.local.clone().filter(|_| !sought.is_met) else {
+                continue;
+            };
+            self.sought[index].is_met = self.leads(node, &local, length);
+        }
+    }
+
+    /// True if a member at a limit of the parameter, or of the window, is about to leave.
+    fn leaves(&self, node: &Node, limits: [f64; 2]) -> bool {
+        let is_leaving = |at: f64, rate: f64, [low, high]: [f64; 2]| {
+            (at >= high && rate > 0.0) || (at <= low && rate < 0.0)
+        };
+        let beyond = self.window.is_some_and(|window| {
+            let rate = node.heading[node.heading.len() - 2];
+            is_leaving(node.last(), rate, window)
+        });
+        beyond || is_leaving(node.parameter(), node.rise(), limits)
     }
 
     /// The next member, at this distance or at a limit of the parameter, and the bifurcations before it.
@@ -280,8 +343,24 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 }
             }
         };
+        let next = self.inside(node, next, length)?;
         let located = self.bifurcations(node, &next, length)?;
         Ok((next, located))
+    }
+
+    /// The next member, or the one between where the last component of the state leaves its window.
+    fn inside(&mut self, node: &Node, next: Node, length: f64) -> Result<Node, Failure> {
+        let at = next.last();
+        let mut window = self.window.into_iter().flatten();
+        let Some(limit) = window.find(|limit| (node.last() - limit) * (at - limit) < 0.0) else {
+            return Ok(next);
+        };
+        let mut place = self.place([node, &next], length, |node| node.last() - limit)?;
+        if let Some(last) = place.local.member.state.last_mut() {
+            *last = limit;
+        }
+        place.local.member.second = Some(limit);
+        Ok(place)
     }
 
     /// The member at a distance along the direction of another, or nearest to that at a value of the parameter.
@@ -316,16 +395,22 @@ impl<'a, 'w> Tracer<'a, 'w> {
         length: f64,
     ) -> Result<Node, Failure> {
         let reach = REACH * length.abs();
-        let local = self.corrected(state, parameter, unknowns, reach)?;
-        let counts = node.local.arrivals.iter().zip(&local.arrivals);
-        let other = counts.enumerate().find(|(_, (before, now))| before != now);
-        if let Some((surface, _)) = other {
+        let local = match self.corrected(state, parameter, unknowns, reach) {
+            Err(Failure::Diverged) => {
+                // Beyond a grazing orbit the map has no smooth continuation, so that Newton's method goes astray.
+                let local = self.family.local(state, parameter)?;
+                let other = other_surface(&node.local, &local);
+                return Err(other.map_or(Failure::Diverged, Failure::Itinerary));
+            }
+            corrected => corrected?,
+        };
+        if let Some(surface) = other_surface(&node.local, &local) {
             return Err(Failure::Itinerary(surface));
         }
         let mut next = Node::new(local, self.width, &node.heading);
         let way = node
             .local
-            .change_to(self.width, &next.local.state, next.parameter());
+            .change_to(self.width, &next.local.member.state, next.parameter());
         next.distance = norm(&way);
         match dot(&node.heading, &next.heading) >= TURN && bends_evenly(&way, node, &next) {
             true => Ok(next),
@@ -384,13 +469,26 @@ fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     if let Some(surface) = grazed.or_else(|| slowing(last)) {
         return BranchEnd::Grazing { surface };
     }
-    let told = failures.iter().rev().find_map(|failure| match failure {
-        Failure::Parameter(error) => Some(BranchEnd::Parameter(*error)),
-        Failure::Missed(error) => Some(BranchEnd::Missed(*error)),
-        Failure::NotKnown => Some(BranchEnd::NotKnown),
-        _ => None,
-    });
+    let mut ends = failures.iter().rev().map(ended);
+    let told = ends.find(|end| *end != BranchEnd::NotConverged);
     told.unwrap_or(BranchEnd::NotConverged)
+}
+
+/// The end of a branch at which this is why no step is short enough.
+pub(super) const fn ended(failure: &Failure) -> BranchEnd {
+    match failure {
+        Failure::Parameter(error) => BranchEnd::Parameter(*error),
+        Failure::Missed(error) => BranchEnd::Missed(*error),
+        Failure::NotKnown => BranchEnd::NotKnown,
+        Failure::Real => BranchEnd::Resonance,
+        Failure::Diverged | Failure::Itinerary(_) | Failure::TooLong => BranchEnd::NotConverged,
+    }
+}
+
+/// A surface that two orbits meet a different number of times.
+fn other_surface(one: &Local, other: &Local) -> Option<usize> {
+    let mut counts = one.arrivals.iter().zip(&other.arrivals);
+    counts.position(|(one, other)| one != other)
 }
 
 /// The surface at which the slowest arrival is about to lose its speed, if there is one.
@@ -411,12 +509,6 @@ fn grazed(error: &dalembert::OrbitError) -> Option<usize> {
         }
         _ => None,
     }
-}
-
-/// True if a member at a limit of the parameter is about to leave.
-fn leaves(node: &Node, [low, high]: [f64; 2]) -> bool {
-    let at = node.parameter();
-    (at >= high && node.rise() > 0.0) || (at <= low && node.rise() < 0.0)
 }
 
 /// True if a step leads along an arc: the angle between the directions at its ends says how far it is from the tangent.

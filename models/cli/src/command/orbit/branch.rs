@@ -1,10 +1,12 @@
-//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a picture.
+//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a
+//! picture; and the curves of its bifurcations over two parameters.
 
+mod curves;
 mod document;
 mod spreadsheet;
 mod summary;
 
-use dalembert_driver::{AnyModel, Branch, BranchEnd, Continuation, Member};
+use dalembert_driver::{AnyModel, Branch, BranchEnd, Continuation, Extent, Member};
 
 use super::Finished;
 use crate::args::OrbitArgs;
@@ -137,37 +139,59 @@ fn follow<F, T>(
     let search = super::search(model, args)?;
     let origin = initial_state(model, &args.state)?;
     let files = open()?;
-    let name = model.description().parameters[request.parameter].name;
-    let [first, last] = request.range;
+    let name = |extent: &Extent| model.description().parameters[extent.parameter].name;
     let mut progress = Points::new(terminal);
     let result = model.branch(&origin, &search, &request, &mut |member: &Member| {
-        let fraction = (member.parameter - first) / (last - first);
-        progress.at(name, member.parameter, fraction);
+        let (extent, value) = match (&request.across, member.second) {
+            (Some(across), Some(second)) => (across, second),
+            _ => (&request.extent, member.parameter),
+        };
+        let [first, last] = extent.range;
+        progress.at(name(extent), value, (value - first) / (last - first));
     });
     progress.finish();
     let finished = super::finished(model, args, (&origin, search), result)?;
     finish(files, &Followed { finished, request }, ordinate)
 }
 
-fn request(model: &dyn AnyModel, args: &OrbitArgs, text: &str) -> Result<Continuation, CliError> {
-    const FLAG: &str = "--continue";
-    let (name, range) = names::assignment(FLAG, text, "NAME=A..B")?;
+fn request(model: &dyn AnyModel, args: &OrbitArgs, range: &str) -> Result<Continuation, CliError> {
+    const ACROSS: &str = "--across";
+    let flags = &args.branch;
+    let extent = extent(model, "--continue", range)?;
+    let across = flags.across.as_deref();
+    let across = across.map(|range| self::extent(model, ACROSS, range));
+    let across = across.transpose()?;
+    if let (Some(other), Some(range)) = (&across, &flags.across)
+        && other.parameter == extent.parameter
+    {
+        return Err(CliError::value(
+            ACROSS,
+            range,
+            "a parameter other than that of --continue",
+        ));
+    }
+    Ok(Continuation {
+        extent,
+        across,
+        points: flags.points,
+    })
+}
+
+/// A parameter and its range, from the value of a flag.
+fn extent(model: &dyn AnyModel, flag: &'static str, text: &str) -> Result<Extent, CliError> {
+    let (name, range) = names::assignment(flag, text, "NAME=A..B")?;
     let parameters = &model.description().parameters;
     let accepted = parameters.iter().map(|parameter| parameter.name);
-    let parameter = names::find(FLAG, "parameter", name, accepted)?;
-    let refuse = |expected: &str| CliError::value(FLAG, text, expected);
+    let parameter = names::find(flag, "parameter", name, accepted)?;
+    let refuse = |expected: &str| CliError::value(flag, text, expected);
     let (first, last) = range.split_once("..").ok_or_else(|| refuse("NAME=A..B"))?;
     let end =
-        |text: &str| scalar::parse(text).map_err(|expected| CliError::value(FLAG, text, expected));
+        |text: &str| scalar::parse(text).map_err(|expected| CliError::value(flag, text, expected));
     let range = [end(first)?, end(last)?];
     if range[0] == range[1] || !(range[1] - range[0]).is_finite() {
         return Err(refuse("NAME=A..B with two different ends"));
     }
-    Ok(Continuation {
-        parameter,
-        range,
-        points: args.branch.points,
-    })
+    Ok(Extent { parameter, range })
 }
 
 fn ordinate(model: &dyn AnyModel, name: &str) -> Result<Ordinate, CliError> {
@@ -181,11 +205,14 @@ fn picture(
     ordinate: Option<Ordinate>,
 ) -> Result<String, String> {
     let description = followed.finished.model.description();
+    if let Some(across) = &followed.request.across {
+        return curves::draw(followed, branch, across);
+    }
     plot::branch::draw(&Chart {
         title: &super::summary::title(&followed.finished),
         subtitle: &format!("section {}", super::summary::section(&followed.finished)),
         parameter: followed.name(),
-        range: followed.request.range,
+        range: followed.request.extent.range,
         ordinate: ordinate.unwrap_or_else(|| Ordinate::first(branch, description)),
         description,
         branch,
@@ -194,9 +221,15 @@ fn picture(
 }
 
 impl Followed<'_> {
+    /// The name of the second parameter.
+    fn across(&self) -> Option<&'static str> {
+        let across = self.request.across.as_ref()?;
+        Some(self.finished.model.description().parameters[across.parameter].name)
+    }
+
     /// The name of the parameter.
     fn name(&self) -> &'static str {
-        self.finished.model.description().parameters[self.request.parameter].name
+        self.finished.model.description().parameters[self.request.extent.parameter].name
     }
 }
 
@@ -218,6 +251,7 @@ fn reason(followed: &Followed<'_>, end: &BranchEnd) -> String {
         BranchEnd::NotKnown => {
             "the stability of the next point is not known: multipliers are not finite".to_owned()
         }
+        BranchEnd::Resonance => "a strong resonance: the multipliers meet at 1 or -1".to_owned(),
         BranchEnd::NotConverged => {
             "Newton's method does not converge at the smallest step".to_owned()
         }

@@ -15,7 +15,6 @@ use crate::names;
 /// # Errors
 /// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> {
-    let description = followed.finished.model.description();
     let mut document = begin(output, &followed.finished)?;
     if let Some(symmetries) = &followed.finished.search.modulo {
         let fields = symmetries.generators().iter();
@@ -23,8 +22,12 @@ pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> 
         document.field("modulo", fields)?;
     }
     document.field("parameter", followed.name())?;
-    let range = followed.request.range.map(number);
+    let range = followed.request.extent.range.map(number);
     document.field("range", Value::from(range.to_vec()))?;
+    if let (Some(name), Some(across)) = (followed.across(), &followed.request.across) {
+        let range = across.range.map(number);
+        document.field("across", json!({ "parameter": name, "range": range }))?;
+    }
     let branch = match &followed.finished.result {
         Err(missed) => return end_missed(document, &followed.finished, missed),
         Ok(branch) => branch,
@@ -37,27 +40,52 @@ pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> 
     let bifurcations = branch.points.iter();
     let bifurcations = bifurcations.filter(|member| member.bifurcation.is_some());
     document.rows("bifurcations", bifurcations.map(member))?;
-    let at = [branch.points.first(), branch.points.last()];
-    let ends = branch.ends.iter().zip(at).map(|(end, member)| {
+    document.rows(
+        "ends",
+        ends(followed, &branch.points, &branch.ends).into_iter(),
+    )?;
+    document.rows("points", branch.points.iter().map(member))?;
+    if followed.request.across.is_some() {
+        let curves = branch.curves.iter().map(|curve| {
+            json!({
+                "bifurcation": curve.bifurcation.name(),
+                "ends": ends(followed, &curve.points, &curve.ends),
+                "points": curve.points.iter().map(member).collect::<Vec<Value>>(),
+            })
+        });
+        document.rows("curves", curves)?;
+    }
+    document.end()
+}
+
+/// Both ends of a branch, or of a curve of bifurcations.
+fn ends(followed: &Followed<'_>, points: &[Member], ends: &[BranchEnd; 2]) -> [Value; 2] {
+    let description = followed.finished.model.description();
+    let told = |end: &BranchEnd, member: Option<&Member>| {
         let surface = match end {
             BranchEnd::Grazing { surface } => names::surfaces(description).nth(*surface),
             _ => None,
         };
-        json!({
+        let mut told = json!({
             "kind": end.kind(),
             "parameter": member.map(|member| number(member.parameter)),
             "surface": surface,
             "reason": reason(followed, end),
-        })
-    });
-    document.rows("ends", ends)?;
-    document.rows("points", branch.points.iter().map(member))?;
-    document.end()
+        });
+        if let Some(second) = member.and_then(|member| member.second) {
+            told["second"] = number(second);
+        }
+        told
+    };
+    [
+        told(&ends[0], points.first()),
+        told(&ends[1], points.last()),
+    ]
 }
 
 fn member(member: &Member) -> Value {
     let multipliers: Vec<Value> = member.multipliers.iter().map(multiplier).collect();
-    json!({
+    let mut told = json!({
         "parameter": number(member.parameter),
         "period": number(member.period),
         "before": state(&member.before),
@@ -67,5 +95,9 @@ fn member(member: &Member) -> Value {
         "bifurcation": member.bifurcation.map(|it| it.name()),
         "residual": number(member.residual),
         "advance": vector(&member.element),
-    })
+    });
+    if let Some(second) = member.second {
+        told["second"] = number(second);
+    }
+    told
 }

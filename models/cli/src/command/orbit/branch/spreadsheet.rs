@@ -1,4 +1,4 @@
-//! A branch as CSV, one row per point.
+//! A branch, or the curves of its bifurcations, as CSV: one row per point.
 
 use std::io::{self, Write};
 
@@ -9,7 +9,7 @@ use super::Followed;
 use crate::names;
 use crate::table::write_rows;
 
-/// Writes the table.
+/// Writes the table: the points of the branch, or with a second parameter those of the curves of its bifurcations.
 ///
 /// # Errors
 /// An I/O error of the stream.
@@ -17,14 +17,34 @@ pub fn write(output: &mut dyn Write, followed: &Followed<'_>, branch: &Branch) -
     let description = followed.finished.model.description();
     write_rows(output, |writer| {
         writer.write_record(head(followed, branch))?;
-        let mut rows = branch.points.iter().map(|member| row(description, member));
-        rows.try_for_each(|row| writer.write_record(row))
+        if followed.request.across.is_none() {
+            let mut rows = branch.points.iter().map(|member| row(description, member));
+            return rows.try_for_each(|row| writer.write_record(row));
+        }
+        for (index, curve) in branch.curves.iter().enumerate() {
+            for member in &curve.points {
+                let mut row = row(description, member);
+                row.insert(0, (index + 1).to_string());
+                row.insert(2, format!("{:?}", member.second.unwrap_or(f64::NAN)));
+                writer.write_record(row)?;
+            }
+        }
+        Ok(())
     })
 }
 
 fn head(followed: &Followed<'_>, branch: &Branch) -> Vec<String> {
     let components = components(followed.finished.model.description());
-    let mut head = vec![format!("in.{}", followed.name()), "period".to_owned()];
+    let curve = followed.across().map(|_| "curve".to_owned());
+    let mut head: Vec<String> = curve.into_iter().collect();
+    let parameters = [Some(followed.name()), followed.across()];
+    head.extend(
+        parameters
+            .into_iter()
+            .flatten()
+            .map(|name| format!("in.{name}")),
+    );
+    head.push("period".to_owned());
     for side in ["before", "after"] {
         head.extend(components.iter().map(|name| format!("{side}.{name}")));
     }

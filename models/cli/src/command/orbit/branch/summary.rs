@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use dalembert_driver::{Branch, Member};
+use dalembert_driver::{BifurcationCurve, Branch, Member};
 
 use super::super::summary::{complex, head, tell_missed};
 use super::spreadsheet::{components, values};
@@ -15,8 +15,12 @@ use crate::error::counted;
 /// An I/O error of the stream.
 pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> {
     head(output, &followed.finished)?;
-    let (name, [first, last]) = (followed.name(), followed.request.range);
+    let (name, [first, last]) = (followed.name(), followed.request.extent.range);
     writeln!(output, "  continued    {name} from {first} to {last}")?;
+    if let (Some(name), Some(across)) = (followed.across(), &followed.request.across) {
+        let [first, last] = across.range;
+        writeln!(output, "  across       {name} from {first} to {last}")?;
+    }
     let branch = match &followed.finished.result {
         Err(missed) => return tell_missed(output, &followed.finished, missed),
         Ok(branch) => branch,
@@ -43,7 +47,37 @@ pub fn write(output: &mut dyn Write, followed: &Followed<'_>) -> io::Result<()> 
         let text = reason(followed, end);
         writeln!(output, "  {title:<12} {name} = {at}: {text}")?;
     }
+    for (index, curve) in branch.curves.iter().enumerate() {
+        write_curve(output, followed, index + 1, curve)?;
+    }
     write_table(output, followed, branch)
+}
+
+/// Writes a curve of bifurcations: its kind, and its ends in the plane of both parameters.
+fn write_curve(
+    output: &mut dyn Write,
+    followed: &Followed<'_>,
+    number: usize,
+    curve: &BifurcationCurve,
+) -> io::Result<()> {
+    let (kind, count) = (
+        curve.bifurcation.name(),
+        counted(curve.points.len(), "point"),
+    );
+    writeln!(output, "  curve {number:<6} {kind}, {count}")?;
+    let names = [Some(followed.name()), followed.across()].map(Option::unwrap_or_default);
+    let ends = [curve.points.first(), curve.points.last()];
+    for (member, end) in ends.into_iter().zip(&curve.ends) {
+        let at = member.map_or(String::new(), |member| {
+            let second = member.second.unwrap_or(f64::NAN);
+            format!(
+                "{} = {}, {} = {second}: ",
+                names[0], member.parameter, names[1]
+            )
+        });
+        writeln!(output, "    end        {at}{}", reason(followed, end))?;
+    }
+    Ok(())
 }
 
 /// `alpha = .., period .., multipliers ..`
