@@ -59,7 +59,7 @@ pub use continuation::{
     Bifurcation, BifurcationCurve, Branch, BranchEnd, Continuation, Extent, Member, Stability,
 };
 pub use control::{Controlled, Extremal, Kick, Moment, SecondOrder, Task, Unsought};
-pub use dynamic::{Axis, Choice, Hit, Landing, Lattice, Leg, Move, choose};
+pub use dynamic::{Axis, Choice, Hit, Landing, Lattice, Layer, Leg, Move, Unlanded, choose};
 pub use grid::{Grid, padded};
 pub use integrator::{Form, Integrator};
 pub use linearisation::{

@@ -9,7 +9,7 @@ use crate::certify::{Certification, Certified, Strike};
 use crate::connect::{Boundary, Connected, Stage, Unjoined};
 use crate::continuation::{Branch, Continuation, Member};
 use crate::control::{Controlled, Task, Unsought};
-use crate::dynamic::{Landing, Leg};
+use crate::dynamic::{Landing, Leg, Unlanded};
 use crate::linearisation::{Linearisation, Place, Unlinear};
 use crate::orbit::{Found, Search};
 use crate::refusal::Refusal;
@@ -279,7 +279,8 @@ pub trait Runs {
         tell: &mut dyn FnMut(Stage),
     ) -> Result<Option<Result<Controlled, Unsought>>, Refusal>;
     /// Computes the motion over one step from each of these states with each of the inputs, for a model with held
-    /// inputs; `None` for a scene without variations. A motion is `None` if it does not reach the end of the step.
+    /// inputs; `None` for a scene without variations. A motion that does not reach the end of the step is
+    /// [`Unlanded`].
     ///
     /// # Errors
     /// [`Refusal`] for parameters that violate the declaration.
@@ -287,7 +288,7 @@ pub trait Runs {
         &self,
         leg: &Leg<'_>,
         from: &[[f64; 2]],
-    ) -> Result<Option<Vec<Option<Landing>>>, Refusal>;
+    ) -> Result<Option<Vec<Result<Landing, Unlanded>>>, Refusal>;
     /// Encloses the motion from this state on, and reports its impacts.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ use crate::connect::{Boundary, Connected, Joiner, Stage, Unjoined};
 use crate::continuation::trace::Watch as BranchWatch;
 use crate::continuation::{Branch, Continuation};
 use crate::control::{Controlled, Controller, Task, Unsought};
-use crate::dynamic::{Landing, Leg, Walker};
+use crate::dynamic::{Landing, Leg, Unlanded, Walker};
 use crate::integrator::Form;
 use crate::linearisation::{Linearisation, Lineariser, Place, Unlinear};
 use crate::model::{
@@ -543,7 +543,7 @@ impl<O: Owner> Runs for Typed<O> {
         &self,
         leg: &Leg<'_>,
         from: &[[f64; 2]],
-    ) -> Result<Option<Vec<Option<Landing>>>, Refusal> {
+    ) -> Result<Option<Vec<Result<Landing, Unlanded>>>, Refusal> {
         let walker = Walker { leg, from };
         self.owner.system().visit_variational(walker).transpose()
     }

@@ -2,58 +2,142 @@
 
 use super::lattice::Lattice;
 
+/// A margin that rounding may have made negative.
+const ROUNDING: f64 = 1e-9;
+
+/// The margin of a motion that does not get to the end of its step.
+const LOST: f64 = -1.0;
+
 /// The end of a motion over a step, with one of the inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
     /// The state after the step.
     pub state: [f64; 2],
-    /// The cost of the step; NaN for a motion that does not get there.
+    /// The cost of the step; infinite for a motion that does not get there, NaN if there is no state to start from.
     pub cost: f64,
     /// Number of impacts in it.
     pub impacts: u32,
 }
 
 impl Move {
+    /// There is no state to start from.
+    pub const NOWHERE: Self = Self::without_end(f64::NAN);
+
     /// A motion that does not get to the end of the step.
-    pub const NOWHERE: Self = Self {
-        state: [f64::NAN; 2],
-        cost: f64::NAN,
-        impacts: 0,
-    };
+    pub const LOST: Self = Self::without_end(f64::INFINITY);
+
+    const fn without_end(cost: f64) -> Self {
+        Self {
+            state: [f64::NAN; 2],
+            cost,
+            impacts: 0,
+        }
+    }
+}
+
+/// What is known of all nodes at one time.
+#[derive(Debug, Clone, Default)]
+pub struct Layer {
+    /// The least costs from here on.
+    pub costs: Vec<f64>,
+    /// The margins: the largest distance to the edges of the grid that motions from here on can keep, in steps of the axes. Where it is
+    /// negative every motion leaves the grid, and the cost is that of a motion along its edge.
+    pub margins: Vec<f64>,
+}
+
+impl Layer {
+    /// The last layer: terminal costs.
+    pub fn last(lattice: &Lattice, terminal: impl Fn([f64; 2]) -> f64) -> Self {
+        let nodes = || (0..lattice.count()).map(|node| lattice.node(node));
+        Self {
+            costs: nodes().map(terminal).collect(),
+            margins: nodes().map(|it| lattice.margin(it)).collect(),
+        }
+    }
+
+    /// The least cost of a node; NaN if every motion from there leaves the grid.
+    pub fn cost(&self, node: usize) -> f64 {
+        match is_kept(self.margins[node]) {
+            true => self.costs[node],
+            false => f64::NAN,
+        }
+    }
+
+    /// The least cost at a place, interpolated; NaN where every motion leaves the grid.
+    pub fn cost_at(&self, lattice: &Lattice, at: [f64; 2]) -> f64 {
+        match is_kept(self.margin_at(lattice, at)) {
+            true => lattice.between(&self.costs, at),
+            false => f64::NAN,
+        }
+    }
+
+    fn margin_at(&self, lattice: &Lattice, at: [f64; 2]) -> f64 {
+        let later = lattice.linear(&self.margins, at);
+        later.min(lattice.margin(at))
+    }
+
+    /// The margin with a motion as the next one.
+    fn margin_after(&self, lattice: &Lattice, next: &Move) -> f64 {
+        match next.cost.is_finite() {
+            true => self.margin_at(lattice, next.state),
+            false if next.cost.is_nan() => f64::NAN,
+            false => LOST,
+        }
+    }
+}
+
+/// True if a motion of this margin stays on the grid.
+fn is_kept(margin: f64) -> bool {
+    margin >= -ROUNDING
 }
 
 /// The best input of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// The least cost from here on; NaN if every motion leaves the grid.
+    /// The least cost from here on; if every motion leaves the grid, that of the one of largest margin. NaN if there is no motion.
     pub cost: f64,
-    /// The place of the input, in steps of its axis.
+    /// The largest margin of the motions; negative if all of them leave the grid, NaN if there is no state.
+    pub margin: f64,
+    /// The place of the input, in steps of its axis; NaN if there is no motion.
     pub place: f64,
-    /// Number of impacts of the motion from here on, interpolated.
-    pub impacts: f64,
 }
 
-/// Chooses among motions with equally spaced inputs. `costs` and `impacts` are those after the step.
+impl Choice {
+    /// The index of the input of the axis that is nearest to the best one.
+    pub fn nearest(&self) -> Option<usize> {
+        (!self.place.is_nan()).then(|| self.place.round() as usize)
+    }
+}
+
+/// Chooses among motions with equally spaced inputs; `after` is the layer after the step.
 ///
-/// The sum may be least between two inputs. If the motions of the best one and its neighbours have the same number of impacts, the motion at
+/// Only motions that stay on the grid count, if there are such; otherwise only those of the largest margin.
+///
+/// The sum of costs may be least between two inputs. If the motions of the best one and its neighbours have the same number of impacts, the motion at
 /// the least value of the parabola through their sums is tried too; it is interpolated.
-pub fn choose(moves: &[Move], lattice: &Lattice, costs: &[f64], impacts: &[f64]) -> Choice {
-    let sum = |it: &Move| match it.cost.is_nan() {
-        true => f64::NAN,
-        false => it.cost + lattice.between(costs, it.state),
+pub fn choose(moves: &[Move], lattice: &Lattice, after: &Layer) -> Choice {
+    let margins = moves.iter().map(|it| after.margin_after(lattice, it));
+    let margin = margins.fold(f64::NAN, f64::max);
+    let least = match is_kept(margin) {
+        true => -ROUNDING,
+        false => margin,
+    };
+    let sum = |it: &Move| match it.cost.is_finite() && after.margin_after(lattice, it) >= least {
+        true => it.cost + lattice.between(&after.costs, it.state),
+        false => f64::NAN,
     };
     let Some(Best { index, sums }) = Best::of(moves.iter().map(sum)) else {
         return Choice {
             cost: f64::NAN,
+            margin,
             place: f64::NAN,
-            impacts: f64::NAN,
         };
     };
     let best = &moves[index];
     let choice = |cost, place| Choice {
         cost,
+        margin,
         place,
-        impacts: f64::from(best.impacts) + lattice.linear(impacts, best.state),
     };
     let around = index
         .checked_sub(1)
@@ -145,51 +229,67 @@ mod tests {
         (-2..=2).map(to).collect()
     }
 
+    fn layer(cost: impl Fn([f64; 2]) -> f64) -> Layer {
+        Layer::last(&lattice(), cost)
+    }
+
     #[test]
     fn the_best_input_lies_between_two_others() {
         let lattice = lattice();
-        let costs: Vec<f64> = (0..lattice.count())
-            .map(|it| 4.0 * lattice.node(it)[0].powi(2))
-            .collect();
-        let impacts = vec![1.0; lattice.count()];
+        let after = layer(|[x, _]| 4.0 * x * x);
         // u^2 + 4 (x + u/2)^2 is least at u = -x, where it is 2 x^2.
         for x in [0.3, 0.8, -0.55] {
-            let chosen = choose(&moves(x), &lattice, &costs, &impacts);
+            let chosen = choose(&moves(x), &lattice, &after);
             assert!((chosen.place - (2.0 - x)).abs() < 1e-12, "{chosen:?}");
             assert!((chosen.cost - 2.0 * x * x).abs() < 1e-12, "{chosen:?}");
-            assert_eq!(chosen.impacts, 1.0);
         }
     }
 
     #[test]
     fn a_cost_that_is_flat_beside_a_steep_one_gives_nothing_below_it() {
         let lattice = lattice();
-        let costs: Vec<f64> = (0..lattice.count())
-            .map(|it| 1e6 * lattice.node(it)[0].min(0.0).powi(2))
-            .collect();
-        let chosen = choose(&moves(0.0), &lattice, &costs, &costs);
+        let after = layer(|[x, _]| 1e6 * x.min(0.0).powi(2));
+        let chosen = choose(&moves(0.0), &lattice, &after);
         assert_eq!((chosen.cost, chosen.place), (0.0, 2.0));
     }
 
     #[test]
-    fn motions_that_lead_nowhere_or_differ_in_impacts_give_no_parabola() {
+    fn motions_that_are_lost_or_differ_in_impacts_give_no_parabola() {
         let lattice = lattice();
-        let costs = vec![0.0; lattice.count()];
         let mut some = moves(0.3);
         some[1].impacts = 1;
-        let parabola: Vec<f64> = (0..lattice.count())
-            .map(|it| 4.0 * lattice.node(it)[0].powi(2))
-            .collect();
-        let chosen = choose(&some, &lattice, &parabola, &costs);
+        let chosen = choose(&some, &lattice, &layer(|[x, _]| 4.0 * x * x));
         assert_eq!(chosen.place, 2.0);
-        let chosen = choose(&some, &lattice, &costs, &costs);
+        let flat = layer(|_| 0.0);
+        let chosen = choose(&some, &lattice, &flat);
         assert_eq!((chosen.place, chosen.cost), (2.0, 0.0));
-        some[2] = Move::NOWHERE;
-        let chosen = choose(&some, &lattice, &costs, &costs);
-        assert_eq!((chosen.place, chosen.cost, chosen.impacts), (1.0, 1.0, 1.0));
-        let none = choose(&[Move::NOWHERE; 3], &lattice, &costs, &costs);
-        assert!(none.cost.is_nan() && none.place.is_nan());
-        // All of these leave the grid.
-        assert!(choose(&moves(9.0), &lattice, &costs, &costs).cost.is_nan());
+        some[2] = Move::LOST;
+        let chosen = choose(&some, &lattice, &flat);
+        assert_eq!((chosen.place, chosen.cost), (1.0, 1.0));
+    }
+
+    #[test]
+    fn without_a_motion_there_is_no_cost() {
+        let lattice = lattice();
+        let flat = layer(|_| 0.0);
+        let none = choose(&[Move::NOWHERE; 3], &lattice, &flat);
+        assert!(none.cost.is_nan() && none.place.is_nan() && none.margin.is_nan());
+        let lost = choose(&[Move::LOST; 3], &lattice, &flat);
+        assert!(lost.cost.is_nan() && lost.margin == LOST);
+    }
+
+    #[test]
+    fn of_motions_that_all_leave_the_grid_the_one_of_the_largest_margin_goes_on_along_the_edge() {
+        let lattice = lattice();
+        let after = layer(|[x, _]| x);
+        // Ends at 2.25, 2.75, .. of the edge 2, in steps of 0.5.
+        let chosen = choose(&moves(3.25), &lattice, &after);
+        assert_eq!((chosen.place, chosen.margin), (0.0, -0.5));
+        assert_eq!(chosen.cost, 4.0 + 2.0);
+        // One that stays is taken though it costs more than those that leave.
+        let chosen = choose(&moves(2.9), &lattice, &after);
+        assert_eq!(chosen.place, 0.0);
+        assert!(chosen.margin > 0.0);
+        assert!((chosen.cost - 5.9).abs() < 1e-12, "{chosen:?}");
     }
 }

@@ -31,17 +31,17 @@ impl Axis {
         (self.ends[1] - self.ends[0]) / (self.count - 1) as f64
     }
 
-    /// The index below a value and the fraction of a step above it; `None` outside.
-    fn place(&self, value: f64) -> Option<(usize, f64)> {
-        let [first, last] = self.ends;
-        // Rounding at an end leaves nothing outside.
-        let margin = 1e-9 * (last - first);
-        if !(first - margin <= value && value <= last + margin) {
-            return None;
-        }
-        let steps = ((value - first) / self.step()).clamp(0.0, (self.count - 1) as f64);
+    /// The index below a value and the fraction of a step above it. A value outside is moved to the nearer end.
+    fn place(&self, value: f64) -> (usize, f64) {
+        let steps = ((value - self.ends[0]) / self.step()).clamp(0.0, (self.count - 1) as f64);
         let index = (steps as usize).min(self.count - 2);
-        Some((index, steps - index as f64))
+        (index, steps - index as f64)
+    }
+
+    /// The distance of a value to the nearer end, in steps; negative outside.
+    fn margin(&self, value: f64) -> f64 {
+        let [first, last] = self.ends;
+        (value - first).min(last - value) / self.step()
     }
 }
 
@@ -67,7 +67,15 @@ impl Lattice {
         ]
     }
 
-    /// The value at a place, from those of the nodes; NaN outside, and where the nearest node has none.
+    /// The distance of a place to the nearest edge, in steps of the axis across that edge; negative outside.
+    pub fn margin(&self, at: [f64; 2]) -> f64 {
+        let [x, y] = [0, 1].map(|index| self.axes[index].margin(at[index]));
+        x.min(y)
+    }
+
+    /// The value at a place, from those of the nodes around. Outside, it is the value at the nearest place of the edge.
+    ///
+    /// Nodes may have no value (NaN): the values of the others are continued by lines to them. The result is NaN if no corner of the cell has one.
     pub fn between(&self, values: &[f64], at: [f64; 2]) -> f64 {
         self.combined(values, at, parabolas)
     }
@@ -78,10 +86,10 @@ impl Lattice {
     }
 
     fn combined(&self, values: &[f64], at: [f64; 2], along: impl Fn([f64; 4], f64) -> f64) -> f64 {
-        let [Some((i, a)), Some((j, b))] = [self.axes[0].place(at[0]), self.axes[1].place(at[1])]
-        else {
+        if at.iter().any(|it| it.is_nan()) {
             return f64::NAN;
-        };
+        }
+        let [(i, a), (j, b)] = [0, 1].map(|index| self.axes[index].place(at[index]));
         let [columns, rows] = self.axes.map(|axis| axis.count);
         // Indices are one ahead, so that none is negative.
         let value = |i: usize, j: usize| match (1..=columns).contains(&i) && (1..=rows).contains(&j)
@@ -101,7 +109,7 @@ impl Lattice {
 fn parabolas(values: [f64; 4], s: f64) -> f64 {
     let [before, first, last, after] = values;
     if first.is_nan() || last.is_nan() {
-        return nearest(first, last, s);
+        return continued(values, s);
     }
     let bend = [before - 2.0 * first + last, first - 2.0 * last + after];
     let r = s - 1.0;
@@ -130,15 +138,21 @@ fn parabolas(values: [f64; 4], s: f64) -> f64 {
     }
 }
 
-fn line([_, first, last, _]: [f64; 4], s: f64) -> f64 {
+fn line(values: [f64; 4], s: f64) -> f64 {
+    let [_, first, last, _] = values;
     match first.is_nan() || last.is_nan() {
-        true => nearest(first, last, s),
+        true => continued(values, s),
         false => first + s * (last - first),
     }
 }
 
-fn nearest(first: f64, last: f64, s: f64) -> f64 {
-    if s < 0.5 { first } else { last }
+/// The line of the known side, where the second or the third of four values is unknown.
+fn continued([before, first, last, after]: [f64; 4], s: f64) -> f64 {
+    let slope = |rise: f64| if rise.is_nan() { 0.0 } else { rise };
+    match first.is_nan() {
+        true => last + (s - 1.0) * slope(after - last),
+        false => first + s * slope(first - before),
+    }
 }
 
 #[cfg(test)]
@@ -193,18 +207,29 @@ mod tests {
     }
 
     #[test]
-    fn unknown_values_stay_where_they_are_nearest() {
+    fn known_values_are_continued_to_unknown_nodes() {
         let lattice = lattice(5);
-        let mut values = vec![1.0; lattice.count()];
+        let plane = |[x, y]: [f64; 2]| 1.0 + 2.0 * x - y;
+        let mut values = sampled(&lattice, plane);
         values[12] = f64::NAN;
         let [x, y] = lattice.node(12);
-        assert!(lattice.between(&values, [x + 0.1, y - 0.1]).is_nan());
-        for at in [[x + 0.3, y], [x, y - 0.3], [x + 0.3, y + 0.3]] {
-            assert_eq!(lattice.between(&values, at), 1.0);
+        for at in [[x + 0.1, y - 0.1], [x - 0.3, y], [x, y + 0.2], [x, y]] {
+            for value in [lattice.between(&values, at), lattice.linear(&values, at)] {
+                assert!((value - plane(at)).abs() < 1e-14, "{at:?}: {value}");
+            }
         }
-        for outside in [[-0.1, 0.0], [1.0, 1.1]] {
-            assert!(lattice.between(&values, outside).is_nan());
-        }
-        assert_eq!(lattice.linear(&values, [2.0, 1.0]), 1.0);
+        assert!(lattice.between(&values, [f64::NAN, 0.0]).is_nan());
+        values.fill(f64::NAN);
+        assert!(lattice.linear(&values, [x, y]).is_nan());
+    }
+
+    #[test]
+    fn places_outside_have_the_value_at_the_edge_and_a_negative_margin() {
+        let lattice = lattice(5);
+        let values = sampled(&lattice, |[x, y]| 3.0 * x + y);
+        assert_eq!(lattice.linear(&values, [2.5, 0.25]), 6.25);
+        assert_eq!(lattice.margin([2.5, 0.25]), -1.0);
+        assert_eq!(lattice.margin([1.5, -0.75]), 0.5);
+        assert_eq!(lattice.margin([2.0, 0.0]), 0.0);
     }
 }

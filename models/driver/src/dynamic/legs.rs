@@ -61,6 +61,15 @@ pub struct Landing {
     pub hits: Vec<Hit>,
 }
 
+/// There is no end of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unlanded {
+    /// There is no state to start from, such as behind a surface.
+    NoState,
+    /// The motion does not get to the end of the step.
+    Lost,
+}
+
 /// Makes motions of a model of any type.
 pub(crate) struct Walker<'a> {
     pub leg: &'a Leg<'a>,
@@ -68,8 +77,8 @@ pub(crate) struct Walker<'a> {
 }
 
 impl VariationalVisitor for Walker<'_> {
-    /// The motions of each state, one for each input; `None` for those that do not get to the end.
-    type Output = Result<Vec<Option<Landing>>, Refusal>;
+    /// The motions of each state, one for each input.
+    type Output = Result<Vec<Result<Landing, Unlanded>>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
         system.check_parameters().map_err(StateError::from)?;
@@ -78,9 +87,9 @@ impl VariationalVisitor for Walker<'_> {
         for from in self.from {
             let start = start(system, self.leg, *from);
             landings.extend(inputs.iter().map(|input| {
-                let mut state = start?;
+                let mut state = start.ok_or(Unlanded::NoState)?;
                 state.as_mut_slice()[STATE] = *input;
-                landing(system, self.leg, state)
+                landing(system, self.leg, state).ok_or(Unlanded::Lost)
             }));
         }
         Ok(landings)

@@ -29,10 +29,10 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished) -> io::Result<(
     document.field("motions", json!({ "made": motions, "lost": lost }))?;
     document.rows("paths", paths.iter().map(|path| of_path(problem, path)))?;
     document.field("at", number(problem.at(solution.step)))?;
-    let costs = solution.shown();
-    let nodes = costs.iter().enumerate().map(|(node, cost)| {
+    let nodes = (0..problem.lattice.count()).map(|node| {
         let [x, y] = problem.lattice.node(node);
-        let values = [x, y, *cost, solution.inputs[node], solution.impacts[node]];
+        let [cost, input, impacts] = solution.shown(node);
+        let values = [x, y, cost, input, impacts];
         Value::from(values.map(number).to_vec())
     });
     document.rows("nodes", nodes)?;

@@ -1,12 +1,15 @@
 //! A path of least cost: a motion whose input is chosen in each step by the least cost after it.
 
-use dalembert_driver::{Extremal, Hit, choose};
+use dalembert_driver::{Extremal, Hit, Landing, Layer, choose};
 
 use super::problem::{Problem, moved};
 use super::solution::Solution;
 use crate::args::ControlArgs;
 use crate::entry::Entry;
 use crate::error::CliError;
+
+/// A distance outside of the grid that is rounding, in steps of its axes.
+const ROUNDING: f64 = 1e-9;
 
 /// A moment of a path.
 #[derive(Debug, Clone, Copy)]
@@ -58,19 +61,20 @@ impl Path {
         from: [f64; 2],
     ) -> Result<Self, CliError> {
         let mut path = Self {
-            expected: problem.lattice.between(&solution.costs[0], from),
+            expected: solution.layers[0].cost_at(&problem.lattice, from),
             moments: Vec::new(),
             hits: Vec::new(),
             cost: 0.0,
             left: None,
             compared: Compared::Not,
         };
+        if path.expected.is_nan() {
+            return Ok(path.leaving(problem.at(0)));
+        }
         let mut state = from;
         for k in 0..problem.steps {
-            let Some((input, landing)) = step(problem, &solution.costs[k + 1], k, state)? else {
-                path.left = Some(problem.at(k));
-                path.cost = f64::NAN;
-                return Ok(path);
+            let Some((input, landing)) = step(problem, &solution.layers[k + 1], k, state)? else {
+                return Ok(path.leaving(problem.at(k)));
             };
             let moment = |t, state, cost| Moment {
                 t,
@@ -87,6 +91,14 @@ impl Path {
         }
         path.cost += problem.terminal(state);
         Ok(path)
+    }
+
+    fn leaving(self, t: f64) -> Self {
+        Self {
+            cost: f64::NAN,
+            left: Some(t),
+            ..self
+        }
     }
 
     /// Searches the cheapest extremal from the same start.
@@ -110,13 +122,16 @@ impl Path {
     }
 }
 
-/// The best input of a state and its motion: the one between the inputs of the grid, unless the best of those is better.
+/// The best input of a state and its motion: the one between the inputs of the grid, unless the best of those is better. `None`
+/// if it leaves the grid.
+///
+/// Margins between nodes have errors, so that a motion along an edge that cannot be left any more may have a negative one and stay.
 fn step(
     problem: &Problem,
-    after: &[f64],
+    after: &Layer,
     k: usize,
     state: [f64; 2],
-) -> Result<Option<(f64, dalembert_driver::Landing)>, CliError> {
+) -> Result<Option<(f64, Landing)>, CliError> {
     let values = problem.input_values();
     let run = |inputs: &[f64]| {
         let landings = problem.model.legs(&problem.leg(k, inputs), &[state]);
@@ -125,22 +140,19 @@ fn step(
     };
     let mut landings = run(&values)?;
     let moves: Vec<_> = landings.iter().map(|it| moved(it.as_ref())).collect();
-    let nothing = vec![0.0; after.len()];
-    let chosen = choose(&moves, &problem.lattice, after, &nothing);
-    if chosen.place.is_nan() {
+    let chosen = choose(&moves, &problem.lattice, after);
+    let Some(nearest) = chosen.nearest() else {
         return Ok(None);
-    }
-    let nearest = chosen.place.round() as usize;
-    let input = problem.input(chosen.place);
-    let between = run(&[input])?.pop().flatten();
-    let sum = |landing: &dalembert_driver::Landing| {
-        landing.cost + problem.lattice.between(after, landing.state)
     };
-    let of_grid = landings.swap_remove(nearest);
+    let input = problem.input(chosen.place);
+    let between = run(&[input])?.pop().and_then(Result::ok);
+    let of_grid = landings.swap_remove(nearest).ok();
     let pair = [(input, between), (values[nearest], of_grid)];
     let pair = pair
         .into_iter()
-        .filter_map(|(input, it)| Some((input, it?)));
-    let pair = pair.filter(|(_, it)| !sum(it).is_nan());
+        .filter_map(|(input, it)| Some((input, it?)))
+        .filter(|(_, it)| problem.lattice.margin(it.state) >= -ROUNDING);
+    let sum =
+        |landing: &Landing| landing.cost + problem.lattice.between(&after.costs, landing.state);
     Ok(pair.min_by(|(_, left), (_, right)| sum(left).total_cmp(&sum(right))))
 }

@@ -117,11 +117,13 @@ fn film(path: &Path) -> Vec<(bool, Moment)> {
 fn draw_map(finished: &Finished, args: &ControlArgs) -> Result<String, String> {
     let (problem, solution) = (&finished.problem, &finished.solution);
     let [x, y, input, _] = problem.names();
-    let (values, meaning) = match args.dynamic.show {
-        Shown::Cost => (solution.shown(), Meaning::Number("least cost")),
-        Shown::Input => (&*solution.inputs, Meaning::Number(input)),
-        Shown::Impacts => (&*solution.impacts, Meaning::Impacts),
+    let (column, meaning) = match args.dynamic.show {
+        Shown::Cost => (0, Meaning::Number("least cost")),
+        Shown::Input => (1, Meaning::Number(input)),
+        Shown::Impacts => (2, Meaning::Impacts),
     };
+    let nodes = 0..problem.lattice.count();
+    let values: Vec<f64> = nodes.map(|node| solution.shown(node)[column]).collect();
     let stretches = finished.paths.iter().map(|path| {
         let mut stretches = vec![Vec::new()];
         for (is_corner, moment) in film(path) {
@@ -150,7 +152,7 @@ fn draw_map(finished: &Finished, args: &ControlArgs) -> Result<String, String> {
             y: half(rows),
         },
         counts: [columns.count, rows.count],
-        values,
+        values: &values,
         meaning,
         paths: &stretches.collect::<Vec<_>>(),
     })

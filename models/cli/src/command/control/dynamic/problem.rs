@@ -2,7 +2,7 @@
 
 use dalembert::Tolerance;
 use dalembert::describe::Description;
-use dalembert_driver::{AnyModel, Axis, Landing, Lattice, Leg, Move};
+use dalembert_driver::{AnyModel, Axis, Landing, Lattice, Leg, Move, Unlanded};
 
 use crate::args::{ControlArgs, ModelArgs};
 use crate::entry::Entry;
@@ -16,8 +16,8 @@ const MOST: usize = 4000;
 /// Largest number of motions over a step, of all nodes and inputs.
 const MOTIONS: usize = 1 << 24;
 
-/// Largest number of values of all layers.
-const VALUES: usize = 1 << 27;
+/// Largest number of nodes of all layers.
+const VALUES: usize = 1 << 26;
 
 /// Number of components of the state.
 const STATE: usize = 2;
@@ -211,12 +211,16 @@ impl Problem {
 }
 
 /// The end of a motion as far as the choice of an input needs it.
-pub fn moved(landing: Option<&Landing>) -> Move {
-    landing.map_or(Move::NOWHERE, |landing| Move {
-        state: landing.state,
-        cost: landing.cost,
-        impacts: landing.hits.len() as u32,
-    })
+pub fn moved(landing: Result<&Landing, &Unlanded>) -> Move {
+    match landing {
+        Ok(landing) => Move {
+            state: landing.state,
+            cost: landing.cost,
+            impacts: landing.hits.len() as u32,
+        },
+        Err(Unlanded::NoState) => Move::NOWHERE,
+        Err(Unlanded::Lost) => Move::LOST,
+    }
 }
 
 fn check_shape(description: &Description, inputs: usize) -> Result<(), CliError> {

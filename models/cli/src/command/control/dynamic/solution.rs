@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use dalembert_driver::{AnyModel, Choice, Move, choose};
+use dalembert_driver::{AnyModel, Choice, Layer, Move, choose};
 
 use super::problem::{Problem, moved};
 use crate::ensemble::pool::{Division, in_order};
@@ -15,13 +15,13 @@ const BLOCK: u64 = 64;
 
 /// The least cost, and what is known at one time besides.
 pub struct Solution {
-    /// The least cost at the nodes at the start of each step, and at the end.
-    pub costs: Vec<Vec<f64>>,
+    /// The least costs at the start of each step, and at the end.
+    pub layers: Vec<Layer>,
     /// The step whose nodes are shown.
     pub step: usize,
     /// The best input at its nodes.
     pub inputs: Vec<f64>,
-    /// The number of impacts of the best motion from its nodes.
+    /// The number of impacts of the best motion from its nodes, interpolated.
     pub impacts: Vec<f64>,
     /// Number of motions over a step that were made, and of those that do not get to its end.
     pub motions: [usize; 2],
@@ -35,12 +35,10 @@ impl Solution {
     pub fn of(problem: &Problem, shown: Option<f64>, terminal: bool) -> Result<Self, CliError> {
         let step = shown_step(problem, shown)?;
         let count = problem.lattice.count();
-        let mut costs = vec![Vec::new(); problem.steps + 1];
-        costs[problem.steps] = (0..count)
-            .map(|node| problem.terminal(problem.lattice.node(node)))
-            .collect();
+        let mut layers = vec![Layer::default(); problem.steps + 1];
+        layers[problem.steps] = Layer::last(&problem.lattice, |state| problem.terminal(state));
         let mut solution = Self {
-            costs,
+            layers,
             step,
             inputs: vec![f64::NAN; count],
             impacts: vec![0.0; count],
@@ -53,13 +51,13 @@ impl Solution {
             stages.at(done, problem.steps, &format!("t = {:.4}", problem.at(k)));
             if moves.is_empty() || !problem.is_autonomous {
                 moves = motions(problem, k);
-                let lost = moves.iter().filter(|it| it.cost.is_nan()).count();
+                let lost = moves.iter().filter(|it| !it.cost.is_finite()).count();
                 solution.motions[0] += moves.len();
                 solution.motions[1] += lost;
             }
-            let chosen = backwards(problem, &moves, &solution.costs[k + 1], &impacts);
-            solution.costs[k] = chosen.iter().map(|it| it.cost).collect();
-            impacts = chosen.iter().map(|it| it.impacts).collect();
+            let after = &solution.layers[k + 1];
+            let (chosen, numbers) = backwards(problem, &moves, after, &impacts);
+            impacts = numbers;
             if k == step {
                 solution.impacts.clone_from(&impacts);
                 let inputs = chosen.iter().map(|it| match it.place.is_nan() {
@@ -68,14 +66,30 @@ impl Solution {
                 });
                 solution.inputs = inputs.collect();
             }
+            solution.layers[k] = Layer {
+                costs: chosen.iter().map(|it| it.cost).collect(),
+                margins: chosen.iter().map(|it| it.margin).collect(),
+            };
         }
         stages.finish();
         Ok(solution)
     }
 
-    /// The costs that are shown.
-    pub fn shown(&self) -> &[f64] {
-        &self.costs[self.step]
+    /// Number of nodes from which a motion stays on the grid from the first time on.
+    pub fn known(&self) -> usize {
+        let layer = &self.layers[0];
+        let nodes = 0..layer.costs.len();
+        nodes.filter(|node| !layer.cost(*node).is_nan()).count()
+    }
+
+    /// Least cost, best input and number of impacts of a node at the time that is shown; NaN where every motion leaves the grid.
+    pub fn shown(&self, node: usize) -> [f64; 3] {
+        let layer = &self.layers[self.step];
+        let cost = layer.cost(node);
+        match cost.is_nan() {
+            true => [f64::NAN; 3],
+            false => [cost, self.inputs[node], self.impacts[node]],
+        }
     }
 }
 
@@ -112,17 +126,28 @@ fn motions(problem: &Problem, step: usize) -> Vec<Move> {
     shared(problem, || builder.built().ok(), work).concat()
 }
 
-/// A step backwards.
-fn backwards(problem: &Problem, moves: &[Move], costs: &[f64], impacts: &[f64]) -> Vec<Choice> {
+/// A step backwards: the choices at the nodes, and the numbers of impacts from there on.
+fn backwards(
+    problem: &Problem,
+    moves: &[Move],
+    after: &Layer,
+    impacts: &[f64],
+) -> (Vec<Choice>, Vec<f64>) {
     let (inputs, lattice) = (problem.inputs.count, problem.lattice);
     let work = |(): &mut (), nodes: Range<u64>| {
         let chosen = nodes.map(|node| {
             let first = node as usize * inputs;
-            choose(&moves[first..first + inputs], &lattice, costs, impacts)
+            let moves = &moves[first..first + inputs];
+            let choice = choose(moves, &lattice, after);
+            let best = choice.nearest().map(|index| moves[index]);
+            let number = best.map_or(f64::NAN, |best| {
+                f64::from(best.impacts) + lattice.linear(impacts, best.state)
+            });
+            (choice, number)
         });
         chosen.collect()
     };
-    shared(problem, || (), work)
+    shared(problem, || (), work).into_iter().unzip()
 }
 
 /// The results of all nodes, in their order.

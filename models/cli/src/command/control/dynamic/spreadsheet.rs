@@ -9,12 +9,12 @@ use crate::table;
 pub(super) fn write(output: &mut dyn Write, finished: &Finished) -> io::Result<()> {
     let (problem, solution) = (&finished.problem, &finished.solution);
     let [x, y, input, cost] = problem.names();
-    let costs = solution.shown();
     table::write_rows(output, |writer| {
         writer.write_record([x, y, cost, input, "impacts"])?;
-        for (node, cost) in costs.iter().enumerate() {
+        for node in 0..problem.lattice.count() {
             let [x, y] = problem.lattice.node(node);
-            let values = [x, y, *cost, solution.inputs[node], solution.impacts[node]];
+            let [cost, input, impacts] = solution.shown(node);
+            let values = [x, y, cost, input, impacts];
             writer.write_record(values.map(number))?;
         }
         Ok(())

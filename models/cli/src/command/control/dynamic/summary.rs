@@ -22,9 +22,12 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished) -> io::Result<(
         output,
         "  motions     {motions} over a step, {lost} of them do not get to its end"
     )?;
-    let known = solution.costs[0].iter().filter(|it| !it.is_nan()).count();
     let nodes = counted(problem.lattice.count(), "node");
-    writeln!(output, "  known       {known} of {nodes} at t = 0")?;
+    writeln!(
+        output,
+        "  known       {} of {nodes} at t = 0",
+        solution.known()
+    )?;
     for (index, path) in paths.iter().enumerate() {
         writeln!(output)?;
         write_path(output, problem, index + 1, path)?;
