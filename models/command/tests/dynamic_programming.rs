@@ -81,6 +81,44 @@ fn a_cost_that_grows_with_time_has_its_closed_form() {
     assert!((by_grid - least).abs() < 1e-3, "{by_grid} and {least}");
 }
 
+/// A double integrator on a grid that its motions must not leave, with inputs from -8 to 8.
+const SLIDER: &str = "
+    Slider {
+        coordinates { x; v; }
+        inputs { u; }
+        cost { running = u^2/2; terminal = 5*(x - 1)^2; }
+        field { dot(x) = v; dot(v) = u; }
+        initial { until = 1; }
+    }";
+
+/// A motion stays if it can stop in time: `x + v^2/16 <= 2` where it rises, `x - v^2/16 >= -1` where it falls. Without edges
+/// the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
+#[test]
+fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
+    let lowest = [41, 81].map(|count| {
+        let line = format!(
+            "- --dp x=-1..2:{count},v=-2..3:{count},u=-8..8:17 --steps {} --initial x=0,v=0",
+            5 * (count - 1) / 4
+        );
+        let mut lowest: f64 = 0.0;
+        for node in document_on(SLIDER, &line)["nodes"].as_array().unwrap() {
+            let [x, v] = [0, 1].map(|index| number(&node[index]));
+            let brake = v * v.abs() / 16.0;
+            let room = (2.0 - x - brake.max(0.0)).min(x + 1.0 + brake.min(0.0));
+            // A twentieth of the distance of nodes may be wrong.
+            if room.abs() > 0.05 * 3.0 / f64::from(count - 1) {
+                assert_eq!(node[2].is_number(), room > 0.0, "{x} {v}: {node}");
+            }
+            if let Some(cost) = node[2].as_f64() {
+                let free = 5.0 * (x + v - 1.0).powi(2) / (1.0 + 10.0 / 3.0);
+                lowest = lowest.min(cost - free);
+            }
+        }
+        lowest
+    });
+    assert!(lowest[0] > -0.2 && lowest[1] > 0.6 * lowest[0], "{lowest:?}");
+}
+
 /// The references are those of `control`: 0.2105697850 with two impacts, 0.0363202330 with one.
 #[test]
 fn a_ball_takes_the_impacts_that_are_cheapest() {

@@ -71,9 +71,14 @@ impl Layer {
         }
     }
 
+    /// Outside of the grid, motions are taken to go on as from the edge.
     fn margin_at(&self, lattice: &Lattice, at: [f64; 2]) -> f64 {
+        let here = lattice.margin(at);
         let later = lattice.linear(&self.margins, at);
-        later.min(lattice.margin(at))
+        match here < 0.0 {
+            true => here + later.min(0.0),
+            false => here.min(later),
+        }
     }
 
     /// The margin with a motion as the next one.
