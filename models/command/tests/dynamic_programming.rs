@@ -116,7 +116,10 @@ fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
         }
         lowest
     });
-    assert!(lowest[0] > -0.2 && lowest[1] > 0.6 * lowest[0], "{lowest:?}");
+    assert!(
+        lowest[0] > -0.2 && lowest[1] > 0.6 * lowest[0],
+        "{lowest:?}"
+    );
 }
 
 /// The references are those of `control`: 0.2105697850 with two impacts, 0.0363202330 with one.

@@ -2,11 +2,12 @@
 
 use dalembert_driver::{AnyModel, Contact, Impact, Origin, Piece, Settings, Watch};
 
+use super::paths::Stretch;
 use super::quantity::Quantity;
-use super::trace::{Source, Trace};
+use super::trace::{Mark, Source, Trace};
 use crate::error::CliError;
 
-/// The quantities along a run, and before its impacts. `start` is the energy at the start.
+/// The quantities along a run, in stretches between its impacts.
 ///
 /// # Errors
 /// A run that cannot be repeated.
@@ -15,43 +16,31 @@ pub fn curve(
     origin: &Origin,
     settings: &Settings,
     quantities: &[Quantity],
-    start: f64,
-) -> Result<[Vec<Vec<f64>>; 2], CliError> {
-    let mut camera = Camera {
-        trace: Trace::of(Source::Quantities(quantities.to_vec())),
-        corners: Vec::new(),
-        quantities,
-        start,
-    };
+) -> Result<Vec<Stretch>, CliError> {
+    let mut camera = Camera(Trace::of(Source::Quantities(quantities.to_vec())));
     let ending = model.simulate(origin, settings, &mut camera);
     ending.map_err(|refusal| CliError::refused(model, &refusal))?;
-    let points = camera.trace.points().iter();
-    let points = points.map(|mark| mark.values.clone()).collect();
-    Ok([points, camera.corners])
+    let is_impact = |left: &Mark, right: &Mark| left.corner && right.corner && left.t == right.t;
+    let marks = camera.0.points();
+    let stretches = marks.chunk_by(|left, right| !is_impact(left, right));
+    let values = |stretch: &[Mark]| stretch.iter().map(|it| it.values.clone()).collect();
+    Ok(stretches.map(values).collect())
 }
 
-/// Keeps the curve of a run and the places of its impacts.
-struct Camera<'a> {
-    trace: Trace,
-    corners: Vec<Vec<f64>>,
-    quantities: &'a [Quantity],
-    start: f64,
-}
+/// Keeps the curve of a run.
+struct Camera(Trace);
 
-impl Watch for Camera<'_> {
+impl Watch for Camera {
     fn step(&mut self, piece: &dyn Piece) {
-        self.trace.follow(piece);
+        self.0.follow(piece);
     }
 
     fn impact(&mut self, impact: Impact) {
-        self.trace.corner(impact.t, &impact.before);
-        self.trace.corner(impact.t, &impact.after);
-        let quantities = self.quantities.iter();
-        let values = quantities.map(|it| it.value(impact.t, &impact.before, self.start));
-        self.corners.push(values.collect());
+        self.0.corner(impact.t, &impact.before);
+        self.0.corner(impact.t, &impact.after);
     }
 
     fn contact(&mut self, contact: Contact) {
-        self.trace.corner(contact.t, &contact.at);
+        self.0.corner(contact.t, &contact.at);
     }
 }

@@ -1,5 +1,5 @@
-//! Several motions in one picture: a panel for each ordinate, a colour for each number of impacts, dots at the impacts, a
-//! ring at the start and a square at the end.
+//! Several motions in one picture: a panel for each ordinate, a colour for each number of impacts, dots before the impacts, dashes
+//! across jumps, a ring at the start and a square at the end.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;
@@ -26,15 +26,28 @@ const ABOVE: f64 = 8.0;
 /// Tolerance in pixels for omitted points of a line.
 const NEAR: f64 = 0.12;
 
+/// The quantities of successive points: the abscissa, then the ordinates.
+pub type Stretch = Vec<Vec<f64>>;
+
 /// A motion.
 #[derive(Debug, Clone)]
 pub struct Path {
     /// Its number of impacts.
     pub impacts: usize,
-    /// The quantities of its points: the abscissa, then the ordinates.
-    pub points: Vec<Vec<f64>>,
-    /// The same before its impacts.
-    pub corners: Vec<Vec<f64>>,
+    /// The stretches between its impacts.
+    pub stretches: Vec<Stretch>,
+}
+
+impl Path {
+    fn points(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.stretches.iter().flatten()
+    }
+
+    /// The points on both sides of its impacts.
+    fn impacts(&self) -> impl Iterator<Item = [&Vec<f64>; 2]> {
+        let pairs = self.stretches.windows(2);
+        pairs.filter_map(|pair| Some([pair[0].last()?, pair[1].first()?]))
+    }
 }
 
 /// Content of a picture.
@@ -59,11 +72,8 @@ pub struct Sheet<'a> {
 /// # Errors
 /// An error of the drawing library, or values too large to draw.
 pub fn draw(sheet: &Sheet<'_>) -> Result<String, String> {
-    let values = sheet
-        .paths
-        .iter()
-        .flat_map(|path| path.points.iter().flatten());
-    if values.clone().any(|value| value.abs() > LARGEST) {
+    let mut values = sheet.paths.iter().flat_map(|path| path.points().flatten());
+    if values.any(|value| value.abs() > LARGEST) {
         return Err(format!(
             "a motion has values beyond {LARGEST:e}, which cannot be drawn"
         ));
@@ -118,7 +128,7 @@ fn items(sheet: &Sheet<'_>) -> Vec<Item> {
 }
 
 fn range(paths: &[Path], index: usize, margin: f64) -> [f64; 2] {
-    let points = paths.iter().flat_map(|path| &path.points);
+    let points = paths.iter().flat_map(Path::points);
     padded(points.map(|point| point[index]), margin)
 }
 
@@ -141,19 +151,15 @@ fn draw_panel(area: &Area<'_>, sheet: &Sheet<'_>, ordinate: usize) -> Result<(),
     plane::draw_axes(&mut chart, [&sheet.names[0], &sheet.names[ordinate]])?;
     let at = |point: &Vec<f64>| [point[0], point[ordinate]];
     for path in paths {
-        let points: Vec<[f64; 2]> = path.points.iter().map(at).collect();
-        let pixels: Vec<[f64; 2]> = points
-            .iter()
-            .map(|[x, y]| [x * scale[0], y * scale[1]])
-            .collect();
-        let kept = thinned(&pixels, NEAR).into_iter();
-        let line: Vec<(f64, f64)> = kept
-            .map(|index| (points[index][0], points[index][1]))
-            .collect();
         let colour = style::curve(path.impacts);
-        let element = PathElement::new(line, colour.stroke_width(stroke(1.4)));
-        chart.draw_series([element]).map_err(message)?;
-        let corners = path.corners.iter().map(|corner| (at(corner), colour));
+        for stretch in &path.stretches {
+            let points: Vec<[f64; 2]> = stretch.iter().map(at).collect();
+            let line = PathElement::new(line(&points, scale), colour.stroke_width(stroke(1.4)));
+            chart.draw_series([line]).map_err(message)?;
+        }
+        let jumps = path.impacts().map(|sides| sides.map(at));
+        plane::dashes(&mut chart, jumps, colour)?;
+        let corners = path.impacts().map(|[before, _]| (at(before), colour));
         plane::dots(&mut chart, corners, 3.0)?;
     }
     let points = sheet.envelope.iter();
@@ -161,9 +167,20 @@ fn draw_panel(area: &Area<'_>, sheet: &Sheet<'_>, ordinate: usize) -> Result<(),
     plane::dots(&mut chart, points, 1.4)?;
     let ends = paths
         .iter()
-        .filter_map(|path| Some((path.points.first()?, path.points.last()?)));
+        .filter_map(|path| Some((path.points().next()?, path.points().last()?)));
     for (first, last) in ends {
         plane::ends(&mut chart, at(first), at(last))?;
     }
     Ok(())
+}
+
+/// The points of a line that are seen; `scale` is in pixels.
+fn line(points: &[[f64; 2]], scale: [f64; 2]) -> Vec<(f64, f64)> {
+    let pixels: Vec<[f64; 2]> = points
+        .iter()
+        .map(|[x, y]| [x * scale[0], y * scale[1]])
+        .collect();
+    let kept = thinned(&pixels, NEAR).into_iter();
+    kept.map(|index| (points[index][0], points[index][1]))
+        .collect()
 }

@@ -15,6 +15,7 @@ const STARTS: &str = "--path x=0.25 --path x=0.5 --path x=1 --path x=1.5 --path 
 pub fn figures() -> Vec<Figure> {
     vec![
         weak_forces(),
+        displacement(),
         controlled_ball(),
         least_cost(),
         sections(),
@@ -49,6 +50,21 @@ fn weak_forces() -> Figure {
             panel("free", "The height counts", paths("--set alpha=1000 ")),
             panel("dear", "The force counts too", paths("")),
         ],
+    }
+}
+
+fn displacement() -> Figure {
+    let paths = format!("{STRONG} --path x=2 --path x=1.85 --axes t,x,y {THIRD}");
+    Figure {
+        model: "controlled_ball",
+        name: "displacement",
+        title: "A motion with a jump, and one beside it",
+        chapter: chapters::VARIATIONS,
+        highlight: None,
+        caption: "Two paths of least cost from rest, at the heights 2 and 1.85, with $m = 2$, $g = 1$, $T = 5$ and $alpha = 10$. At the impact the momentum                   changes its sign. The neighbouring motion has its impact earlier: a variation moves the time of a jump as well as the states on both                   sides, so the costate there satisfies two conditions, one for the states and one for the time."
+            .to_owned(),
+        source: Some("W. Clark, thesis, Fig. 9.3"),
+        panels: vec![panel("", "", paths)],
     }
 }
 

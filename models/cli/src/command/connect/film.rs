@@ -66,11 +66,8 @@ fn path(
         rates: Rates::Velocities(connection.first.qdot.clone()),
         policy: OffConstraint::Keep,
     };
-    let start = connection.first.energy;
-    let [points, corners] = film::curve(model, &origin, &settings, quantities, start)?;
     Ok(Path {
         impacts: connection.bounces.len(),
-        points,
-        corners,
+        stretches: film::curve(model, &origin, &settings, quantities)?,
     })
 }

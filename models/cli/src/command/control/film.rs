@@ -30,12 +30,9 @@ pub(super) fn picture(finished: &Finished<'_>, args: &ControlArgs) -> Result<Str
     let settings = finished.settings();
     let path = |extremal: &Extremal| {
         let origin = origin(finished, extremal);
-        let curve = film::curve(finished.model, &origin, &settings, &quantities, f64::NAN)?;
-        let [points, corners] = curve;
         Ok(Path {
             impacts: extremal.kicks.len(),
-            points,
-            corners,
+            stretches: film::curve(finished.model, &origin, &settings, &quantities)?,
         })
     };
     let extremals = finished.controlled.extremals.iter();

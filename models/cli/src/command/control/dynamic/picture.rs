@@ -68,12 +68,10 @@ fn draw_paths(
     };
     let mut drawn: Vec<paths::Path> = Vec::new();
     for path in &finished.paths {
-        let moments = film(path);
-        let corners = moments.iter().filter(|(is_corner, _)| *is_corner);
+        let stretches = stretches(path).into_iter();
         drawn.push(paths::Path {
             impacts: path.hits.len(),
-            corners: corners.map(|(_, moment)| of(moment)).collect(),
-            points: moments.iter().map(|(_, moment)| of(moment)).collect(),
+            stretches: stretches.map(|it| it.iter().map(of).collect()).collect(),
         });
     }
     drawn.sort_by_key(|path| path.impacts);
@@ -91,13 +89,14 @@ fn draw_paths(
     })
 }
 
-/// The moments of a path with both sides of its impacts; true for those before an impact.
-fn film(path: &Path) -> Vec<(bool, Moment)> {
-    let mut film = Vec::new();
+/// The moments of a path in stretches between its impacts, with both sides of them.
+fn stretches(path: &Path) -> Vec<Vec<Moment>> {
+    let mut stretches = Vec::new();
+    let mut stretch = Vec::new();
     let mut hits = path.hits.iter().peekable();
     for pair in path.moments.chunks(2) {
         let [first, last] = pair else { continue };
-        film.push((false, *first));
+        stretch.push(*first);
         while let Some(hit) = hits.next_if(|hit| hit.t <= last.t) {
             let share = (hit.t - first.t) / (last.t - first.t);
             let side = |state| Moment {
@@ -106,12 +105,14 @@ fn film(path: &Path) -> Vec<(bool, Moment)> {
                 input: first.input,
                 cost: first.cost + share * (last.cost - first.cost),
             };
-            film.push((true, side(hit.states[0])));
-            film.push((false, side(hit.states[1])));
+            stretch.push(side(hit.states[0]));
+            stretches.push(std::mem::take(&mut stretch));
+            stretch.push(side(hit.states[1]));
         }
-        film.push((false, *last));
+        stretch.push(*last);
     }
-    film
+    stretches.push(stretch);
+    stretches
 }
 
 fn draw_map(finished: &Finished, args: &ControlArgs) -> Result<String, String> {
@@ -124,17 +125,11 @@ fn draw_map(finished: &Finished, args: &ControlArgs) -> Result<String, String> {
     };
     let nodes = 0..problem.lattice.count();
     let values: Vec<f64> = nodes.map(|node| solution.shown(node)[column]).collect();
-    let stretches = finished.paths.iter().map(|path| {
-        let mut stretches = vec![Vec::new()];
-        for (is_corner, moment) in film(path) {
-            if let Some(stretch) = stretches.last_mut() {
-                stretch.push(moment.state);
-            }
-            if is_corner {
-                stretches.push(Vec::new());
-            }
-        }
+    let states = finished.paths.iter().map(|path| {
+        let stretches = stretches(path).into_iter();
         stretches
+            .map(|it| it.iter().map(|moment| moment.state).collect())
+            .collect()
     });
     let [columns, rows] = problem.lattice.axes;
     let half = |axis: Axis| {
@@ -154,6 +149,6 @@ fn draw_map(finished: &Finished, args: &ControlArgs) -> Result<String, String> {
         counts: [columns.count, rows.count],
         values: &values,
         meaning,
-        paths: &stretches.collect::<Vec<_>>(),
+        paths: &states.collect::<Vec<_>>(),
     })
 }
