@@ -1,21 +1,31 @@
 //! `Actuated`: inputs that the caller supplies. `Powered`: the power of each named force and of every other cause that
 //! changes the energy.
 
+use dalembert_codegen::model::Model;
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{ToTokens, quote};
 
 use super::Context;
 
 /// `impl Actuated`, if inputs are declared.
 pub(super) fn emit_actuated(context: &Context<'_>) -> TokenStream {
-    let type_name = &context.names.type_name;
-    let inputs: Vec<usize> = context.form.model.inputs().map(|(k, _)| k).collect();
+    let names = &context.names;
+    emit_actuated_type(context.form.model, &names.type_name, &names.parameters)
+}
+
+/// Same, for a type that holds the parameters at these places.
+pub(super) fn emit_actuated_type(
+    model: &Model,
+    type_name: impl ToTokens,
+    places: &[TokenStream],
+) -> TokenStream {
+    let inputs: Vec<usize> = model.inputs().map(|(k, _)| k).collect();
     if inputs.is_empty() {
         return TokenStream::new();
     }
     let count = inputs.len();
     let set = inputs.iter().enumerate().map(|(index, &k)| {
-        let place = &context.names.parameters[k];
+        let place = &places[k];
         quote!(#place = inputs[#index];)
     });
     let attributes = super::attributes();

@@ -13,6 +13,11 @@ use crate::model::{Assumption, Constraint, Coordinate, Model, Output, Topology};
 use crate::program::recipes::geometry;
 use crate::spec::WHOLE;
 
+/// The names of the inputs.
+pub(super) fn inputs(model: &Model) -> Held<[&'static str]> {
+    names(model.inputs().map(|(_, input)| input.name.display.as_str()))
+}
+
 impl FormOf<'_> {
     /// The self-description.
     pub fn documentation(&self) -> Documentation {
@@ -21,7 +26,7 @@ impl FormOf<'_> {
         let [placed, named] = [&model.initial.q, &model.initial.qdot].map(|values| marks(values));
         Documentation {
             description: self.description(),
-            inputs: names(model.inputs().map(|(_, input)| input.name.display.as_str())),
+            inputs: inputs(model),
             placed,
             named,
             geometry: table(quantities.map(|group| Quantity {

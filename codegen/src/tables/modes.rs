@@ -119,7 +119,7 @@ impl<'a> Whole<'a> {
     pub fn documentation(&self) -> Documentation {
         Documentation {
             description: self.description(),
-            inputs: Held::Static(&[]),
+            inputs: description::inputs(&self.graph.modes[0].model),
             placed: Held::Static(&[]),
             named: Held::Static(&[]),
             geometry: Held::Static(&[]),

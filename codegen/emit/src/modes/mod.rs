@@ -52,6 +52,7 @@ pub fn tokens(compiled: &CompiledModes) -> TokenStream {
     let of_modes: Vec<TokenStream> = of_modes.collect();
     let of_whole = [
         whole::emit_conversions(&whole),
+        whole::emit_actuated(&whole),
         whole::emit_declared(&whole),
         whole::emit_taylor(&whole),
         whole::emit_variations(&whole),

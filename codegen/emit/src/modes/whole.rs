@@ -8,7 +8,7 @@ use quote::quote;
 use super::Whole;
 use crate::constants::{Constant, Record};
 use crate::describe::emitted;
-use crate::{attributes, constraint, kernels};
+use crate::{actuation, attributes, constraint, kernels};
 
 /// `impl Declared`, and the marker traits for constraints and surfaces.
 pub(super) fn emit_declared(whole: &Whole<'_>) -> TokenStream {
@@ -175,6 +175,12 @@ pub(super) fn emit_conversions(whole: &Whole<'_>) -> TokenStream {
         }
     });
     quote!(#(#modes)*)
+}
+
+/// `impl Actuated`, if inputs are declared.
+pub(super) fn emit_actuated(whole: &Whole<'_>) -> TokenStream {
+    let places = crate::names::places(whole.model(), &quote!(self));
+    actuation::emit_actuated_type(whole.model(), whole.type_name(), &places)
 }
 
 /// `impl TaylorField`

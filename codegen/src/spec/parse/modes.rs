@@ -27,7 +27,7 @@ const SHARED: [(&str, &str); 5] = [
     ),
     (
         "inputs",
-        "declare a parameter in its place, and set it between runs",
+        "declare them outside of `modes`: all modes share the inputs of the model",
     ),
     ("cost", "declare the model of one mode by itself"),
     (
@@ -128,7 +128,7 @@ fn take_apart(tokens: &[TokenTree], body: &Group, diagnostics: &mut Diagnostics)
             let _ = part(&mut cursor, &mut parts);
         } else {
             parts.shared.extend(declaration.iter().cloned());
-            if matches!(word.as_deref(), Some("inputs" | "cost" | "scenes")) {
+            if matches!(word.as_deref(), Some("cost" | "scenes")) {
                 refuse_shared(declaration, diagnostics);
             }
         }
@@ -190,7 +190,7 @@ fn refuse_shared(tokens: &[TokenTree], diagnostics: &mut Diagnostics) {
         if let Some((_, help)) = SHARED.iter().find(|(shared, _)| *shared == word) {
             let at = Location::of(&declaration[documentation_length(declaration)]);
             let text = match word.as_str() {
-                "inputs" | "cost" | "scenes" => format!("a model with modes has no `{word}`"),
+                "cost" | "scenes" => format!("a model with modes has no `{word}`"),
                 word => format!("`{word}` stands outside of `modes`"),
             };
             diagnostics.error(at, text).help(help);

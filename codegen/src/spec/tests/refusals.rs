@@ -172,12 +172,8 @@ fn modes_and_transitions_keep_their_forms() {
         "a model with modes has no `cost`",
     );
     refused_in(
-        "modes { a { } } «inputs» { u; }",
-        "a model with modes has no `inputs`",
-    );
-    refused_in(
         "modes { a { «inputs» { u; } } }",
-        "a model with modes has no `inputs`",
+        "`inputs` stands outside of `modes`",
     );
     refused_in(
         "modes { a { «modes» { b { } } } }",
