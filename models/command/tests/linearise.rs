@@ -313,14 +313,13 @@ fn the_summary_names_rows_and_columns() {
 
 #[test]
 fn flags_that_make_no_sense_are_refused() {
-    let modes = "refracted_particle";
     for (input, line, reason) in [
         (CART, "- --trim=w", "unknown component or input `w`"),
         (CART, "- --trim --moving u", "unknown component `u`"),
         (CART, "- --moving x", "--trim"),
         (CART, "- --every 1", "--samples"),
         (CART, "- --input w=1", "unknown input `w`"),
-        ("", modes, "a model with modes has no linearisation here"),
+        (SWITCHED, "- --mode of", "unknown mode `of`"),
     ] {
         let refused = linearise(input, line);
         assert_eq!(refused.exit, Exit::Refused, "{line}: {}", refused.output);
@@ -330,6 +329,97 @@ fn flags_that_make_no_sense_are_refused() {
             refused.errors
         );
     }
+}
+
+/// A mass that a force pushes onto a plate, which has a spring.
+const SWITCHED: &str = "
+    Switched {
+        coordinates { x; }
+        parameters { m > 0 = 2; k > 0 = 3; }
+        inputs { u; }
+        modes {
+            free { lagrangian = m/2*dot(x)^2; forces { motor: u*d(x); } outputs { speed: dot(x); } }
+            plate {
+                coordinates { z; }
+                lagrangian = m/2*dot(x)^2 + dot(z)^2/2 - k/2*(x - z)^2;
+                forces { motor: u*d(x); }
+                outputs { stretch: x - z; }
+            }
+        }
+        transitions { touch: free -> plate when x >= 1 => reset { z = x; dot(z) = 0; }; }
+        initial { dot(x) = 1; }
+    }";
+
+/// A mass on a spring that rests at -1: outside of an interval, or behind a floor; and a pendulum held beside its rest.
+#[test]
+fn an_equilibrium_is_a_state_that_the_model_allows() {
+    for (coordinate, surface) in [("x in (0.5, 3)", ""), ("x", "impacts { floor: x >= 0; }")] {
+        let text = format!(
+            "Spring {{ coordinates {{ {coordinate}; }} lagrangian = dot(x)^2/2 - (x + 1)^2/2; {surface} initial {{ x = 1; }} }}"
+        );
+        let done = run_on(&text, "linearise - --trim");
+        assert_eq!(done.exit, Exit::Other, "{}", done.output);
+        let expected = "no equilibrium was found: the rate of x_dot stays";
+        assert!(done.output.contains(expected), "{}", done.output);
+    }
+    let text = "
+        Held {
+            coordinates { th: angle; }
+            lagrangian = dot(th)^2/2 + cos(th);
+            forces { torque: (1/2)*d(th); }
+            initial { th = 1.5707; }
+        }";
+    let done = run_on(text, "linearise - --trim --json -");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    let document: Value = serde_json::from_str(&done.output).unwrap();
+    let angle = document["state"]["th"].as_f64().unwrap();
+    assert!((angle.sin() - 0.5).abs() < 1e-12, "{angle}");
+    assert!((angle - 1.5707).abs() <= std::f64::consts::PI, "{angle}");
+}
+
+#[test]
+fn a_mode_is_linearised_as_a_model_of_its_own() {
+    let document = |flags: &str| {
+        let done = run_on(SWITCHED, &format!("linearise - {flags} --json -"));
+        assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+        serde_json::from_str::<Value>(&done.output).unwrap()
+    };
+    let free = document("--input u=2");
+    assert_eq!(free["mode"], "free");
+    assert_eq!(free["A"], serde_json::json!([[0.0, 1.0], [0.0, 0.0]]));
+    assert_eq!(free["B"], serde_json::json!([[0.0], [0.5]]));
+    assert_eq!(free["rates"]["x_dot"], 1.0);
+    assert_eq!(free["C"], serde_json::json!([[0.0, 1.0]]));
+    let plate = document("--mode plate --set k=4 --initial x=1,z=0.5,x_dot=0");
+    assert_eq!(plate["mode"], "plate");
+    let a = [
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [-2.0, 2.0, 0.0, 0.0],
+        [4.0, -4.0, 0.0, 0.0],
+    ];
+    assert_eq!(plate["A"], serde_json::json!(a));
+    assert_eq!(plate["B"], serde_json::json!([[0.0], [0.0], [0.5], [0.0]]));
+    assert_eq!(plate["C"], serde_json::json!([[1.0, -1.0, 0.0, 0.0]]));
+    assert_eq!(plate["outputs"]["stretch"], 0.5);
+}
+
+#[test]
+fn a_sampled_motion_ends_where_it_leaves_the_mode() {
+    let done = run_on(SWITCHED, "linearise - --every 0.4 --samples 2");
+    assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    assert!(
+        done.output.contains(", mode free, linearised"),
+        "{}",
+        done.output
+    );
+    let done = run_on(SWITCHED, "linearise - --every 0.4 --samples 3");
+    assert_eq!(done.exit, Exit::Other, "{}", done.output);
+    assert!(
+        done.output.contains("the sampled motion ends at t = 1"),
+        "{}",
+        done.output
+    );
 }
 
 /// A pendulum whose torque just holds it level: two equilibria meet there. The tangent has no negative real part at their meeting, and the

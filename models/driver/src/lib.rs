@@ -33,6 +33,7 @@ mod connect;
 mod continuation;
 mod control;
 pub mod course;
+mod domain;
 pub mod drift;
 mod dynamic;
 pub mod ensemble;

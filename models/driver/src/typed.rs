@@ -59,6 +59,9 @@ trait Owner {
     fn set_parameter(&mut self, index: usize, value: f64);
 
     fn set_mode(&mut self, mode: usize);
+
+    /// The mode in which states are made, and its form; `None` without modes or without a form.
+    fn mode(&self) -> Option<(usize, Shared<erased::Form>)>;
 }
 
 /// The model of a type.
@@ -89,6 +92,10 @@ impl<M: Model + 'static> Owner for OfType<M> {
 
     fn set_mode(&mut self, mode: usize) {
         self.0.set_mode(mode);
+    }
+
+    fn mode(&self) -> Option<(usize, Shared<erased::Form>)> {
+        None
     }
 }
 
@@ -147,6 +154,11 @@ impl<const C: usize> Owner for OfForm<C> {
         let mut system = self.system();
         system.set_mode(mode);
         self.mode = Declared::start(&system);
+    }
+
+    fn mode(&self) -> Option<(usize, Shared<erased::Form>)> {
+        let mode = self.form.tables.modes.get(self.mode)?;
+        Some((self.mode, self.form.forms.get(mode.kernels)?.clone()))
     }
 }
 
@@ -291,6 +303,22 @@ impl<O: Owner> AnyModel for Typed<O> {
 
     fn set_mode(&mut self, mode: usize) {
         self.owner.set_mode(mode);
+    }
+
+    fn present_mode(&self) -> Option<&'static str> {
+        let (number, _) = self.owner.mode()?;
+        let mode = self.owner.description().modes.get(number)?;
+        Some(mode.name)
+    }
+
+    fn mode_alone(&self) -> Option<Box<dyn AnyModel>> {
+        let (_, form) = self.owner.mode()?;
+        let mut alone = of_form(form, self.code)?;
+        let values = TaylorField::parameters(&self.owner.system());
+        for (index, value) in Row::as_slice(&values).iter().enumerate() {
+            alone.set_parameter(index, *value);
+        }
+        Some(alone)
     }
 
     fn check_parameters(&self) -> Result<(), ParameterError> {

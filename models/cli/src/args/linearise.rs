@@ -14,7 +14,8 @@ pub(super) const EXAMPLES: &str =
   d/dt y = A y + B u,   z = C y + D u
 
 with the derivatives of the equations of motion, exact to rounding. The state is positions and velocities; with constraints,
-positions and quasi-velocities; of a first-order model, its coordinates. Impacts are not part of it.
+positions and quasi-velocities; of a first-order model, its coordinates. Impacts are not part of it. A model with modes is linearised
+in the mode that --mode names, as if there were no other.
 
 --trim searches an equilibrium near the given state by the Levenberg-Marquardt method. It may change everything, or only what
 is named: `--trim=u,theta`. --moving names coordinates that need not rest, such as the path of a wheel that rolls steadily.

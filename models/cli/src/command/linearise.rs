@@ -20,6 +20,8 @@ use crate::{Streams, names, run_request};
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
+    /// The mode whose equations they are, of a model with modes.
+    mode: Option<&'static str>,
     found: Result<Linearisation, Unlinear>,
 }
 
@@ -37,6 +39,9 @@ pub fn run(
     for text in &args.input {
         set_input(model.as_mut(), text)?;
     }
+    // Deviations stay in a mode.
+    let mode = model.present_mode();
+    let model = model.mode_alone().unwrap_or(model);
     let model = model.as_ref();
     let place = Place {
         t: args.at,
@@ -69,6 +74,7 @@ pub fn run(
     let finished = Finished {
         model,
         scene: &args.model.scene,
+        mode,
         found,
     };
     if let Some(sink) = json {

@@ -2,28 +2,23 @@
 
 use std::ops::ControlFlow;
 
-use dalembert::contract::{TaylorField, Variational};
+use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
 use dalembert::integrate::{Chosen, Taylor};
-use dalembert::numbers::{Numbers, Row};
-use dalembert::variations::Dual;
 use dalembert::{
     Event, Instance, Observer, Outcome, Scene, SceneEffects, Simulation, StateError, StateVector,
     Tolerance,
 };
 
+use crate::domain;
 use crate::refusal::Refusal;
 use crate::typed::vector;
-use crate::variation::constant;
 
 /// Largest number of impacts in a step.
 const IMPACTS: u64 = 64;
 
 /// Largest number of integration steps in a step.
 const STEPS: u64 = 4096;
-
-/// Largest gap behind a surface that is rounding, as a fraction of the largest component of the state.
-const ROUNDING: f64 = 1e-9;
 
 /// Number of components of the state.
 const STATE: usize = 2;
@@ -111,16 +106,8 @@ fn start<S: Instance + Scene + Variational>(
 }
 
 fn is_behind<S: Instance + Scene + Variational>(system: &S, t: f64, state: &S::State) -> bool {
-    let parameters = TaylorField::parameters(system);
-    let parameters = constant::<S::Parameters<Dual>>(parameters.as_slice());
-    let row = constant::<S::Row<Dual>>(StateVector::as_slice(state));
-    let Ok(gaps) = system.clearances(&parameters, Dual::of(t), &row) else {
-        return true;
-    };
-    let components = state.as_slice()[..STATE].iter();
-    let size = components.fold(1.0_f64, |most, it| most.max(it.abs()));
-    let mut numbered = gaps.as_slice().iter().map(|gap| gap.value).enumerate();
-    numbered.any(|(surface, gap)| gap < -ROUNDING * size && system.counts(surface, t, state))
+    let size = domain::size(&state.as_slice()[..STATE]);
+    domain::is_behind(system, t, state, size)
 }
 
 fn landing<S: Instance + Scene + Variational>(

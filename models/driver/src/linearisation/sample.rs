@@ -7,6 +7,7 @@ use dalembert::variations::{DIRECTIONS, Dual, Tangent, rates};
 use dalembert::{Instance, StateError};
 
 use super::Unlinear;
+use crate::domain;
 use crate::typed::vector;
 use crate::variation::constant;
 
@@ -124,6 +125,20 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
             true => Ok(sample),
             false => Err(Unlinear::NotFinite),
         }
+    }
+
+    /// True if a state is within its charts and behind no surface.
+    pub fn is_allowed(&self, state: &[f64], inputs: &[f64]) -> bool {
+        let Ok(seeded) = self.seeded(self.t, state, inputs, 0) else {
+            return false;
+        };
+        let mut whole = self.system.zero_state();
+        let entries = whole.as_mut_slice().iter_mut();
+        for (entry, dual) in entries.zip(seeded.row.as_slice()) {
+            *entry = dual.value;
+        }
+        self.system.outside_chart(&whole).is_none()
+            && !domain::is_behind(self.system, self.t, &whole, domain::size(state))
     }
 
     /// Parameters and state as dual numbers, with derivatives by [`DIRECTIONS`] variables from `first` on.

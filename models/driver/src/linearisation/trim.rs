@@ -1,7 +1,10 @@
 //! An equilibrium near a state: the Levenberg-Marquardt method with exact derivatives.
 
+use std::f64::consts::TAU;
+
 use dalembert::Instance;
 use dalembert::contract::Variational;
+use dalembert::describe::Topology;
 
 use super::sample::{Plant, Sample};
 use super::{Unlinear, largest};
@@ -108,6 +111,7 @@ pub(super) fn settle<S: Instance + Variational>(
         steps += 1;
     }
     walk.check()?;
+    walk.unwind(state);
     state.copy_from_slice(&walk.values[..walk.count]);
     inputs.copy_from_slice(&walk.values[walk.count..]);
     Ok(steps)
@@ -144,7 +148,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
         false
     }
 
-    /// Subtracts a change, if the residuals become smaller by it.
+    /// Subtracts a change, if the residuals become smaller by it and the model allows the state.
     fn improve(&mut self, change: &[f64], size: f64) -> bool {
         let mut next = self.values.clone();
         for (&place, change) in self.free.iter().zip(change) {
@@ -152,11 +156,22 @@ impl<S: Instance + Variational> Walk<'_, S> {
         }
         let (state, inputs) = next.split_at(self.count);
         match self.plant.at(state, inputs) {
-            Ok(sample) if self.size(&sample) < size => {
+            Ok(sample) if self.size(&sample) < size && self.plant.is_allowed(state, inputs) => {
                 (self.values, self.sample) = (next, sample);
                 true
             }
             _ => false,
+        }
+    }
+
+    /// Changes angles by whole turns, to those nearest to the start.
+    fn unwind(&mut self, start: &[f64]) {
+        let coordinates = self.plant.system.description().coordinates.iter();
+        for (index, coordinate) in coordinates.enumerate() {
+            if coordinate.topology == Topology::Circle {
+                let turns = ((self.values[index] - start[index]) / TAU).round();
+                self.values[index] -= TAU * turns;
+            }
         }
     }
 

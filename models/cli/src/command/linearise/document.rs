@@ -13,6 +13,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     let model = finished.model;
     let description = model.description();
     let mut document = Document::of_model(output, model, finished.scene)?;
+    document.field("mode", finished.mode)?;
     match &finished.found {
         Ok(found) => {
             document.field("outcome", json!({ "kind": "done" }))?;

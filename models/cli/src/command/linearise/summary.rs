@@ -19,6 +19,9 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
         "all" => write!(output, "{}", description.name)?,
         scene => write!(output, "{}, scene {scene}", description.name)?,
     }
+    if let Some(mode) = finished.mode {
+        write!(output, ", mode {mode}")?;
+    }
     writeln!(output, ", linearised at t = {}", found.t)?;
     let state: Vec<&str> = found.components.iter().map(String::as_str).collect();
     let inputs = model.inputs();
