@@ -128,9 +128,11 @@ pub(super) fn combination(pool: &mut Pool, parts: &[(Rational, ExprId, ExprId)])
     };
     let scaled = |(coefficient, ..): &(Rational, ExprId, ExprId)| coefficient.checked_div(first);
     let coefficients: Vec<Rational> = parts.iter().filter_map(scaled).collect();
-    let clear = coefficients.iter().fold(1, |common: i64, coefficient| {
-        let denominator = coefficient.to_small().map_or(1, |(_, d)| d);
-        least_common_multiple(common, denominator)
+    // Denominators too large for a common multiple stay.
+    let clear = coefficients.iter().fold(1, |common, coefficient| {
+        let denominator = coefficient.to_small().map(|(_, d)| d);
+        let both = denominator.and_then(|d| least_common_multiple(common, d));
+        both.unwrap_or(common)
     });
     // The monomials of each term, terms in order of appearance.
     let mut collected: Vec<(ExprId, Vec<(Rational, ExprId)>)> = Vec::new();
@@ -153,10 +155,11 @@ pub(super) fn combination(pool: &mut Pool, parts: &[(Rational, ExprId, ExprId)])
     pool.sum(&summands)
 }
 
-fn least_common_multiple(a: i64, b: i64) -> i64 {
+/// The least common multiple of two positive numbers; `None` if it exceeds the range.
+fn least_common_multiple(a: i64, b: i64) -> Option<i64> {
     let (mut common, mut rest) = (a, b);
     while rest != 0 {
         (common, rest) = (rest, common % rest);
     }
-    a / common * b
+    (a / common).checked_mul(b)
 }
