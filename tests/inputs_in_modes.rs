@@ -4,7 +4,8 @@ use dalembert::{
     Actuated, Described, Dop853, Impacts, Outcome, Run, Simulation, System, Tolerance, VectorField,
 };
 use dalembert_cli::Exit;
-use dalembert_codegen::compile;
+use dalembert_codegen::spec::Declaration;
+use dalembert_codegen::{compile_modes, read};
 use dalembert_stability::text::Text;
 use dalembert_tests::command::{self, Finished};
 use dalembert_tests::numeric::assert_near;
@@ -137,7 +138,12 @@ fn inputs_decide_no_transition() {
         let text = format!(
             "P {{ coordinates {{ x; }} inputs {{ u; }} lagrangian = dot(x)^2/2; {modes} }}"
         );
-        let errors = compile(text.parse().expect("tokens")).expect_err("a refusal");
+        let declared = read(text.parse().expect("tokens"));
+        let errors = match declared {
+            Ok(Declaration::Modes(modes)) => compile_modes(&modes).expect_err("a refusal"),
+            Ok(_) => panic!("a model with modes"),
+            Err(errors) => errors,
+        };
         let messages = errors.iter().map(|error| error.message().to_owned());
         messages.collect::<String>()
     };

@@ -4,8 +4,9 @@ use crate::contract::{
     Along, Chart, Constrained, Impacting, Level, Powered, RankDrop, System, VectorField,
 };
 use crate::error::{Fault, ParameterError, StateError};
-use crate::law::{Blow, Contact, Jump, Law};
+use crate::law::{Blow, Contact, Jump, Landing, Law};
 use crate::numbers::{Bent, ComplexInterval, TaylorModel};
+use crate::outcome::Outcome;
 
 /// A system whose declared `inputs` the caller supplies. It stores their values like parameters; they are 0 until
 /// they are set.
@@ -110,6 +111,10 @@ impl<Sys: Actuated, F: Fn(f64, &Sys::State) -> Sys::Inputs> System for Steered<S
 
     fn motion_start(&self, state: &Self::State) -> usize {
         self.system.motion_start(state)
+    }
+
+    fn mode(&self, state: &Self::State) -> usize {
+        self.system.mode(state)
     }
 
     fn position(&self, state: &Self::State) -> Self::Vector {
@@ -400,6 +405,23 @@ where
         motion: &Self::Impulse,
     ) -> Result<Option<Self::Impulse>, Fault> {
         self.system.trace(surface, t, state, motion)
+    }
+
+    fn is_passable(&self, surface: usize) -> bool {
+        self.system.is_passable(surface)
+    }
+
+    fn opposite(&self, surface: usize) -> Option<usize> {
+        self.system.opposite(surface)
+    }
+
+    fn landing(
+        &self,
+        surface: usize,
+        t: f64,
+        state: &Self::State,
+    ) -> Result<Landing<Self::State>, Outcome> {
+        self.at(t, state).landing(surface, t, state)
     }
 
     fn blow(

@@ -43,6 +43,21 @@ pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
     x.iter().all(|value| value.is_finite()).then_some(x)
 }
 
+/// The vector with the least `|J x - r|^2 + damping^2 |x|^2`.
+pub(crate) fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let count = columns.len();
+    let rows: Vec<Vec<f64>> = (columns.iter().enumerate())
+        .map(|(j, column)| {
+            let mut column = column.clone();
+            column.extend((0..count).map(|k| if j == k { damping } else { 0.0 }));
+            column
+        })
+        .collect();
+    let mut right = residuals.to_vec();
+    right.resize(residuals.len() + count, 0.0);
+    solve(&rows, &right)
+}
+
 /// Reflects a vector at the plane at right angles to `reflector`.
 fn reflect(reflector: &[f64], vector: &mut [f64]) {
     let square: f64 = reflector.iter().map(|value| value * value).sum();

@@ -28,6 +28,17 @@ pub(crate) trait Aim {
     /// The motion from these unknowns, with derivatives if `with_slopes`.
     fn shoot(&mut self, w: &[f64], with_slopes: bool) -> Shot;
 
+    /// Number of further starts that [`guess`](Self::guess) may know.
+    fn guesses(&self) -> usize {
+        0
+    }
+
+    /// Unknowns that another method finds from a guess with this index.
+    fn guess(&mut self, index: usize) -> Option<Vec<f64>> {
+        let _ = index;
+        None
+    }
+
     /// Number of steps of the integrator that were made.
     fn steps(&self) -> u64;
 }

@@ -21,7 +21,7 @@ pub(super) fn turn(seed: u64) -> f64 {
 }
 
 /// Unit vectors in a space of three dimensions or more.
-pub(super) fn on_sphere(dimension: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
+pub(crate) fn on_sphere(dimension: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
     match dimension {
         3 => on_spiral(count, seed),
         _ => at_random(dimension, count, seed),

@@ -20,7 +20,7 @@
 
 pub(crate) mod aim;
 mod conjugate;
-mod directions;
+pub(crate) mod directions;
 mod line;
 mod newton;
 pub(crate) mod observers;

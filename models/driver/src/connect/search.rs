@@ -12,6 +12,7 @@ use super::line;
 use super::newton::{Arrival, Newton, is_same};
 use super::scan::{self, Density, Ray, Sample, Speeds, windows};
 use super::units::Units;
+use crate::linear::norm;
 
 /// First speeds of a scan, in multiples of the speed that the problem suggests.
 const FIRST: f64 = 4.0;
@@ -284,7 +285,29 @@ impl<'a> Search<'a> {
             self.gather(direction, &mut candidates);
             self.note(index + 1, 2 * count);
         }
+        self.guess(&mut candidates);
         self.pursue(candidates);
+    }
+
+    /// Takes the starts that another method finds.
+    fn guess(&mut self, candidates: &mut Vec<Candidate>) {
+        for index in 0..self.aim.guesses() {
+            let Some(w) = self.aim.guess(index) else {
+                continue;
+            };
+            let shot = self.aim.shoot(&w, false);
+            let counts = |it: &Course| matches!(it, Course::Reached(surfaces) if surfaces.len() >= self.plan.least);
+            if counts(&shot.course) {
+                candidates.push(Candidate {
+                    miss: norm(&shot.misses),
+                    course: shot.course,
+                    y: w.iter()
+                        .zip(&self.units.unknowns)
+                        .map(|(w, unit)| w / unit)
+                        .collect(),
+                });
+            }
+        }
     }
 
     /// Scans a ray, and takes from each stretch the starts that come nearest.

@@ -8,8 +8,10 @@
 //! | file | job |
 //! |---|---|
 //! | `shooter.rs` | one extremal from a costate at the start |
+//! | `multiple_shooting.rs` | further starts of the search, by multiple shooting |
 //! | `second_order.rs` | the second-order test of an extremal that was found |
 
+mod multiple_shooting;
 mod second_order;
 mod shooter;
 

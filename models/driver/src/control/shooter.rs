@@ -12,6 +12,7 @@ use dalembert::{
     StateVector, Variations,
 };
 
+use super::multiple_shooting::{Chain, GUESSES};
 use super::second_order::{self, Node, SecondOrder};
 use super::{Extremal, Kick, Moment, Task, Unsought};
 use crate::connect::aim::{Aim, Course, Shot};
@@ -225,6 +226,56 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.runs
     }
 
+    /// Number of components of the state.
+    pub fn state_count(&self) -> usize {
+        self.layout.states
+    }
+
+    /// The state at the start, the given components of that at the end, and the sizes of the components.
+    pub fn ends(&self) -> (&[f64], &[Option<f64>], &[f64]) {
+        let sizes = &self.sizes[..self.layout.states];
+        (&self.task.from, &self.task.to, sizes)
+    }
+
+    /// The seed of the search.
+    pub fn seed(&self) -> u64 {
+        self.task.seed
+    }
+
+    /// The motion from a state with a costate between two shares of the time, with its derivatives by all of them; `None` if it does
+    /// not get there.
+    pub fn stretch(&mut self, shares: [f64; 2], z: &[f64]) -> Option<Stretch<S>> {
+        let n = self.layout.states;
+        let (system, span) = (self.system, shares.map(|share| share * self.task.time));
+        let mut state = self.rest;
+        state.as_mut_slice()[..2 * n].copy_from_slice(z);
+        let mut tangents: Vec<Tangent<S>> = (0..2 * n).map(Tangent::of_component).collect();
+        let mut observer = Marksman {
+            variations: Some(Variations::new(system, &mut tangents)),
+            hits: Vec::new(),
+        };
+        let run = self.run_between(span, state, f64::INFINITY, &mut observer);
+        let run = run.filter(|run| run.outcome == Outcome::Done)?;
+        let is_varied = observer
+            .variations
+            .is_some_and(|mut it| it.tangents().is_ok());
+        is_varied.then(|| Stretch {
+            end: run.state,
+            columns: tangents
+                .iter()
+                .map(|it| it.state.as_slice()[..2 * n].to_vec())
+                .collect(),
+        })
+    }
+
+    /// The differences in the equations of the end, and their derivatives by state and costate at the start of the last stretch.
+    pub fn arrival(&self, last: &Stretch<S>) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let values = self.outputs(self.task.time, &last.end).ok()?;
+        let columns = last.columns.iter();
+        let slopes = columns.map(|column| self.slopes(column, &values)).collect();
+        Some((self.misses(&last.end, &values), slopes))
+    }
+
     fn outputs(&self, t: f64, state: &S::State) -> Result<Vec<f64>, Fault> {
         let mut values = vec![f64::NAN; self.system.description().outputs.len()];
         self.system.outputs(t, state, &mut values)?;
@@ -243,6 +294,16 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         &mut self,
         w: &[f64],
         longest: f64,
+        observer: &mut dyn Observer<S>,
+    ) -> Option<Run<S::State>> {
+        self.run_between([0.0, self.task.time], self.state(w), longest, observer)
+    }
+
+    fn run_between(
+        &mut self,
+        [from, to]: [f64; 2],
+        state: S::State,
+        longest: f64,
         mut observer: &mut dyn Observer<S>,
     ) -> Option<Run<S::State>> {
         self.runs += 1;
@@ -252,7 +313,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         effects.set_impact_budget(Some(self.task.impacts[1] as u64 + 2));
         let mut simulation = Simulation::new(self.system, Chosen::new(&mut stepper), effects)
             .with_step_budget(self.budget);
-        let run = simulation.run(0.0, self.state(w), self.task.time, &mut observer);
+        let run = simulation.run(from, state, to, &mut observer);
         let run = run.ok()?;
         self.steps += run.counters.accepted;
         Some(run)
@@ -445,6 +506,12 @@ fn nodes(stands: Vec<Node>, time: f64, n: usize) -> Vec<Node> {
     nodes
 }
 
+/// The end of a motion over a part of the time, and its derivatives by state and costate at the start.
+pub(super) struct Stretch<S: Instance + Scene + Variational> {
+    pub end: S::State,
+    pub columns: Vec<Vec<f64>>,
+}
+
 /// A motion, shot without its misses.
 struct Flight {
     course: Course,
@@ -454,6 +521,14 @@ struct Flight {
 impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
     fn steps(&self) -> u64 {
         self.steps
+    }
+
+    fn guesses(&self) -> usize {
+        GUESSES
+    }
+
+    fn guess(&mut self, index: usize) -> Option<Vec<f64>> {
+        Chain::new(self).solve(index)
     }
 
     fn shoot(&mut self, w: &[f64], with_slopes: bool) -> Shot {

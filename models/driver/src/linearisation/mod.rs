@@ -24,6 +24,7 @@ use dalembert::variations::eigenvalues;
 use dalembert::{Fault, Instance, Outcome, Scene, Undefined};
 use thiserror::Error;
 
+use crate::least_squares::damped;
 use crate::names;
 use crate::refusal::Refusal;
 use sample::{Plant, Sample};
@@ -345,7 +346,7 @@ fn nearby<S: Instance + Variational>(
         .map(|j| sample.by_rates.iter().map(|row| row[j]).collect())
         .collect();
     let damping = f64::EPSILON.sqrt() * largest(columns.iter().flatten());
-    let Some(step) = trim::damped(&columns, &residuals, damping) else {
+    let Some(step) = damped(&columns, &residuals, damping) else {
         return Vec::new();
     };
     let beside = |factor: f64| {

@@ -8,7 +8,7 @@ use dalembert::describe::Topology;
 
 use super::sample::{Plant, Sample};
 use super::{Unlinear, largest};
-use crate::least_squares::solve;
+use crate::least_squares::damped;
 use crate::linear::norm;
 
 /// Largest number of steps.
@@ -189,19 +189,4 @@ impl<S: Instance + Variational> Walk<'_, S> {
             _ => Ok(()),
         }
     }
-}
-
-/// The vector with the least `|J x - r|^2 + damping^2 |x|^2`.
-pub(super) fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
-    let count = columns.len();
-    let rows: Vec<Vec<f64>> = (columns.iter().enumerate())
-        .map(|(j, column)| {
-            let mut column = column.clone();
-            column.extend((0..count).map(|k| if j == k { damping } else { 0.0 }));
-            column
-        })
-        .collect();
-    let mut right = residuals.to_vec();
-    right.resize(residuals.len() + count, 0.0);
-    solve(&rows, &right)
 }

@@ -1,0 +1,185 @@
+//! Multiple shooting: an extremal as a chain of motions, each from a state and a costate of its own.
+//!
+//! ```text
+//! z_{k+1} = Phi_k(z_k),  k = 0 .. M - 2,      the equations of the end hold for Phi_{M-1}(z_{M-1})
+//! ```
+//!
+//! `z = (x, p)`, and `Phi_k` is the motion from one node to the next. The unknowns are the costate at the start, and state and
+//! costate at the further nodes. As errors grow over one stretch alone, the Levenberg-Marquardt method gets from a rough guess to
+//! an extremal that no guess of the costate at the start alone leads to.
+
+use dalembert::contract::Variational;
+use dalembert::{Instance, Scene, StateVector};
+
+use super::shooter::Shooter;
+use crate::connect::directions::on_sphere;
+use crate::least_squares::damped;
+use crate::linear::norm;
+
+/// Number of stretches.
+const STRETCHES: usize = 12;
+
+/// Number of guesses.
+pub(super) const GUESSES: usize = 24;
+
+/// Deviations of the guesses from a straight line, in sizes of the state.
+const HEIGHTS: [f64; 3] = [0.5, 1.0, 2.0];
+
+/// Largest number of steps.
+const STEPS: usize = 80;
+
+/// Largest residual of an extremal.
+const SOLVED: f64 = 1e-8;
+
+/// First, least and largest damping, as a multiple of the length of a column.
+const DAMPING: [f64; 3] = [1e-2, 1e-12, 1e6];
+
+/// Residuals and their derivatives, a column for each unknown.
+struct Equations {
+    residuals: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+/// A chain of motions of a problem.
+pub(super) struct Chain<'s, 'a, S: Instance + Scene + Variational> {
+    shooter: &'s mut Shooter<'a, S>,
+    /// Number of components of the state.
+    n: usize,
+}
+
+impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
+    pub fn new(shooter: &'s mut Shooter<'a, S>) -> Self {
+        Self {
+            n: shooter.state_count(),
+            shooter,
+        }
+    }
+
+    /// The costate at the start of the extremal that a guess leads to.
+    pub fn solve(&mut self, guess: usize) -> Option<Vec<f64>> {
+        let mut unknowns = self.guess(guess);
+        let mut equations = self.equations(&unknowns)?;
+        let [mut damping, least, most] = DAMPING;
+        for _ in 0..STEPS {
+            let size = norm(&equations.residuals);
+            if size < SOLVED {
+                return Some(unknowns[..self.n].to_vec());
+            }
+            (unknowns, equations) = loop {
+                if damping > most {
+                    return None;
+                }
+                let next = self.step(&unknowns, &equations, damping);
+                if let Some(next) = next.filter(|(_, next)| norm(&next.residuals) < size) {
+                    damping = f64::max(0.2 * damping, least);
+                    break next;
+                }
+                damping *= 5.0;
+            };
+        }
+        None
+    }
+
+    /// A guess: states on a line from the start to the end, or on an arc beside it; costates 0.
+    fn guess(&self, index: usize) -> Vec<f64> {
+        let n = self.n;
+        let (from, to, sizes) = self.shooter.ends();
+        let arc = match index.checked_sub(1) {
+            None => vec![0.0; n],
+            Some(index) => {
+                let direction = &on_sphere(n, GUESSES, self.shooter.seed())[index];
+                let height = HEIGHTS[index % HEIGHTS.len()] * (n as f64).sqrt();
+                let parts = direction.iter().zip(sizes);
+                parts.map(|(part, size)| height * part * size).collect()
+            }
+        };
+        let mut unknowns = vec![0.0; n];
+        for node in 1..STRETCHES {
+            let share = node as f64 / STRETCHES as f64;
+            let bend = (std::f64::consts::PI * share).sin();
+            let state = (0..n).map(|i| {
+                let end = to[i].unwrap_or(from[i]);
+                from[i] + share * (end - from[i]) + bend * arc[i]
+            });
+            unknowns.extend(state);
+            unknowns.extend(vec![0.0; n]);
+        }
+        unknowns
+    }
+
+    /// The unknowns after a step, with their equations.
+    fn step(
+        &mut self,
+        unknowns: &[f64],
+        equations: &Equations,
+        damping: f64,
+    ) -> Option<(Vec<f64>, Equations)> {
+        let lengths: Vec<f64> = (equations.columns.iter())
+            .map(|column| norm(column))
+            .collect();
+        let columns: Vec<Vec<f64>> = (equations.columns.iter().zip(&lengths))
+            .map(|(column, length)| column.iter().map(|entry| entry / length).collect())
+            .collect();
+        let change = damped(&columns, &equations.residuals, damping)?;
+        let parts = unknowns.iter().zip(change.iter().zip(&lengths));
+        let next: Vec<f64> = parts
+            .map(|(value, (change, length))| value - change / length)
+            .collect();
+        let equations = self.equations(&next)?;
+        Some((next, equations))
+    }
+
+    fn equations(&mut self, unknowns: &[f64]) -> Option<Equations> {
+        let n = self.n;
+        let rows = 2 * n * (STRETCHES - 1) + n;
+        let mut residuals = vec![0.0; rows];
+        let mut columns = vec![vec![0.0; rows]; unknowns.len()];
+        for k in 0..STRETCHES {
+            let z = self.node(unknowns, k);
+            // The first node has no free state, and its costate comes first.
+            let (first, fixed) = match k {
+                0 => (0, n),
+                k => (n + 2 * n * (k - 1), 0),
+            };
+            let row = 2 * n * k;
+            let stretch = self.shooter.stretch([k, k + 1].map(place), &z)?;
+            if k + 1 == STRETCHES {
+                let (misses, slopes) = self.shooter.arrival(&stretch)?;
+                residuals[row..].copy_from_slice(&misses);
+                for (column, slopes) in columns[first..].iter_mut().zip(&slopes[fixed..]) {
+                    column[row..].copy_from_slice(slopes);
+                }
+                break;
+            }
+            let next = self.node(unknowns, k + 1);
+            for i in 0..2 * n {
+                residuals[row + i] = stretch.end.as_slice()[i] - next[i];
+                columns[n + 2 * n * k + i][row + i] = -1.0;
+            }
+            for (column, slopes) in columns[first..].iter_mut().zip(&stretch.columns[fixed..]) {
+                column[row..row + 2 * n].copy_from_slice(slopes);
+            }
+        }
+        let is_finite = residuals.iter().chain(columns.iter().flatten());
+        is_finite
+            .clone()
+            .all(|it| it.is_finite())
+            .then_some(Equations { residuals, columns })
+    }
+
+    fn node(&self, unknowns: &[f64], k: usize) -> Vec<f64> {
+        let n = self.n;
+        match k {
+            0 => [self.shooter.ends().0, &unknowns[..n]].concat(),
+            k => {
+                let first = n + 2 * n * (k - 1);
+                unknowns[first..first + 2 * n].to_vec()
+            }
+        }
+    }
+}
+
+/// The share of the time at a node.
+fn place(node: usize) -> f64 {
+    node as f64 / STRETCHES as f64
+}
