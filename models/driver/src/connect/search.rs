@@ -2,8 +2,9 @@
 //!
 //! With one unknown both rays of starts are scanned, and every stretch of one sequence of impacts is searched by brackets
 //! ([`line`](super::line)). With more unknowns rays in many directions are scanned; each stretch gives the start that
-//! comes nearest, and Newton's method goes on from there. Directions between which the sequences of impacts differ are
-//! halved. At last known roots are divided out, and the nearest starts are tried again.
+//! comes nearest, and Newton's method goes on from there. In the plane, directions between which the sequences of impacts differ
+//! are halved; with three unknowns or more, starts that the problem guesses itself ([`Aim::guess`]) are tried too. At last known roots
+//! are divided out, and the nearest starts are tried again.
 
 use super::Stage;
 use super::aim::{Aim, Course};
@@ -31,6 +32,9 @@ const AGAIN: usize = 6;
 
 /// Number of starts of each sequence of impacts from which Newton's method goes on.
 const TRIED: usize = 240;
+
+/// Number of steps of the integrator after which no further direction is scanned, with three unknowns or more.
+const SCANNED: u64 = 2_000_000;
 
 /// Extent of a search.
 #[derive(Debug, Clone, Copy)]
@@ -280,18 +284,25 @@ impl<'a> Search<'a> {
         let count = directions::default_count(self.unknowns);
         let count = self.plan.directions.unwrap_or(count);
         let mut candidates = Vec::new();
-        let all = directions::on_sphere(self.unknowns, count, self.plan.seed);
-        for (index, direction) in all.iter().enumerate() {
-            self.gather(direction, &mut candidates);
-            self.note(index + 1, 2 * count);
-        }
         self.guess(&mut candidates);
+        let all = directions::on_sphere(self.unknowns, count, self.plan.seed);
+        let begun = self.aim.steps();
+        for (index, direction) in all.iter().enumerate() {
+            if self.aim.steps() - begun > SCANNED {
+                self.found.is_bounded = false;
+                break;
+            }
+            self.gather(direction, &mut candidates);
+            self.note(count + index + 1, 3 * count);
+        }
         self.pursue(candidates);
     }
 
     /// Takes the starts that another method finds.
     fn guess(&mut self, candidates: &mut Vec<Candidate>) {
-        for index in 0..self.aim.guesses() {
+        let count = self.aim.guesses();
+        for index in 0..count {
+            self.note(index, 3 * count);
             let Some(w) = self.aim.guess(index) else {
                 continue;
             };

@@ -26,8 +26,10 @@ use crate::variation::constant;
 /// Impacts within this fraction of the time from an end belong to no sequence.
 const AT_ENDS: f64 = 1e-9;
 
-/// Number of steps after which a motion is given up: at least, and in multiples of those with costate 0 at the start.
+/// Number of steps after which a motion is given up: at least, and in multiples of those with costate 0 at the start. With more
+/// unknowns, a scan has many motions that run away.
 const STEPS: [u64; 2] = [4000, 50];
+const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 
 /// Largest gap behind a surface that is rounding, as a fraction of the largest component of the state.
 const ROUNDING: f64 = 1e-9;
@@ -179,7 +181,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         let still = vec![0.0; n];
         let (shot, run) = self.flight(&still, true);
         let steps = run.as_ref().map_or(0, |run| run.counters.accepted);
-        self.budget = STEPS[0].max(STEPS[1].saturating_mul(steps));
+        let [least, times] = if n < 3 { STEPS } else { STEPS_IN_SPACE };
+        self.budget = least.max(times * steps);
         let end = run.map(|run| run.state);
         for index in 0..n {
             let values = [
