@@ -33,8 +33,9 @@ const AGAIN: usize = 6;
 /// Number of starts of each sequence of impacts from which Newton's method goes on.
 const TRIED: usize = 240;
 
-/// Number of steps of the integrator after which no further direction is scanned, with three unknowns or more.
-const SCANNED: u64 = 2_000_000;
+/// Number of steps of the integrator after which no further direction is scanned, and after which no further start of a scan is
+/// tried, if the problem has guesses of its own.
+const SPENT: u64 = 50_000;
 
 /// Extent of a search.
 #[derive(Debug, Clone, Copy)]
@@ -288,7 +289,7 @@ impl<'a> Search<'a> {
         let all = directions::on_sphere(self.unknowns, count, self.plan.seed);
         let begun = self.aim.steps();
         for (index, direction) in all.iter().enumerate() {
-            if self.aim.steps() - begun > SCANNED {
+            if self.is_spent(begun) {
                 self.found.is_bounded = false;
                 break;
             }
@@ -296,6 +297,11 @@ impl<'a> Search<'a> {
             self.note(count + index + 1, 3 * count);
         }
         self.pursue(candidates);
+    }
+
+    /// True if enough steps have been made since there were as many as `begun`.
+    fn is_spent(&self, begun: u64) -> bool {
+        self.aim.guesses() > 0 && self.aim.steps() - begun > SPENT
     }
 
     /// Takes the starts that another method finds.
@@ -362,15 +368,22 @@ impl<'a> Search<'a> {
         let groups = || candidates.chunk_by(|left, right| left.course == right.course);
         let all: usize = groups().map(|group| group.len().min(TRIED)).sum();
         let mut done = 0;
+        let begun = self.aim.steps();
         for group in groups() {
             let mut known = Vec::new();
             for candidate in group.iter().take(TRIED) {
+                if self.is_spent(begun) {
+                    break;
+                }
                 self.try_from(candidate, &mut known, false);
                 done += 1;
                 self.note(all + done, 2 * all);
             }
             for candidate in group.iter().take(AGAIN) {
-                while !known.is_empty() && self.try_from(candidate, &mut known, true) {}
+                while !known.is_empty()
+                    && !self.is_spent(begun)
+                    && self.try_from(candidate, &mut known, true)
+                {}
             }
         }
     }

@@ -5,15 +5,15 @@
 //! ```
 //!
 //! `z = (x, p)`, and `Phi_k` is the motion from one node to the next. The unknowns are the costate at the start, and state and
-//! costate at the further nodes. As errors grow over one stretch alone, the Levenberg-Marquardt method gets from a rough guess to
-//! an extremal that no guess of the costate at the start alone leads to.
+//! costate at the further nodes. As errors grow over one stretch alone, Newton's method, damped by the natural
+//! monotonicity test (Deuflhard 2004, section 3.3), gets from a rough guess to an extremal that no guess of the costate at the start alone leads to.
 
 use dalembert::contract::Variational;
 use dalembert::{Instance, Scene, StateVector};
 
 use super::shooter::Shooter;
 use crate::connect::directions::on_sphere;
-use crate::least_squares::damped;
+use crate::least_squares::solve;
 use crate::linear::norm;
 
 /// Number of stretches.
@@ -26,13 +26,13 @@ pub(super) const GUESSES: usize = 24;
 const HEIGHTS: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Largest number of steps.
-const STEPS: usize = 80;
+const STEPS: usize = 60;
 
-/// Largest residual of an extremal.
+/// Largest change of an extremal by the next step, in units of the unknowns.
 const SOLVED: f64 = 1e-8;
 
-/// First, least and largest damping, as a multiple of the length of a column.
-const DAMPING: [f64; 3] = [1e-2, 1e-12, 1e6];
+/// First and least share of a Newton step.
+const SHARES: [f64; 2] = [0.25, 1e-3];
 
 /// Residuals and their derivatives, a column for each unknown.
 struct Equations {
@@ -59,25 +59,53 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
     pub fn solve(&mut self, guess: usize) -> Option<Vec<f64>> {
         let mut unknowns = self.guess(guess);
         let mut equations = self.equations(&unknowns)?;
-        let [mut damping, least, most] = DAMPING;
+        let [mut share, least] = SHARES;
         for _ in 0..STEPS {
-            let size = norm(&equations.residuals);
+            let units = self.units(&unknowns);
+            let length = |change: &[f64]| {
+                let scaled = change
+                    .iter()
+                    .zip(&units)
+                    .map(|(change, unit)| change / unit);
+                norm(&scaled.collect::<Vec<_>>())
+            };
+            let step = solve(&equations.columns, &equations.residuals)?;
+            let size = length(&step);
             if size < SOLVED {
                 return Some(unknowns[..self.n].to_vec());
             }
             (unknowns, equations) = loop {
-                if damping > most {
+                if share < least {
                     return None;
                 }
-                let next = self.step(&unknowns, &equations, damping);
-                if let Some(next) = next.filter(|(_, next)| norm(&next.residuals) < size) {
-                    damping = f64::max(0.2 * damping, least);
-                    break next;
+                let next = unknowns.iter().zip(&step);
+                let next: Vec<f64> = next.map(|(value, step)| value - share * step).collect();
+                // The step that the same derivatives ask for next must be shorter.
+                if let Some(there) = self.equations(&next)
+                    && let Some(again) = solve(&equations.columns, &there.residuals)
+                    && length(&again) <= (1.0 - 0.25 * share) * size
+                {
+                    share = f64::min(1.0, 2.0 * share);
+                    break (next, there);
                 }
-                damping *= 5.0;
+                share *= 0.5;
             };
         }
         None
+    }
+
+    /// The units of the unknowns: sizes of the state, and the largest costates at any node.
+    fn units(&self, unknowns: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let (_, _, sizes) = self.shooter.ends();
+        let mut units = [sizes, &vec![1e-3; n]].concat();
+        for k in 0..STRETCHES {
+            for (unit, value) in units.iter_mut().zip(self.node(unknowns, k)) {
+                *unit = unit.max(value.abs());
+            }
+        }
+        let nodes = (1..STRETCHES).flat_map(|_| units.iter().copied());
+        units[n..].iter().copied().chain(nodes).collect()
     }
 
     /// A guess: states on a line from the start to the end, or on an arc beside it; costates 0.
@@ -105,28 +133,6 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
             unknowns.extend(vec![0.0; n]);
         }
         unknowns
-    }
-
-    /// The unknowns after a step, with their equations.
-    fn step(
-        &mut self,
-        unknowns: &[f64],
-        equations: &Equations,
-        damping: f64,
-    ) -> Option<(Vec<f64>, Equations)> {
-        let lengths: Vec<f64> = (equations.columns.iter())
-            .map(|column| norm(column))
-            .collect();
-        let columns: Vec<Vec<f64>> = (equations.columns.iter().zip(&lengths))
-            .map(|(column, length)| column.iter().map(|entry| entry / length).collect())
-            .collect();
-        let change = damped(&columns, &equations.residuals, damping)?;
-        let parts = unknowns.iter().zip(change.iter().zip(&lengths));
-        let next: Vec<f64> = parts
-            .map(|(value, (change, length))| value - change / length)
-            .collect();
-        let equations = self.equations(&next)?;
-        Some((next, equations))
     }
 
     fn equations(&mut self, unknowns: &[f64]) -> Option<Equations> {
