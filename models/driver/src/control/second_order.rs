@@ -1,10 +1,13 @@
 //! The second-order test of an extremal: with its endpoint fixed, is the cost of neighbouring motions larger?
 //!
-//! Between two times the derivative of the flow is `(dx', dp') = (A dx + B dp, C dx + D dp)`. The least cost of a stretch as a
+//! Over a stretch of time the derivative of the flow is `(dx', dp') = (A dx + B dp, C dx + D dp)`. The least cost of a stretch as a
 //! function of its ends has the second derivatives `S_xx = -B^-1 A`, `S_xx' = B^-1`, `S_x'x' = -D B^-1`. Backwards from the second derivative
 //! `K` of the terminal cost, `S_x'x' + K` must be positive, and the second derivative of the cost to go becomes
 //! `S_xx - S_xx' (S_x'x' + K)^-1 S_x'x`. Given components of the end do not vary. This is the Riccati equation in
 //! steps, in which nothing becomes infinite before a focal point, and impacts are parts of stretches.
+//!
+//! Every stretch has derivatives of its own. Those between two times that follow from the derivatives by the start lose their digits, as over a
+//! short time an input hardly moves the states that it acts on through others.
 
 use crate::least_squares::solve;
 
@@ -22,36 +25,40 @@ pub enum SecondOrder {
     Open,
 }
 
-/// The derivative of state and costate by those at the start.
+/// The derivatives of the flow over a stretch of time.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct Flow {
+    /// The time of its end.
     pub t: f64,
-    /// A column for each component of state and costate at the start.
+    /// A column for each component of state and costate at its start.
     pub columns: Vec<Vec<f64>>,
 }
 
 /// Largest residual of `A D^T - B C^T = 1`.
 const CANONICAL: f64 = 1e-5;
 
+/// Error of the derivatives, as a fraction of them.
+const ROUNDING: f64 = 1e-10;
+
+/// Largest error of the inverse of `B`, as a fraction of it.
+const RESOLVED: f64 = 1e-3;
+
 /// Rows of a matrix.
 type Matrix = Vec<Vec<f64>>;
 
-/// Tests an extremal; `terminal` is the second derivative of the terminal cost, `free` are the components that vary at the end.
-pub(super) fn test(nodes: &[Node], terminal: &Matrix, free: &[usize]) -> SecondOrder {
-    let Some(last) = nodes.last() else {
-        return SecondOrder::Open;
-    };
-    let n = last.columns.len() / 2;
-    let everything: Vec<usize> = (0..n).collect();
+/// Tests an extremal by the flows of its stretches, in order of time; `terminal` is the second derivative of the terminal cost, `free` are the
+/// components that vary at the end.
+pub(super) fn test(flows: &[Flow], terminal: &Matrix, free: &[usize]) -> SecondOrder {
+    let everything: Vec<usize> = (0..terminal.len()).collect();
     let mut cost = terminal.clone();
     let mut varied = free;
-    for pair in nodes.windows(2).rev() {
-        let Some(stretch) = Stretch::between(&pair[0], &pair[1], n) else {
+    for flow in flows.iter().rev() {
+        let Some(stretch) = Stretch::of(flow) else {
             return SecondOrder::Open;
         };
         match stretch.before(&cost, varied) {
             Step::Cost(before) => cost = before,
-            Step::Negative => return SecondOrder::Fails { t: pair[1].t },
+            Step::Negative => return SecondOrder::Fails { t: flow.t },
             Step::Open => return SecondOrder::Open,
         }
         varied = &everything;
@@ -75,29 +82,25 @@ enum Step {
     Open,
 }
 
+/// A factor of a symmetric matrix.
+enum Factor {
+    Of(Matrix),
+    NotPositive,
+    /// The matrix is not finite.
+    Unknown,
+}
+
 impl Stretch {
-    /// `None` if a stretch does not control the state, or digits are lost.
-    fn between(from: &Node, to: &Node, n: usize) -> Option<Self> {
-        let block = |node: &Node, row: usize, column: usize| -> Matrix {
-            let entry = |i: usize, j: usize| node.columns[column * n + j][row * n + i];
+    /// `None` if the stretch does not control the state, or digits are lost.
+    fn of(flow: &Flow) -> Option<Self> {
+        let n = flow.columns.len() / 2;
+        let block = |row: usize, column: usize| -> Matrix {
+            let entry = |i: usize, j: usize| flow.columns[column * n + j][row * n + i];
             (0..n)
                 .map(|i| (0..n).map(|j| entry(i, j)).collect())
                 .collect()
         };
-        // The inverse of a canonical matrix is (d^T, -b^T; -c^T, a^T).
-        let part = |row: usize, column: usize| {
-            let left = product(&block(to, row, 0), &transposed(&block(from, 1 - column, 1)));
-            let right = product(&block(to, row, 1), &transposed(&block(from, 1 - column, 0)));
-            let difference = combined(&left, &right, -1.0);
-            match column {
-                0 => difference,
-                _ => difference
-                    .iter()
-                    .map(|row| row.iter().map(|it| -it).collect())
-                    .collect(),
-            }
-        };
-        let [a, b, c, d] = [part(0, 0), part(0, 1), part(1, 0), part(1, 1)];
+        let [a, b, c, d] = [block(0, 0), block(0, 1), block(1, 0), block(1, 1)];
         let one = combined(
             &product(&a, &transposed(&d)),
             &product(&b, &transposed(&c)),
@@ -108,7 +111,7 @@ impl Stretch {
         if !is_canonical {
             return None;
         }
-        let mixed = inverse(&b)?;
+        let mixed = resolved_inverse(&b)?;
         let scaled = |matrix: Matrix| -> Matrix {
             matrix
                 .iter()
@@ -134,12 +137,11 @@ impl Stretch {
             };
             varied.iter().map(row).collect()
         };
-        let hessian = chosen(&sum);
-        match is_positive(&hessian) {
-            Some(true) => {}
-            Some(false) => return Step::Negative,
-            None => return Step::Open,
-        }
+        let factor = match factor(&chosen(&sum)) {
+            Factor::Of(factor) => factor,
+            Factor::NotPositive => return Step::Negative,
+            Factor::Unknown => return Step::Open,
+        };
         let mixed: Matrix = self
             .mixed
             .iter()
@@ -147,9 +149,7 @@ impl Stretch {
             .collect();
         let mut before = self.first.clone();
         for (column, row) in mixed.iter().enumerate() {
-            let Some(answer) = solve(&transposed(&hessian), row) else {
-                return Step::Open;
-            };
+            let answer = solved(&factor, row);
             for (i, left) in mixed.iter().enumerate() {
                 before[i][column] -= left.iter().zip(&answer).map(|(l, r)| l * r).sum::<f64>();
             }
@@ -158,8 +158,8 @@ impl Stretch {
     }
 }
 
-/// True if a symmetric matrix is positive, by its factors; `None` if it is not finite.
-fn is_positive(matrix: &Matrix) -> Option<bool> {
+/// The factor `L` of a positive symmetric matrix `L L^T`.
+fn factor(matrix: &Matrix) -> Factor {
     let n = matrix.len();
     let mut factor = vec![vec![0.0; n]; n];
     for i in 0..n {
@@ -167,10 +167,10 @@ fn is_positive(matrix: &Matrix) -> Option<bool> {
             let known: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
             let rest: f64 = matrix[i][j] - known;
             if !rest.is_finite() {
-                return None;
+                return Factor::Unknown;
             }
             if i == j && rest <= 0.0 {
-                return Some(false);
+                return Factor::NotPositive;
             }
             factor[i][j] = match i == j {
                 true => rest.sqrt(),
@@ -178,7 +178,22 @@ fn is_positive(matrix: &Matrix) -> Option<bool> {
             };
         }
     }
-    Some(true)
+    Factor::Of(factor)
+}
+
+/// The solution of `L L^T x = b`.
+fn solved(factor: &Matrix, b: &[f64]) -> Vec<f64> {
+    let n = b.len();
+    let mut x = b.to_vec();
+    for i in 0..n {
+        let known: f64 = (0..i).map(|k| factor[i][k] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i][i];
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|k| factor[k][i] * x[k]).sum();
+        x[i] = (x[i] - known) / factor[i][i];
+    }
+    x
 }
 
 fn transposed(matrix: &Matrix) -> Matrix {
@@ -208,6 +223,29 @@ fn combined(left: &Matrix, right: &Matrix, factor: f64) -> Matrix {
     left.iter().zip(right).map(row).collect()
 }
 
+/// The inverse of a matrix; `None` if the errors of its entries may change it. Components have units of their own, so rows and columns
+/// are divided by what makes the diagonal 1.
+fn resolved_inverse(matrix: &Matrix) -> Option<Matrix> {
+    let n = matrix.len();
+    let units: Vec<f64> = (0..n).map(|i| matrix[i][i].abs().sqrt()).collect();
+    let scaled = |matrix: &Matrix| -> Matrix {
+        let row = |i: usize| {
+            (0..n)
+                .map(|j| matrix[i][j] / (units[i] * units[j]))
+                .collect()
+        };
+        (0..n).map(row).collect()
+    };
+    let size = |matrix: &Matrix| {
+        let sums = matrix.iter().map(|row| row.iter().map(|it| it.abs()).sum());
+        sums.fold(0.0, f64::max)
+    };
+    let inverse = inverse(&scaled(matrix))?;
+    // NaN is not resolved either.
+    let is_resolved = ROUNDING * size(&scaled(matrix)) * size(&inverse) < RESOLVED;
+    is_resolved.then(|| scaled(&inverse))
+}
+
 /// `None` for a singular matrix.
 fn inverse(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
@@ -226,62 +264,116 @@ mod tests {
     use super::*;
 
     /// `x' = -p, p' = -k x`: extremals of the cost `u^2/2 + k x^2/2`, with `k = -1` those of a spring that is short.
-    fn nodes(k: f64, time: f64) -> Vec<Node> {
-        let node = |index: u32| {
-            let t = time * f64::from(index) / 40.0;
-            let columns = match k < 0.0 {
-                // x'' = -x
-                true => vec![vec![t.cos(), t.sin()], vec![-t.sin(), t.cos()]],
-                false => vec![vec![t.cosh(), -t.sinh()], vec![-t.sinh(), t.cosh()]],
-            };
-            Node { t, columns }
+    fn flows(k: f64, time: f64) -> Vec<Flow> {
+        let t = time / 40.0;
+        let columns = match k < 0.0 {
+            // x'' = -x
+            true => vec![vec![t.cos(), t.sin()], vec![-t.sin(), t.cos()]],
+            false => vec![vec![t.cosh(), -t.sinh()], vec![-t.sinh(), t.cosh()]],
         };
-        (0..=40).map(node).collect()
+        repeated(columns, time, 40)
+    }
+
+    fn repeated(columns: Vec<Vec<f64>>, time: f64, count: u32) -> Vec<Flow> {
+        let flow = |index: u32| Flow {
+            t: time * f64::from(index) / f64::from(count),
+            columns: columns.clone(),
+        };
+        (1..=count).map(flow).collect()
     }
 
     #[test]
     fn a_fixed_end_fails_behind_its_conjugate_point_at_pi() {
         let terminal = vec![vec![0.0]];
         assert_eq!(
-            test(&nodes(-1.0, 3.1), &terminal, &[]),
+            test(&flows(-1.0, 3.1), &terminal, &[]),
             SecondOrder::Minimum
         );
-        let SecondOrder::Fails { t } = test(&nodes(-1.0, 3.3), &terminal, &[]) else {
+        let SecondOrder::Fails { t } = test(&flows(-1.0, 3.3), &terminal, &[]) else {
             panic!("passes");
         };
         // Backwards from the end, pi before it.
         assert!((t - (3.3 - std::f64::consts::PI)).abs() < 0.1, "{t}");
-        assert_eq!(test(&nodes(1.0, 9.0), &terminal, &[]), SecondOrder::Minimum);
+        assert_eq!(test(&flows(1.0, 9.0), &terminal, &[]), SecondOrder::Minimum);
     }
 
     #[test]
     fn a_free_end_fails_behind_half_pi_and_sees_the_terminal_cost() {
         let flat = vec![vec![0.0]];
-        assert_eq!(test(&nodes(-1.0, 1.5), &flat, &[0]), SecondOrder::Minimum);
+        assert_eq!(test(&flows(-1.0, 1.5), &flat, &[0]), SecondOrder::Minimum);
         assert!(matches!(
-            test(&nodes(-1.0, 1.7), &flat, &[0]),
+            test(&flows(-1.0, 1.7), &flat, &[0]),
             SecondOrder::Fails { .. }
         ));
         // tan(1.7 - pi/2) is 0.13: a second derivative of the terminal cost above it helps.
         assert_eq!(
-            test(&nodes(-1.0, 1.7), &vec![vec![0.2]], &[0]),
+            test(&flows(-1.0, 1.7), &vec![vec![0.2]], &[0]),
             SecondOrder::Minimum
         );
         assert!(matches!(
-            test(&nodes(-1.0, 1.7), &vec![vec![0.1]], &[0]),
+            test(&flows(-1.0, 1.7), &vec![vec![0.1]], &[0]),
+            SecondOrder::Fails { .. }
+        ));
+    }
+
+    /// The exponential of a matrix of 8 rows, by its series.
+    fn exponential(matrix: &Matrix, time: f64) -> Matrix {
+        let unit = |size: f64| -> Matrix {
+            (0..8)
+                .map(|i| (0..8).map(|j| if i == j { size } else { 0.0 }).collect())
+                .collect()
+        };
+        let (mut sum, mut term) = (unit(1.0), unit(1.0));
+        for k in 1..120 {
+            term = product(&product(&term, matrix), &unit(time / f64::from(k)));
+            sum = combined(&sum, &term, 1.0);
+        }
+        sum
+    }
+
+    /// Four integrators in a chain behind one input, the fourth derivative of `x`, with the cost `u^2/2 - k x^2/2`. Over a 128th of the
+    /// time, what the input does to `x` is below the rounding of what it does to the third derivative.
+    #[test]
+    fn a_long_chain_behind_an_input_is_tested_too() {
+        let chain = |k: f64| -> Matrix {
+            let mut matrix = vec![vec![0.0; 8]; 8];
+            for i in 0..3 {
+                matrix[i][i + 1] = 1.0;
+                matrix[5 + i][4 + i] = -1.0;
+            }
+            matrix[3][7] = -1.0;
+            matrix[4][0] = k;
+            matrix
+        };
+        let flows = |k: f64, time: f64| {
+            let flow = exponential(&chain(k), time / 128.0);
+            repeated(transposed(&flow), time, 128)
+        };
+        let terminal = vec![vec![0.0; 4]; 4];
+        assert_eq!(test(&flows(0.0, 2.0), &terminal, &[]), SecondOrder::Minimum);
+        // The conjugate point: costates of the start that do not change the end.
+        let reach = |time: f64| {
+            let flow = exponential(&chain(1.0), time);
+            let block = flow[..4].iter().map(|row| row[4..].to_vec()).collect();
+            crate::linear::determinant(block)
+        };
+        let sign = reach(2.0).signum();
+        let mut times = (20..200).map(|k| 0.1 * f64::from(k));
+        let conjugate = times.find(|time| reach(*time) * sign < 0.0);
+        let conjugate = conjugate.expect("a conjugate point");
+        assert_eq!(
+            test(&flows(1.0, 0.95 * conjugate), &terminal, &[]),
+            SecondOrder::Minimum
+        );
+        assert!(matches!(
+            test(&flows(1.0, 1.1 * conjugate), &terminal, &[]),
             SecondOrder::Fails { .. }
         ));
     }
 
     #[test]
     fn a_state_that_is_not_controlled_stays_open() {
-        let still = |t| Node {
-            t,
-            columns: vec![vec![1.0, 0.0], vec![0.0, 1.0]],
-        };
-        assert_eq!(
-            test(&[still(0.0), still(1.0)], &vec![vec![0.0]], &[0]),
-            SecondOrder::Open
-        );
+        let still = repeated(vec![vec![1.0, 0.0], vec![0.0, 1.0]], 1.0, 2);
+        assert_eq!(test(&still, &vec![vec![0.0]], &[0]), SecondOrder::Open);
     }
 }

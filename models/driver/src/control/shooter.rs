@@ -13,10 +13,10 @@ use dalembert::{
 };
 
 use super::multiple_shooting::{Chain, GUESSES};
-use super::second_order::{self, Node, SecondOrder};
+use super::second_order::{self, Flow, SecondOrder};
 use super::{Extremal, Kick, Moment, Task, Unsought};
 use crate::connect::aim::{Aim, Course, Shot};
-use crate::connect::observers::{Determinants, Marksman};
+use crate::connect::observers::Marksman;
 use crate::connect::units::Units;
 use crate::linear::norm;
 use crate::refusal::Refusal;
@@ -35,7 +35,7 @@ const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 const ROUNDING: f64 = 1e-9;
 
 /// Number of stretches of the second-order test.
-const STRETCHES: f64 = 128.0;
+const STRETCHES: usize = 64;
 
 /// Places of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative, and for each
 /// input a minor that is positive where the optimal input is a minimum.
@@ -257,7 +257,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             variations: Some(Variations::new(system, &mut tangents)),
             hits: Vec::new(),
         };
-        let run = self.run_between(span, state, f64::INFINITY, &mut observer);
+        let run = self.run_between(span, state, &mut observer);
         let run = run.filter(|run| run.outcome == Outcome::Done)?;
         let is_varied = observer
             .variations
@@ -293,25 +293,18 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     }
 
     /// Runs from a costate at the start, observed.
-    fn run(
-        &mut self,
-        w: &[f64],
-        longest: f64,
-        observer: &mut dyn Observer<S>,
-    ) -> Option<Run<S::State>> {
-        self.run_between([0.0, self.task.time], self.state(w), longest, observer)
+    fn run(&mut self, w: &[f64], observer: &mut dyn Observer<S>) -> Option<Run<S::State>> {
+        self.run_between([0.0, self.task.time], self.state(w), observer)
     }
 
     fn run_between(
         &mut self,
         [from, to]: [f64; 2],
         state: S::State,
-        longest: f64,
         mut observer: &mut dyn Observer<S>,
     ) -> Option<Run<S::State>> {
         self.runs += 1;
-        let stepper = Taylor::new(self.task.tolerance).with_max_step(longest);
-        let mut stepper = stepper.ok()?;
+        let mut stepper = Taylor::new(self.task.tolerance);
         let mut effects = self.system.effects();
         effects.set_impact_budget(Some(self.task.impacts[1] as u64 + 2));
         let mut simulation = Simulation::new(self.system, Chosen::new(&mut stepper), effects)
@@ -350,7 +343,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             variations: with_slopes.then(|| Variations::new(system, &mut tangents)),
             hits: Vec::new(),
         };
-        let run = self.run(w, f64::INFINITY, &mut observer);
+        let run = self.run(w, &mut observer);
         let Marksman { variations, hits } = observer;
         let is_varied = variations.is_some_and(|mut it| it.tangents().is_ok());
         let columns = match is_varied {
@@ -420,7 +413,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     pub fn extremal(&mut self, w: &[f64]) -> Result<Extremal, Unsought> {
         let time = self.task.time;
         let mut film = Film { events: Vec::new() };
-        let run = self.run(w, f64::INFINITY, &mut film);
+        let run = self.run(w, &mut film);
         let end = run.map_or(self.rest, |run| run.state);
         let values = self.outputs(time, &end)?;
         let terminal = values[self.layout.terminal()];
@@ -448,22 +441,10 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     }
 
     fn second_order(&mut self, w: &[f64], values: &[f64]) -> SecondOrder {
-        let (system, n) = (self.system, self.layout.states);
-        let mut tangents: Vec<Tangent<S>> = (0..2 * n).map(Tangent::of_component).collect();
-        let mut observer = Determinants {
-            variations: Variations::new(system, &mut tangents),
-            states: Vec::new(),
+        let n = self.layout.states;
+        let Some(flows) = self.flows(w) else {
+            return SecondOrder::Open;
         };
-        self.run(w, self.task.time / STRETCHES, &mut observer);
-        let stands = observer.states.into_iter().map(|stand| Node {
-            t: stand.t,
-            columns: stand
-                .columns
-                .iter()
-                .map(|it| it[..2 * n].to_vec())
-                .collect(),
-        });
-        let nodes = nodes(stands.collect(), self.task.time, n);
         let row = |i| {
             (0..n)
                 .map(|j| values[self.layout.curvature(i, j)])
@@ -477,36 +458,25 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             .enumerate()
             .filter(|(_, to)| to.is_none());
         let free: Vec<usize> = free.map(|(index, _)| index).collect();
-        match nodes.last().is_some_and(|node| node.t == self.task.time) {
-            true => second_order::test(&nodes, &terminal, &free),
-            false => SecondOrder::Open,
-        }
+        second_order::test(&flows, &terminal, &free)
     }
-}
 
-/// The start and the ends of steps, without those that follow closely.
-fn nodes(stands: Vec<Node>, time: f64, n: usize) -> Vec<Node> {
-    let unit = |index: usize| {
-        let mut column = vec![0.0; 2 * n];
-        column[index] = 1.0;
-        column
-    };
-    let least = 0.5 * time / STRETCHES;
-    let mut nodes = vec![Node {
-        t: 0.0,
-        columns: (0..2 * n).map(unit).collect(),
-    }];
-    for stand in stands {
-        let is_last = stand.t == time;
-        let before = nodes.last().map_or(0.0, |node| node.t);
-        if is_last && stand.t - before < least && nodes.len() > 1 {
-            nodes.pop();
+    /// The derivatives of the flow over equal stretches of an extremal; `None` if one has none.
+    fn flows(&mut self, w: &[f64]) -> Option<Vec<Flow>> {
+        let n = self.layout.states;
+        let mut z = [&*self.task.from, w].concat();
+        let mut flows = Vec::with_capacity(STRETCHES);
+        for index in 0..STRETCHES {
+            let share = |index: usize| index as f64 / STRETCHES as f64;
+            let stretch = self.stretch([index, index + 1].map(share), &z)?;
+            z.copy_from_slice(&stretch.end.as_slice()[..2 * n]);
+            flows.push(Flow {
+                t: share(index + 1) * self.task.time,
+                columns: stretch.columns,
+            });
         }
-        if is_last || stand.t - before >= least {
-            nodes.push(stand);
-        }
+        Some(flows)
     }
-    nodes
 }
 
 /// The end of a motion over a part of the time, and its derivatives by state and costate at the start.
