@@ -38,10 +38,10 @@ pub(super) struct Flow {
 const CANONICAL: f64 = 1e-5;
 
 /// Error of the derivatives, as a fraction of them.
-const ROUNDING: f64 = 1e-10;
+const ROUNDING: f64 = 1e-12;
 
 /// Largest error of the inverse of `B`, as a fraction of it.
-const RESOLVED: f64 = 1e-3;
+const RESOLVED: f64 = 1e-2;
 
 /// Rows of a matrix.
 type Matrix = Vec<Vec<f64>>;
