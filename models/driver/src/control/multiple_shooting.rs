@@ -8,6 +8,8 @@
 //! costate at the further nodes. As errors grow over one stretch alone, Newton's method, damped by the natural
 //! monotonicity test (Deuflhard 2004, section 3.3), gets from a rough guess to an extremal that no guess of the costate at the start alone leads to.
 
+use std::f64::consts::{PI, TAU};
+
 use dalembert::contract::Variational;
 use dalembert::{Instance, Scene, StateVector};
 
@@ -23,7 +25,7 @@ const STRETCHES: usize = 12;
 pub(super) const GUESSES: usize = 24;
 
 /// Deviations of the guesses from a straight line, in sizes of the state.
-const HEIGHTS: [f64; 3] = [0.5, 1.0, 2.0];
+const HEIGHTS: [f64; 3] = [0.25, 1.0, 2.0];
 
 /// Largest number of steps.
 const STEPS: usize = 60;
@@ -108,26 +110,27 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         units[n..].iter().copied().chain(nodes).collect()
     }
 
-    /// A guess: states on a line from the start to the end, or on an arc beside it; costates 0.
+    /// A guess: states on a line from the start to the end, or on a sum of two half waves beside it; costates 0.
     fn guess(&self, index: usize) -> Vec<f64> {
         let n = self.n;
         let (from, to, sizes) = self.shooter.ends();
-        let arc = match index.checked_sub(1) {
-            None => vec![0.0; n],
+        let waves = match index.checked_sub(1) {
+            None => vec![0.0; 2 * n],
             Some(index) => {
-                let direction = &on_sphere(n, GUESSES, self.shooter.seed())[index];
+                let direction = &on_sphere(2 * n, GUESSES, self.shooter.seed())[index];
                 let height = HEIGHTS[index % HEIGHTS.len()] * (n as f64).sqrt();
+                let sizes = sizes.iter().chain(sizes);
                 let parts = direction.iter().zip(sizes);
                 parts.map(|(part, size)| height * part * size).collect()
             }
         };
         let mut unknowns = vec![0.0; n];
         for node in 1..STRETCHES {
-            let share = node as f64 / STRETCHES as f64;
-            let bend = (std::f64::consts::PI * share).sin();
+            let share = place(node);
+            let (once, twice) = ((PI * share).sin(), (TAU * share).sin());
             let state = (0..n).map(|i| {
                 let end = to[i].unwrap_or(from[i]);
-                from[i] + share * (end - from[i]) + bend * arc[i]
+                from[i] + share * (end - from[i]) + once * waves[i] + twice * waves[n + i]
             });
             unknowns.extend(state);
             unknowns.extend(vec![0.0; n]);
