@@ -8,7 +8,7 @@
 //! ```
 //!
 //! with the Taylor coefficients `c_k` of the motion over intervals. `J(Y)` encloses, over all of `Y`, the derivative of
-//! the sum by the initial state.
+//! the sum with respect to the initial state.
 
 use super::frame::{BLOCKS, Bounds, Frame, Matrix, Turned};
 use super::lost::{Lost, Reason};
