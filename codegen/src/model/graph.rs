@@ -289,8 +289,7 @@ fn lagrangian_text(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Keeps a note on an unused parameter only if it applies in all modes, and notes shared by all modes only in the first
-/// mode.
+/// Removes notes on unused parameters, unless the parameter is unused in all modes.
 fn keep_common_notes(models: &mut [Model]) {
     let unused = |note: &String| note.ends_with("is not used");
     let lists: Vec<Vec<String>> = models.iter().map(|model| model.notes.clone()).collect();
