@@ -25,7 +25,7 @@ impl Pool {
         values
     }
 
-    /// The value of an expression, and the sum of the absolute values of its terms.
+    /// The value of an expression, and the sum of the absolute values of its terms. `symbol` gives the values of symbols.
     ///
     /// The second number is the magnitude before cancellation. Its product with the unit roundoff bounds the error of
     /// the value, up to a small factor. Through functions and quotients it is propagated to first order.

@@ -76,7 +76,7 @@ impl Local {
     }
 }
 
-/// Decides whether a local density exists.
+/// Decides whether a local density exists. `seed` gives the random points.
 ///
 /// # Errors
 /// [`Undecided`] with the reason.

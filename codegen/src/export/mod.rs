@@ -240,7 +240,7 @@ fn outputs(model: &Model) -> String {
     format!("the declared outputs: {}", names.join(", "))
 }
 
-/// Turns the contact function, which returns size, share and direction of an impulse, into the state after the impact.
+/// Replaces the results of an impact law (size, share and direction of its impulse) by the state after the impact.
 fn strike(lines: &mut Lines, form: &FormOf<'_>) {
     let n = form.dimension();
     let blow = core::mem::take(&mut lines.outputs);

@@ -1,8 +1,8 @@
 //! Proofs that the constraint forms are linearly independent at every state.
 //!
-//! The proof reduces the set of forms by steps that keep independence at every state equivalent. A form is removed if
-//! it has columns of its own whose entries never vanish together. A form with an entry that is never zero is eliminated
-//! from the others. For the remaining forms the squares of all minors are added: the forms are independent where the
+//! Each step of the proof leaves fewer forms, which are independent at every state iff the former ones are. A form is
+//! removed if it has columns of its own whose entries never vanish together. A form with an entry that is never zero is
+//! eliminated from the others. For the remaining forms the squares of all minors are added: the forms are independent where the
 //! sum is positive (Cauchy and Binet).
 //!
 //! A form that is the differential of a function may vanish at states that no motion reaches; see [`keeps_off`].

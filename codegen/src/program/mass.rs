@@ -312,7 +312,7 @@ mod tests {
     fn the_middle_of_a_star_is_eliminated_last() {
         let patterns = patterns(4, &[&[0, 1, 2, 3], &[0], &[1], &[2], &[3]]);
         let (order, _) = minimum_degree(&patterns);
-        // When each has one neighbour left, the middle one is eliminated as early as the others.
+        // Then the centre and one ray are left, with one neighbour each.
         assert_eq!(order[..3], [1, 2, 3]);
     }
 }

@@ -240,7 +240,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     }
 
     /// The image of the centre at the end of a step, with the remainder. The allowed remainder is the rounding of the
-    /// state, or a small fraction of the width of the box if that is larger.
+    /// state plus a small fraction of the width of the box.
     fn moved(&self, tube: &Bounds<Sys::State>, length: Interval) -> Option<Moved<Sys::State>> {
         let now = Interval::point(self.t);
         let point = Bounds::point(&self.frame.centre);

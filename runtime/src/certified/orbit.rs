@@ -152,8 +152,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         self
     }
 
-    /// Proves that a periodic orbit crosses the section within `radius` of the state `near`, in each component. `near`
-    /// is a state just after an impact, for example that of an [`Orbit`](crate::variations::Orbit).
+    /// Proves that there is a periodic orbit whose state just after the impact on the section differs from `near` by at
+    /// most `radius` in each component. `near` may be the point of an [`Orbit`](crate::variations::Orbit), for example.
     ///
     /// # Errors
     /// [`NotProved`] with the condition that could not be proved.
