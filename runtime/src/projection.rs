@@ -153,10 +153,10 @@ fn violated<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fa
 /// The first constraint whose residual is too large after the projection of the state `before`, so that the projection
 /// has failed. The bound is a thousand thresholds, one twentieth of the bound for admissible initial states.
 ///
-/// The terms of a constraint provide no scale where all of them vanish: where the constraint forces all remaining
-/// velocities to 0, such as `y ydot` for a hanging pendulum, or where the system rests. There the terms are rounding
-/// errors, and the residual is as large as they are, however small. As projection leaves the rounding error of the
-/// velocity that it was given, the scale is computed from the largest velocities that the kinetic energy of `before`
+/// The terms of a constraint provide no scale where all of them vanish: where only terms are left whose velocities the
+/// constraint forces to 0, such as `y ydot` for a hanging pendulum, or where the system rests. There the terms are
+/// rounding errors, and the residual is as large as they are, however small. As projection leaves the rounding error of
+/// the velocity that it was given, the scale is computed from the largest velocities that the kinetic energy of `before`
 /// allows.
 fn far<Sys: Constrained>(
     now: &Moment<'_, Sys>,

@@ -28,7 +28,7 @@ pub(super) const LEAVES: &str = "a circle leaves the domain where the constraint
 
 /// Number of points on a circle.
 const POINTS: usize = 64;
-/// Number of golden-section steps, down to the last digit of a number of order 1.
+/// Number of golden-section steps. They shrink an interval by the factor `3e-13`.
 const BISECTIONS: usize = 60;
 /// Fraction of the largest determinant below which a value counts as 0, and fraction below which a minimum near a point
 /// is sought. A determinant that vanishes like the square of a sine is below the latter half a step from its zero.

@@ -8,7 +8,7 @@ pub(super) type Term = (usize, f64);
 /// `sum over terms of coefficient * stage`, component `i`, without the first stage.
 ///
 /// Stages hold the differences between their rates and that of the first stage. The coefficient of the first stage is
-/// the node minus the sum of the row. NOTE: coefficients are rounded, and large relative to their sum. If the sum used
+/// the node minus the sum of the row. Coefficients are rounded, and large relative to their sum. If the sum used
 /// the rates themselves, a motion with almost constant rates would have an error of the same sign in every step.
 #[inline(always)]
 pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64 {
