@@ -1,4 +1,4 @@
-//! Executes a function without a compiler: the reference that emitted code is compared with.
+//! Executes a function without a compiler, as a reference for emitted code.
 
 use dalembert_expr::Function as Elementary;
 use dalembert_numbers::Numbers;
