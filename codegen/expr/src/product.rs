@@ -99,7 +99,8 @@ impl Pool {
         self.power_product(&factors)
     }
 
-    /// `base^exponent`. `x^0` is 1, also for `x = 0`, if `x` is known to be finite.
+    /// `base^exponent`. `x^0` is 1, also for `x = 0`. A term `0*x` keeps the domain of `x` unless `x` is known to be
+    /// finite.
     pub fn pow(&mut self, base: ExprId, exponent: Rational) -> ExprId {
         if exponent.is_zero() {
             let vanishing = self.scale(&exponent, base);

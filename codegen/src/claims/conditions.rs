@@ -258,8 +258,8 @@ impl Scanner<'_> {
         Some(())
     }
 
-    /// Adds the zeros of a polynomial to the conditions found. The density exists at random points of them; they are
-    /// left out if it is refuted for a parameter solved for.
+    /// Adds the condition that a polynomial vanishes. The density exists at random zeros of the polynomial. If the
+    /// polynomial can be solved for a parameter and the density then fails, the condition is left out.
     fn try_polynomial(&self, model: &mut Model, polynomial: ExprId, found: &mut Vec<Condition>) {
         let equations = vec![Equation::Zero(polynomial)];
         let is_global = match self.solved(model, polynomial) {

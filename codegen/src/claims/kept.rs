@@ -39,7 +39,7 @@ pub(super) fn stated_or_one(model: &mut Model) -> Density {
     }
 }
 
-/// The density `exp(G)` of a potential `G`. It has no value if a term is a determinant.
+/// The density `exp(G)` of a potential `G`, without a value if `exp(G)` is not written out.
 pub(super) fn of_potential(pool: &mut Pool, potential: Option<&Potential>) -> Density {
     let written = potential.and_then(|potential| exponential(pool, potential));
     Density {
@@ -49,7 +49,7 @@ pub(super) fn of_potential(pool: &mut Pool, potential: Option<&Potential>) -> De
     }
 }
 
-/// `exp(G)`; `None` if a term is a determinant.
+/// `exp(G)`; `None` if a term is a determinant, or a logarithm whose coefficient is no number.
 fn exponential(pool: &mut Pool, potential: &Potential) -> Option<ExprId> {
     let mut factors = Vec::new();
     for (coefficient, term) in &potential.terms {

@@ -98,7 +98,7 @@ impl Law {
         }
     }
 
-    /// Adds the impulse of the law to `motion`, the momenta or velocities. `e`: the coefficient of the law.
+    /// Adds the impulse of the law to `motion`, the momenta or quasi-velocities. `e`: the coefficient of the law.
     /// `collision`: the five numbers of a contact in order, followed by the direction of the impulse.
     pub fn strike<L: Numbers>(self, e: L, collision: &[L], motion: &mut [L]) {
         let (scalars, direction) = collision.split_at(5);

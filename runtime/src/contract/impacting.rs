@@ -139,7 +139,7 @@ pub trait Impacting: System {
     }
 
     /// True if the surface counts all along a part of the motion, false if it counts nowhere on it; `None` if neither
-    /// is certain. A condition whose margin changes by no more than in `rounding` counts as unchanged.
+    /// is certain. A condition holds where its margin exceeds the width of the range of its margin along `rounding`.
     fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
         let _ = (surface, along, rounding);
         None

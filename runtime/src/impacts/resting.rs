@@ -180,7 +180,7 @@ impl<G: StateVector> Resting<G> {
         self.drop_pulling(None, now, observer)
     }
 
-    /// Leaves the surfaces that are not at hand any more after a reset of positions.
+    /// Leaves the surfaces that a reset of positions has moved away from.
     pub(super) fn keep<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         hits: &Hits<G>,

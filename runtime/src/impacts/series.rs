@@ -141,8 +141,8 @@ impl<G: StateVector> GapSeries<G> {
         self.certain.iter().any(|known| known.is_some())
     }
 
-    /// Taylor model of the gap of a surface on a part of the step; `None` if the errors of its polynomial exceed its
-    /// change.
+    /// Taylor model of the gap of a surface on a part of the step; `None` if the errors of its polynomial hide both its
+    /// sign and its change.
     #[inline]
     pub(super) fn on(&self, surface: usize, part: [f64; 2]) -> Option<TaylorModel> {
         let mut model = self.polynomials.on(surface, part);

@@ -1,4 +1,5 @@
-//! Defaults must keep regular a metric and constraints that are regular for indeterminate parameters.
+//! A metric and constraints that are regular for indeterminate parameters must be regular at the declared defaults,
+//! too.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
