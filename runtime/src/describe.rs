@@ -65,7 +65,7 @@ pub trait Instance: System + Clone {
     /// Value of parameter `index` in [`Description::parameters`]; NaN past the end.
     fn parameter(&self, index: usize) -> f64;
 
-    /// Sets a parameter by index; an index past the end changes nothing.
+    /// Sets parameter `index` of [`Description::parameters`] to `value`. An index past the end changes nothing.
     fn set_parameter(&mut self, index: usize, value: f64);
 
     /// Selects the mode, by number, of new states and of the beginning of a run. A number past the end changes nothing,
@@ -200,12 +200,12 @@ pub struct Initial<V> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Report {
-    /// A number.
+    /// Receives a number.
     fn scalar(&mut self, name: &str, value: f64);
 
-    /// A vector, in order of declaration.
+    /// Receives a vector, in order of declaration.
     fn vector(&mut self, name: &str, values: &[f64]);
 
-    /// A matrix, stored row by row.
+    /// Receives a matrix of `rows` by `columns` numbers, stored row by row.
     fn matrix(&mut self, name: &str, rows: usize, columns: usize, values: &[f64]);
 }

@@ -80,8 +80,8 @@ impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
     }
 }
 
-/// Computes all runs. Calls `finished` with the tag and the result of each run, in the order in which they end.
-/// Systems whose series take more than 256 KiB in eight lanes make their runs one after the other.
+/// Computes the runs `members`. Calls `finished` with the tag and the result of each run, in the order in which they
+/// end. Systems whose series take more than 256 KiB in eight lanes make their runs one after the other.
 pub fn run_abreast<'a, Sys, Effects, O>(
     members: impl IntoIterator<Item = Member<'a, Sys, Effects, O>>,
     mut finished: impl FnMut(usize, Result<Run<Sys::State>, StartError>),

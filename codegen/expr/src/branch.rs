@@ -138,7 +138,8 @@ impl Branches {
 }
 
 impl Covered {
-    /// Upper bound of the error probability. `accident`: probability of a wrong yes at one point.
+    /// Upper bound of the error probability of an answer about `branches`. `accident`: probability of a wrong yes at
+    /// one point.
     pub fn error(&self, branches: &Branches, accident: f64) -> f64 {
         let accidents = self.patterns as f64 * accident.powi(self.each.min(64) as i32);
         if branches.is_single() {
@@ -150,8 +151,8 @@ impl Covered {
 }
 
 impl SamplePoints {
-    /// Asks a question at `each` points of every branch, and stops at the first no. The question may set values of the
-    /// point. It answers `None` at a point without a value. `None` if a branch cannot be reached.
+    /// Asks the question `holds` at `each` points of every branch, and stops at the first no. The question may set
+    /// values of the point. It answers `None` at a point without a value. `None` if a branch cannot be reached.
     pub fn cover(
         &mut self,
         pool: &Pool,

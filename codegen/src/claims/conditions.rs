@@ -59,6 +59,7 @@ const GLOBAL_TRIALS: usize = 48;
 const ATTEMPTS: (usize, usize) = (4, 128);
 
 /// Conditions under which a density exists, for a model without one: locally, or on all of Q if one exists locally.
+/// `exactness`: the decision for indeterminate parameters. `seed` determines the random points.
 ///
 /// # Errors
 /// [`Undecided`], if there are no sample points.

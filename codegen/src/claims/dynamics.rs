@@ -298,7 +298,7 @@ impl Dynamics {
         Some(pairs.into_iter().map(|[_, rate]| rate).collect())
     }
 
-    /// Values and rates of expressions; see [`Dynamics::rates`].
+    /// Each expression's value and its rate along `motion`; see [`Dynamics::rates`].
     pub fn values_and_rates<P: ExpansionPoint>(
         &self,
         pool: &Pool,

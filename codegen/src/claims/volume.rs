@@ -32,8 +32,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Volume found by the decision about the model, in closed form or as an integral; `None` if none exists, or if no
-    /// gradient determines it.
+    /// Volume found by the decision `exactness` about the model, in closed form or as an integral; `None` if none
+    /// exists, or if no gradient determines it. `seed` determines the random points.
     pub fn found(
         model: &Model,
         derivation: &Derivation,
@@ -62,7 +62,8 @@ impl Volume {
         })
     }
 
-    /// The volume of a proved density; `None` if the density depends on velocities.
+    /// The volume of a proved density; `None` if the density depends on velocities. `seed` determines the random
+    /// points.
     ///
     /// Stated densities are periodic in every angle: the language requires it.
     pub fn stated(

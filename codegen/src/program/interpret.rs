@@ -5,7 +5,7 @@ use dalembert_numbers::Numbers;
 
 use super::{Function, Guard, Input, Op, Value};
 
-/// Executes `function` with the given arguments.
+/// Executes `function`. `input` returns the value of each argument. The results are in the order of the outputs.
 ///
 /// # Errors
 /// The guard that did not hold.

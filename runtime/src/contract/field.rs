@@ -59,8 +59,8 @@ pub trait VectorField {
     /// A [`Fault`] where the derivative does not exist; `rate` is unspecified then.
     fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault>;
 
-    /// Natural unit of each component. Absolute tolerances are multiplied by it, so that a tolerance means the same
-    /// for a momentum as for its velocity. Ones by default.
+    /// Natural unit of each component, a vector of the same length as the state. Absolute tolerances are multiplied by
+    /// it, so that a tolerance means the same for a momentum as for its velocity. Ones by default.
     fn scale(&self, t: f64, state: &Self::State) -> Self::State {
         let _ = (t, state);
         let mut ones = state.zeroed();

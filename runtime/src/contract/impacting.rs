@@ -56,8 +56,8 @@ pub trait Impacting: System {
         StateVector::zeros(self.surface_count())
     }
 
-    /// The gaps `h_s`. Motion is allowed where they are not negative; at a surface with a reset it is allowed
-    /// everywhere.
+    /// The gaps `h_s`, S numbers. Motion is allowed where they are not negative. At a surface with a reset it is
+    /// allowed everywhere.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 
     /// The gap of one surface along a part of the motion. `component(i)` returns component `i` of the state along it; a

@@ -5,7 +5,7 @@ use crate::program::interpret::values;
 use crate::program::{Function, Guard, Input, Value};
 
 /// Taylor coefficients `0..=order` in `s` of the results of a function, with time `unit * s`. The components of the
-/// motion have the coefficients `component(i, k)`.
+/// motion have the coefficients `component(i, k)`. `input` returns the arguments at order 0.
 ///
 /// # Errors
 /// The guard that did not hold at order 0.
@@ -23,7 +23,7 @@ pub fn along(
 }
 
 /// Taylor coefficients `0..=order` in `s` of the components of the motion from `state`, with time `unit * s`, followed
-/// by those of the gaps.
+/// by those of the gaps. `input` returns the arguments at `state`.
 ///
 /// # Errors
 /// The guard that does not hold at `state`.
