@@ -1,6 +1,6 @@
-//! Diagnostics: collects every error of a stage, then becomes compile errors.
+//! Diagnostics: collects all errors of a stage and turns them into compile errors.
 //!
-//! An error is one text and at least one place. Stable Rust shows one text per place, so the help goes into the
+//! An error has one text and at least one place. Stable Rust shows one text per place. Help is therefore part of the
 //! text, and an error about several declarations becomes one compile error at each of them.
 
 use std::fmt;
@@ -9,7 +9,7 @@ use proc_macro2::{Group, Ident, Punct, Spacing, Span, TokenStream, TokenTree};
 
 use crate::spec::STEPS;
 
-/// A stretch of source: from the first to the last of its tokens.
+/// A range of source code, from its first to its last token.
 #[derive(Debug, Clone, Copy)]
 pub struct Location {
     /// The first token.
@@ -19,12 +19,12 @@ pub struct Location {
 }
 
 impl Location {
-    /// The place of a single token.
+    /// The location of a single token.
     pub fn of(token: &TokenTree) -> Self {
         Self::from(token.span())
     }
 
-    /// From the beginning of `self` to the end of `end`.
+    /// The location from the beginning of `self` to the end of `end`.
     pub fn to(self, end: Self) -> Self {
         Self {
             first: self.first,
@@ -32,7 +32,7 @@ impl Location {
         }
     }
 
-    /// The place between the braces of `group` where something is missing: its opening brace.
+    /// The opening brace of `group`: the location of an error about something missing in the group.
     pub fn opening(group: &Group) -> Self {
         Self::from(group.span_open())
     }
@@ -47,13 +47,13 @@ impl From<Span> for Location {
     }
 }
 
-/// The errors of a stage, in the order they were met.
+/// The errors of a stage, in the order of their detection.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
     errors: Vec<Diagnostic>,
 }
 
-/// One error: what is wrong, where, and what to write instead.
+/// An error: its places with their texts, and the state that refutes the claim it is about.
 #[derive(Debug)]
 pub struct Diagnostic {
     places: Vec<(Location, String)>,
@@ -70,25 +70,25 @@ pub struct Counterexample {
 }
 
 impl Diagnostics {
-    /// Errors that are told; nobody reads more.
+    /// Number of errors from which [`Diagnostics::error_once`] ignores further ones.
     const MOST: usize = 1000;
 
-    /// No errors yet.
+    /// An empty collection.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// True if nothing went wrong.
+    /// True if there are no errors.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
-    /// Number of errors so far.
+    /// Number of errors.
     pub fn len(&self) -> usize {
         self.errors.len()
     }
 
-    /// Records an error; help and further places may be added to what is returned.
+    /// Records an error at a place. Help and further places may be added to the returned diagnostic.
     pub fn error(&mut self, at: Location, text: impl Into<String>) -> &mut Diagnostic {
         self.errors.push(Diagnostic {
             places: vec![(at, text.into())],
@@ -98,8 +98,8 @@ impl Diagnostics {
         &mut self.errors[last]
     }
 
-    /// Records an error unless one with the same text and help is there: a mistake in the body of a family or a
-    /// definition is met once for each of its uses and told once.
+    /// Records an error with help, unless an error with the same text and help exists. A mistake in the body of a
+    /// family or a definition is found at each of its uses, but reported only once.
     pub fn error_once(&mut self, at: Location, text: impl Into<String>, help: impl fmt::Display) {
         if self.len() >= Self::MOST {
             return;
@@ -110,13 +110,13 @@ impl Diagnostics {
         }
     }
 
-    /// Takes over the errors of another collection.
+    /// Appends the errors of another collection.
     pub fn extend(&mut self, others: Self) {
         self.errors.extend(others.errors);
     }
 
-    /// Takes over the errors of another collection that are not among these: what several modes share is read for each of
-    /// them, and what is wrong with it is told once.
+    /// Appends the errors of another collection that are not in this one. Declarations shared by several modes are
+    /// checked for each mode, but their mistakes are reported only once.
     pub fn extend_once(&mut self, others: Self) {
         for error in others.errors {
             let text = error.message().to_owned();
@@ -127,10 +127,10 @@ impl Diagnostics {
         }
     }
 
-    /// `value` if there were no errors.
+    /// Returns `value` if there are no errors.
     ///
     /// # Errors
-    /// The errors, if there were any.
+    /// The errors, if there are any.
     pub fn finish<T>(self, value: T) -> Result<T, Self> {
         if self.is_empty() {
             Ok(value)
@@ -139,7 +139,7 @@ impl Diagnostics {
         }
     }
 
-    /// The errors in the order they were met.
+    /// The errors in the order of their detection.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.errors.iter()
     }
@@ -152,7 +152,7 @@ impl Diagnostics {
 }
 
 impl Diagnostic {
-    /// Adds the line that says what to write instead.
+    /// Adds a help line to the last place of the error.
     pub fn help(&mut self, help: impl fmt::Display) -> &mut Self {
         if let Some((_, text)) = self.places.last_mut() {
             *text = with_help(std::mem::take(text), help);
@@ -160,13 +160,13 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a second place with its own text.
+    /// Adds a place with its own text.
     pub fn also(&mut self, at: Location, text: impl Into<String>) -> &mut Self {
         self.places.push((at, text.into()));
         self
     }
 
-    /// Adds the state that refutes a claim.
+    /// Sets the state that refutes a claim.
     pub fn refuted_by(&mut self, counterexample: Option<Counterexample>) -> &mut Self {
         self.counterexample = counterexample;
         self
@@ -182,13 +182,13 @@ impl Diagnostic {
         self.places.first().map_or("", |(_, text)| text)
     }
 
-    /// All places with their texts; there is at least one.
+    /// All places with their texts; at least one.
     pub fn places(&self) -> &[(Location, String)] {
         &self.places
     }
 }
 
-/// The error of a model whose algebra was given up at a place.
+/// The error for a model whose algebra exceeded its budget at a place.
 pub(crate) fn too_many_steps(at: Location) -> Diagnostics {
     let mut diagnostics = Diagnostics::new();
     let text = format!("the algebra takes more than {STEPS} steps; it was given up here");
@@ -197,7 +197,7 @@ pub(crate) fn too_many_steps(at: Location) -> Diagnostics {
     diagnostics
 }
 
-/// The text followed by a help line; an empty help adds nothing.
+/// The text with a help line. An empty help adds nothing.
 fn with_help(text: String, help: impl fmt::Display) -> String {
     let help = help.to_string();
     if help.is_empty() {
@@ -207,7 +207,7 @@ fn with_help(text: String, help: impl fmt::Display) -> String {
     }
 }
 
-/// `::core::compile_error! { text }`, placed so that the compiler underlines `at`.
+/// `::core::compile_error! { text }` with spans such that the compiler underlines `at`.
 fn compile_error(at: Location, text: &str) -> TokenStream {
     let punct = |character, spacing| {
         let mut punct = Punct::new(character, spacing);
@@ -235,7 +235,8 @@ fn compile_error(at: Location, text: &str) -> TokenStream {
     .collect()
 }
 
-/// The candidate most like `name`, if one is near enough to be meant: at most one edit for three letters.
+/// The candidate most similar to `name`: at most one edit per three letters (rounded up), and fewer edits than the
+/// candidate has letters. `None` if no candidate is that similar.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = name.chars().count().div_ceil(3);
     let near = candidates
@@ -246,8 +247,8 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other, letters of
-/// different case counted as the same.
+/// Number of insertions, deletions, replacements and swaps of adjacent letters that turn one word into the other. Upper
+/// and lower case count as equal.
 fn edit_distance(left: &str, right: &str) -> usize {
     let left: Vec<char> = left.to_lowercase().chars().collect();
     let right: Vec<char> = right.to_lowercase().chars().collect();
@@ -268,12 +269,12 @@ fn edit_distance(left: &str, right: &str) -> usize {
     last[right.len()]
 }
 
-/// The entry of the row before the last; it exists when it is asked for.
+/// The entry of the row before the last. It exists wherever the algorithm reads it.
 fn before_last_at(row: &[usize], index: usize) -> usize {
     row.get(index).copied().unwrap_or(usize::MAX - 1)
 }
 
-/// `` `a`, `b` and `c` ``, for lists of accepted words.
+/// The words in backticks as a list: `` `a`, `b` and `c` ``.
 pub fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     let quoted: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
     match quoted.split_last() {
@@ -283,7 +284,7 @@ pub fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// For tests: the message of each error with the stretch of `source` that it points at.
+/// For tests: the message of each error, with the source text at its first place.
 #[cfg(test)]
 pub(crate) fn reported(source: &str, diagnostics: &Diagnostics) -> Vec<(String, String)> {
     let stretch = |at: Location| {
@@ -296,7 +297,7 @@ pub(crate) fn reported(source: &str, diagnostics: &Diagnostics) -> Vec<(String, 
         .collect()
 }
 
-/// For tests: takes the marks `«` and `»` off, and gives what stood between them.
+/// For tests: the source without the marks `«` and `»`, and the text between them.
 #[cfg(test)]
 pub(crate) fn unmarked(source: &str) -> (String, String) {
     let marked = source

@@ -1,5 +1,5 @@
-//! Substitute for `native` on processors without machine code. Nothing is compiled, and the interpreters of `machine.rs`
-//! and `series.rs` run everything.
+//! Substitute for `native` on processors without machine code. The interpreters of `machine.rs` and `series.rs` run
+//! everything.
 
 use core::convert::Infallible;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use dalembert::kernels::At;
 use crate::machine::Code;
 use crate::series::Series;
 
-/// A function as machine code, which does not exist here.
+/// A function as machine code. There is no value of this type.
 #[derive(Debug)]
 pub(crate) struct Native(Infallible);
 
@@ -21,7 +21,7 @@ impl Native {
     }
 }
 
-/// A power series as machine code, which does not exist here.
+/// A power series as machine code. There is no value of this type.
 #[derive(Debug)]
 pub(crate) struct NativeSeries(Infallible);
 

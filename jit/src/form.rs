@@ -29,7 +29,8 @@ pub(crate) fn of_model(compiled: &codegen::Compiled, scenes: &[Scene]) -> Arc<Fo
     forms(&FormOf::all(compiled, scenes), may_be_narrow).remove(0)
 }
 
-/// The forms of a model, a scene or a mode: its own, which refers to the global one, then the global one where the two differ.
+/// The forms of a model, a scene or a mode: its own, which refers to the global one, then the global one if it is
+/// another.
 fn forms(known: &[FormOf<'_>], may_be_narrow: bool) -> Vec<Arc<Form>> {
     let (first, others) = known.split_first().expect("a model has a form");
     let others: Vec<Arc<Form>> = others
@@ -85,7 +86,7 @@ pub(crate) fn of_modes(compiled: &CompiledModes) -> Arc<Form> {
     })
 }
 
-/// A form, with rates over intervals if they `may_be_narrow`. A form that can be varied has all that certified motion needs.
+/// A form. It has rates over intervals if `may_be_narrow`. A form with variations has all kernels for certified motion.
 fn form(known: &FormOf<'_>, may_be_narrow: bool, global: Global) -> Arc<Form> {
     let series = Arc::new(Series::of(
         &known.program.jet,
@@ -143,7 +144,7 @@ fn work(work: Option<Work>) -> Held<dyn Fn() -> Option<Work> + Send + Sync> {
     Held::Owned(Box::new(move || work))
 }
 
-/// Writes declared values of parameters; NaN for one without.
+/// Writes the default of each parameter, or NaN if it has none.
 fn defaults(model: &Model) -> Held<Defaults> {
     let parameters = model.parameters.iter();
     let defaults: Vec<f64> = parameters
@@ -177,7 +178,7 @@ fn native_series(series: NativeSeries) -> SeriesTable<f64> {
     }
 }
 
-/// The functions of a form by name.
+/// The functions of a form, by kernel.
 #[derive(Debug)]
 pub(crate) struct Functions(pub(crate) BTreeMap<Kernel, Arc<Code>>);
 
@@ -188,7 +189,7 @@ impl Functions {
         for (kernel, function) in known.kernels() {
             let code = Code::of_kernel(function, kernel, known.dimension(), velocity.as_ref());
             let code = Arc::new(code);
-            // NOTE: velocities come first.
+            // NOTE: the kernel of the velocities comes first.
             velocity.get_or_insert_with(|| Arc::clone(&code));
             functions.insert(kernel, code);
         }
@@ -238,7 +239,7 @@ impl Functions {
     }
 }
 
-/// The functions of one kind for all surfaces, as one.
+/// The functions of one kind for all surfaces, combined into one.
 fn by_surface<L: Numbers, C: Send + Sync + 'static>(
     functions: &BTreeMap<Kernel, Arc<C>>,
     of: fn(usize) -> Kernel,

@@ -1,4 +1,4 @@
-//! Evaluation of a function over any kind of number, by a register machine.
+//! A register machine, which evaluates functions over any kind of number.
 
 use std::sync::Arc;
 
@@ -12,18 +12,18 @@ use dalembert_expr::{Function as Elementary, Rational};
 use dalembert_numbers::Kernel;
 use dalembert_numbers::kernel::Second;
 
-/// A function as instructions. Registers are reused once their values are no longer read.
+/// A function as instructions. Registers are reused after the last use of their values.
 #[derive(Debug)]
 pub(crate) struct Code {
-    /// The instructions, each with the register of its value.
+    /// The instructions, each with its target register.
     pub(crate) instructions: Vec<(Instruction, usize)>,
     pub(crate) outputs: Vec<usize>,
     pub(crate) registers: usize,
-    /// The code of the velocities and their number, where they follow from the state.
+    /// Code and number of the velocities, if the function needs velocities computed from the state.
     pub(crate) velocity: Option<(Arc<Code>, usize)>,
 }
 
-/// Place of an argument.
+/// Source of an argument.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Place {
     Time,
@@ -51,7 +51,7 @@ pub(crate) enum Instruction {
     Guard(Condition),
 }
 
-/// A constant: a double, or the sum of several.
+/// A constant: a double, or the sum of four doubles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Constant {
     Double(f64),
@@ -87,7 +87,7 @@ pub(crate) enum Condition {
 }
 
 impl Code {
-    /// A kernel of `n` coordinates; `velocity` gives the velocities of a state.
+    /// Code of a kernel with `n` coordinates. `velocity` computes the velocities of a state.
     pub(crate) fn of_kernel(
         function: &Function,
         kernel: Kernel,
@@ -115,7 +115,7 @@ impl Code {
         code
     }
 
-    /// Values of a function of time, state and parameters.
+    /// Code for the values `outputs` of a function of time, state and parameters, with `n` coordinates.
     pub(crate) fn of_state(function: &Function, outputs: &[Value], n: usize) -> Self {
         Self::of(function, outputs, |input| match input {
             Input::Time => Place::Time,
@@ -146,7 +146,7 @@ impl Code {
                 }
             }
             let target = registers.take();
-            // An instruction whose value nothing reads is executed because it may fail; its value is dropped.
+            // An instruction without readers is executed because it may fail. Its value is dropped.
             if last[index] == 0 {
                 registers.give_back(target);
             }
@@ -164,7 +164,7 @@ impl Code {
         }
     }
 
-    /// Writes the values.
+    /// Writes the values of the outputs.
     ///
     /// # Errors
     /// The guard that does not hold.
@@ -196,7 +196,7 @@ impl Code {
     }
 }
 
-/// Registers that are free.
+/// Free registers, and the number of registers in use so far.
 #[derive(Default)]
 struct Registers {
     free: Vec<usize>,
@@ -218,10 +218,11 @@ impl Registers {
     }
 }
 
-/// Room for a count of numbers, on the stack where they are few.
+/// Calls `then` with room for `count` numbers, on the stack if they are few.
 pub(crate) fn with_room<L: Numbers, T>(count: usize, then: impl FnOnce(&mut [L]) -> T) -> T {
     match count {
-        // NOTE: numbers of some kinds are long, and all of them are written once.
+        // NOTE: numbers of some kinds are long, and all elements are initialised. The arrays are therefore not much
+        // larger than necessary.
         0..=8 => then(&mut [L::ZERO; 8][..count]),
         9..=24 => then(&mut [L::ZERO; 24][..count]),
         25..=64 => then(&mut [L::ZERO; 64][..count]),

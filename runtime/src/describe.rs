@@ -1,6 +1,6 @@
-//! Interface of a model to tools: names, documentation, parameters, and the view it is drawn in.
+//! Interface of a model to tools: names, documentation, parameters, and the view.
 //!
-//! Implemented by `model!` for every model, so that a tool can list, set and re-derive any of them.
+//! `model!` implements it for every model, so that a tool can list, set and re-derive any of them.
 
 pub use dalembert_numbers::description::{
     Assumption, ConstraintInfo, CoordinateInfo, Description, ModeInfo, ParameterInfo, SurfaceInfo,
@@ -11,7 +11,7 @@ use crate::contract::{System, Variational};
 use crate::effects::Scene;
 use crate::error::Fault;
 
-/// A declared model with values for its parameters. Describes itself and its states to tools.
+/// A declared model with values of its parameters. It describes itself and its states to tools.
 ///
 /// # Examples
 ///
@@ -38,15 +38,15 @@ use crate::error::Fault;
     message = "`{Self}` is not a model declared with `dalembert::model!`"
 )]
 pub trait Instance: System + Clone {
-    /// Names, docs, topology, parameters, surfaces, scenes, source text.
+    /// Names, documentation, topology, parameters, surfaces, scenes, source text.
     fn description(&self) -> &Description;
 
-    /// The inputs; their values are the parameters after those of the description.
+    /// The inputs. Their values follow the parameters of the description.
     fn inputs(&self) -> &[&'static str] {
         &[]
     }
 
-    /// Calls the visitor with the system if its runs can be varied: the model itself, and scenes with `variations`.
+    /// Calls the visitor with the system if its runs have variations: the model itself, and scenes with `variations`.
     fn visit_variational<Visitor: VariationalVisitor>(
         &self,
         visitor: Visitor,
@@ -62,34 +62,34 @@ pub trait Instance: System + Clone {
     /// The system in its global form.
     fn global(&self) -> Self::Global;
 
-    /// Value of the parameter of this index in [`Description::parameters`]; NaN past the end.
+    /// Value of parameter `index` in [`Description::parameters`]; NaN past the end.
     fn parameter(&self, index: usize) -> f64;
 
-    /// Sets a parameter by index; an index past the end changes nothing.
+    /// Sets parameter `index` of [`Description::parameters`] to `value`. An index past the end changes nothing.
     fn set_parameter(&mut self, index: usize, value: f64);
 
-    /// Selects the mode, by number, in which states are made and in which a run begins. A number past the end changes
-    /// nothing, nor does any number in a system without modes.
+    /// Selects the mode, by number, of new states and of the beginning of a run. A number past the end changes nothing,
+    /// and neither does any number in a system without modes.
     fn set_mode(&mut self, mode: usize) {
         let _ = mode;
     }
 
-    /// The declared `initial` at this system's parameters.
+    /// The declared `initial`, at the values of the parameters.
     fn initial(&self) -> Initial<Self::Vector>;
 
-    /// The declared outputs at a state, written in order; `values` has their number of entries.
+    /// Writes the declared outputs at a state, in order. The length of `values` must be their number.
     ///
     /// # Errors
-    /// A [`Fault`] where an output needs the equations of motion and they do not exist.
+    /// A [`Fault`] where an output needs the equations of motion and these do not exist.
     fn outputs(&self, t: f64, state: &Self::State, values: &mut [f64]) -> Result<(), Fault>;
 
-    /// The declared view's point in the plane; `None` without a view.
+    /// The point of the declared view in the plane; `None` without a view.
     fn view_path(&self, t: f64, state: &Self::State) -> Option<[f64; 2]>;
 
-    /// The declared region's function, positive where motion is allowed; `None` without a region.
+    /// Value of the declared region's function, positive where motion is allowed; `None` without a region.
     fn view_region(&self, t: f64, q: &Self::Vector) -> Option<f64>;
 
-    /// Reports everything that is derived at a state, by name (see [`Report`]).
+    /// Reports all derived quantities at a state, by name (see [`Report`]).
     ///
     /// # Errors
     /// A [`Fault`] where the equations of motion do not exist.
@@ -111,7 +111,7 @@ pub trait Instance: System + Clone {
     }
 }
 
-/// Receives a system whose runs can be varied, in its own type (see [`Instance::visit_variational`]).
+/// Receives a system with variations, in its own type (see [`Instance::visit_variational`]).
 ///
 /// # Examples
 ///
@@ -150,19 +150,19 @@ pub trait VariationalVisitor {
 /// The declared initial condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Initial<V> {
-    /// Positions; coordinates that were not named are 0.
+    /// Positions; 0 for coordinates without a declared position.
     pub q: V,
     /// Velocities, meaningful where `named` is 1.
     pub qdot: V,
-    /// 1 where the position was named, 0 where equations of positions among the constraints may choose it.
+    /// 1 if the position is declared, 0 if equations of positions among the constraints may determine it.
     pub placed: V,
-    /// 1 where the velocity was named, 0 where the constraints may choose it.
+    /// 1 if the velocity is declared, 0 if the constraints may determine it.
     pub named: V,
     /// The declared `until`, if any.
     pub until: Option<f64>,
 }
 
-/// Receives named quantities. Names are those of the command line's `eval`.
+/// Receives named quantities. The names are those of the command line's `eval`.
 ///
 /// # Examples
 ///
@@ -200,12 +200,12 @@ pub struct Initial<V> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Report {
-    /// A number.
+    /// Receives a number.
     fn scalar(&mut self, name: &str, value: f64);
 
-    /// A vector, in order of declaration.
+    /// Receives a vector, in order of declaration.
     fn vector(&mut self, name: &str, values: &[f64]);
 
-    /// A matrix, stored row after row.
+    /// Receives a matrix of `rows` by `columns` numbers, stored row by row.
     fn matrix(&mut self, name: &str, rows: usize, columns: usize, values: &[f64]);
 }

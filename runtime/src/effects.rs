@@ -1,8 +1,8 @@
-//! Effects: everything besides smooth motion that acts on a run. They compose as tuples at the type level; `()`
-//! compiles to nothing.
+//! Effects: all actions on a run besides its smooth motion. Tuples compose them at the type level; `()` compiles to
+//! nothing.
 //!
-//! In every step each effect proposes the earliest crossing inside it; the motion is cut at the earliest of all,
-//! the effects that proposed it act there, and integration starts again from the state they leave.
+//! In every step each effect proposes the earliest crossing inside it. The step is cut at the earliest of all
+//! proposals, every effect may act there, and integration starts again from the resulting state.
 
 use crate::audit::Auditor;
 use crate::contract::System;
@@ -43,7 +43,7 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
         self.stepper.length()
     }
 
-    /// Time at a fraction `theta` of the step; exact at both ends.
+    /// Time at a fraction `theta` of the step, exact at both ends.
     #[inline(always)]
     pub fn time(&self, theta: f64) -> f64 {
         if theta >= 1.0 {
@@ -71,7 +71,7 @@ impl<Sys: System, Step: Stepper<Sys>> StepView<'_, Sys, Step> {
         self.stepper.end_rates()
     }
 
-    /// Makes the dense output ready for [`StepView::state`].
+    /// Prepares the dense output for [`StepView::state`].
     ///
     /// # Errors
     /// The [`Fault`] of an extra stage.
@@ -114,7 +114,7 @@ pub struct Moment<'a, Sys: System> {
     pub system: &'a Sys,
     /// The time.
     pub t: f64,
-    /// The state. The run goes on from the value that an effect leaves here.
+    /// The state. The run continues from the value that the effects leave here.
     pub state: &'a mut Sys::State,
     /// Work done so far.
     pub counters: &'a mut Counters,
@@ -138,7 +138,7 @@ impl Change {
     }
 }
 
-/// Acts on a run besides its smooth motion. An `Err` from any hook ends the run with that outcome.
+/// An action on a run besides its smooth motion. An `Err` from any method ends the run with that outcome.
 ///
 /// # Examples
 ///
@@ -174,11 +174,11 @@ impl Change {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Effect<Sys: System> {
-    /// The forces it may add to the motion; [`NoForces`] if it never does.
+    /// Type of the forces that it adds to the motion; [`NoForces`] if it adds none.
     type Forces: Forces<Sys>;
 
-    /// Forces that the effect adds to the motion from now on. The driver asks for them after every cut; where they
-    /// change, it restarts the integrator.
+    /// Forces that the effect adds to the motion from now on. The driver asks for them after every cut, and restarts
+    /// the integrator if they have changed.
     fn forces(&self) -> Option<Self::Forces> {
         None
     }
@@ -209,7 +209,7 @@ pub trait Effect<Sys: System> {
         Ok(None)
     }
 
-    /// Called where smooth motion has arrived: at the end of a step, or at the crossing that `cut` it.
+    /// Called where smooth motion has arrived: at the end of a step, or with `cut` at the crossing that cut the step.
     ///
     /// # Errors
     /// The [`Outcome`] that ends the run here.
@@ -233,8 +233,8 @@ pub trait Effect<Sys: System> {
     }
 }
 
-/// Settings of a scene's effects that a caller may choose at run time. An effect ignores the settings that it does
-/// not know.
+/// Settings of a scene's effects that a caller may choose at run time. An effect ignores settings that do not concern
+/// it.
 ///
 /// # Examples
 ///
@@ -266,13 +266,13 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
         let _ = (surface, law);
     }
 
-    /// The law in force on a surface; `None` where no impacts happen.
+    /// The law in force on a surface; `None` if there are no impacts.
     fn law(&self, system: &Sys, surface: usize) -> Option<Law> {
         let _ = (system, surface);
         None
     }
 
-    /// Ends a run after this many impacts; `None` restores the default.
+    /// Sets the number of impacts after which a run ends; `None` restores the default.
     fn set_impact_budget(&mut self, budget: Option<u64>) {
         let _ = budget;
     }
@@ -282,20 +282,20 @@ pub trait SceneEffects<Sys: System>: Effect<Sys> {
         let _ = on;
     }
 
-    /// Sets the policies for impacts whose law alone does not decide how the run goes on.
+    /// Sets the policies for impacts whose law alone does not determine how the run continues.
     fn set_policies(&mut self, policies: Policies) {
         let _ = policies;
     }
 
-    /// Makes an audit of the surfaces that act, and passes it to `work`. Returns false if there are no surfaces, or
-    /// no audit that is independent of the event location of these effects.
+    /// Makes an audit of the surfaces in force, and passes it to `work`. Returns false if there are no surfaces, or if
+    /// no audit is independent of the event location of these effects.
     fn audit(&self, system: &Sys, work: &mut dyn FnMut(&mut dyn Auditor<Sys>)) -> bool {
         let _ = (system, work);
         false
     }
 }
 
-/// A system with the effects its declaration asks for.
+/// A system with the effects of its declaration.
 ///
 /// # Examples
 ///
@@ -324,7 +324,7 @@ pub trait Scene: System + Sized {
     /// Type of the effects.
     type Effects: SceneEffects<Self>;
 
-    /// The effects as declared.
+    /// The declared effects.
     fn effects(&self) -> Self::Effects;
 }
 

@@ -1,53 +1,53 @@
-//! Run-time errors: small `Copy` values that name the place of the failure.
+//! Run-time errors: small `Copy` values with the place of the failure.
 
 use core::fmt;
 
 use dalembert_numbers::description::Assumption;
 
-/// A quantity that the equations of motion need does not exist at this state.
+/// A quantity that the equations of motion need is undefined at this state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The metric is not positive definite: this pivot of its LDL^T factorisation (coordinate order) is not a
-    /// positive number.
+    /// The metric is not positive definite: this pivot of its `LDL^T` factorisation, in the order of the coordinates,
+    /// is not positive.
     MetricNotPositive {
         /// Index of the coordinate at which the factorisation stopped.
         pivot: usize,
         /// The pivot's value; may be NaN.
         value: f64,
     },
-    /// The constraint one-forms are dependent, or too nearly dependent to solve for the multipliers. A run ends with
-    /// this fault at the last state before, even where the forms are dependent only at one instant between two
-    /// evaluations of the rates ([`System::rank_drop`](crate::System::rank_drop)). A run does not begin at such a
-    /// state.
+    /// The constraint one-forms are linearly dependent, or too nearly so to solve for the multipliers. A run ends with
+    /// this fault at the last state before the forms become dependent. That holds even if they are dependent only at
+    /// one instant between two evaluations of the rates ([`System::rank_drop`](crate::System::rank_drop)). A run does
+    /// not begin at such a state.
     SingularConstraint {
         /// Index of the first constraint that depends on the earlier ones.
         constraint: usize,
-        /// Estimated condition number of the forms in the metric. Infinite where they are dependent, and where a run
-        /// reaches such a state.
+        /// Estimated condition number of the forms in the metric. Infinite if the forms are dependent at the state, or
+        /// if a run reaches such a state.
         condition: f64,
     },
-    /// The form of a declared quasi-velocity depends on the constraints and the other forms: quasi-velocities do not
-    /// determine the velocities here.
+    /// The form of a declared quasi-velocity depends on the constraints and the other forms. The quasi-velocities do
+    /// not determine the velocities at this state.
     SingularFrame {
         /// Index of the quasi-velocity.
         quasi: usize,
     },
-    /// `dh(pi_D grad h)` is not positive: no impulse that keeps the constraints can change the gap rate; or the
+    /// `dh(pi_D grad h)` is not positive, so no impulse that respects the constraints can change the gap rate. Or the
     /// instantaneous constraints of the surface depend on each other or on the constraints.
     SingularSurface {
         /// Index of the surface.
         surface: usize,
     },
-    /// A function was called that was not derived for this system.
+    /// The called function was not derived for this system.
     NotDerived,
     /// Momenta, an energy or an impulse were requested of a first-order system, which has none.
     FirstOrder,
-    /// The terms of Lagrange and d'Alembert's principle, or a state over numbers from positions and velocities alone,
-    /// were requested of a system with modes. They belong to one mode.
+    /// A system with modes was asked for the terms of Lagrange and d'Alembert's principle, or for a state from
+    /// positions and velocities over general numbers. Both belong to a single mode.
     SeveralModes,
-    /// An impulse, or a step of a discrete principle, was requested of a system with constraints that are nonlinear
-    /// in the velocities. Neither is defined for them.
+    /// A system with constraints that are nonlinear in the velocities was asked for an impulse or for a step of a
+    /// discrete principle. Neither is defined for such constraints.
     NonlinearConstraints,
     /// No velocity that satisfies this constraint was found near the given one.
     ProjectionFailed {
@@ -56,7 +56,7 @@ pub enum Fault {
     },
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
-        /// Index of the offending component of the state, in its own order.
+        /// Index of the component of the state.
         component: usize,
     },
 }
@@ -115,7 +115,7 @@ impl fmt::Display for Fault {
 /// A parameter's value contradicts its declaration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParameterError {
-    /// The parameter's name as declared (`m`, or `m.2` in a family).
+    /// The parameter's name as declared: `m`, or `m.2` in a family.
     pub name: &'static str,
     /// The refused value.
     pub value: f64,
@@ -133,7 +133,7 @@ impl fmt::Display for ParameterError {
     }
 }
 
-/// Reasons to refuse a state.
+/// Reason for the rejection of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StateError {
@@ -141,7 +141,7 @@ pub enum StateError {
     Parameter(ParameterError),
     /// A position or velocity is infinite or not a number.
     NotFinite {
-        /// Index among q, then qdot (or p).
+        /// Index into q followed by qdot (or p).
         component: usize,
     },
     /// The velocity violates a constraint by more than 1e-9 of the sum of the absolute values of its terms.
@@ -153,8 +153,8 @@ pub enum StateError {
         /// The sum of the absolute values of the terms of `residual`.
         scale: f64,
     },
-    /// The positions violate an equation of positions among the constraints by more than 1e-9 of the sum of the absolute
-    /// values of its terms.
+    /// The positions violate a position-level constraint by more than 1e-9 of the sum of the absolute values of its
+    /// terms.
     OffPosition {
         /// Index of the constraint.
         constraint: usize,
@@ -168,12 +168,12 @@ pub enum StateError {
         /// Index of the coordinate.
         coordinate: usize,
     },
-    /// The system is larger than the fixed buffers of the requested function.
+    /// The system exceeds the fixed buffers of the called function.
     TooLarge {
-        /// Number of coordinates they hold.
+        /// Largest number of coordinates that the buffers hold.
         limit: usize,
     },
-    /// The equations of motion do not exist at this state.
+    /// The equations of motion are undefined at this state.
     Fault(Fault),
 }
 

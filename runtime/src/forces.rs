@@ -1,4 +1,4 @@
-//! Forces that an effect adds to the motion for a time, for example the contact force of a surface that holds the
+//! Forces that an effect adds to the motion for a time, for example the contact force of a surface in contact with the
 //! motion.
 
 use crate::contract::{System, VectorField};
@@ -104,8 +104,8 @@ impl<Sys: System, F: Forces<Sys>> VectorField for Driven<'_, Sys, F> {
     }
 }
 
-/// Adapter of an integrator of a system under forces to the interface of an integrator of the system alone: it
-/// integrates its own field and ignores the one it is given.
+/// Adapter from an integrator of a system under forces to the interface of an integrator of the system alone. It
+/// integrates its own field and ignores the field passed to it.
 pub(crate) struct Along<'a, F, Step> {
     pub(crate) field: &'a F,
     pub(crate) stepper: Step,

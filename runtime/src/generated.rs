@@ -1,4 +1,4 @@
-//! Functions that generated code calls, besides the public traits. Not part of the interface.
+//! Functions that generated code calls in addition to the public traits. They are not part of the public interface.
 
 use nalgebra::SVector;
 
@@ -9,8 +9,8 @@ use crate::numbers::Numbers;
 use crate::state::StateVector;
 use dalembert_numbers::description::Assumption;
 
-/// Accepted residual of a constraint, as a share of the sum of the absolute values of its terms, for states made by
-/// hand: rounded decimal input passes, a wrong velocity does not.
+/// Largest accepted residual of a constraint for a given state, relative to the sum of the absolute values of its
+/// terms. Rounded decimal input passes, a wrong velocity does not.
 const ADMITTED_RESIDUAL: f64 = 1e-9;
 
 /// The components of a vector.
@@ -25,7 +25,7 @@ pub fn vector<const D: usize>(components: [f64; D]) -> SVector<f64, D> {
     SVector::from_array_storage(nalgebra::ArrayStorage([components]))
 }
 
-/// The first `D` numbers of a kernel's place.
+/// The first `D` numbers of an argument of a kernel.
 ///
 /// # Panics
 /// If there are fewer.
@@ -37,7 +37,7 @@ pub fn numbers<L, const D: usize>(numbers: &[L]) -> &[L; D] {
     }
 }
 
-/// The first `D` places for the values of a kernel.
+/// The first `D` entries of a kernel's output.
 ///
 /// # Panics
 /// If there are fewer.
@@ -55,7 +55,7 @@ fn too_few(wanted: usize, found: usize) -> ! {
     panic!("a kernel of {wanted} numbers was given {found}")
 }
 
-/// N components of a state, from `OFFSET` on.
+/// `N` components of a state, from index `OFFSET` on.
 #[inline(always)]
 pub fn part<const OFFSET: usize, const D: usize, const N: usize>(
     state: &SVector<f64, D>,
@@ -67,7 +67,7 @@ pub fn part<const OFFSET: usize, const D: usize, const N: usize>(
     vector(values)
 }
 
-/// Joins positions and the velocity part of a state (velocities, momenta or quasi-velocities) to one state.
+/// Concatenates positions and the second half of a state (velocities, momenta or quasi-velocities).
 #[inline(always)]
 pub fn join<const N: usize, const K: usize, const D: usize>(
     q: &SVector<f64, N>,
@@ -80,7 +80,7 @@ pub fn join<const N: usize, const K: usize, const D: usize>(
     vector(values)
 }
 
-/// `value > 0`, or the fault of the metric's pivot.
+/// Checks `value > 0`. The error is [`Fault::MetricNotPositive`] with this pivot.
 #[inline(always)]
 pub fn positive_pivot(pivot: usize, value: f64) -> Result<(), Fault> {
     match value > 0.0 {
@@ -89,11 +89,11 @@ pub fn positive_pivot(pivot: usize, value: f64) -> Result<(), Fault> {
     }
 }
 
-/// Ratio of squared norms below which a constraint form counts as dependent on the earlier ones: the rest of it after
-/// their directions are projected out consists of rounding errors.
+/// Ratio of squared norms below which a constraint form counts as dependent on the earlier ones: what is left of it
+/// after projection on their orthogonal complement consists of rounding errors.
 const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
-/// `squared > LEAST_SQUARED_RATIO * reference`, or the fault of a dependent constraint.
+/// Checks `squared > LEAST_SQUARED_RATIO * reference`. The error is the fault of a dependent constraint.
 #[inline(always)]
 pub fn independent_constraint(
     constraint: usize,
@@ -106,10 +106,11 @@ pub fn independent_constraint(
     }
 }
 
-/// Ratio of a pivot of the constraint mass matrix to its diagonal entry below which more than six digits are lost.
+/// Smallest accepted ratio of a pivot of the constraint mass matrix to its diagonal entry. Below it more than six
+/// digits are lost.
 const LEAST_PIVOT_RATIO: f64 = 1e-6;
 
-/// `pivot > LEAST_PIVOT_RATIO * diagonal`, or the fault of a dependent constraint.
+/// Checks `pivot > LEAST_PIVOT_RATIO * diagonal`. The error is the fault of a dependent constraint.
 #[inline(always)]
 pub fn regular_mass(constraint: usize, pivot: f64, diagonal: f64) -> Result<(), Fault> {
     match pivot > LEAST_PIVOT_RATIO * diagonal {
@@ -118,7 +119,7 @@ pub fn regular_mass(constraint: usize, pivot: f64, diagonal: f64) -> Result<(), 
     }
 }
 
-/// Same test as [`independent_constraint`], with the fault of a singular frame.
+/// Same check as [`independent_constraint`]. The error is the fault of a singular frame.
 #[inline(always)]
 pub fn independent_form(quasi: usize, squared: f64, reference: f64) -> Result<(), Fault> {
     match squared > LEAST_SQUARED_RATIO * reference {
@@ -141,7 +142,7 @@ fn singular_constraint(constraint: usize, squared: f64, reference: f64) -> Fault
     }
 }
 
-/// `squared > 0`, or the fault of a surface whose gap rate no allowed impulse changes.
+/// Checks `squared > 0`. The error is the fault of a surface whose gap rate no admissible impulse changes.
 #[inline(always)]
 pub fn regular_surface(surface: usize, squared: f64) -> Result<(), Fault> {
     match squared > 0.0 {
@@ -150,8 +151,8 @@ pub fn regular_surface(surface: usize, squared: f64) -> Result<(), Fault> {
     }
 }
 
-/// Same test as [`independent_constraint`], with the fault of a surface whose instantaneous constraints depend on
-/// each other or on the constraints.
+/// Same check as [`independent_constraint`]. The error is the fault of a surface whose instantaneous constraints depend
+/// on each other or on the constraints.
 #[inline(always)]
 pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<(), Fault> {
     match squared > LEAST_SQUARED_RATIO * reference {
@@ -160,8 +161,8 @@ pub fn independent_at(surface: usize, squared: f64, reference: f64) -> Result<()
     }
 }
 
-/// Checks a declared coefficient of restitution against \[0, 1\]. Set the law at run time for a surface that adds
-/// energy.
+/// Checks that a declared coefficient of restitution lies in \[0, 1\]. For a surface that adds energy, set the law at
+/// run time.
 ///
 /// # Errors
 /// [`ParameterError`] with the surface's name where the coefficient is outside \[0, 1\].
@@ -180,7 +181,7 @@ pub fn check_coefficient(name: &'static str, value: f64) -> Result<(), Parameter
     }
 }
 
-/// Reports the quantities derived at a state through the global form.
+/// Reports the derived quantities of a state, computed in the global form.
 ///
 /// # Errors
 /// The first [`Fault`] of the global form at this state.
@@ -196,10 +197,10 @@ pub fn inspect_globally<S: Instance>(
     global.inspect(t, &state, report)
 }
 
-/// Refuses positions and velocities off the constraints.
+/// Checks that positions and velocities satisfy the constraints.
 ///
 /// # Errors
-/// [`StateError::OffPosition`] for an equation of positions, [`StateError::OffConstraint`] for a constraint.
+/// [`StateError::OffPosition`] for a position-level constraint, [`StateError::OffConstraint`] for a velocity-level one.
 pub fn admit<S: Constrained>(
     system: &S,
     t: f64,
@@ -222,7 +223,7 @@ pub fn admit<S: Constrained>(
     Ok(())
 }
 
-/// Refuses positions off the equations of positions among the constraints.
+/// Checks that positions satisfy the position-level constraints.
 ///
 /// # Errors
 /// [`StateError::OffPosition`] with the first violated equation.
@@ -249,8 +250,8 @@ pub(crate) fn check_positions<S: Constrained>(
     Ok(())
 }
 
-/// Names of the arguments of generated functions, declared as functions. Imported around generated code, they hide
-/// constants of the same names in the surrounding scope, and local variables hide them in turn.
+/// Argument names of generated functions, declared as functions. Imported around generated code, they shadow constants
+/// of the same names in the user's scope; local variables shadow them in turn.
 #[rustfmt::skip]
 #[allow(missing_docs)]
 pub mod arguments {
@@ -291,17 +292,17 @@ pub mod arguments {
     pub fn component() {}
 }
 
-/// The gaps of a declared system over any kind of number.
+/// The gaps of a declared system over any [`Numbers`].
 pub trait OverNumbers {
     /// The gap of one surface. Arguments: see [`Impacting::gap_along`](crate::Impacting::gap_along).
     fn gap_over<L: Numbers>(&self, surface: usize, t: L, component: &dyn Fn(usize) -> L) -> L;
 }
 
-/// Conditions of surfaces over intervals: true, false, or not certain.
+/// Three-valued conditions of surfaces over intervals: true, false, or undecided (`None`).
 pub mod certain {
     use crate::numbers::Interval;
 
-    /// True if the condition with this margin holds; a margin of 0 satisfies a closed condition.
+    /// True if the condition `margin > 0`, or `margin >= 0` if it is closed, holds on the whole interval; `None` if undecided.
     #[inline]
     pub fn holds(margin: Interval, is_closed: bool) -> Option<bool> {
         let (is_true, is_false) = match is_closed {
@@ -331,9 +332,9 @@ pub mod certain {
         all(conditions.map(|condition| condition.map(|holds| !holds)))
     }
 
-    /// Decision for the last of several transitions: true if its own conditions hold, false if they fail while no
-    /// other transition counts. The remaining case, in which no transition is taken, ends the motion and is not
-    /// certain motion.
+    /// Decision for the last of several transitions: true if its own conditions hold, false if they fail and no other
+    /// transition counts. Otherwise undecided: if no transition is taken, the motion ends there and nothing is
+    /// certified.
     #[inline]
     pub fn last(holds: Option<bool>, no_other: Option<bool>) -> Option<bool> {
         match (holds, no_other) {
@@ -344,12 +345,12 @@ pub mod certain {
     }
 }
 
-/// Checks over several numbers at once: each returns the fault of the first lane that fails.
+/// The checks for every lane of a vector. Each returns the fault of the first lane that fails.
 pub mod lanes {
     use crate::error::Fault;
     use crate::numbers::Numbers;
 
-    /// Same test as [`positive_pivot`](super::positive_pivot), in every lane.
+    /// Same check as [`positive_pivot`](super::positive_pivot), in every lane.
     ///
     /// # Errors
     /// The [`Fault`] of the first lane that fails.
@@ -358,7 +359,7 @@ pub mod lanes {
         (0..L::LANES).try_for_each(|lane| super::positive_pivot(pivot, value.lane(lane)))
     }
 
-    /// Same test as [`independent_constraint`](super::independent_constraint), in every lane.
+    /// Same check as [`independent_constraint`](super::independent_constraint), in every lane.
     ///
     /// # Errors
     /// The [`Fault`] of the first lane that fails.
@@ -373,7 +374,7 @@ pub mod lanes {
         })
     }
 
-    /// Same test as [`regular_mass`](super::regular_mass), in every lane.
+    /// Same check as [`regular_mass`](super::regular_mass), in every lane.
     ///
     /// # Errors
     /// The [`Fault`] of the first lane that fails.
@@ -384,7 +385,7 @@ pub mod lanes {
         })
     }
 
-    /// Same test as [`independent_form`](super::independent_form), in every lane.
+    /// Same check as [`independent_form`](super::independent_form), in every lane.
     ///
     /// # Errors
     /// The [`Fault`] of the first lane that fails.
@@ -399,7 +400,7 @@ pub mod lanes {
         })
     }
 
-    /// Same test as [`regular_surface`](super::regular_surface), in every lane.
+    /// Same check as [`regular_surface`](super::regular_surface), in every lane.
     ///
     /// # Errors
     /// The [`Fault`] of the first lane that fails.
@@ -408,7 +409,7 @@ pub mod lanes {
         (0..L::LANES).try_for_each(|lane| super::regular_surface(surface, squared.lane(lane)))
     }
 
-    /// Same test as [`independent_at`](super::independent_at), in every lane.
+    /// Same check as [`independent_at`](super::independent_at), in every lane.
     ///
     /// # Errors
     /// The [`Fault`] of the first lane that fails.

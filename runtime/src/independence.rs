@@ -1,5 +1,5 @@
-//! Times inside a step at which constraint forms become dependent. Stretches on which an enclosure proves independence
-//! are passed; the others are halved and examined.
+//! Times inside a step at which constraint forms become linearly dependent. Pieces of the step on which an enclosure
+//! proves independence are skipped. The others are bisected, and examined pointwise when they are short.
 
 use crate::contract::{RankDrop, System};
 use crate::effects::StepView;
@@ -7,14 +7,15 @@ use crate::events::first::{Walk, walk};
 use crate::events::path::Path;
 use crate::integrate::Stepper;
 
-/// Halvings of a step before a stretch is looked at closely, and stretches before all that is left is.
+/// Maximum number of halvings, after which a piece is examined pointwise. Maximum number of pieces, after which the
+/// rest of the step is examined at once.
 const HALVINGS: u32 = 20;
 const STRETCHES: u32 = 1024;
 
-/// Place, as a share of the step, at which independence is tried besides the ends. Not a place that halving comes to.
+/// Fraction of the step at which independence is tested in addition to both ends.
 const MIDDLE: f64 = 0.375;
 
-/// The first drop between the start of a step with dense output and `reach`.
+/// The first loss of rank between the start of a step with dense output and the fraction `reach` of it.
 pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
     reach: f64,
@@ -26,13 +27,14 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
         let component = |i: usize| path.component(i, part);
         system.keeps_rank((path.time_model(part), &component))
     };
-    // At the ends the states that this step has in common with its neighbours, so that nothing passes between two steps.
+    // At the start the state is that of the preceding step, so that no loss of rank is missed between two steps.
     let motion = |theta: f64| match theta {
         0.0 => (step.t_start(), *step.start()),
         _ => (step.time(theta), step.state(theta)),
     };
     let shortest = reach / (1_u64 << HALVINGS) as f64;
-    // NOTE: sizes are taken beside the first place, which must not be where the forms are dependent: it lies before the stretch.
+    // NOTE: the examination takes its reference sizes just before the piece, because the forms may be dependent at the
+    // start of the piece.
     let looked_at = |[from, to]: [f64; 2]| {
         let from = (from - shortest).max(0.0);
         let part = |theta: f64| match theta {
@@ -47,7 +49,8 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
     };
     let mut places = [0.0, MIDDLE * reach, reach - shortest].into_iter();
     if !places.any(|at| is_independent([at, at + shortest])) {
-        // Forms that are nearly dependent everywhere, or that cannot be enclosed: places of the whole step have to tell.
+        // The forms are nearly dependent at all three fractions, or have no enclosure. The whole step is examined
+        // pointwise.
         return looked_at([0.0, reach]);
     }
     match walk(
@@ -58,7 +61,7 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
     ) {
         Walk::Found(drop) => Some(drop),
         Walk::Passed if is_independent([reach - shortest, reach]) => None,
-        // Forms that are dependent at the end within rounding, beside what they are at the start.
+        // Relative to the start of the step, the forms are dependent at its end up to rounding.
         Walk::Passed => looked_at([0.0, reach]),
         Walk::Stopped(at) => looked_at([at, reach]),
     }

@@ -23,7 +23,7 @@ impl Jets for () {
     const ZERO: Self = ();
 }
 
-/// Storage for the series of several modes; one of them is used at a time.
+/// Storage for the series of several modes. They are used one at a time.
 impl<A: Jets, B: Jets> Jets for (A, B) {
     const ZERO: Self = (A::ZERO, B::ZERO);
 }
@@ -32,9 +32,9 @@ impl<L: Numbers, const W: usize, const H: usize> Jets for [[L; W]; H] {
     const ZERO: Self = [[L::ZERO; W]; H];
 }
 
-/// `sum a_j b_(k-j)` for `j` in `1..k`, of `W` pairs of series side by side. Row `j` holds coefficient `j` of all
-/// series: the `a` from place `a` on, the `b` from place `b` on. Row `k - 1`, the newest, is passed separately, so
-/// that it need not be read back from memory that has just been written.
+/// `sum a_j b_(k-j)` for `j` in `1..k`, for `W` pairs of series at once. Row `j` holds coefficient `j` of all series,
+/// those of the `a` from index `a` on, those of the `b` from index `b` on. Row `k - 1`, the newest, is passed
+/// separately: reading it back from memory that has just been written would delay the sum.
 #[inline(always)]
 pub fn middles<L: Numbers, const W: usize, const P: usize>(
     rows: &[[L; P]; LENGTH],
@@ -66,7 +66,7 @@ pub fn middles<L: Numbers, const W: usize, const P: usize>(
     sums
 }
 
-/// Half of `sum a_j a_(k-j)` for `j` in `1..k`, each product once, of `W` series side by side as in [`middles`].
+/// Half of `sum a_j a_(k-j)` for `j` in `1..k`, each product once, for `W` series at once as in [`middles`].
 #[inline(always)]
 pub fn halves<L: Numbers, const W: usize, const P: usize>(
     rows: &[[L; P]; LENGTH],
@@ -100,7 +100,7 @@ pub fn halves<L: Numbers, const W: usize, const P: usize>(
     sums
 }
 
-/// Stores the coefficients of one order, starting at a given place.
+/// Stores the newest coefficients in a row, from index `place` on.
 #[inline(always)]
 pub fn keep<L: Numbers, const W: usize, const P: usize>(
     row: &mut [L; P],
@@ -110,7 +110,8 @@ pub fn keep<L: Numbers, const W: usize, const P: usize>(
     row[place..place + W].copy_from_slice(newest);
 }
 
-/// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`, of the series at two places of the rows.
+/// `sum a_j b_(k-j)` for `j` in `1..=k`, where `a_j` vanishes beyond `degree`, for the series at two indices of the
+/// rows.
 #[inline(always)]
 pub fn short<L: Numbers, const P: usize>(
     rows: &[[L; P]; LENGTH],
@@ -130,7 +131,7 @@ pub fn short<L: Numbers, const P: usize>(
 
 /// `sum a_j b_(k-j)` for `j` in `1..k`.
 ///
-/// Two partial sums run side by side, which halves the latency of the chain of additions.
+/// Four partial sums are computed side by side, which shortens the chain of dependent additions.
 #[inline(always)]
 pub fn middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     let k = k.clamp(1, LENGTH - 1);
@@ -150,7 +151,7 @@ pub fn middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// Same sum as [`middle`], not inlined: for functions with too many sums to write each out.
+/// Same sum as [`middle`], not inlined, for functions with too many sums to inline each.
 #[inline(never)]
 pub fn shared_middle<L: Numbers>(a: &[L; LENGTH], b: &[L; LENGTH], k: usize) -> L {
     middle(a, b, k)

@@ -1,8 +1,8 @@
 //! Many runs of one scene with Taylor series, several in parallel in SIMD lanes.
 //!
-//! The series of eight motions are computed at once, one in every lane of a vector. Impacts and the work of other
-//! effects are computed for one motion after the other. A lane whose run has ended takes the next run. Every run
-//! gives the same bits as when it is run alone.
+//! Each lane of a vector computes the series of one of eight motions. Impacts and other effects are computed for one
+//! motion after the other. A lane whose run has ended takes the next run. Every run has the same bits as when it is run
+//! alone.
 
 use arrayvec::ArrayVec;
 use wide::f64x8;
@@ -16,7 +16,7 @@ use crate::record::Observer;
 use crate::run::Run;
 use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_start};
 
-/// Least number of motions for which a vector step pays; fewer motions make their steps one by one.
+/// Largest number of motions that make their steps one by one. A vector step pays for more motions.
 const FEW: usize = 2;
 
 /// Largest storage, in bytes, for the series of all lanes. They lie on the stack, and data that exceeds every cache
@@ -39,8 +39,8 @@ pub struct Member<'a, Sys: TaylorField, Effects, O> {
 
 impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
     /// A run of a system from `state` at `t` to `t_end`, as computed by [`Simulation::run`](crate::Simulation::run).
-    /// `tag` identifies it to the caller. An integrator of another order than the one in the first lane makes its
-    /// steps alone.
+    /// `tag` identifies it to the caller. A run with an integrator of another order than the first lane makes its steps
+    /// alone.
     pub fn new(
         tag: usize,
         system: &'a Sys,
@@ -64,7 +64,7 @@ impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
         }
     }
 
-    /// Ends the run after this many accepted steps instead of [`STEP_BUDGET`].
+    /// Sets the number of accepted steps after which the run ends, instead of [`STEP_BUDGET`].
     #[must_use]
     pub fn with_step_budget(mut self, budget: u64) -> Self {
         self.step_budget = budget;
@@ -80,8 +80,8 @@ impl<'a, Sys: TaylorField, Effects, O> Member<'a, Sys, Effects, O> {
     }
 }
 
-/// Computes all runs. Calls `finished` with the tag and the result of each run, in the order in which they end.
-/// Systems whose series take more than 256 KiB in eight lanes make their runs one after the other.
+/// Computes the runs `members`. Calls `finished` with the tag and the result of each run, in the order in which they
+/// end. Systems whose series take more than 256 KiB in eight lanes make their runs one after the other.
 pub fn run_abreast<'a, Sys, Effects, O>(
     members: impl IntoIterator<Item = Member<'a, Sys, Effects, O>>,
     mut finished: impl FnMut(usize, Result<Run<Sys::State>, StartError>),
@@ -218,8 +218,7 @@ where
         }
     }
 
-    /// Advances the run until its next action is a step. Returns true if it already was. The end of the run is an
-    /// error.
+    /// Advances the run until its next action is a step. True if it was a step already. The end of the run is an error.
     fn reach_step(&mut self) -> Result<bool, Outcome> {
         let was_ready = matches!(self.stage, Stage::Step);
         let Self {

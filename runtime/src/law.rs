@@ -11,7 +11,7 @@ pub struct Landing<S> {
     pub state: S,
     /// True if rounding may have decided between two possible continuations.
     pub is_graze: bool,
-    /// True if the motion could go on from other states as well.
+    /// True if the motion could continue from other states as well.
     pub is_one_of_several: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct Blow<V> {
     pub direction: V,
 }
 
-/// Quantities of an impact at a state from which every law is evaluated. Derived and emitted for each surface.
+/// Quantities of an impact at a state, sufficient to evaluate every law. Derived and emitted for each surface.
 ///
 /// # Examples
 ///
@@ -71,13 +71,13 @@ pub struct Contact<V> {
     pub gap_rate: f64,
     /// `P(pi_D grad h)`: the momentum along the projected gradient.
     pub constrained_rate: f64,
-    /// `d_t h`, the speed of a moving surface; 0 for one that stands still.
+    /// `d_t h`, the speed of a moving surface; 0 for a surface at rest.
     pub surface_rate: f64,
     /// `dh(pi_D grad h)`.
     pub constrained_compliance: f64,
     /// `dh(grad h)`.
     pub free_compliance: f64,
-    /// The impulse's direction, as [`System::kick`](crate::System::kick) takes it: `pi_D^* dh` for momenta,
+    /// Direction of the impulse, in the form of [`System::kick`](crate::System::kick): `pi_D^* dh` for momenta,
     /// `G_D^{-1} X^T dh` for quasi-velocities.
     pub direction: V,
 }
@@ -88,7 +88,7 @@ impl<V: StateVector> Contact<V> {
         self.constrained_compliance / self.free_compliance
     }
 
-    /// Impulse of a law; NaN for [`Law::Reset`].
+    /// Impulse of a law; NaN for laws that are no impulse.
     pub fn blow(&self, law: Law) -> Blow<V> {
         Blow {
             size: self.impulse(law),
@@ -97,12 +97,12 @@ impl<V: StateVector> Contact<V> {
         }
     }
 
-    /// The impulse's size `eps`: `p+ = p + eps pi_D^* dh`. NaN for [`Law::Reset`], which is no impulse.
+    /// Size `eps` of the impulse: `p+ = p + eps pi_D^* dh`. NaN for laws that are no impulse.
     pub fn impulse(&self, law: Law) -> f64 {
         -self.rate_taken(law) / self.constrained_compliance
     }
 
-    /// Change of the gap rate by a law, with opposite sign; NaN for [`Law::Reset`].
+    /// Amount that a law subtracts from the gap rate; NaN for laws that are no impulse.
     pub fn rate_taken(&self, law: Law) -> f64 {
         let scalars = [
             self.gap_rate,

@@ -1,5 +1,5 @@
-//! Verification of the rates along a step against the rates that the step assumed. Finds forces that act only between
-//! the stages of a step.
+//! Comparison of the rates along a step with the rates that the step assumed. It finds forces that act only between the
+//! stages of a step.
 //!
 //! On a part of the step all rates of the system are enclosed, for the states and times on the motion's path there:
 //!
@@ -7,13 +7,12 @@
 //! R = f(Y) and f(y_m) + [-1, 1] f'(Y) (b - a)/2,   Y the states on [a, b], y_m the one in the middle
 //! ```
 //!
-//! and compared with the interval `P` of the rates that the step's polynomial has there. The excess of `R` over `P`
-//! is a force that the step has not seen. The excess may be as large as the change of the rates over the step, or a
-//! quarter of their size, since an enclosure is wider than the range; or so small that the error allowed in the step
-//! covers it. Other parts are halved. Where halving does not help, the step is too long. It is also too long where
-//! the integral of `R` over the step does not contain the change of the state over the step. The shortest parts on
-//! which `R` has no bounds, for example at a pole or at a jump of a force, are left undecided; the parts beside them
-//! decide.
+//! and compared with the interval `P` of the rates of the step's polynomial there. The excess of `R` over `P` is a
+//! force that the step has not seen. The excess may be as large as the change of the rates over the step, or a quarter
+//! of their size, since an enclosure is wider than the range. It may also be so small that the error allowed in the
+//! step covers it. Other parts are halved. If halving does not help, the step is too long. It is also too long if the
+//! integral of `R` over the step does not contain the change of the state over the step. The shortest parts on which
+//! `R` has no bounds, for example at a pole or at a jump of a force, are left undecided; the other parts decide.
 
 use crate::contract::System;
 use crate::effects::StepView;
@@ -29,21 +28,21 @@ const DEPTH: u32 = 6;
 /// Maximum number of halvings where rates have no bounds.
 const DEPTH_OF_POLES: u32 = 40;
 
-/// Maximum number of parts that are examined. It ends the search where rates have bounds nowhere.
+/// Maximum number of parts that are examined. It ends the search if rates have no bounds anywhere.
 const PARTS: u32 = 256;
 
-/// Initial halvings of steps without an error estimate: their integral decides.
+/// Number of initial halvings of steps without an error estimate. Their integral decides.
 const DEPTH_OF_FIXED: u32 = 3;
 
-/// Shortest step that is examined, as a share of its time: below it, times inside the step cannot be told apart.
+/// Shortest step that is examined, as a fraction of its time. Times inside a shorter step cannot be distinguished.
 const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
 
-/// Allowed excess of an enclosure over the rates of the step: as shares of the change of these rates, and of their
+/// Allowed excess of an enclosure over the rates of the step, as fractions of the change of these rates and of their
 /// size.
 const OF_CHANGE: f64 = 1.0;
 const OF_SIZE: f64 = 0.25;
 
-/// Fraction of a step up to which its rates agree with those it assumed: 1 if all of it does.
+/// Fraction of a step up to which its rates agree with the assumed rates; 1 if they agree everywhere.
 ///
 /// # Errors
 /// The [`Outcome`] of a failed dense output.
@@ -124,7 +123,7 @@ fn changes<S: StateVector>(like: &S, path: &Path<S>) -> S {
     changes
 }
 
-/// Relation of the enclosed rates on a part of a step to those that it assumed.
+/// Relation of the enclosed rates on a part of a step to the rates that the step assumed.
 enum Rates {
     Assumed,
     Exceeded,
@@ -141,12 +140,12 @@ struct Along<'a, Sys: System> {
     changes: Sys::State,
     /// Bounds of the change of the components over the parts with bounded rates.
     gained: [Sys::State; 2],
-    /// True if there are parts on which nothing is known of the rates.
+    /// True if there are parts on which the rates have no bounds.
     has_pole: bool,
 }
 
 impl<Sys: System> Along<'_, Sys> {
-    /// True if the change between these states agrees with the integral of the rates, as far as that is known.
+    /// True if the change between these states agrees with the integral of the rates, or if that has no bounds.
     fn has_gained(&self, start: &Sys::State, end: &Sys::State) -> bool {
         let is_within = |i: usize| {
             let change = end.as_slice()[i] - start.as_slice()[i];
@@ -157,8 +156,8 @@ impl<Sys: System> Along<'_, Sys> {
         self.has_pole || (0..start.count()).all(is_within)
     }
 
-    /// Compares the rates on a part of the step with those that it assumed. If they agree, adds their integral to
-    /// `gained`.
+    /// Compares the rates on a part of the step with the rates that the step assumed. If they agree, adds their
+    /// integral to `gained`.
     fn compare(&mut self, part: [f64; 2]) -> Rates {
         let (path, changes, width) = (self.path, &self.changes, part[1] - part[0]);
         let mut gained = self.gained;

@@ -1,4 +1,5 @@
-//! End of a run: exactly one [`Outcome`], never a panic, a silent NaN or an endless loop.
+//! End of a run: exactly one [`Outcome`] for every run. A run neither panics nor loops forever, and never returns a
+//! silent NaN.
 
 use core::fmt;
 
@@ -8,32 +9,33 @@ use crate::error::{Fault, ParameterError};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The requested end was reached.
+    /// The run reached its end time.
     Done,
-    /// Impacts accumulate: their times no longer differ, or the hops between them are below the rounding of the gap.
+    /// Impacts accumulate (Zeno): their times no longer differ, or the hops between them are below the rounding error
+    /// of the gap.
     Zeno {
-        /// Time at which they accumulate, extrapolated from the last hops.
+        /// Time of the accumulation, extrapolated from the last hops.
         t: f64,
-        /// The surface last hit.
+        /// The surface of the last impact.
         surface: usize,
     },
     /// Impacts accumulate while the energy grows.
     Spasmodic {
-        /// Time at which they accumulate, extrapolated from the last flights.
+        /// Time of the accumulation, extrapolated from the last flights.
         t: f64,
-        /// The surface last hit.
+        /// The surface of the last impact.
         surface: usize,
     },
-    /// Several surfaces were hit at one time, and the state afterwards depends on the order of the impacts.
+    /// Several surfaces were hit at the same time, and the state after the impacts depends on their order.
     Ambiguous {
-        /// The first and the last of them, in order of declaration.
+        /// The smallest and the largest index of these surfaces.
         surfaces: [usize; 2],
     },
-    /// An impact law left the state approaching the surface.
+    /// The surface is still approached after its impact law.
     StillPenetrating {
         /// The surface.
         surface: usize,
-        /// `dh(pi_D grad h) / dh(grad h)` there.
+        /// `dh(pi_D grad h) / dh(grad h)` at the impact.
         rho: f64,
     },
     /// A reset left the state off a constraint by more than 1e-9 of the sum of the absolute values of its terms.
@@ -43,58 +45,58 @@ pub enum Outcome {
         /// Index of the constraint.
         constraint: usize,
     },
-    /// The law `reset` was chosen for a surface that declares none.
+    /// The law `reset` was selected for a surface that declares no reset.
     NoReset {
         /// The surface.
         surface: usize,
     },
-    /// The motion reached a surface with the law `stop`.
+    /// The motion reached a surface whose law is `stop`.
     StoppedAt {
         /// The surface.
         surface: usize,
-        /// True if the motion may only have touched the surface: rounding decides.
+        /// True if the motion may only have touched the surface: its contact is decided by rounding.
         graze: bool,
     },
-    /// A mode that is run by itself reached a surface that leads to another mode.
+    /// A single mode was run by itself, and reached a surface that leads to another mode.
     LeftMode {
         /// The surface.
         surface: usize,
     },
-    /// The motion reached a surface of several transitions at which the conditions of none of them hold.
+    /// The motion reached a surface with several transitions, and the conditions of none of them hold.
     Untaken {
         /// The last of these transitions.
         surface: usize,
     },
-    /// Modes lead to each other at one time, and no state from which the motion goes on lies in one of them.
+    /// Modes lead to each other at the same time, and none of them has a state from which the motion can continue.
     Trapped {
         /// The surface reached last.
         surface: usize,
     },
-    /// The state rests on a surface and the motion presses into it: going on needs a contact force.
+    /// The state rests on a surface and the motion presses into it. To continue it needs a contact force.
     Contact {
         /// The surface.
         surface: usize,
     },
-    /// The motion crossed a surface at gap rate 0, where no impact law acts.
+    /// The motion crossed a surface with gap rate 0, where no impact law applies.
     TangentialCrossing {
         /// The surface.
         surface: usize,
     },
-    /// The gap of an active surface is clearly negative at the start or after an impact.
+    /// The gap of an active surface is negative beyond rounding, at the start or after an impact.
     StartsInside {
         /// The surface.
         surface: usize,
         /// Its gap.
         gap: f64,
     },
-    /// The condition of a surface begins to hold while the motion is behind it.
+    /// The condition of a surface became true while its gap was negative.
     BeginsBehind {
         /// The surface.
         surface: usize,
         /// Its gap.
         gap: f64,
     },
-    /// A coordinate reached the end of its interval.
+    /// A coordinate reached the boundary of its chart interval.
     LeftChart {
         /// Index of the coordinate.
         coordinate: usize,
@@ -133,27 +135,27 @@ pub enum Outcome {
     NonlinearConstraints,
     /// A state, a rate or a gap is infinite or not a number.
     NonFinite {
-        /// Index of the component of the state; gaps are counted after its components.
+        /// Index of the component of the state. For a gap: the number of components plus the index of the surface.
         component: usize,
     },
-    /// The local error stays too large in steps that no longer change the time.
+    /// The local error stays above the tolerance even in steps that no longer change the time.
     StepUnderflow {
         /// Time of the step.
         t: f64,
     },
-    /// A step of fixed size led to a state without finite energy although its rates are finite, for example outside
-    /// the domain of `ln(x)`. The state is that at the start of the step.
+    /// A step of fixed size led to a state with finite rates but no finite energy, for example outside the domain of
+    /// `ln(x)`. The final state is that at the start of the step.
     LeftDomain,
-    /// An implicit step could not be solved: it is too long for the fastest motion.
+    /// An implicit step has no solution near its start: it is too long for the fastest motion.
     NotConverged {
         /// Start of the step.
         t: f64,
     },
-    /// The allowed number of steps was used up.
+    /// The run used up its budget of steps.
     StepBudget,
-    /// The allowed number of impacts was used up.
+    /// The run used up its budget of impacts.
     ImpactBudget,
-    /// Projection did not bring the state back to this constraint (levels first, then velocities).
+    /// Projection did not bring the state back to a constraint. Levels are projected first, then velocities.
     ProjectionFailed {
         /// Index of the level, or of the constraint.
         constraint: usize,
@@ -163,7 +165,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The class of the outcome in snake case, as tables and files write it.
+    /// The class of the outcome in snake case, as in tables and files.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -201,7 +203,7 @@ impl Outcome {
         }
     }
 
-    /// True if the requested end was reached.
+    /// True if the run reached its end time.
     pub const fn is_done(&self) -> bool {
         matches!(self, Self::Done)
     }
@@ -334,7 +336,7 @@ impl From<Fault> for Outcome {
     }
 }
 
-/// Reasons not to begin a run.
+/// Reason for the rejection of a run before its first step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StartError {
@@ -342,9 +344,9 @@ pub enum StartError {
     Parameter(ParameterError),
     /// The times are not finite, or the end lies before the start.
     Times {
-        /// The start.
+        /// Time of the start.
         t0: f64,
-        /// The end.
+        /// Time of the end.
         t_end: f64,
     },
 }

@@ -1,9 +1,10 @@
-//! Projection: brings a state that has drifted during integration back to the constraints.
+//! Projection: returns a state that has drifted off the constraints during integration to them.
 //!
-//! Acts after a step if a constraint is violated by more than rounding. It corrects positions first, by Newton's
-//! iteration `q -= correction(f(q) - f(q_0))` towards the levels at the start of the run (integrable constraints; 0
-//! where the constraint is an equation of positions, unless the run was made to start off it). Then it corrects
-//! velocities, orthogonally in the metric. In a state reduced to D only positions need correction.
+//! It acts after a step if a constraint is violated by more than rounding. First it corrects positions by Newton's
+//! iteration `q -= correction(f(q) - f(q_0))`, which returns the integrals `f` of integrable constraints to their
+//! levels at the start of the run. (The level of a position-level constraint is 0, unless the run was allowed to start
+//! off it.) Then it corrects velocities, orthogonally in the metric. In the form reduced to D only positions need
+//! correction.
 
 use crate::contract::Constrained;
 use crate::effects::{Change, Effect, Moment, SceneEffects};
@@ -15,16 +16,16 @@ use crate::outcome::Outcome;
 use crate::record::Observer;
 use crate::state::StateVector;
 
-/// Residual that is accepted, as a share of the sum of the absolute values of its terms: `2^-44 = 6e-14`. Forming the
-/// sum rounds by about `2^-52` per term, and projection leaves as much. A smaller threshold would project after every
-/// step for nothing.
+/// Largest residual that counts as 0, relative to the sum of the absolute values of its terms: `2^-44 = 6e-14`.
+/// Rounding in the sum is about `2^-52` per term, and projection leaves a residual of this size. With a smaller
+/// threshold, projection would act after every step without effect.
 const THRESHOLD: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// Maximum number of Newton steps towards the levels. Each doubles the number of correct digits; four suffice from a
-/// good start.
+/// Maximum number of Newton steps towards the levels. Each step doubles the number of correct digits, so four suffice
+/// from a good start.
 const NEWTON_STEPS: u32 = 8;
 
-/// Projects to the constraints after every step that needs it.
+/// Effect that projects to the constraints after every step that violates them.
 ///
 /// # Examples
 ///
@@ -39,7 +40,7 @@ const NEWTON_STEPS: u32 = 8;
 ///     }
 /// }
 ///
-/// // The form on all of T*Q, whose states may leave the constraints.
+/// // The form on all of T*Q. Its states may violate the constraints.
 /// let bead = Bead::default().global();
 /// let state = bead.state(0.0, &[1.0, 0.0].into(), &[0.0, 1.0].into())?;
 /// let integrator = Dop853::new(Tolerance::new(1e-6)?);
@@ -55,7 +56,7 @@ pub struct Projection<Sys: Constrained> {
 }
 
 impl<Sys: Constrained> Projection<Sys> {
-    /// The projection, switched on.
+    /// The projection, switched on for all runs.
     pub fn new() -> Self {
         Self {
             on: true,
@@ -63,7 +64,7 @@ impl<Sys: Constrained> Projection<Sys> {
         }
     }
 
-    /// Brings positions back to their levels. Returns [`Change::Changed`] if they had to move.
+    /// Corrects positions to their levels. Returns [`Change::Changed`] if the positions changed.
     fn settle_levels(&self, now: &mut Moment<'_, Sys>) -> Result<Change, Outcome> {
         let mut q = now.system.position(now.state);
         let (mut excess, mut worst) = self.excess(now, &q);
@@ -76,8 +77,8 @@ impl<Sys: Constrained> Projection<Sys> {
             for (q, correction) in q.as_mut_slice().iter_mut().zip(correction.as_slice()) {
                 *q += correction;
             }
-            // NOTE: a level that vanishes at the start has no scale of its own. There the iteration ends when no
-            // digit moves.
+            // NOTE: a level that is 0 at the start provides no scale. Then the iteration ends when the correction is
+            // below rounding.
             let moved = is_visible(&q, &correction);
             (excess, worst) = self.excess(now, &q);
             if worst.is_none() || !moved {
@@ -90,7 +91,7 @@ impl<Sys: Constrained> Projection<Sys> {
         })
     }
 
-    /// Deviation of the levels, and the first level that deviates by more than the threshold.
+    /// Deviations of the levels, and the index of the first one above the threshold.
     fn excess(&self, now: &Moment<'_, Sys>, q: &Sys::Vector) -> (Sys::Levels, Option<usize>) {
         let mut excess = now.system.levels(now.t, q);
         let sizes = now.system.level_scales(now.t, q);
@@ -107,17 +108,16 @@ impl<Sys: Constrained> Projection<Sys> {
         (excess, worst)
     }
 
-    /// Brings velocities back to the constraints. Returns [`Change::Changed`] if they had to change.
+    /// Corrects velocities to the constraints. Returns [`Change::Changed`] if the velocities changed.
     fn settle_velocities(&self, now: &mut Moment<'_, Sys>, cut: bool) -> Result<Change, Outcome> {
-        // NOTE: where an impact cuts the step, rounding is removed as well. This costs nothing, as the rate is
-        // evaluated anew anyway, and impact laws would accumulate the residual over many impacts.
+        // NOTE: at an impact, which cuts the step, even rounding errors are removed. This costs nothing, because the
+        // rate is evaluated there in any case. Otherwise impact laws would accumulate the residual over many impacts.
         if now.system.is_reduced() || (!cut && violated(now)?.is_none()) {
             return Ok(Change::Kept);
         }
         let before = *now.state;
         now.system.restore(now.t, now.state)?;
-        // The correction is linear; a second one removes the rounding of the first where constraints are
-        // ill-conditioned.
+        // The correction is linear. For ill-conditioned constraints a second one removes the rounding of the first.
         if violated(now)?.is_some() {
             now.system.restore(now.t, now.state)?;
         }
@@ -134,7 +134,7 @@ impl<Sys: Constrained> Default for Projection<Sys> {
     }
 }
 
-/// True if a correction changes any digit of the positions.
+/// True if a correction is larger than the rounding error of the positions.
 fn is_visible<V: StateVector>(q: &V, correction: &V) -> bool {
     let largest = |values: &V| {
         values
@@ -150,13 +150,14 @@ fn violated<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fa
     exceeding(now, None, THRESHOLD)
 }
 
-/// The first constraint whose residual is too large for the projection of the state `before` to count as successful:
-/// a thousand thresholds, one twentieth of the bound at which states are refused.
+/// The first constraint whose residual is too large after the projection of the state `before`, so that the projection
+/// has failed. The bound is a thousand thresholds, one twentieth of the bound for admissible initial states.
 ///
-/// The terms of a constraint give no scale where all of them vanish: where only velocities remain that the constraint
-/// holds at 0, such as `y ydot` of a hanging pendulum, or where the motion rests. The terms are rounding errors
-/// there, and a residual is as large as they are, however small. Projection leaves the rounding of the velocity that
-/// it was given, so the scale is that of the terms with velocities as large as that speed allows.
+/// The terms of a constraint provide no scale where all of them vanish: where only terms are left whose velocities the
+/// constraint forces to 0, such as `y ydot` for a hanging pendulum, or where the system rests. There the terms are
+/// rounding errors, and the residual is as large as they are, however small. As projection leaves the rounding error of
+/// the velocity that it was given, the scale is computed from the largest velocities that the kinetic energy of `before`
+/// allows.
 fn far<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     before: &Sys::State,
@@ -168,7 +169,7 @@ fn far<Sys: Constrained>(
     }
 }
 
-/// Largest values that single velocities can have at the kinetic energy of a state: `|v_i| <= sqrt(g^ii v.p)` by the
+/// Largest values of single velocities at the kinetic energy of a state: `|v_i| <= sqrt(g^ii v.p)`, by the
 /// Cauchy-Schwarz inequality.
 fn largest_velocities<Sys: Constrained>(
     now: &Moment<'_, Sys>,
@@ -177,7 +178,7 @@ fn largest_velocities<Sys: Constrained>(
     let (system, t) = (now.system, now.t);
     let (v, p) = (system.velocity(t, state)?, system.momentum(t, state)?);
     let pairs = v.as_slice().iter().zip(p.as_slice());
-    // NOTE: square roots come before products, which would be 0 for velocities below 1e-162.
+    // NOTE: the square roots are taken before the product, which would underflow for velocities below 1e-162.
     let speed: f64 = pairs
         .map(|(v, p)| math::sqrt(v.abs()) * math::sqrt(p.abs()))
         .sum();
@@ -194,8 +195,8 @@ fn largest_velocities<Sys: Constrained>(
     Ok(largest)
 }
 
-/// The first constraint violated by more than a given share of its terms, or of the terms at other velocities if
-/// those are larger.
+/// The first constraint violated by more than `threshold` times the sum of its terms, or of its terms at `velocities`
+/// if that sum is larger.
 fn exceeding<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     velocities: Option<&Sys::Vector>,
@@ -209,7 +210,7 @@ fn exceeding<Sys: Constrained>(
     if let Some(velocities) = velocities {
         let (_, larger) = now.system.residuals(now.t, &q, velocities);
         let pairs = scales.as_mut_slice().iter_mut().zip(larger.as_slice());
-        // Subnormal numbers have lost digits.
+        // Residuals that are subnormal numbers have lost digits.
         pairs.for_each(|(scale, larger)| {
             *scale = scale.max(*larger) + f64::MIN_POSITIVE / threshold
         });
@@ -249,9 +250,9 @@ impl<Sys: Constrained> Effect<Sys> for Projection<Sys> {
         if !self.on {
             return Ok(Change::Kept);
         }
-        // NOTE: this moves a state that lies on a surface off it by the size of the integration error. It is
-        // necessary there too: otherwise a motion of which every step is cut would never be corrected. The surface
-        // just hit counts as met exactly, whatever its gap.
+        // NOTE: this can move a state off the surface that it lies on, by the size of the integration error. The
+        // projection is necessary there too: otherwise a motion whose every step is cut by an impact would never be
+        // corrected. The surface just hit counts as met exactly, whatever its gap.
         let moved = if self.levels.count() > 0 {
             self.settle_levels(now)?
         } else {

@@ -1,17 +1,16 @@
 //! Detection of instants between the ends of a step at which the constraint forms become dependent.
 //!
-//! Rates are evaluated at a few places only, and a rank that drops at one instant is invisible from there: on either
-//! side the forms may be well independent. The test uses the plane that the forms span, with its orientation: the
-//! multivector `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent.
-//! If it vanishes to odd order it reverses its orientation, whatever rotation it makes besides. Two places between
-//! which it reverses are bracketed until the change proves to be a smooth rotation or the places are neighbouring
-//! numbers. Where it vanishes to even order it keeps its orientation, and a minimum of its size is searched for
-//! instead.
+//! Rates are evaluated at a few places only. A rank drop at one instant is invisible from there: on either side the
+//! forms may be well independent. The test uses the plane that the forms span, with its orientation: the multivector
+//! `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent. If it vanishes
+//! to odd order, it reverses its orientation, whatever rotation it performs besides. Two places between which it
+//! reverses are bracketed until the change proves to be a smooth rotation, or until the places are neighbouring
+//! numbers. If it vanishes to even order, it keeps its orientation, and a minimum of its size is searched for instead.
 
 use crate::contract::{Constrained, RankDrop};
 use crate::math::{abs, sqrt};
 
-/// Places at which a step is examined. A minimum between two of them shows in the values at three: neighbouring
+/// Places at which a step is examined. The values at three places show a minimum between two of them: neighbouring
 /// distances differ by at most a factor of three.
 const PLACES: [f64; 11] = [
     0.0,
@@ -27,18 +26,19 @@ const PLACES: [f64; 11] = [
     1.0,
 ];
 
-/// A size that stays above this share of its values nearby has no zero between: `((3 - 1)/(3 + 1))^2` for three
-/// places with distances 1 and 3 and a zero of second order half way along the longer one, and a margin.
+/// A size that stays above this fraction of its values nearby has no zero between. The fraction is
+/// `((3 - 1)/(3 + 1))^2`, for three places with distances 1 and 3 and a zero of second order half way along the longer
+/// one, and a margin.
 const DIP: f64 = 0.5;
 
 /// Relative size that counts as zero.
 const ZERO: f64 = 4.0 * f64::EPSILON;
 
-/// A rotation shorter than this share of the time counts as instantaneous, up to the rounding errors of the steps
-/// before.
+/// A rotation that takes less than this fraction of the time counts as instantaneous, up to the rounding errors of
+/// earlier steps.
 const INSTANT: f64 = 512.0 * f64::EPSILON;
 
-/// Steps of the search for a minimum: enough to reduce a bracket to neighbouring numbers.
+/// Number of steps of the search for a minimum, enough to reduce a bracket to neighbouring numbers.
 const NARROWINGS: u32 = 80;
 
 /// The plane of the forms at one place.
@@ -50,7 +50,7 @@ struct Plane<const M: usize, const N: usize> {
     t: f64,
     /// Number of forms.
     count: usize,
-    /// Its orthonormal basis; a row that depends on the earlier ones is 0.
+    /// Its orthonormal basis. A row that depends on the earlier ones is 0.
     basis: [[f64; N]; M],
     /// Length of each form after its components along the earlier ones are removed.
     lengths: [f64; M],
@@ -94,7 +94,7 @@ impl<const M: usize, const N: usize> Plane<M, N> {
         determinant(products, self.count)
     }
 
-    /// Size of the multivector relative to that at another place.
+    /// Ratio of the size of the multivector to its size at another place.
     fn size_beside(&self, other: &Self) -> f64 {
         let pairs = self.lengths[..self.count].iter().zip(other.lengths);
         pairs.map(|(length, other)| length / other).product()
@@ -105,7 +105,7 @@ fn inner<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Determinant of the first rows and columns, by elimination with the largest pivots.
+/// Determinant of the first `count` rows and columns, by Gaussian elimination with partial pivoting.
 fn determinant<const M: usize>(mut rows: [[f64; M]; M], count: usize) -> f64 {
     let mut product = 1.0;
     for k in 0..count {
@@ -131,7 +131,7 @@ fn determinant<const M: usize>(mut rows: [[f64; M]; M], count: usize) -> f64 {
     product
 }
 
-/// Implementation of [`System::rank_drop`](crate::System::rank_drop) for a system with up to M constraints on up to N
+/// Implementation of [`System::rank_drop`](crate::System::rank_drop) for a system with up to M constraints and up to N
 /// coordinates.
 pub fn rank_drop<S: Constrained, const M: usize, const N: usize>(
     system: &S,
@@ -218,8 +218,8 @@ fn turned_round<const M: usize, const N: usize>(
             return Some([before, after]);
         }
         let middle = plane(middle);
-        // NOTE: where the forms are dependent to the last digit the basis is 0, or noise that may lie across both
-        // sides.
+        // NOTE: if the forms are dependent to the last digit, the basis is 0, or noise that may be perpendicular to
+        // both sides.
         if before.cosine(&middle) <= 0.0 {
             after = middle;
         } else if middle.cosine(&after) <= 0.0 {
@@ -231,8 +231,8 @@ fn turned_round<const M: usize, const N: usize>(
     }
 }
 
-/// Bracket in which the last of these places shows a possible zero of the size: around the place before it, or next
-/// to either end of the step.
+/// Bracket in which the last of these places shows a possible zero of the size: around the place before it, or next to
+/// an end of the step.
 fn dip(k: usize, [a, b, c]: [(f64, f64); 3]) -> Option<[f64; 2]> {
     let falls = |least: f64, most: f64| least < DIP * most;
     if b.1 <= a.1 && b.1 <= c.1 && falls(b.1, a.1.max(c.1)) {
@@ -245,8 +245,8 @@ fn dip(k: usize, [a, b, c]: [(f64, f64); 3]) -> Option<[f64; 2]> {
     (is_last && c.1 <= b.1 && falls(c.1, a.1)).then_some([b.0, c.0])
 }
 
-/// Place between these two at which the size vanishes, if its minimum is negligible beside the sizes there; by
-/// golden-section search.
+/// Place of a zero of the size between these two places, by golden-section search; `None` unless the minimum is
+/// negligible relative to the sizes there.
 fn vanishing(size: &impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> Option<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let most = size(low).max(size(high));

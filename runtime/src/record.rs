@@ -1,4 +1,4 @@
-//! Record of a run as it goes on: stretches of smooth motion, and the impacts between them.
+//! Observation of a run: its smooth segments, and the impacts between them.
 
 use core::ops::ControlFlow;
 
@@ -7,7 +7,7 @@ use crate::error::Fault;
 use crate::jet::LENGTH;
 use crate::law::Law;
 
-/// One impact.
+/// An impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event<S> {
     /// Time of the impact.
@@ -20,41 +20,44 @@ pub struct Event<S> {
     pub before: S,
     /// State just after the impact.
     pub after: S,
-    /// True if another surface was hit at the same time. Simultaneous impacts are carried out in order of index.
+    /// True if another surface was hit at the same time. Simultaneous impacts are recorded one by one, in order of
+    /// surface index.
     pub simultaneous: bool,
-    /// True for a grazing impact: rounding, or the integrator's estimate of its error if it has one, may have decided
+    /// True for a grazing impact, which may be decided by rounding, or by the local error if the integrator estimates
     /// it.
     pub graze: bool,
 }
 
-/// The state comes to rest on a surface, begins to slide along it, or leaves it.
+/// The state comes to rest on a surface, starts to slide along it, or leaves it (sliding mode).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold<S> {
     /// Time.
     pub t: f64,
-    /// Index of the surface; for sliding between two modes, of the transition that was taken.
+    /// Index of the surface. For sliding between two modes: index of the transition that was taken.
     pub surface: usize,
-    /// For sliding between two modes, the transition that leads back: the state belongs to the mode that it leaves.
+    /// For sliding between two modes: the transition that leads back. The state belongs to the mode that this
+    /// transition leaves.
     pub back: Option<usize>,
     /// The state, on the surface.
     pub state: S,
-    /// True if the surface holds the motion from now on, false if it ceases to.
+    /// True if the surface holds the motion from this time on, false if it releases the motion.
     pub begins: bool,
-    /// Time at which impacts on the surface accumulate, extrapolated from the last hops, if they lead to this hold.
+    /// Time at which impacts on the surface accumulate, extrapolated from the last hops; `None` if no accumulation led
+    /// to this hold.
     pub accumulation: Option<f64>,
 }
 
-/// A stretch of smooth motion, from the start of a step to its end or to the impact that cuts it.
+/// A segment of smooth motion, from the start of a step to its end or to the impact that cuts it.
 pub struct Segment<'a, S> {
     pub(crate) t: [f64; 2],
     pub(crate) end: &'a S,
-    /// Length of the step from which the stretch is cut, and the fraction of the step that it covers.
+    /// Length of the whole step, and the fraction of it that the segment covers.
     pub(crate) step: f64,
     pub(crate) part: f64,
     pub(crate) source: &'a mut dyn Interpolant<S>,
 }
 
-/// Source of the states of a segment.
+/// Dense output of the step of a segment.
 pub(crate) trait Interpolant<S> {
     /// The state at the start of the step.
     fn start(&self) -> &S;
@@ -62,7 +65,7 @@ pub(crate) trait Interpolant<S> {
     /// State at a fraction `theta` of the step.
     fn at(&mut self, theta: f64) -> Result<S, Fault>;
 
-    /// Writes the coefficients of the dense output in powers of the fraction of the step, and returns the degree.
+    /// Writes the coefficients of the dense output in powers of the fraction of the step. Returns the degree.
     fn powers(&mut self, coefficients: &mut [S; LENGTH]) -> Result<usize, Fault>;
 }
 
@@ -77,19 +80,20 @@ impl<S: Copy> Segment<'_, S> {
         self.t[1]
     }
 
-    /// State at the start; after an impact, the state after it.
+    /// State at the start. After an impact this is the post-impact state.
     pub fn start(&self) -> &S {
         self.source.start()
     }
 
-    /// State at the end; before an impact, the state before it.
+    /// State at the end. At an impact this is the pre-impact state.
     pub fn end(&self) -> &S {
         self.end
     }
 
-    /// State at time `t`, from the integrator's dense output; times outside count as the nearer end.
+    /// State at time `t`, from the dense output of the integrator. Times outside of the segment are replaced by its
+    /// nearer end.
     ///
-    /// The first evaluation strictly inside a step computes its dense output, once per step.
+    /// The first call with a time strictly inside a step computes the dense output of the step.
     ///
     /// # Errors
     /// The [`Fault`] of an extra stage of the dense output.
@@ -103,23 +107,23 @@ impl<S: Copy> Segment<'_, S> {
         Ok(*self.source.start())
     }
 
-    /// Length of the step from which the stretch is cut.
+    /// Length of the step that the segment belongs to.
     pub(crate) fn step_length(&self) -> f64 {
         self.step
     }
 
-    /// Fraction of the step that the stretch covers, in full precision.
+    /// Fraction of the step that the segment covers, in full precision.
     pub(crate) fn part(&self) -> f64 {
         self.part
     }
 
-    /// Writes the coefficients of the dense output in powers of the fraction of the step, and returns the degree.
+    /// Writes the coefficients of the dense output in powers of the fraction of the step. Returns the degree.
     pub(crate) fn powers(&mut self, coefficients: &mut [S; LENGTH]) -> Result<usize, Fault> {
         self.source.powers(coefficients)
     }
 }
 
-/// Observes a run. Every hook may stop the run by returning [`ControlFlow::Break`]; it then ends with
+/// Observer of a run. Every method may stop the run by returning [`ControlFlow::Break`]. The run then ends with
 /// [`Outcome::Stopped`](crate::Outcome::Stopped).
 ///
 /// # Examples
@@ -162,7 +166,8 @@ impl<S: Copy> Segment<'_, S> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Observer<Sys: System> {
-    /// Called after a stretch of smooth motion. Stretches follow each other without gap; impacts lie between them.
+    /// Called after each segment of smooth motion. Segments follow each other without gaps; impacts take place between
+    /// them.
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
         let _ = segment;
         ControlFlow::Continue(())
@@ -181,7 +186,7 @@ pub trait Observer<Sys: System> {
     }
 }
 
-/// Observes nothing.
+/// The empty observer.
 impl<Sys: System> Observer<Sys> for () {}
 
 impl<Sys: System, O: Observer<Sys> + ?Sized> Observer<Sys> for &mut O {
@@ -198,7 +203,7 @@ impl<Sys: System, O: Observer<Sys> + ?Sized> Observer<Sys> for &mut O {
     }
 }
 
-/// Both observe, one after the other; either may stop the run.
+/// Two observers, called one after the other. Each may stop the run; the second is not called then.
 impl<Sys: System, A: Observer<Sys>, B: Observer<Sys>> Observer<Sys> for (A, B) {
     fn step(&mut self, segment: &mut Segment<'_, Sys::State>) -> ControlFlow<()> {
         self.0.step(segment)?;
@@ -216,7 +221,7 @@ impl<Sys: System, A: Observer<Sys>, B: Observer<Sys>> Observer<Sys> for (A, B) {
     }
 }
 
-/// Keeps the first `CAP` impacts of a run, and counts all of them.
+/// Observer that keeps the first `CAP` impacts of a run and counts all of them.
 ///
 /// # Examples
 ///
@@ -255,17 +260,17 @@ impl<S: Copy, const CAP: usize> EventLog<S, CAP> {
         }
     }
 
-    /// The impacts that were kept, in order.
+    /// The recorded impacts, in order of time.
     pub fn iter(&self) -> impl Iterator<Item = &Event<S>> {
         self.events.iter().flatten()
     }
 
-    /// Number of impacts seen.
+    /// Number of impacts in the run.
     pub const fn seen(&self) -> usize {
         self.seen
     }
 
-    /// Number of impacts dropped because the log was full.
+    /// Number of impacts that were not recorded because the log was full.
     pub const fn dropped(&self) -> usize {
         self.seen.saturating_sub(CAP)
     }

@@ -1,4 +1,4 @@
-//! The driver: makes steps, cuts them where an effect proposes, lets the effects act, and ends in an [`Outcome`].
+//! The driver: makes steps, cuts them where an effect proposes a cut, lets the effects act, and ends in an [`Outcome`].
 
 use core::ops::ControlFlow;
 
@@ -17,19 +17,18 @@ use crate::record::{Observer, Segment};
 use crate::run::Run;
 use crate::state::StateVector;
 
-/// Default limit of the number of steps of a run: more than a day's work for most systems.
+/// Default limit of the number of steps of a run, more than a day of computation for most systems.
 pub const STEP_BUDGET: u64 = 1_000_000_000;
 
-/// Longest step after an impact, as a multiple of the last flight: shrinking hops are followed by steps of their own
-/// size.
+/// Longest step after an impact, as a multiple of the last flight: shrinking hops get steps of their own size.
 const FLIGHTS: f64 = 4.0;
 
 /// A step that passes a narrow force ends before it if at least this fraction of the step remains. Otherwise the step
 /// is repeated with this fraction of its length.
 const AHEAD: f64 = 1.0 / 8.0;
 
-/// Factor of the length of a step that is repeated because its dense output meets dependent constraints. The stages
-/// of the shorter step lie elsewhere.
+/// Factor of the length of a step that is repeated because its dense output meets dependent constraints. The stages of
+/// the shorter step are at other times.
 const SHORTER: f64 = 0.3;
 
 /// A system with an integrator and effects.
@@ -64,7 +63,8 @@ pub struct Simulation<'a, Sys, Step, Effects> {
 }
 
 impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, Sys, Step, Effects> {
-    /// Combines the three. [`Scene::effects`](crate::Scene::effects) are the effects that a system declares.
+    /// Combines a system, an integrator and effects. [`Scene::effects`](crate::Scene::effects) are the declared
+    /// effects.
     pub fn new(system: &'a Sys, stepper: Step, effects: Effects) -> Self {
         Self {
             system,
@@ -74,14 +74,14 @@ impl<'a, Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Simulation<'a, S
         }
     }
 
-    /// Ends runs after this many accepted steps instead of [`STEP_BUDGET`].
+    /// Sets the number of accepted steps after which a run ends, instead of [`STEP_BUDGET`].
     #[must_use]
     pub fn with_step_budget(mut self, budget: u64) -> Self {
         self.step_budget = budget;
         self
     }
 
-    /// The step size of an integrator of fixed steps in the last run; `None` for step-size control.
+    /// The step size of the last run with a fixed step; `None` with step-size control.
     pub fn fixed_step(&self) -> Option<f64> {
         self.stepper.fixed_step()
     }
@@ -140,12 +140,12 @@ pub(crate) struct Progress<S> {
     /// True if the energy is checked: it is finite at the start, and the steps are of fixed size without an error
     /// estimate.
     watches_energy: bool,
-    /// True if steps are checked for forces that none of their stages has seen.
+    /// True if steps are checked for forces that act only between their stages.
     watches_rates: bool,
     pub(crate) t: f64,
-    /// Part of the time that `t` cannot hold: lengths of steps and flights add up without losing it.
+    /// Rounding error of `t`, kept so that lengths of steps and flights add up without loss.
     rest: f64,
-    /// Time since the last cut, in full precision however short it is.
+    /// Time since the last cut. It keeps its precision however short it is.
     flight: f64,
     pub(crate) state: S,
     pub(crate) counters: Counters,
@@ -165,7 +165,7 @@ impl<S> Progress<S> {
         }
     }
 
-    /// The time in both parts.
+    /// The time with its rounding error.
     fn now(&self) -> Instant {
         Instant {
             t: self.t,
@@ -245,7 +245,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.effects.begin(&mut now, observer)
     }
 
-    /// Steps to the end, or to the next change of the effects' forces.
+    /// Makes steps to the end, or to the next change of the effects' forces.
     fn drive<O: Observer<Sys>>(&mut self, t_end: f64, observer: &mut O) -> Result<(), Outcome> {
         self.set_off(t_end)?;
         let forces = self.effects.forces();
@@ -288,7 +288,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// Applies the effects to the step that was made under these forces, and returns the next action.
+    /// Applies the effects to the step just made under `forces`, and returns the next action.
     pub(crate) fn go_on<O: Observer<Sys>>(
         &mut self,
         forces: &Option<Effects::Forces>,
@@ -338,8 +338,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(Next::Step)
     }
 
-    /// Steps to the end, or to the next change of the forces, always with [`Dop853`] at the chosen integrator's
-    /// tolerance and longest step: not every integrator accepts forces that are not part of the system.
+    /// Makes steps to the end, or to the next change of the forces, always with [`Dop853`] at the chosen integrator's
+    /// tolerance and longest step. Not every integrator accepts forces that are not part of the system.
     #[inline(never)]
     pub(crate) fn drive_under<O: Observer<Sys>>(
         &mut self,
@@ -357,7 +357,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
             field: &field,
             stepper: limited.unwrap_or(unlimited),
         };
-        // The integrator of this stretch has made no step before.
+        // The integrator of this part of the run has made no step yet.
         let was_begun = core::mem::replace(&mut self.progress.is_begun, false);
         let mut course = Course {
             system: self.system,
@@ -401,7 +401,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         self.show(1.0, observer)
     }
 
-    /// Ends the step at `theta`, where the effects act. Returns the longest step to go on with.
+    /// Ends the step at `theta`, where the effects act. Returns the longest step with which to continue.
     #[inline(never)]
     fn cut<O: Observer<Sys>>(&mut self, theta: f64, observer: &mut O) -> Result<f64, Outcome> {
         if theta <= 0.0 {
@@ -450,7 +450,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
-    /// Reports to the observer the motion from the start of the step to the present, which is at this fraction of it.
+    /// Reports the motion from the start of the step to the present to the observer. `part`: the present as a fraction
+    /// of the step.
     #[inline(always)]
     fn show<O: Observer<Sys>>(&mut self, part: f64, observer: &mut O) -> Result<(), Outcome> {
         let t = [self.stepper.t_start(), self.progress.t];
@@ -472,8 +473,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// Prepares the dense output. Returns true if a rate in it meets dependent constraints: the step is then repeated
-    /// from the same start with a shorter length.
+    /// Prepares the dense output. If a rate in it meets dependent constraints, the step is repeated from the same start
+    /// with a shorter length. True if it is repeated.
     fn shorten_where_dependent(&mut self) -> Result<bool, Outcome> {
         let now = self.progress.now();
         let Progress {
@@ -491,8 +492,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         }
     }
 
-    /// Returns true if the step passes a force that none of its stages has seen: the step is then repeated from the
-    /// same start with a shorter length.
+    /// Repeats the step from the same start with a shorter length if a force acts only between its stages. True if it
+    /// is repeated.
     #[inline(never)]
     fn shorten_where_narrow(&mut self) -> Result<bool, Outcome> {
         let mut view = StepView {
@@ -538,7 +539,8 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         })
     }
 
-    /// At `theta` a coordinate is outside its chart, which no enclosure has shown: ends the run in the last state inside it.
+    /// Ends the run in the last state inside the chart, for a coordinate that is outside at `theta` although no
+    /// enclosure has shown its exit.
     #[cold]
     fn leave_chart_before<O: Observer<Sys>>(
         &mut self,

@@ -8,12 +8,12 @@ use crate::quadrature::NODES;
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
 
-/// Observes a run and adds up the work of every cause in [`Powered::POWERS`]. Between impacts, and where no surface
-/// holds the motion, the energy changes by their sum, up to the error of the integrator. Impacts change the energy
-/// besides.
+/// Observes a run and adds up the work of every cause in [`Powered::POWERS`]. Between impacts, and without surfaces in
+/// contact, the energy changes by the sum of all work, up to the error of the integrator. Impacts change the energy in
+/// addition.
 ///
-/// Powers are integrated over each stretch by the Gauss-Legendre rule of 16 points on the dense output, which every
-/// step then computes. To observe with another observer as well, give a run the pair of them.
+/// Powers are integrated over each part of the run by the Gauss-Legendre rule of 16 points on the dense output, which
+/// every step then computes. To use another observer as well, pass the pair of them to the run.
 ///
 /// # Examples
 ///
@@ -45,7 +45,7 @@ pub struct Work<'a, Sys: Powered> {
 }
 
 impl<'a, Sys: Powered> Work<'a, Sys> {
-    /// An observer of a system, with no work done yet.
+    /// An observer of a system, with zero work so far.
     pub fn of(system: &'a Sys) -> Self {
         Self {
             system,
@@ -64,12 +64,12 @@ impl<'a, Sys: Powered> Work<'a, Sys> {
         self.done.as_slice().iter().sum()
     }
 
-    /// The fault of a power, if one stopped the run.
+    /// The fault of a power that stopped the run; `None` if there was none.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// Adds the work along a stretch.
+    /// Adds the work along a part of the run.
     fn add(&mut self, segment: &mut Segment<'_, Sys::State>) -> Result<(), Fault> {
         let (start, length) = (segment.t_start(), segment.t_end() - segment.t_start());
         for (node, weight) in NODES {

@@ -1,4 +1,4 @@
-//! Tables as constant expressions. A table that differs little from another is written as its differences.
+//! Tables as constant expressions. A table that shares fields with another one is written as its differences from it.
 
 use dalembert_numbers::Held;
 use dalembert_numbers::description::{
@@ -20,22 +20,23 @@ use super::function::number;
 pub(super) trait Constant {
     fn tokens(&self) -> TokenStream;
 
-    /// The value once more, where it stands at this place behind a reference to a constant.
+    /// An expression for a copy of the value, which a constant holds at `place`.
     fn repeated(&self, place: &TokenStream) -> TokenStream {
         place.clone()
     }
 }
 
-/// A struct of the runtime.
+/// A struct of the runtime, written field by field.
 pub(super) trait Record: Constant {
     /// The path of the type.
     fn path() -> TokenStream;
 
-    /// The fields: name, tokens, and tokens of the same value at `base` if `other` has it there.
+    /// Name and expression of every field. Where `other` has an equal field, the expression refers to it in the
+    /// constant `base`.
     fn fields(&self, other: Option<(&Self, &TokenStream)>) -> Vec<(&'static str, TokenStream)>;
 
-    /// A reference to all of it, with the fields that another has too taken from there: it stands in the constant `base`,
-    /// which is a reference.
+    /// A reference to the record. Fields that are equal in `other` are taken from the constant `base`, a reference to
+    /// `other`.
     fn tokens_beside(&self, other: &Self, base: &TokenStream) -> TokenStream
     where
         Self: PartialEq,
@@ -49,7 +50,7 @@ pub(super) trait Record: Constant {
         quote!(&#path { #(#fields),* })
     }
 
-    /// All of it, some fields with other tokens.
+    /// The record, with the expressions of some fields replaced by those in `others`.
     fn tokens_with(&self, others: &[(&str, TokenStream)]) -> TokenStream {
         let path = Self::path();
         let fields = self.fields(None).into_iter().map(|(name, value)| {
@@ -93,7 +94,7 @@ impl<T: Constant> Constant for Option<T> {
         }
     }
 
-    // NOTE: a copy of what is inside need not exist.
+    // NOTE: the value is written again, because the content need not implement `Copy`.
     fn repeated(&self, _: &TokenStream) -> TokenStream {
         self.tokens()
     }
@@ -150,7 +151,7 @@ macro_rules! records {
                 &self,
                 other: Option<(&Self, &TokenStream)>,
             ) -> Vec<(&'static str, TokenStream)> {
-                // NOTE: a new field does not compile until it is added here.
+                // NOTE: destructuring makes a new field a compile error until it is added here.
                 let Self { $($field),* } = self;
                 vec![$((
                     stringify!($field),
@@ -207,7 +208,7 @@ records! {
     }
 }
 
-/// Choices between names alone.
+/// Enums without data.
 macro_rules! choices {
     ($($module:ident::$name:ident)*) => {$(
         impl Constant for $name {

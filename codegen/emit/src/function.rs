@@ -1,7 +1,8 @@
 //! Straight-line functions as statements.
 //!
-//! A value becomes a local when it is used more than once, has a name, or would make a line too long; all other
-//! values stand inside the expression that uses them. Sine and cosine of one argument are taken together.
+//! A value becomes a local if it is used more than once, has a name, calls an elementary function, or would make a line
+//! too long. All other values, and all negations, stand inside the expression that uses them. One call computes sine
+//! and cosine of the same argument.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +13,7 @@ use super::names::{Names, claim, pi, rational};
 use dalembert_codegen::program::{Function, Guard, Input, Op, Value};
 use dalembert_expr::{Function as Elementary, Rational};
 
-/// Operations that one statement may hold.
+/// Number of operations from which an expression becomes a local.
 const LONGEST_EXPRESSION: usize = 8;
 
 /// Precedence of an expression.
@@ -79,7 +80,7 @@ impl<'a> Writer<'a> {
     fn new(function: &'a Function, names: &'a Names) -> Self {
         let mut uses = vec![0; function.ops.len()];
         for op in &function.ops {
-            // A guard reads its operands twice, so they become locals.
+            // Weight 2 makes locals of the operands of a guard.
             let weight = if matches!(op, Op::Guard(_)) { 2 } else { 1 };
             op.operands()
                 .iter()
@@ -126,7 +127,8 @@ impl<'a> Writer<'a> {
         self.pieces.push(piece);
     }
 
-    /// True if the operation is the sine or cosine of an argument whose cosine or sine is needed too; both are bound at the first of them.
+    /// True if the operation is the sine or cosine of an argument whose cosine or sine is computed too. One call binds
+    /// both, at the first of the two.
     fn was_paired(&mut self, index: usize) -> bool {
         if let Some(local) = self.paired[index].take() {
             self.pieces.push(atom(quote!(#local)));
@@ -234,7 +236,7 @@ impl<'a> Writer<'a> {
         self.statements.extend(statement);
     }
 
-    /// The tokens of a value. Values that nothing else reads are moved: copies of copies take most of the time where a function is long.
+    /// The tokens of a value. Tokens with a single reader are moved: cloning dominates the run time for long functions.
     fn tokens_of(&mut self, value: Value) -> TokenStream {
         let tokens = &mut self.pieces[value.index()].tokens;
         match self.uses[value.index()] {
@@ -356,8 +358,8 @@ fn atom(tokens: TokenStream) -> Piece {
     }
 }
 
-/// A number. The check of the model refuses values too large for `f64`; one that came this far would be written as the
-/// infinity it rounds to.
+/// A double as a literal. The check of the model refuses values too large for `f64`; a number that rounds to infinity
+/// is written as infinity.
 fn literal(number: f64) -> Piece {
     if !number.is_finite() {
         return atom(quote!(::core::f64::INFINITY));
@@ -373,7 +375,7 @@ fn literal(number: f64) -> Piece {
     }
 }
 
-/// A finite constant as an expression.
+/// A double as an expression, NaN and infinities included.
 pub(super) fn number(value: f64) -> TokenStream {
     if value.is_nan() {
         return quote!(::core::f64::NAN);

@@ -1,8 +1,8 @@
-//! `Kernels`: every function of a program, once, over `L: Numbers`.
+//! `Kernels`: every function of a program, emitted once over `L: Numbers`.
 //!
-//! The functions of one form are the methods of a type without fields. A form shares equal functions with its base: the
-//! global form with that of its model or scene, a scene with the model. Any other function that equals one written before
-//! calls that one.
+//! The functions of a form are the methods of a unit struct. Functions that are equal in the base are inherited: the
+//! base of the global form is that of its model or scene, the base of a scene is the model. A function that equals one
+//! emitted before in another place calls it.
 
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
@@ -16,29 +16,29 @@ use super::function::{Body, emit_body, joined, uses};
 use super::{Context, doc};
 use dalembert_codegen::program::{Form, Function, Input, Op, Value};
 
-/// Operations of a method that is inlined wherever it is called.
+/// Largest number of operations of a method that is marked `inline(always)`.
 const MOST_INLINED: usize = 1000;
 
-/// The functions written so far.
+/// The functions emitted so far.
 #[derive(Default)]
 pub(super) struct Written {
-    /// The place of each function.
+    /// Place of each emitted function.
     places: HashMap<Rc<Key>, Place>,
-    /// The functions of each type by kernel, those of its base included.
+    /// The functions of each type by kernel, inherited ones included.
     methods: HashMap<Ident, HashMap<Kernel, Rc<Key>>>,
 }
 
-/// The identity of a function: equal keys compute the same.
+/// Identity of a function: functions with equal keys compute the same.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     ops: Vec<Op>,
     outputs: Vec<Value>,
     reads: [usize; 3],
-    /// The function that gives it velocities.
+    /// The function that computes velocities for it.
     velocity: Option<Rc<Key>>,
 }
 
-/// Place at which a function was written.
+/// Place of an emitted function.
 #[derive(Clone, PartialEq)]
 struct Place {
     type_name: Ident,
@@ -47,7 +47,7 @@ struct Place {
 }
 
 impl Place {
-    /// A call from a method of the kernels called `caller`.
+    /// A call of the function from a method of the type `caller`.
     fn call(&self, caller: &Ident, values: &TokenStream) -> TokenStream {
         let (type_name, method) = (&self.type_name, &self.method);
         let kernels = match type_name == caller {
@@ -60,7 +60,7 @@ impl Place {
     }
 }
 
-/// The type of the kernels of a form, and its implementation; `base` is the form that it shares functions with.
+/// The kernel type of a form with its implementation. `base` is the form whose functions it inherits.
 pub(super) fn emit_kernels(
     context: &Context<'_>,
     base: Option<&Context<'_>>,
@@ -117,7 +117,7 @@ pub(super) fn emit_kernels(
     items
 }
 
-/// The methods of a form with this number of surfaces that differ from those of its base, still without statements.
+/// The methods of a form with `surfaces` surfaces that differ from those of its base, without statements.
 fn differing(
     kernels: &[KernelFunction<'_>],
     inherited: &HashMap<Kernel, Rc<Key>>,
@@ -125,7 +125,8 @@ fn differing(
 ) -> BTreeMap<Ident, Method> {
     let keys = kernels.iter();
     let keys: HashMap<Kernel, &Rc<Key>> = keys.map(|added| (added.kernel, &added.key)).collect();
-    // NOTE: where the base has a function of a surface and this form has none, the function belongs to another surface.
+    // NOTE: a function that the base has for a surface, and this form does not have, must not be inherited: it belongs
+    // to another surface of this index. An empty method replaces it.
     let missing = inherited.keys().filter(|kernel| {
         let (_, surface) = name(**kernel);
         surface.is_some_and(|surface| surface < surfaces) && !keys.contains_key(kernel)
@@ -152,14 +153,14 @@ struct Method {
     operations: usize,
     takes_parameters: bool,
     documentation: TokenStream,
-    /// Statements without a surface argument.
+    /// Statements of a kernel without a surface argument.
     plain: TokenStream,
-    /// Statements that depend on a surface argument, with the surfaces they belong to.
+    /// Statements of a kernel with a surface argument, each with the indices of its surfaces.
     arms: Vec<(Vec<usize>, TokenStream)>,
 }
 
 impl Method {
-    /// Adds a function, or a call of the same one where it was written before.
+    /// Adds a function, or a call if an equal function was emitted before.
     fn add(
         &mut self,
         context: &Context<'_>,
@@ -201,7 +202,8 @@ impl Method {
         let (documentation, plain) = (&self.documentation, &self.plain);
         let parameters = self.takes_parameters.then(|| bind_parameters(context));
         let surface = self.is_of_surface.then(|| quote!(surface: usize,));
-        // A kernel has one caller for each type of system. That several share it must not keep it from being inlined there.
+        // A kernel has one call site per type of system. Sharing a kernel between types must not prevent inlining at
+        // these sites.
         let inline = match self.operations <= MOST_INLINED {
             true => quote!(#[inline(always)]),
             false => quote!(#[inline]),
@@ -239,7 +241,7 @@ impl Method {
     }
 }
 
-/// A function of a form.
+/// A function of a form, with its kernel and its method.
 struct KernelFunction<'a> {
     kernel: Kernel,
     function: &'a Function,
@@ -248,7 +250,7 @@ struct KernelFunction<'a> {
     key: Rc<Key>,
 }
 
-/// Every function of a form that is emitted, that of velocities first.
+/// All functions of a form that are emitted. The function of velocities comes first.
 fn kernels<'a>(context: &'a Context<'_>) -> Vec<KernelFunction<'a>> {
     let mut kernels: Vec<KernelFunction<'a>> = Vec::new();
     for (kernel, function) in context.form.kernels() {
@@ -265,7 +267,7 @@ fn kernels<'a>(context: &'a Context<'_>) -> Vec<KernelFunction<'a>> {
     kernels
 }
 
-/// The type that has the kernels of a form.
+/// Name of the kernel type of a form.
 pub(super) fn type_name(context: &Context<'_>) -> Ident {
     let name = context.names.type_name.to_string();
     let name: String = name
@@ -292,13 +294,13 @@ fn key(
     }
 }
 
-/// True if velocities must first be computed from the state.
+/// True if the function needs velocities that must first be computed from the state.
 fn takes_velocities(kernel: Kernel, function: &Function) -> bool {
     kernel.second() != Second::Velocities
         && uses(function, |input| matches!(input, Input::Velocity(_)))
 }
 
-/// The statements of a kernel; velocities come from where `velocity` was written.
+/// The statements of a kernel. `velocity` is the place of the function that computes velocities.
 fn emit_statements(
     context: &Context<'_>,
     (kernel, function): (Kernel, &Function),
@@ -338,7 +340,7 @@ fn bind_time(function: &Function) -> TokenStream {
     }
 }
 
-/// Locals for the numbers in the first place, and velocities where they are computed from them.
+/// Locals for the first argument, and for velocities if they are computed from it.
 fn bind_first(
     context: &Context<'_>,
     (kernel, function): (Kernel, &Function),
@@ -366,7 +368,7 @@ fn bind_first(
     }
 }
 
-/// Locals for the numbers in the second place.
+/// Locals for the second argument.
 fn bind_second(context: &Context<'_>, kernel: Kernel, function: &Function) -> TokenStream {
     match kernel.second() {
         Second::Nothing => TokenStream::new(),
@@ -384,7 +386,7 @@ fn bind_second(context: &Context<'_>, kernel: Kernel, function: &Function) -> To
     }
 }
 
-/// Names for the numbers of a place, none where the function does not use one.
+/// Names for the numbers of an argument; `None` for numbers that the function does not use.
 fn locals(names: &[Ident], function: &Function, input: fn(usize) -> Input) -> Vec<Option<Ident>> {
     let names = names.iter().enumerate();
     names
@@ -405,7 +407,7 @@ fn bind(locals: &[Option<Ident>], source: &TokenStream) -> TokenStream {
     quote!(let [#(#names),*] = *::dalembert::__private::numbers(#source);)
 }
 
-/// The name of a kernel's method, `gap_rates` or `contact`, and the surface that it is of.
+/// Name of a kernel's method, such as `gap_rates` or `contact`, and the surface that it belongs to.
 fn name(kernel: Kernel) -> (Ident, Option<usize>) {
     let text = format!("{kernel:?}");
     let (name, surface) = match text.trim_end_matches(')').split_once('(') {
@@ -422,7 +424,7 @@ fn name(kernel: Kernel) -> (Ident, Option<usize>) {
     (Ident::new(&snake, Span::call_site()), surface)
 }
 
-/// The formula of a kernel and its cost.
+/// Documentation of a kernel: its formula and operation count.
 fn documentation(context: &Context<'_>, kernel: Kernel, function: &Function) -> TokenStream {
     match formula(context, kernel) {
         Some(formula) => doc::formula(formula, &function.cost),

@@ -19,7 +19,7 @@ pub(super) struct Names {
     pub type_name: TokenStream,
     /// The type of the model or the scene itself.
     pub model_type: TokenStream,
-    /// The type of its global form, where that is another.
+    /// The type of the global form of the model or the scene.
     pub global: TokenStream,
     /// The type that has the parameters, if it is another: a scene holds it, a global form holds a model or a scene.
     pub held: Option<TokenStream>,
@@ -31,11 +31,11 @@ pub(super) struct Names {
     pub velocities: Vec<Ident>,
     /// Locals that hold quasi-velocities.
     pub quasi: Vec<Ident>,
-    /// Places of parameters: `self.m`, `self.m[2]`.
+    /// Expressions of the parameters: `self.m`, `self.m[2]`.
     pub parameters: Vec<TokenStream>,
 }
 
-/// An exact number, in as many parts as numbers may have.
+/// An exact number as an expression: one double if that is exact, else the unevaluated sum of several doubles.
 pub(super) fn rational(exact: &Rational) -> TokenStream {
     let parts = exact.to_parts();
     match parts[1] == 0.0 {
@@ -50,7 +50,7 @@ pub(super) fn rational(exact: &Rational) -> TokenStream {
     }
 }
 
-/// The circle constant.
+/// The number pi.
 pub(super) fn pi() -> TokenStream {
     quote!(L::constant(::dalembert::numbers::PI))
 }
@@ -166,7 +166,8 @@ impl Names {
         }
     }
 
-    /// The names that locals of a function must avoid: those of its arguments.
+    /// Names that locals of a function must avoid: arguments of generated functions, and the inputs that this one
+    /// reads.
     pub fn taken(&self, function: &Function) -> BTreeSet<String> {
         let mut taken = arguments();
         taken.extend(function.ops.iter().filter_map(|op| match op {
@@ -184,8 +185,8 @@ fn arguments() -> BTreeSet<String> {
     ARGUMENTS.iter().map(|name| (*name).to_string()).collect()
 }
 
-/// Functions that hide constants of the surroundings. In a pattern, Rust reads the name of a constant in scope as that
-/// constant, and `use disk::coordinate::phi` imports one for an index. A function of the same name gives way to a local.
+/// Functions that shadow constants in scope. In a pattern, Rust reads the name of a constant in scope as that constant,
+/// and `use disk::coordinate::phi` imports one for an index. A pattern may rebind the name of a function.
 pub(super) fn emit_shadows<'m>(models: impl Iterator<Item = &'m Model>) -> TokenStream {
     let names_of = |model: &'m Model| {
         (model.coordinates.iter().map(|item| &item.name))
@@ -208,7 +209,7 @@ pub(super) fn emit_shadows<'m>(models: impl Iterator<Item = &'m Model>) -> Token
     }
 }
 
-/// The places of all parameters in the struct.
+/// Expressions that read the parameters from `holder`: `holder.m`, `holder.m[2]`.
 pub(super) fn places(model: &Model, holder: &TokenStream) -> Vec<TokenStream> {
     let parameters = model.parameters.iter();
     parameters
@@ -227,7 +228,7 @@ fn place(holder: &TokenStream, name: &Name) -> TokenStream {
     }
 }
 
-/// A fresh local name close to the wished one: lower case, so that it is never taken for a constant.
+/// A fresh local name close to the wished one. Lower case keeps it apart from constants.
 pub(super) fn claim(taken: &mut BTreeSet<String>, wished: &str) -> String {
     let mut name: String = wished
         .chars()

@@ -1,11 +1,11 @@
-//! `Divergence` and `InvariantVolume`: density form, divergence of the motion, and the volume it keeps.
+//! `Divergence` and `InvariantVolume`: density form, divergence of the motion, and its invariant volume.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Context;
 
-/// `impl InvariantVolume`, if a volume was found.
+/// `impl InvariantVolume`, if an invariant volume was proved.
 pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
     let Some(volume) = &context.form.program.volume else {
         return TokenStream::new();
@@ -41,7 +41,8 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// The volume of the model, for the type that holds it: the volume depends on the configuration alone.
+/// Implementation for a type that wraps the model. It delegates to the model, because the volume depends on the
+/// configuration only.
 fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
     let (type_name, model) = (&context.names.type_name, &context.names.model_type);
     let attributes = super::attributes();

@@ -1,14 +1,14 @@
-//! Sign patterns: the branches on which an expression with absolute values and roots must be looked at one by one.
+//! Sign patterns: branches of expressions with absolute values and roots. A zero test must sample every branch.
 //!
-//! Modulo a prime that is 3 mod 4, a residue other than 0 is a square or its opposite is. Squares therefore stand for
-//! positive numbers. A random point realises one sign for the argument of every absolute value; an expression is 0 if it
-//! is 0 under every pattern of signs. The patterns that occur form an affine space over GF(2) (signs of products follow
-//! from those of their factors). They are complete once the space no longer grows.
+//! Modulo a prime that is 3 mod 4, exactly one of a nonzero residue and its negative is a square. Squares therefore
+//! stand for positive numbers. A random point realises one sign for the argument of every absolute value; an expression
+//! is 0 if it is 0 under every pattern of signs. The patterns that occur form an affine space over GF(2), because signs
+//! of products follow from those of their factors. All patterns are known once the space no longer grows.
 //!
-//! A root `sqrt(u)` of a `u` that is no square needs no cases: both roots are conjugate. Where a product of radicands is
-//! a square `w^2`, the product of their roots is `w` or `-w`, whichever is a square: a branch that is not seen from
-//! outside. There are as many as the signs of the radicands have relations, and each pattern is met often enough to meet
-//! all of them but for a stated chance.
+//! A root `sqrt(u)` of a `u` that is no square needs no cases: both roots are conjugate. If a product of radicands is a
+//! square `w^2`, the product of their roots is `w` or `-w`, whichever is a square modulo the prime. This branch is
+//! hidden: no sign pattern shows it. Every independent relation between the signs of the radicands doubles the number
+//! of hidden branches. Each pattern is sampled often enough to meet all of them, except with a stated probability.
 
 use std::collections::BTreeMap;
 
@@ -23,9 +23,9 @@ const MOST_ARGUMENTS: usize = 24;
 const MOST_HIDDEN: usize = 5;
 /// Largest number of radicands whose relations are sought.
 const MOST_RADICANDS: usize = 64;
-/// Bits of a neglected chance: of a false relation, of a missed pattern, of a missed hidden branch.
+/// Probabilities below `2^-BITS` are neglected: of a false relation, of a missed pattern, of a missed hidden branch.
 const BITS: usize = 60;
-/// Largest number of points at which one question is asked.
+/// Largest number of points at which one question is evaluated.
 const MOST_VISITS: usize = 1 << 15;
 
 /// The branches of some expressions.
@@ -51,8 +51,8 @@ pub struct Covered {
 }
 
 impl Pool {
-    /// The branches of the expressions below some roots, seen at points for them; `None` if there are too many, or if
-    /// too few points have values.
+    /// The branches of the expressions in `roots` and of all their subexpressions. `points` are sample points of these
+    /// expressions. `None` if there are too many branches, or if too few points have values.
     pub fn branches(&self, roots: &[ExprId], points: &SamplePoints) -> Option<Branches> {
         let order = self.reachable(roots);
         let arguments = order.iter().filter_map(|id| match self.node(*id) {
@@ -68,7 +68,7 @@ impl Pool {
         is_in_reach.then_some(Branches { arguments, hidden })
     }
 
-    /// The number of independent products of radicands that are squares, counted rather too high than too low.
+    /// Upper bound of the number of independent products of radicands that are squares.
     fn hidden_relations(&self, radicands: &[ExprId], mut points: SamplePoints) -> Option<usize> {
         if radicands.is_empty() {
             return Some(0);
@@ -85,7 +85,8 @@ impl Pool {
         let mut patterns = Echelon::default();
         for _ in 0..BITS + radicands.len() {
             let pattern = points.find(self, |point| {
-                // A symbol that is known to be positive is no square here: its root is not one of its functions.
+                // NOTE: elsewhere a positive symbol takes squares as values. Here it takes any residue, because its
+                // root is not one of its rational functions.
                 for symbol in &symbols {
                     point.set(*symbol, point.value(*symbol, Assumption::None));
                 }
@@ -96,7 +97,7 @@ impl Pool {
         Some(radicands.len() - patterns.rows.len())
     }
 
-    /// The bits of the expressions that are no squares at a point.
+    /// A bit for each expression: bit `i` is 1 if the value of expression `i` at the point is not a square.
     fn signs(&self, ids: &[ExprId], point: &mut ModularPoint) -> Option<u64> {
         let values = self.modular_eval(ids, point).ok()?;
         let field = point.modulus();
@@ -111,7 +112,7 @@ impl Branches {
         self.arguments.is_empty() && self.hidden == 0
     }
 
-    /// `alone` points where there is one branch, else `several` for each.
+    /// Number of points for each branch: `alone` if there is one branch only, else `several`.
     pub fn points_of_each(&self, (alone, several): (usize, usize)) -> usize {
         if self.is_single() { alone } else { several }
     }
@@ -124,7 +125,7 @@ impl Branches {
         }
     }
 
-    /// Points for each pattern at which every hidden branch is met, but for a chance of `2^-BITS` each.
+    /// Number of points for each pattern at which every hidden branch is met, except with probability `2^-BITS` each.
     fn points(&self) -> usize {
         match self.hidden {
             0 => 0,
@@ -137,7 +138,8 @@ impl Branches {
 }
 
 impl Covered {
-    /// A bound of the chance of error, given that of an accident at one point.
+    /// Upper bound of the error probability of an answer about `branches`. `accident`: probability of a wrong yes at
+    /// one point.
     pub fn error(&self, branches: &Branches, accident: f64) -> f64 {
         let accidents = self.patterns as f64 * accident.powi(self.each.min(64) as i32);
         if branches.is_single() {
@@ -149,8 +151,8 @@ impl Covered {
 }
 
 impl SamplePoints {
-    /// Asks a question at `each` points of every branch, and stops at the first no. The question may set values of the
-    /// point; it answers `None` at a point that will not do. `None` if a branch is out of reach.
+    /// Asks the question `holds` at `each` points of every branch, and stops at the first no. The question may set
+    /// values of the point. It answers `None` at a point without a value. `None` if a branch cannot be reached.
     pub fn cover(
         &mut self,
         pool: &Pool,
@@ -211,8 +213,8 @@ impl Seen {
         self.since = if grows { 0 } else { self.since + 1 };
     }
 
-    /// True if a pattern needs no further point. Before the space of patterns is known none is refused, so that unseen
-    /// patterns are as likely as others.
+    /// True if a pattern needs no further point. No pattern is full before the space of patterns is known, so that
+    /// unseen patterns stay as likely as others.
     fn is_full(&self, pattern: u64, each: usize) -> bool {
         self.since >= BITS
             && self

@@ -1,11 +1,11 @@
-//! Constants that are written in a simpler way: angles whose sines are square roots, and square roots of `a + b sqrt(r)`.
+//! Simpler forms of constants: angles whose sines are square roots, and square roots of `a + b sqrt(r)`.
 
 use crate::function::Function;
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// Squares of sines and of tangents with their angles in twelfths of `pi`.
+/// Squares of sines and of tangents, each with its angle in twelfths of `pi`.
 const SINES: [((i64, i64), i64); 5] = [
     ((0, 1), 0),
     ((1, 4), 2),
@@ -16,7 +16,8 @@ const SINES: [((i64, i64), i64); 5] = [
 const TANGENTS: [((i64, i64), i64); 4] = [((0, 1), 0), ((1, 3), 2), ((1, 1), 3), ((3, 1), 4)];
 
 impl Pool {
-    /// The angle `function(argument)` if it is a multiple of `pi/12`; the function is an inverse of a circular one.
+    /// The angle `function(argument)` if it is a multiple of `pi/12` in the tables. `function` is `asin`, `acos` or
+    /// `atan`.
     pub(crate) fn exact_angle(&mut self, function: Function, argument: ExprId) -> Option<ExprId> {
         let table: &[_] = match function {
             Function::Asin | Function::Acos => &SINES,
@@ -51,8 +52,8 @@ impl Pool {
         Some((square, coefficient.is_negative()))
     }
 
-    /// `sqrt((a + c)/2) + sqrt((a - c)/2)` for `sqrt(a + b sqrt(r))` where `c = sqrt(a^2 - b^2 r)` is a number, with a minus for
-    /// a negative `b`.
+    /// The root of `a + b sqrt(r)` as `sqrt((a + c)/2) + sqrt((a - c)/2)`, with a minus for negative `b`, if
+    /// `c = sqrt(a^2 - b^2 r)` is rational.
     pub(crate) fn denested_root(&mut self, radicand: ExprId) -> Option<ExprId> {
         if !matches!(self.node(radicand), Node::Sum { .. }) {
             return None;

@@ -1,17 +1,18 @@
-//! Evaluation in double precision, one pass over the shared nodes.
+//! Evaluation in double precision, in one pass over the shared nodes.
 
 use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
 impl Pool {
-    /// The values of `roots`, in order; undefined ones are infinite or NaN.
+    /// The values of `roots`, in their order. Undefined values are infinite or NaN. `symbol` gives the value of each
+    /// symbol.
     pub fn eval(&self, roots: &[ExprId], symbol: &dyn Fn(SymbolId) -> f64) -> Vec<f64> {
         let values = self.eval_ordered(&self.reachable(roots), symbol);
         roots.iter().map(|root| values[root.index()]).collect()
     }
 
-    /// The values of all expressions in `order`, by id.
+    /// The values of all expressions in `order`, indexed by id.
     pub(crate) fn eval_ordered(
         &self,
         order: &[ExprId],
@@ -24,10 +25,10 @@ impl Pool {
         values
     }
 
-    /// The value, and the sum of the absolute values of the terms it is made of.
+    /// The value of an expression, and the sum of the absolute values of its terms. `symbol` gives the values of symbols.
     ///
-    /// The second number is the size before cancellation: a multiple of it by the unit roundoff bounds the error of
-    /// the first, up to a small factor. Inside a function and below a division it is carried to first order.
+    /// The second number is the magnitude before cancellation. Its product with the unit roundoff bounds the error of
+    /// the value, up to a small factor. Through functions and quotients it is propagated to first order.
     pub fn eval_magnitude(&self, id: ExprId, symbol: &dyn Fn(SymbolId) -> f64) -> (f64, f64) {
         let order = self.reachable(&[id]);
         let mut values = vec![0.0; id.index() + 1];
@@ -58,11 +59,11 @@ impl Pool {
         }
     }
 
-    /// `value` and `magnitude` are known for all operands and `value` for the node itself.
+    /// The magnitude of a node. `values` are known for the node and its operands, `magnitudes` for its operands.
     fn magnitude_of_node(&self, id: ExprId, values: &[f64], magnitudes: &[f64]) -> f64 {
         let size = values[id.index()].abs();
         let value = |id: ExprId| values[id.index()];
-        // Loss of an operand by cancellation.
+        // Excess of an operand's magnitude over its value, due to cancellation.
         let excess = |id: ExprId| magnitudes[id.index()] - values[id.index()].abs();
         match self.node(id) {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => size,
@@ -89,7 +90,7 @@ fn scaled(coefficient: &Rational, value: f64) -> f64 {
     coefficient.to_f64() * value
 }
 
-/// `|base|^exponent` times the relative loss of the base to the power `max(|exponent|, 1)`.
+/// `|base|^exponent`, times `magnitude/|base|` to the power `max(|exponent|, 1)`.
 fn power_magnitude(base: f64, magnitude: f64, exponent: &Rational) -> f64 {
     if base == 0.0 {
         return power(magnitude, exponent);
@@ -98,7 +99,7 @@ fn power_magnitude(base: f64, magnitude: f64, exponent: &Rational) -> f64 {
     power(base, exponent) * loss
 }
 
-/// `base^exponent`: by multiplications for integers, by square roots for halves.
+/// `base^exponent`: by multiplication for integers, by a square root for halves of integers.
 pub(crate) fn power(base: f64, exponent: &Rational) -> f64 {
     match exponent.to_small() {
         Some((n, 1)) => integer_power(base, n),

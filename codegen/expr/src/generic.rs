@@ -1,7 +1,7 @@
-//! Expressions without what only keeps their domain: `0*x`, and `x^2*x^-1` for `x`.
+//! Expressions without the parts that only restrict their domain: `0*x`, and `x` for `x^2*x^-1`.
 //!
-//! The result has the value of the expression wherever that has one, and may have one elsewhere: formulas for a reader, of almost all
-//! states. Nothing that is emitted is made of it.
+//! The result equals the expression wherever that has a value, and may have a value elsewhere. It serves printed
+//! formulas, valid at almost all states. Emitted code never uses it.
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
@@ -40,7 +40,7 @@ impl Pool {
         results.get(id)
     }
 
-    /// A sum in which terms over one denominator that add up to a factor of it are cancelled.
+    /// A sum. If terms over one denominator add up to a multiple of one of its factors, that factor is cancelled.
     fn over_denominators(&mut self, summands: &[(Rational, ExprId)]) -> ExprId {
         let mut terms = Vec::new();
         let mut groups: Vec<(Factors, Vec<(Rational, ExprId)>)> = Vec::new();
@@ -79,7 +79,7 @@ impl Pool {
         self.combine(&terms)
     }
 
-    /// A multiple of a product, in which factors that were products themselves may have met others of their bases.
+    /// The expression with factors of one base merged. Its factors may have been products that share bases.
     fn without_guards(&mut self, mut id: ExprId) -> ExprId {
         loop {
             let (coefficient, term) = self.as_multiple(id);

@@ -1,4 +1,4 @@
-//! Finding a node that exists already: a hash table of ids, and the hash.
+//! Hash-consing: a hash table of node ids, and the hash function.
 
 use std::hash::{BuildHasherDefault, Hash, Hasher};
 
@@ -57,13 +57,13 @@ impl Hasher for WordHasher {
     }
 }
 
-/// Hasher of maps that are looked up and never iterated.
+/// Hasher for maps with lookups only. NOTE: never iterate over such a map.
 pub type WordHash = BuildHasherDefault<WordHasher>;
 
 /// An open-addressing table of positions into a vector that its owner keeps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Table {
-    /// Position + 1; 0 is free. The length is 0 or a power of two.
+    /// Position + 1; 0 marks a free slot. The length is 0 or a power of two.
     slots: Vec<u32>,
     hashes: Vec<u64>,
 }

@@ -1,8 +1,8 @@
 //! Constructors of products and powers: `product of base^exponent` in the normal form of [`Node::Product`].
 //!
-//! Exponents of one base are added. The demands of the single powers on the base are kept beside the total: `x^-1` demands
-//! that it is not 0, `x^(1/2)` that it is not negative. Where the power of the total demands less and the base is not
-//! known to comply, a guard keeps the domain; see [`Pool::settle`].
+//! Exponents of one base are added. The demands of the single powers on the base are recorded besides the sum: `x^-1`
+//! demands that `x` is not 0, `x^(1/2)` that it is not negative. If the power with the summed exponent demands less,
+//! and the base is not known to comply, a guard keeps the domain; see [`Pool::settle`].
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
@@ -33,7 +33,7 @@ impl Demand {
     }
 }
 
-/// A product in the making.
+/// A product under construction.
 struct Factors {
     coefficient: Rational,
     entries: Vec<Entry>,
@@ -99,7 +99,8 @@ impl Pool {
         self.power_product(&factors)
     }
 
-    /// `base^exponent`; `x^0` is 1, also for `x = 0`.
+    /// `base^exponent`. `x^0` is 1, also for `x = 0`. A term `0*x` keeps the domain of `x` unless `x` is known to be
+    /// finite.
     pub fn pow(&mut self, base: ExprId, exponent: Rational) -> ExprId {
         if exponent.is_zero() {
             let vanishing = self.scale(&exponent, base);
@@ -140,7 +141,7 @@ impl Pool {
             {
                 break settled;
             }
-            // Merging has completed a root of a product: its factors join the others.
+            // Merging has completed a root of a product. The factors of that product join the others.
             for (base, exponent) in settled {
                 self.expand(&mut factors, base, &exponent);
             }
@@ -158,7 +159,7 @@ impl Pool {
         }
     }
 
-    /// True if [`Pool::expand`] takes `base^exponent` apart; guards `sqrt(x)^n` and plain powers stay.
+    /// True if [`Pool::expand`] splits `base^exponent` into factors. Guards `sqrt(x)^n` and plain powers stay.
     fn is_expandable(&self, base: ExprId, exponent: &Rational) -> bool {
         exponent.is_integer()
             && match self.node(base) {
@@ -209,7 +210,7 @@ impl Pool {
     ) {
         let total = power * exponent;
         match self.node(base) {
-            // The guard sqrt(x)^n: a power of x that remembers x >= 0, and x != 0 for n < 0.
+            // The guard sqrt(x)^n is a power of x with the demands x >= 0, and x != 0 for n < 0.
             Node::Product(inner) if power.is_integer() => {
                 for (base, root) in inner.clone() {
                     factors.push(
@@ -327,7 +328,7 @@ impl Pool {
     }
 }
 
-/// `value^exponent` as a number times, where it is irrational, too large or undefined, a power.
+/// `value^exponent` as a number times an optional power. The power is left if it is irrational, too large or undefined.
 fn number_power(value: &Rational, exponent: &Rational) -> (Rational, Option<(Rational, Rational)>) {
     let whole = exponent.floor();
     let fraction = exponent - &whole;
@@ -354,7 +355,8 @@ fn number_power(value: &Rational, exponent: &Rational) -> (Rational, Option<(Rat
     }
 }
 
-/// `value^fraction` for a positive value and a fraction in `(0, 1)`, if it is rational.
+/// `value^fraction` for a positive value and a fraction in `(0, 1)`; `None` if it is irrational or its root is too
+/// high.
 fn rational_power(value: &Rational, fraction: &Rational) -> Option<Rational> {
     const MAX_DEGREE: i64 = 64;
     let (power, degree) = fraction.to_small()?;

@@ -159,7 +159,7 @@ impl Pool {
         }
     }
 
-    /// True if a function has a value at an argument that has one; `None` if that is not known.
+    /// True if the function has a value wherever its argument has one; `None` if the structure does not show it.
     fn has_value(&self, function: Function, argument: ExprId) -> Option<bool> {
         match function.arguments() {
             Arguments::All => Some(true),
@@ -172,8 +172,8 @@ impl Pool {
         }
     }
 
-    /// True if a part of the expression is a constant whose form shows that it has no real value: a negative power of 0, a
-    /// root of a negative number, `ln` of a number that is not positive, `asin` or `acos` outside `[-1, 1]`.
+    /// True if a subexpression is a constant whose form shows that it has no real value: a negative power of 0, a root
+    /// of a negative number, `ln` of a number that is not positive, `asin` or `acos` outside `[-1, 1]`.
     pub fn is_undefined_constant(&self, id: ExprId) -> bool {
         self.reachable(&[id])
             .into_iter()

@@ -1,7 +1,7 @@
-//! Simplification for presentation: squares and products of sines and cosines are collected, everywhere below a root.
+//! Simplification for presentation: collects squares and products of sines and cosines in all subexpressions.
 //!
-//! The rules keep the domain: an angle that vanishes must be known finite. Work is bounded: larger expressions are
-//! returned unchanged.
+//! The rules keep the domain: an angle may vanish from an expression only if it is known to be finite. Work is bounded:
+//! larger expressions are returned unchanged.
 
 use crate::function::Function;
 use crate::node::{ExprId, Node};
@@ -9,9 +9,9 @@ use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::subst::Rebuilt;
 
-/// Expressions with more distinct parts are left alone.
+/// Expressions with more distinct subexpressions are returned unchanged.
 const MAX_NODES: usize = 20_000;
-/// Sums with more terms are left alone.
+/// Sums with more terms are returned unchanged.
 const MAX_TERMS: usize = 128;
 
 /// A summand `coefficient * rest * function(argument)^2`.
@@ -123,7 +123,8 @@ impl Pool {
         None
     }
 
-    /// The value of `functions(u, v) +- complements(u, v)` as a sign and one sine or cosine; plus if `alike`.
+    /// `f(u) g(v) +- f'(u) g'(v)` as a sign and one sine or cosine, where `f` and `f'` are complements. Plus if
+    /// `alike`.
     fn wave_of_two_angles(&mut self, cross: &Cross, alike: bool) -> (Rational, ExprId) {
         let [u, v] = cross.arguments;
         let signed = |positive| {
@@ -145,7 +146,7 @@ impl Pool {
         (signed(sign), self.call(function, angle))
     }
 
-    /// All ways to read the terms as two waves of different angles times a rest.
+    /// All decompositions of the terms into two sines or cosines and the remaining factors.
     fn crosses(&mut self, terms: &[(Rational, ExprId)]) -> Vec<Cross> {
         let mut crosses = Vec::new();
         for (position, (_, term)) in terms.iter().enumerate() {
@@ -158,7 +159,7 @@ impl Pool {
             for (index, (first, (f, u))) in waves.iter().enumerate() {
                 for (second, (g, v)) in &waves[index + 1..] {
                     let rest = self.without(&factors, &[*first, *second], &Rational::ONE);
-                    // The same two angles in the same order, whichever factor came first.
+                    // Sorted angles make decompositions comparable, whichever factor came first.
                     let (functions, arguments) = if u < v {
                         ([*f, *g], [*u, *v])
                     } else {
@@ -176,7 +177,7 @@ impl Pool {
         crosses
     }
 
-    /// Function and argument of a power of a sine or cosine that contains its `least`-th power.
+    /// Function and argument of a factor that is a sine or cosine to an integer power of at least `least`.
     fn wave(&self, factor: &(ExprId, Rational), least: &Rational) -> Option<(Function, ExprId)> {
         let (base, exponent) = factor;
         match *self.node(*base) {
@@ -187,7 +188,7 @@ impl Pool {
         }
     }
 
-    /// The product of powers, the exponents at some positions lowered.
+    /// The product of powers with the exponents at `positions` lowered by `amount`.
     fn without(
         &mut self,
         factors: &[(ExprId, Rational)],
@@ -202,7 +203,7 @@ impl Pool {
         self.power_product(&rest)
     }
 
-    /// All ways to read the terms as a square of a sine or cosine times a rest.
+    /// All decompositions of the terms into the square of a sine or cosine and the remaining factors.
     fn squares(&mut self, terms: &[(Rational, ExprId)]) -> Vec<Square> {
         let two = Rational::from(2);
         let mut squares = Vec::new();

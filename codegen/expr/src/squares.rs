@@ -1,9 +1,9 @@
-//! Random points at which many roots and logarithms have values.
+//! Random points modulo a prime at which many roots and logarithms are defined.
 //!
-//! A root or a logarithm has a value modulo a prime where its argument is a square, as half of the residues are: of `2^k`
-//! points, one is suitable for `k` independent arguments. Symbols are therefore drawn a few at a time. The first are those
-//! of the argument with the fewest symbols, until this argument and all others whose symbols are drawn by then are
-//! squares. The rest follows in the same way.
+//! Modulo a prime a root or a logarithm is defined where its argument is a square, which holds for half of the
+//! residues. Of `2^k` random points, one is suitable for `k` independent arguments. Symbols are therefore drawn in
+//! steps. The first step draws the symbols of the argument with the fewest symbols, until this argument and all others
+//! in the same symbols are squares. The later steps proceed in the same way with the remaining symbols.
 
 use crate::field::mix;
 use crate::function::Function;
@@ -11,34 +11,34 @@ use crate::node::{ExprId, Node, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
 
-/// Largest number of arguments whose points are left to chance.
+/// Largest number of arguments for which points are drawn without steps.
 const BY_CHANCE: usize = 4;
-/// Arguments of one step beyond which a degree is too large to prove anything.
+/// Number of arguments in one step from which the degree is too large for a proof.
 const MOST_ARGUMENTS: usize = 64;
-/// Arguments of one step for which points are looked for, and draws of its symbols for each that is expected.
+/// Largest number of arguments in a step for which points are sought, and number of draws per expected success.
 const MOST_IN_STEP: usize = 12;
 const DRAWS: u64 = 8;
 
-/// The arguments of roots and logarithms in some expressions, in steps.
+/// The arguments of roots and logarithms of some expressions, divided into steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Squares {
     steps: Vec<Step>,
 }
 
-/// Symbols that are drawn together, and the arguments of roots and logarithms that are known with them and not before.
+/// Symbols drawn together, and the arguments of roots and logarithms that become known with them.
 #[derive(Clone, Debug)]
 struct Step {
     symbols: Vec<SymbolId>,
     positives: Vec<ExprId>,
-    /// Expressions below them.
+    /// The subexpressions of the arguments, operands first.
     order: Vec<ExprId>,
 }
 
-/// An argument with the symbols that it needs and that are not known yet.
+/// An argument, with its symbols that are not drawn yet.
 type Open = (ExprId, Vec<SymbolId>);
 
 impl Pool {
-    /// The arguments of roots in `order`, each once.
+    /// The arguments of roots among the expressions in `order`, without repetition.
     pub(crate) fn radicands(&self, order: &[ExprId]) -> Vec<ExprId> {
         let mut radicands = Vec::new();
         for id in order {
@@ -52,7 +52,7 @@ impl Pool {
         radicands
     }
 
-    /// The expressions in `order` that must be squares: arguments of roots and of logarithms, each once.
+    /// Expressions in `order` that must be squares: arguments of roots and logarithms, without repetition.
     pub(crate) fn positives(&self, order: &[ExprId]) -> Vec<ExprId> {
         let mut positives = self.radicands(order);
         positives.extend(order.iter().filter_map(|id| match self.node(*id) {
@@ -75,7 +75,7 @@ impl Pool {
 }
 
 impl Squares {
-    /// The steps for the expressions in `order`; none for a few arguments.
+    /// The steps for the expressions in `order`. No steps are made for up to [`BY_CHANCE`] arguments.
     pub(crate) fn of(pool: &Pool, order: &[ExprId]) -> Self {
         let positives = pool.positives(order);
         match positives.len() {
@@ -84,9 +84,9 @@ impl Squares {
         }
     }
 
-    /// The factor by which an accident is more likely than the degree of an expression over the prime: roots multiply the degree of what
-    /// may vanish, and leave fewer points for it to vanish at, both by `2^k` in a step of `k` arguments. An expression that has not
-    /// vanished identically in one step may do so in the next, so that the chances of all steps add up.
+    /// Factor by which the chance of an accidental zero exceeds `degree / p`. In a step of `k` arguments, the roots
+    /// multiply the degree by `2^k` and reduce the number of points by `2^k`. An expression that has not vanished
+    /// identically in one step may do so in the next, so the chances of all steps are added.
     pub(crate) fn odds(pool: &Pool, order: &[ExprId]) -> f64 {
         let positives = pool.positives(order);
         let of_step = |count: usize| 4f64.powi(count.min(MOST_ARGUMENTS) as i32);
@@ -126,8 +126,8 @@ impl Squares {
         Self { steps }
     }
 
-    /// Draws the symbols of a point that were not set until all arguments are squares. `None` if the arguments of a step
-    /// are not all squares at any of its draws.
+    /// Draws the free symbols of a point until all arguments are squares. `None` if a step has no success within its
+    /// draws.
     pub(crate) fn settle(&self, pool: &Pool, point: &mut ModularPoint, seed: u64) -> Option<()> {
         for step in &self.steps {
             let mut free = step.symbols.clone();

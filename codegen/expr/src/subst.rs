@@ -4,14 +4,14 @@ use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 
 impl Pool {
-    /// The expression with every symbol of `replacements` replaced, all at once.
+    /// Replaces every symbol of `replacements` in an expression, all simultaneously.
     ///
-    /// If a symbol occurs twice in `replacements`, the first entry counts.
+    /// If a symbol occurs twice in `replacements`, its first entry is used.
     pub fn substitute(&mut self, id: ExprId, replacements: &[(SymbolId, ExprId)]) -> ExprId {
         self.substitute_all(&[id], replacements)[0]
     }
 
-    /// [`Pool::substitute`] for several expressions, each shared part done once.
+    /// Same as [`Pool::substitute`] for several expressions. Shared subexpressions are processed once.
     pub fn substitute_all(
         &mut self,
         roots: &[ExprId],
@@ -28,7 +28,8 @@ impl Pool {
         roots.iter().map(|root| results.get(*root)).collect()
     }
 
-    /// Expressions of another pool in this one, with an expression of this one for each of its symbols; `None` if one of theirs has none.
+    /// Copies expressions of the pool `from` into this pool. `replacements` maps symbols of `from` to expressions of
+    /// this pool. `None` if a symbol of the roots is not in it.
     pub fn import(
         &mut self,
         from: &Pool,
@@ -50,7 +51,7 @@ impl Pool {
         Some(roots.iter().map(|root| results.get(*root)).collect())
     }
 
-    /// A node that depends on a replaced symbol, its operands mapped.
+    /// Rebuilds a node that depends on a replaced symbol, with its operands mapped by `map`.
     fn rebuild(
         &mut self,
         node: Node,
@@ -66,7 +67,7 @@ impl Pool {
         }
     }
 
-    /// A node built anew from mapped operands, by the constructors.
+    /// Rebuilds a node from mapped operands, by the constructors of the pool.
     pub(crate) fn map_operands(&mut self, node: Node, map: impl Fn(ExprId) -> ExprId) -> ExprId {
         match node {
             Node::Number(value) => self.number(value),
@@ -94,11 +95,11 @@ impl Pool {
     }
 }
 
-/// A map from old to new expressions, the identity where nothing was set.
+/// A map from expressions to rebuilt expressions. Entries that were not set map to themselves.
 pub(crate) struct Rebuilt(Vec<u32>);
 
 impl Rebuilt {
-    /// For ids up to `last`.
+    /// The identity, for ids up to `last`.
     pub(crate) fn new(last: Option<&ExprId>) -> Self {
         Self(vec![0; last.map_or(0, |id| id.index() + 1)])
     }

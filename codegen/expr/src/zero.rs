@@ -1,13 +1,13 @@
 //! Zero tests of expressions, with three answers.
 //!
-//! Values at random points modulo primes, see [`Pool::modular_eval`], decide:
-//! - 0 at enough points: [`Verdict::Proved`]. The chance of an accident is `degree / p` per point (Schwartz, Zippel),
-//!   kept below 2^-60 in all; where roots or absolute values occur, all their branches are gone through, see
-//!   [`crate::branch`], and if there are too many the answer is open;
-//! - not 0 at one point: [`Verdict::Refuted`] for rational functions of symbols, sin, cos, exp. No probability is
-//!   involved. With other functions the atoms may be related in ways the residues do not show, or the branches differ
-//!   from the real ones; then values in double precision must be clearly different from 0, else the answer is
-//!   [`Verdict::Undecided`].
+//! The decision is made by values at random points modulo primes; see [`Pool::modular_eval`].
+//! - 0 at enough points: [`Verdict::Proved`]. The chance of an accidental zero is `degree / p` per point (Schwartz,
+//!   Zippel), and is kept below 2^-60 in all. Where roots or absolute values occur, all their branches are tested; see
+//!   [`crate::branch`]. With too many branches the answer stays open.
+//! - not 0 at one point: [`Verdict::Refuted`] for rational functions of symbols, sin, cos, exp. This case involves no
+//!   probability. With other functions, the atoms may satisfy relations that do not hold modulo the prime, or the
+//!   branches may differ from the real ones. Then values in double precision must be clearly different from 0.
+//!   Otherwise the answer is [`Verdict::Undecided`].
 
 use crate::branch::Branches;
 use crate::field::{Modulus, mix};
@@ -22,26 +22,28 @@ use crate::squares::Squares;
 pub enum Verdict {
     /// The expression is 0 wherever it is defined.
     Proved,
-    /// The expression is not identically 0.
+    /// The expression is not identically 0 where it is defined.
     Refuted,
-    /// Neither was shown.
+    /// Neither was proved.
     Undecided,
 }
 
-/// Points that are drawn before a value is given up, for each value wanted: every independent root refuses half of
-/// them. Small expressions get more, up to the second number.
+/// Minimum and maximum number of points drawn for one value: each independent root rejects half of them. The maximum
+/// applies to small expressions.
 const DRAWS: (usize, usize) = (64, 1024);
-/// Evaluated nodes that the draws for one value may take beyond the smaller number of draws.
+/// Number of evaluated nodes per value that limits the number of draws between these bounds.
 const DRAW_WORK: usize = 1 << 18;
-/// Real points that are tried, wanted, and must be clearly different from 0.
+/// Number of real points that are tried, number of defined values that suffice, and number of values that must be
+/// clearly different from 0.
 const REAL_DRAWS: u64 = 96;
 const REAL_POINTS: usize = 64;
 const REAL_WITNESSES: usize = 3;
-/// Scales of real points in turn.
+/// Scales of the real points, used in turn.
 const SCALES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 8.0, 64.0];
-/// A value counts as different from 0 beyond this part of its size before cancellation: a factor 1e9 above rounding.
+/// A value is clearly different from 0 above this multiple of its magnitude before cancellation, about 1e9 times the
+/// rounding error.
 pub(crate) const CLEAR: f64 = 1e-6;
-/// Expressions with more distinct parts are not tested.
+/// Largest number of distinct subexpressions of a tested expression.
 const MAX_NODES: usize = 1 << 20;
 
 impl Pool {
@@ -61,14 +63,14 @@ impl Pool {
         match self.vanishes_modularly(id, &order, &profile) {
             Some(true) if profile.is_exact() => Verdict::Proved,
             Some(false) if profile.is_exact() => Verdict::Refuted,
-            // NOTE: also where all residues are 0: a last look at real values costs little.
+            // NOTE: also if all residues are 0, because a final check of real values costs little.
             _ if self.is_clearly_nonzero(id) => Verdict::Refuted,
             Some(true) => Verdict::Proved,
             _ => Verdict::Undecided,
         }
     }
 
-    /// True if all sampled residues are 0; `None` if there were not enough.
+    /// True if all sampled residues are 0; `None` if there were too few.
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
         let mut points = SamplePoints::new(self, order, profile, 0)?;
@@ -76,7 +78,7 @@ impl Pool {
             true => self.branches(&[id], &points),
             false => Some(Branches::default()),
         };
-        // A degree near the prime, or branches that are out of reach, make a zero worthless.
+        // With a degree near the prime, or with too many branches, zeros prove nothing.
         let is_worth = wanted.is_some() && branches.is_some();
         let each = if is_worth { wanted? } else { 1 };
         let covered = points.cover(self, &branches.unwrap_or_default(), each, |point| {
@@ -86,7 +88,7 @@ impl Pool {
         (!covered.holds || is_worth).then_some(covered.holds)
     }
 
-    /// True if values at real points differ from 0 by more than any rounding error.
+    /// True if real values differ from 0 by more than any rounding error.
     fn is_clearly_nonzero(&self, id: ExprId) -> bool {
         let (mut valid, mut witnesses) = (0, 0);
         for seed in 0..REAL_DRAWS {
@@ -103,8 +105,8 @@ impl Pool {
         witnesses == REAL_WITNESSES
     }
 
-    /// A value that satisfies the symbol's assumption, in `[-2, 2]` for most seeds and further out for the others; the same
-    /// for the same seed.
+    /// A value that satisfies the symbol's assumption: in `[-2, 2]` for most seeds, in a wider range for the others.
+    /// Equal seeds give equal values.
     pub(crate) fn real_sample(&self, symbol: SymbolId, seed: u64) -> f64 {
         let word = mix(mix(seed + 1) ^ mix(symbol.index() as u64 + 1));
         let unit = ((word >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
@@ -116,7 +118,7 @@ impl Pool {
     }
 }
 
-/// Points for a chance of error below 2^-60; `None` if the degree allows none.
+/// Number of points for an error probability below 2^-60; `None` if the degree is too large.
 fn sample_count(profile: &Profile) -> Option<usize> {
     let bits = 60.0 - profile.degree.max(1.0).log2();
     if bits < 10.0 {
@@ -125,10 +127,10 @@ fn sample_count(profile: &Profile) -> Option<usize> {
     Some((60.0 / bits).ceil().max(3.0) as usize)
 }
 
-/// A symbol and the residue that it has at all points, once that is known.
+/// A symbol, and its common residue at all points once that is known.
 pub type Frozen = (SymbolId, Option<u64>);
 
-/// Random points, each with the next prime.
+/// Random points. The primes are used in turn.
 #[derive(Clone, Debug)]
 pub struct SamplePoints {
     seed: u64,
@@ -140,13 +142,14 @@ pub struct SamplePoints {
 }
 
 impl SamplePoints {
-    /// Points of a seed at which the expressions below some roots, whose profile is given, are likely to have values;
-    /// `None` if the coefficients inside sin, cos and exp have no common denominator in reach.
+    /// Points of a seed at which the subexpressions of some roots are likely to be defined. `profile` is the profile of
+    /// these roots. `None` if the coefficients inside sin, cos and exp have no common denominator of moderate size.
     pub fn seeded(pool: &Pool, roots: &[ExprId], profile: &Profile, seed: u64) -> Option<Self> {
         Self::new(pool, &pool.reachable(roots), profile, seed)
     }
 
-    /// Same as [`SamplePoints::seeded`] for the expressions in `order`, which is [`Pool::reachable`] of the roots.
+    /// Same as [`SamplePoints::seeded`] for the expressions in `order`, the result of [`Pool::reachable`] for the
+    /// roots.
     pub(crate) fn new(pool: &Pool, order: &[ExprId], profile: &Profile, seed: u64) -> Option<Self> {
         let limit = (DRAW_WORK / order.len().max(1)).clamp(DRAWS.0, DRAWS.1);
         let moduli: &[Modulus] = if profile.branches {
@@ -169,20 +172,21 @@ impl SamplePoints {
         self.moduli
     }
 
-    /// The same points, all modulo one of the primes.
+    /// The same points, all modulo the prime at this position (taken modulo the number of primes).
     pub fn modulo(mut self, position: usize) -> Self {
         let position = position % self.moduli.len();
         self.moduli = &self.moduli[position..=position];
         self
     }
 
-    /// The same points, without regard to the values of roots there.
+    /// The same points, without the search for points at which roots are defined.
     pub(crate) fn unsettled(mut self) -> Self {
         self.squares = Squares::default();
         self
     }
 
-    /// The first result that is not `None` at the next points; `None` if all that may be drawn for one value fail.
+    /// The first result of `f` other than `None` at the next points; `None` if `f` fails at all points allowed for one
+    /// value.
     pub fn find<T>(
         &mut self,
         pool: &Pool,
@@ -191,8 +195,8 @@ impl SamplePoints {
         self.find_frozen(pool, &mut [], f)
     }
 
-    /// Same as [`SamplePoints::find`] with points of one prime, see [`SamplePoints::modulo`]. Some symbols have the
-    /// given values; without given values, those of the point that is found.
+    /// Same as [`SamplePoints::find`], for points of one prime (see [`SamplePoints::modulo`]). `frozen` symbols keep
+    /// their given values. A frozen symbol without a value gets that of the point that is found.
     pub fn find_frozen<T>(
         &mut self,
         pool: &Pool,
@@ -342,7 +346,7 @@ mod tests {
         );
     }
 
-    /// Ramps are 0 at half of all points each, their product almost everywhere.
+    /// Each ramp is 0 at half of all points; the product of all ramps is 0 at almost all points.
     #[test]
     fn products_of_ramps_are_never_proved_to_be_zero() {
         let ramp = |u: &str| format!("(abs({u}) + {u})");

@@ -9,7 +9,7 @@ use super::problem::Problem;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
-/// Remarks on a model without a density on all of Q; none on others.
+/// Remarks on a model without a density on all of Q; none if such a density exists, or if its existence is undecided.
 pub(super) fn alternatives(
     model: &mut Model,
     derivation: &Derivation,
@@ -37,8 +37,8 @@ pub(super) fn alternatives(
     remarks
 }
 
-/// Result of the scan in words; `None` if there was nothing to scan. If a local density exists, the scan was for one on
-/// all of Q.
+/// Result of the scan in words; `None` if there was nothing to scan. If a local density exists, the scan looked for one
+/// on all of Q.
 fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
     let what = match is_local {
         true => "a density on all of Q",
@@ -59,8 +59,8 @@ fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
 
 /// Consequence of the absence of a density of `q` for densities of `q` and `qdot`.
 ///
-/// Without potential, other forces and drift, `X(f) = -f div X` has at `qdot = 0` a part that is linear in the
-/// velocities: `f(q, 0)` would be a density of `q`.
+/// Without potential, other forces and drift, `X(f) = -f div X` has a part linear in the velocities at `qdot = 0`. By
+/// this part `f(q, 0)` would be a density of `q`.
 fn near_rest(model: &Model, problem: &Problem) -> String {
     let pool = &model.pool;
     let potential = model.lagrangian.potential;

@@ -1,5 +1,5 @@
-//! Candidates for the factor of a density that depends on velocities: functions of the configuration times velocities
-//! and kinetic momenta.
+//! Candidates for a density factor that depends on velocities: functions of the configuration times velocities and
+//! kinetic momenta.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
 
@@ -7,17 +7,17 @@ use super::dynamics::Dynamics;
 use super::problem::Problem;
 use crate::model::{Model, Topology};
 
-/// Arguments of sines and cosines that are used as functions of the configuration.
+/// Largest number of distinct arguments of the sines and cosines used as functions of the configuration.
 const ARGUMENTS: usize = 4;
-/// Coordinates whose monomials are used.
+/// Largest number of coordinates whose monomials are used.
 const LINES: usize = 4;
-/// Terms of one stage: elimination takes the cube of their number.
+/// Largest number of terms of one stage. The work of elimination grows with its cube.
 const TERMS: usize = 120;
-/// The degree of monomials of parameters, and their number.
+/// Largest degree of monomials of parameters, and largest number of these.
 const DEGREE: usize = 3;
 const MONOMIALS: usize = 48;
 
-/// Terms of a factor, simple ones first; each stage contains the one before.
+/// Terms of a factor in stages. Each stage contains the one before it.
 pub(super) fn stages(
     model: &mut Model,
     problem: &Problem,
@@ -33,7 +33,8 @@ pub(super) fn stages(
         let momentum = pool.diff(model.lagrangian.whole, coordinate.qdot);
         bases.push(pool.sub(momentum, *linear));
     }
-    // Without these the terms of a homogeneous factor are separately invariant.
+    // The constant is needed only with a drift, a linear term or a potential. Otherwise the terms of each degree in the
+    // velocities are separately invariant.
     let linear = &model.lagrangian.linear;
     if problem.has_drift(pool)
         || linear.iter().any(|entry| !pool.is_syntactic_zero(*entry))
@@ -62,7 +63,7 @@ pub(super) fn stages(
     stages
 }
 
-/// Every function times every base, all bases with one function after the other.
+/// Products of every function with every base, in the order of the functions.
 fn products(pool: &mut Pool, functions: &[ExprId], bases: &[ExprId]) -> Vec<ExprId> {
     let mut terms = Vec::new();
     for function in functions {
@@ -76,7 +77,7 @@ fn products(pool: &mut Pool, functions: &[ExprId], bases: &[ExprId]) -> Vec<Expr
     terms
 }
 
-/// Sines and cosines of the arguments that occur with coordinates inside.
+/// Sines and cosines of arguments that depend on coordinates and occur below `roots`.
 fn circular_functions(pool: &mut Pool, roots: &[ExprId], symbols: &[SymbolId]) -> Vec<ExprId> {
     let mut arguments = Vec::new();
     for id in pool.reachable(roots) {
@@ -95,17 +96,18 @@ fn circular_functions(pool: &mut Pool, roots: &[ExprId], symbols: &[SymbolId]) -
     functions
 }
 
-/// Monomials of the parameters, by degree.
+/// Monomials of the parameters, ordered by degree.
 pub(super) fn parameter_monomials(pool: &mut Pool, parameters: &[SymbolId]) -> Vec<ExprId> {
     let mut monomials = monomials(pool, parameters, DEGREE);
     monomials.truncate(MONOMIALS);
     monomials
 }
 
-/// The monomials in some symbols by degree: 1, the symbols, their products, ..
+/// Monomials of some symbols up to a degree, ordered by degree: 1, the symbols, their products, and so on.
 pub(super) fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) -> Vec<ExprId> {
     let mut all = vec![pool.one()];
-    // The monomials of one degree, each with its last symbol: only later ones are multiplied on.
+    // The monomials of one degree, each with the index of its last symbol. Only this symbol and later ones are
+    // multiplied on.
     let mut last = vec![(pool.one(), 0)];
     for _ in 0..degree {
         let mut next = Vec::new();
@@ -121,7 +123,7 @@ pub(super) fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) ->
     all
 }
 
-/// `sum of coefficient * monomial * term`, without common factors and the first coefficient positive.
+/// `sum of coefficient * monomial * term`, scaled to coprime integer coefficients, the first of them positive.
 pub(super) fn combination(pool: &mut Pool, parts: &[(Rational, ExprId, ExprId)]) -> ExprId {
     let Some((first, ..)) = parts.first() else {
         return pool.zero();
@@ -134,7 +136,7 @@ pub(super) fn combination(pool: &mut Pool, parts: &[(Rational, ExprId, ExprId)])
         let both = denominator.and_then(|d| least_common_multiple(common, d));
         both.unwrap_or(common)
     });
-    // The monomials of each term, terms in order of appearance.
+    // The monomials of each term, in order of first appearance of the terms.
     let mut collected: Vec<(ExprId, Vec<(Rational, ExprId)>)> = Vec::new();
     for (coefficient, (_, monomial, term)) in coefficients.into_iter().zip(parts) {
         let position = match collected.iter().position(|(known, _)| known == term) {

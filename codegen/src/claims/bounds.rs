@@ -1,14 +1,15 @@
-//! Certified signs of expressions, from exact bounds of polynomials of parameters that lie between two numbers, or from enclosures.
+//! Certified signs of expressions, from exact bounds of polynomials in parameters with declared ranges, or from
+//! enclosures.
 
 use dalembert_expr::{ExprId, Node, Rational, SymbolId};
 
 use super::regularity::domain;
 use crate::model::{Assumption, Model};
 
-/// The largest exponent that is multiplied out.
+/// Largest exponent of a power whose bounds are multiplied out.
 const LARGEST: i64 = 16;
 
-/// True if a function is certified to be 0 or positive at all states: by its form, by bounds, or by an enclosure.
+/// True if a function is certified to be non-negative at all states: by its form, by bounds, or by an enclosure.
 pub(super) fn is_never_negative(model: &Model, value: ExprId) -> bool {
     if model.pool.sign(value).is_nonnegative() {
         return true;
@@ -21,7 +22,7 @@ pub(super) fn is_never_negative(model: &Model, value: ExprId) -> bool {
     is_above || ranges()[value.index()].is_some_and(|range| range.lo >= 0.0)
 }
 
-/// The least and the greatest value, or bounds of them; `None` if it is no polynomial of bounded parameters.
+/// Lower and upper bound of the values; `None` if the expression is no polynomial in parameters with declared ranges.
 fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
     match model.pool.node(id) {
         Node::Number(value) => Some([value.clone(), value.clone()]),

@@ -1,11 +1,14 @@
-//! A form before and after a surface, on vectors that the motion through it carries along.
+//! Invariance of a differential form at a surface: its values before and after, on vectors that the motion carries
+//! through the surface.
 //!
 //! ```text
 //! v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)      w+(v+_1, .., v+_k) = w(v_1, .., v_k)
 //! ```
 //!
-//! X has the rate 1 of time, and vectors have none. On vectors along the surface this is the pullback by the map, and with X in one place the specular
-//! condition (W. Clark, thesis, VII.3). Of a transition X+ and w+ are those of the mode that is entered.
+//! `dDelta` is the derivative of the impact map; `X-` and `X+` are the motions before and after. X has time rate 1, the
+//! vectors have time rate 0. On vectors along the surface the condition is the pullback by the map. With X as one of
+//! the vectors it is the specular condition (W. Clark, thesis, VII.3). At a transition X+ and w+ belong to the entered
+//! mode.
 
 use std::cmp::Ordering;
 
@@ -29,28 +32,29 @@ use super::wall::Wall;
 use crate::mechanics::derive;
 use crate::model::{ExteriorForm, Model};
 
-/// The state behind a surface, as expressions of the state before it.
+/// The motion and the form behind a surface, as expressions of the state there.
 #[derive(Debug)]
 struct Behind {
-    /// The rates of a first-order system.
+    /// Rates of a first-order system.
     rates: Option<Vec<ExprId>>,
-    /// The equations of motion.
+    /// Equations of motion: constraints, and equations of the accelerations.
     equations: [Vec<Vec<ExprId>>; 2],
-    /// Coefficients, each with the derivatives of its functions by positions and velocities.
+    /// Coefficients of the form's terms, each with the derivatives of the term's functions with respect to positions
+    /// and velocities.
     terms: Vec<(ExprId, Vec<Vec<ExprId>>)>,
 }
 
-/// The products of a form after and before.
+/// The form as a sum of products, after and before the surface.
 type Sides<S> = [Products<S>; 2];
 
-/// Tangent vectors before a surface and what becomes of them, with the values of both sides.
+/// Tangent vectors before a surface and their images, with the values of all expressions on both sides.
 struct Carry<S> {
     values: Vec<S>,
     vectors: Vec<Vec<S>>,
     behind: Vec<S>,
     carried: Vec<Vec<S>>,
     outgoing: Vec<S>,
-    /// The gap rate behind the surface and its rate along the free motion.
+    /// Gap rate behind the surface, and its derivative along the free motion.
     gap_rates: Option<[S; 2]>,
 }
 
@@ -59,26 +63,26 @@ pub(super) struct Carried<'c> {
     wall: &'c Wall,
     tangents: &'c Tangents,
     form: &'c ExteriorForm,
-    /// Everything before the surface.
+    /// All expressions before the surface, with their expansions.
     expansions: Expansions,
-    /// The motion before it.
+    /// Motion before the surface.
     dynamics: Dynamics,
     rates: Option<Vec<ExprId>>,
     positions: Vec<ExprId>,
     behind: Behind,
-    /// The motion behind it, where a law leaves two of them.
+    /// Motion behind the surface, where the law admits two of them.
     contact: Option<Contact>,
-    /// The seed of weights if leaves behind it are asked for, not the form.
+    /// Seed of random weights. Present if the question is about leaves behind the surface instead of the form.
     leaves: Option<u64>,
     pub(super) part: Part,
     pub(super) shown: String,
 }
 
 impl<'c> Carried<'c> {
-    /// A form at a wall; of a transition with the mode that is entered.
+    /// A form at a wall. `entered` is the entered mode of a transition.
     ///
     /// # Errors
-    /// The reason for which the form is not known behind the wall.
+    /// The reason why the form is unknown behind the wall.
     pub(super) fn of(
         model: &mut Model,
         around: &Surroundings<'_>,
@@ -120,7 +124,7 @@ impl<'c> Carried<'c> {
         Ok(found)
     }
 
-    /// Replaces a coordinate by its value on the surface, in all that is evaluated.
+    /// Substitutes the solution of the gap for a coordinate in all expressions.
     fn restrict(&mut self, model: &mut Model, solution: (SymbolId, ExprId)) {
         let pool = &mut model.pool;
         self.expansions.restrict(pool, solution);
@@ -141,13 +145,13 @@ impl<'c> Carried<'c> {
         }
     }
 
-    /// True if the velocities behind it are computed at a point, not written out.
+    /// True if the velocities behind the wall are computed at a point. Otherwise they are expressions.
     fn computes_velocities(&self) -> bool {
         let passage = self.wall.passage.as_ref();
         passage.is_none_or(Passage::computes_velocities)
     }
 
-    /// Positions and velocities behind it as series in the variables before it.
+    /// Positions and velocities behind the wall, as series in the variables before it.
     fn map<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -171,8 +175,8 @@ impl<'c> Carried<'c> {
         Some([positions, velocities])
     }
 
-    /// The motion before the surface: rates of positions, velocities and time. Sets the dependent velocities: where a coordinate was replaced by its
-    /// value on the surface they are those there.
+    /// Motion before the surface: rates of positions, velocities and time. Sets the dependent velocities. If a
+    /// coordinate was replaced by its value on the surface, they are those on the surface.
     fn motion_before<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -189,7 +193,7 @@ impl<'c> Carried<'c> {
         Some(motion)
     }
 
-    /// Values behind the surface, with the velocities there if they are computed.
+    /// Values of the expressions behind the surface. `velocities` are set first if they are computed.
     fn values_behind<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -220,7 +224,7 @@ impl<'c> Carried<'c> {
         values
     }
 
-    /// The tangent vectors as the motion through the surface carries them.
+    /// The tangent vectors and their images behind the surface.
     fn carry<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Carry<Number<P>>> {
         let field = point.field();
         let incoming = self.motion_before(model, point)?;
@@ -272,7 +276,7 @@ impl<'c> Carried<'c> {
         })
     }
 
-    /// The products that the form is the sum of, after and before.
+    /// The form as a sum of products, after and before the surface.
     fn products<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -309,7 +313,7 @@ impl<'c> Carried<'c> {
         Some([after, before])
     }
 
-    /// `eta^a(v+)` of the constraints behind the surface, which is 0 on vectors along their leaves, with random weights.
+    /// `eta^a(v+)` of the constraints behind the surface, with random weights. It is 0 for vectors along their leaves.
     fn crossings<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -330,7 +334,7 @@ impl<'c> Carried<'c> {
         Some(found)
     }
 
-    /// The same with one of the motions that are possible behind the surface.
+    /// The same question for one of the possible motions behind the surface.
     pub(super) fn with_contact(mut self, model: &mut Model, mut contact: Contact) -> Self {
         if let Some(solution) = self.wall.solution() {
             contact.restrict(&mut model.pool, solution);
@@ -339,7 +343,7 @@ impl<'c> Carried<'c> {
         self
     }
 
-    /// True if a state is certain to be followed by the motion that is meant.
+    /// True if it is certain that the motion of this question follows on the state.
     fn is_followed(&self, signs: impl FnOnce() -> Option<[Option<Ordering>; 2]>) -> bool {
         match &self.contact {
             None => true,
@@ -347,7 +351,7 @@ impl<'c> Carried<'c> {
         }
     }
 
-    /// The question whether vectors leave the leaves of the constraints behind the surface.
+    /// The question whether vectors leave the leaves of the constraints behind the surface. `seed` gives the weights.
     pub(super) fn across_leaves(self, seed: u64) -> Self {
         Self {
             leaves: Some(seed),
@@ -359,7 +363,7 @@ impl<'c> Carried<'c> {
         (self.tangents.dimension(), self.form.degree)
     }
 
-    /// The components of the change at a real state, with their sizes.
+    /// Components of the change of the form at a real state, and the size of their terms.
     pub(super) fn components(
         &self,
         model: &Model,
@@ -377,8 +381,8 @@ impl<'c> Carried<'c> {
         Some((changes?, sides[0].size() + sides[1].size()))
     }
 
-    /// The rate of the gap along a motion of first order behind the surface, which slides along it where that is not negative; `None` of motions that
-    /// cannot slide.
+    /// Rate of the gap along a first-order motion behind the surface. The motion slides along the surface unless this
+    /// rate is negative. `Some(None)` for motions that cannot slide.
     fn sliding<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -480,7 +484,7 @@ impl Behind {
         all.chain(self.rates.iter().flatten()).copied().collect()
     }
 
-    /// The rates of positions and velocities.
+    /// Rates of positions and velocities behind the surface.
     fn motion<P: ExpansionPoint>(
         &self,
         field: P::Field,
@@ -501,7 +505,7 @@ impl Behind {
     }
 }
 
-/// The positions behind a wall.
+/// Expressions of the positions behind a wall.
 fn positions_behind(model: &mut Model, wall: &Wall) -> Vec<ExprId> {
     match &wall.passage {
         Some(passage) => passage.positions.clone(),

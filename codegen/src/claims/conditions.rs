@@ -1,10 +1,10 @@
-//! Conditions on parameters under which a density exists that does not exist for indeterminate parameters.
+//! Conditions on parameters under which a density exists although none exists for indeterminate parameters.
 //!
-//! The scan tries, within the declared assumptions: one parameter 0; two equal; two 0; one a small fraction, where the
-//! obstruction has a root or a pole; one 0 and two others equal; polynomials of degree 3 in three parameters. Every trial
-//! is the rank test of [`super::exactness`] with the parameters fixed. The scan leaves out conditions at which the model
-//! is degenerate, and conditions that imply a simpler one that was found. Other conditions may exist: the answer is about
-//! the conditions scanned.
+//! Within the declared assumptions, the scan tries: one parameter 0; two equal; two 0; one a small fraction, where the
+//! obstruction has a root or a pole; one 0 and two others equal; polynomials of degree 3 in three parameters. Every
+//! trial is the rank test of [`super::exactness`] with the parameters fixed. The scan leaves out conditions at which
+//! the model is degenerate, and conditions that imply a simpler one already found. Other conditions may exist: the
+//! answer holds for the conditions scanned.
 
 use dalembert_expr::{ExprId, Rational, SamplePoints, SymbolId, Verdict as Zero};
 
@@ -17,10 +17,10 @@ use super::regularity::is_never_zero;
 use super::undecided::Undecided;
 use crate::model::{Assumption, Model, Parameter};
 
-/// A condition on parameters, which are named by their position.
+/// A condition on parameters. Parameters are given by their positions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Condition {
-    /// All of them hold.
+    /// The equations. All of them hold.
     pub equations: Vec<Equation>,
     /// True if the density then exists on all of Q, not only locally.
     pub is_global: bool,
@@ -48,20 +48,21 @@ pub struct Scan {
     pub is_complete: bool,
 }
 
-/// Trials of a scan at most, and at least.
+/// Smallest and largest number of trials of a scan.
 const TRIALS: (usize, usize) = (16, 400);
-/// Products of coefficients that a scan may take: a second without optimisation.
+/// Number of products of coefficients that a scan may take: a second without optimisation.
 const WORK: f64 = 1.5e8;
-/// Trials of a scan for a density on all of Q, each of which looks for the density.
+/// Number of trials of a scan for a density on all of Q. Each of them looks for the density.
 const GLOBAL_TRIALS: usize = 48;
-/// Number of singular points after which a model counts as degenerate. It is larger where half of the points have no
-/// roots.
+/// Number of singular points after which a model counts as degenerate. The second one is for models with roots, which
+/// have no value at half of the points.
 const ATTEMPTS: (usize, usize) = (4, 128);
 
 /// Conditions under which a density exists, for a model without one: locally, or on all of Q if one exists locally.
+/// `exactness`: the decision for indeterminate parameters. `seed` determines the random points.
 ///
 /// # Errors
-/// [`Undecided`], if no points can be had.
+/// [`Undecided`], if there are no sample points.
 pub fn find_conditions(
     model: &mut Model,
     problem: &Problem,
@@ -131,12 +132,13 @@ impl Scan {
     }
 }
 
-/// Number of trials that are affordable. One trial takes series of the order of the hull's depth for the inverse metric
-/// and for a bracket of each generator with each element.
+/// Number of affordable trials. One trial takes series for the inverse metric and for a bracket of each generator with
+/// each element. Their order is the depth of the hull.
 fn trials(problem: &Problem, depth: usize) -> usize {
     let (n, m) = (problem.coordinates as f64, problem.forms.len() as f64);
     let products = n.powi(3) + 2.0 * n * (n - m) * (n + 1.0).powi(2);
-    // Number of pairs of monomials whose product is within the order: that of monomials in twice as many variables.
+    // Number of pairs of monomials whose product is within the order: the number of monomials in twice as many
+    // variables.
     let variables = 2 * problem.variables.len();
     let pairs: f64 = (1..=depth)
         .map(|k| (variables + k) as f64 / k as f64)
@@ -148,7 +150,7 @@ struct Scanner<'s> {
     problem: &'s Problem,
     points: SamplePoints,
     attempts: usize,
-    /// Positions.
+    /// Positions of the parameters.
     parameters: Vec<usize>,
     wants_global: bool,
     seed: u64,
@@ -157,7 +159,7 @@ struct Scanner<'s> {
 }
 
 impl Scanner<'_> {
-    /// Tries everything; `None` if it was cut off.
+    /// Tries all conditions; `None` if the scan was cut off.
     fn scan(
         &mut self,
         model: &mut Model,
@@ -257,8 +259,8 @@ impl Scanner<'_> {
         Some(())
     }
 
-    /// Adds the zeros of a polynomial to the conditions found, unless the density that exists at random points of them
-    /// fails on all of Q.
+    /// Adds the condition that a polynomial vanishes. The density exists at random zeros of the polynomial. If the
+    /// polynomial can be solved for a parameter and the density then fails, the condition is left out.
     fn try_polynomial(&self, model: &mut Model, polynomial: ExprId, found: &mut Vec<Condition>) {
         let equations = vec![Equation::Zero(polynomial)];
         let is_global = match self.solved(model, polynomial) {
@@ -278,7 +280,7 @@ impl Scanner<'_> {
         });
     }
 
-    /// A parameter in which a polynomial is linear, and the value at which it is 0.
+    /// A parameter in which a polynomial is linear, with the value at which the polynomial is 0.
     fn solved(&self, model: &mut Model, polynomial: ExprId) -> Option<(SymbolId, ExprId)> {
         self.parameters.iter().find_map(|position| {
             let symbol = model.parameters[*position].symbol;
@@ -317,7 +319,7 @@ fn replacements(model: &mut Model, equations: &[Equation]) -> Vec<(SymbolId, Exp
     replacements
 }
 
-/// Position and value of a parameter that is fixed.
+/// Symbol and value of a fixed parameter; `None` for a polynomial, or a value with large numerator or denominator.
 fn fixed(model: &Model, equation: &Equation) -> Option<(SymbolId, Fixed)> {
     let symbol = |position: usize| model.parameters[position].symbol;
     match equation {
@@ -330,7 +332,7 @@ fn fixed(model: &Model, equation: &Equation) -> Option<(SymbolId, Fixed)> {
     }
 }
 
-/// True if `known` follows from `equations`.
+/// True if `known` follows from `equations`. `false` if this is not shown.
 fn implies(model: &mut Model, equations: &[Equation], known: &[Equation]) -> bool {
     if let [Equation::Zero(polynomial)] = known {
         let replacements = replacements(model, equations);
@@ -357,7 +359,7 @@ fn is_admitted(parameters: &[Parameter], equations: &[Equation]) -> bool {
             fixed.push(*p);
             Range::of(&parameters[*p].assumption).contains(value)
         }
-        // What was fixed before is not asked about once more.
+        // An equation with a parameter that has a value already adds nothing new.
         Equation::Equal(p, q) if fixed.contains(p) || fixed.contains(q) => false,
         Equation::Equal(p, q) => {
             let [p, q] = [p, q].map(|index| Range::of(&parameters[*index].assumption));

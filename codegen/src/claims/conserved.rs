@@ -10,11 +10,11 @@ use super::sample::{ATTEMPTS, state_on_d};
 use super::undecided::Undecided;
 use crate::model::Model;
 
-/// Part of the largest term below which a sum is seen to cancel.
+/// Fraction of the largest term below which a sum counts as cancelled.
 const CANCELLED: f64 = 1e-9;
 
-/// The verdict on `conserved: value` or `not conserved: value`; `written` is the value as written. The motion is given on each part of
-/// D.
+/// The verdict on `conserved: value` or `not conserved: value`. `written`: the source text of `value`. `parts`: the
+/// motion on each part of D. `holds`: false for `not conserved`.
 pub(super) fn check_conserved(
     model: &mut Model,
     parts: &[Dynamics],
@@ -60,7 +60,7 @@ pub(super) fn check_conserved(
     verdict
 }
 
-/// Places where a quantity may jump along a motion, in words.
+/// Description of places where a quantity may jump along a motion; `None` if it does not.
 pub(super) fn jump(
     model: &mut Model,
     dynamics: &Dynamics,
@@ -109,7 +109,7 @@ impl Quantity {
         roots
     }
 
-    /// Value and terms of its rate along a motion; `None` where it has no value.
+    /// Value of the quantity, and terms of its rate along a motion; `None` at a point where one has no value.
     pub(super) fn terms<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -128,8 +128,8 @@ impl Quantity {
     }
 }
 
-/// Size of the terms of a rate if every velocity and every acceleration were as large as the largest. An acceleration
-/// may be the small difference of large ones.
+/// Size of the terms of a rate if every velocity and every acceleration were as large as the largest. A small
+/// acceleration may be the difference of large terms.
 pub(super) fn rate_scale(
     quantity: &Quantity,
     model: &Model,
@@ -209,7 +209,7 @@ impl Vanishing for Rate<'_> {
         let largest = terms
             .iter()
             .fold(0.0, |size: f64, term| size.max(term.abs()));
-        // Rounding beside nothing is no part of anything.
+        // The parts are shown only where they cancel.
         if sum.abs() > CANCELLED * largest {
             return Vec::new();
         }

@@ -1,13 +1,14 @@
-//! The motion behind an impact whose law does not turn the gap rate round: free, or held by the surface.
+//! The motion behind an impact whose law does not reverse the gap rate: free, or held by the surface.
 //!
 //! ```text
-//! hdot+ > 0, or hdot+ = 0 and hddot > 0     the motion goes on freely
-//! hdot+ = 0 and hddot < 0                   it is held: qddot + c W with hddot = 0,    W = -(qdot+ - qdot-)/hdot-
+//! hdot+ > 0, or hdot+ = 0 and hddot > 0     the motion is free
+//! hdot+ = 0 and hddot < 0                   the motion is held: qddot + c W with hddot = 0,    W = -(qdot+ - qdot-)/hdot-
 //! ```
 //!
-//! `hddot` is that of the free motion. Which of them it is is known at a state, where both are enclosed away from 0, and not of all states. The rate
-//! `hdot+` is 0 behind `impact_plastic` and `newton(0)`, and behind `restitution(0)` unless constraints are affine: that stops the part of the
-//! velocity across them, and leaves the rate at which they run.
+//! `hddot` belongs to the free motion. Which case holds can be decided at a state where both are enclosed away from 0,
+//! but not for all states at once. The rate `hdot+` is 0 after `impact_plastic` and `newton(0)`. After `restitution(0)`
+//! it is 0 unless constraints are affine: this law stops the velocity across the surface, and leaves the rate
+//! prescribed by affine constraints.
 
 use std::cmp::Ordering;
 
@@ -17,10 +18,10 @@ use super::expansion::inner;
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
-/// One of both motions.
+/// One of the two motions.
 pub(super) struct Contact {
     rate: ExprId,
-    /// The derivatives of the gap rate by positions, velocities and time.
+    /// Derivatives of the gap rate with respect to positions, velocities and time.
     slopes: Vec<ExprId>,
     /// True if the gap rate is 0 after each impact.
     pub(super) is_stopped: bool,
@@ -28,13 +29,13 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// The motions that are possible behind a surface; none where the law turns the gap rate round.
+    /// The possible motions behind a surface. None if the law reverses the gap rate.
     pub(super) fn all(model: &mut Model, surface: usize, wall: &Wall) -> Vec<Self> {
         if !may_hold(model, surface) {
             return Vec::new();
         }
         let is_stopped = stops(model, surface);
-        // The held motion is under instantaneous constraints, too.
+        // With instantaneous constraints the held motion would satisfy them too, so it is not examined.
         let is_alone = model.surfaces[surface].instantaneous.is_empty();
         let held = [false, true].into_iter();
         let held = held.filter(|is_held| !is_held || (is_stopped && is_alone));
@@ -54,7 +55,7 @@ impl Contact {
         held.into_iter().map(of).collect()
     }
 
-    /// The motion in words that follow what a surface does.
+    /// Description of the motion, to be appended to that of the surface.
     pub(super) fn text(&self) -> &'static str {
         match self.is_held {
             true => "; the motion behind it is held",
@@ -72,7 +73,7 @@ impl Contact {
         self.slopes = pool.substitute_all(&self.slopes, &[solution]);
     }
 
-    /// The gap rate behind the surface, and its rate along the free motion, from the values there.
+    /// Gap rate behind the surface, and its derivative along the free motion with rates `outgoing`.
     pub(super) fn rates<A: Arithmetic>(
         &self,
         field: A,
@@ -88,7 +89,7 @@ impl Contact {
         [values[self.rate.index()], along]
     }
 
-    /// True if signs of these two are those of this motion.
+    /// True if the signs of gap rate and derivative are those of this motion.
     pub(super) fn is_it(&self, [rate, along]: [Option<Ordering>; 2]) -> bool {
         match (self.is_stopped, self.is_held) {
             (true, true) => along == Some(Ordering::Less),
@@ -97,7 +98,8 @@ impl Contact {
         }
     }
 
-    /// Adds the force of the surface to the rates of a free motion: `along` is that of the gap rate, `lost` the gap rate before.
+    /// Adds the force of the surface to the rates of the free motion. `along` is the derivative of the gap rate along
+    /// it, `lost` the gap rate before the impact.
     pub(super) fn hold<A: Arithmetic>(
         &self,
         field: A,
@@ -116,12 +118,12 @@ impl Contact {
     }
 }
 
-/// True if the law of a surface need not turn the gap rate round.
+/// True if the law of a surface may leave the gap rate 0.
 fn may_hold(model: &Model, surface: usize) -> bool {
     let declared = &model.surfaces[surface];
     let has_constraints = !(model.constraints.is_empty() && declared.instantaneous.is_empty());
     match declared.law {
-        // Without constraints it is the elastic one.
+        // Without constraints this law is elastic.
         Law::NonholonomicPlastic => has_constraints,
         Law::TotallyPlastic => true,
         _ => loses_volumes(model, surface),
@@ -137,7 +139,8 @@ fn stops(model: &Model, surface: usize) -> bool {
     loses_volumes(model, surface) && (is_linear || !matches!(declared.law, Law::Restitution(_)))
 }
 
-/// True if the part of the velocities across a surface is 0 after every impact: states are mapped to fewer dimensions, whatever the motion does then.
+/// True if every impact makes the velocity across the surface 0. States are then mapped to fewer dimensions, whichever
+/// motion follows.
 pub(super) fn loses_volumes(model: &Model, surface: usize) -> bool {
     match model.surfaces[surface].law {
         Law::ImpactPlastic => true,
@@ -158,7 +161,7 @@ mod tests {
         let (zero, one) = (pool.zero(), pool.one());
         let mut values = vec![0.0; zero.index().max(one.index()) + 1];
         values[one.index()] = 1.0;
-        // The gap y of a point (x, y): its rate is dot(y).
+        // The gap y of a point (x, y); its rate is dot(y).
         let contact = Contact {
             rate: zero,
             slopes: vec![zero, zero, zero, one, zero],

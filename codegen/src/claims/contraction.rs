@@ -1,11 +1,11 @@
-//! The part of the divergence of the motion on D that forces add,
+//! Contribution of forces to the divergence of the motion on D,
 //!
 //! ```text
 //! P(qdot) = K^{ij} dF_i/dqdot^j,   K = g^{-1} - W^a m_ab W^b   (see frame.rs)
 //! ```
 //!
-//! The derivative of a function of the configuration along the motion is linear in the velocities, so that a density that depends on q
-//! alone balances `P` only if that is, too.
+//! Along the motion, the derivative of a function of the configuration is linear in the velocities. A density that
+//! depends on q alone can therefore balance `P` only if `P` is linear, too.
 
 use dalembert_expr::{
     Arithmetic, Assumption, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, SymbolId,
@@ -47,15 +47,15 @@ pub(super) fn contraction<P: ExpansionPoint>(
 /// The dependence of `P` on the velocities of D.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Dependence {
-    /// The map is linear in them, with a constant part.
+    /// Linear in the velocities, plus a constant.
     Linear,
-    /// The map is not linear: a state from which steps lead to states that show it, and the values there.
+    /// Not linear. Holds a state, and the values of `P` there and one and two steps further, which show it.
     Curved(Sample, Vec<(String, f64)>),
-    /// Neither was shown.
+    /// Neither is shown.
     Unknown,
 }
 
-/// The dependence of `P` on velocities, from its values at three states in a row.
+/// Dependence of `P` on velocities, from its values at three equidistant states.
 pub(super) fn dependence(
     model: &mut Model,
     problem: &Problem,
@@ -84,9 +84,9 @@ pub(super) fn dependence(
     }
 }
 
-/// `P(v) - 2 P(v + w) + P(v + 2 w)`
+/// The second difference `P(v) - 2 P(v + w) + P(v + 2 w)`.
 struct Row<'r> {
-    /// Changes of independent velocities: any numbers.
+    /// Changes `w` of the independent velocities, with arbitrary values.
     steps: Vec<SymbolId>,
     problem: &'r Problem,
     dynamics: &'r Dynamics,
@@ -155,7 +155,7 @@ impl Vanishing for Row<'_> {
     }
 }
 
-/// The change of the velocity of a coordinate at real states.
+/// Change of the velocity of a coordinate between two real states.
 pub(super) fn real_step(coordinate: usize) -> f64 {
     let size = coordinate as f64 + 1.0;
     if coordinate.is_multiple_of(2) {

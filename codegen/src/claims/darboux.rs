@@ -1,15 +1,16 @@
-//! Factors of densities that depend on velocities: Darboux polynomials of the motion, linear in the velocities on D.
+//! Density factors that depend on velocities: Darboux polynomials of the motion, linear in the velocities on D.
 //!
-//! `f mu_C` is invariant iff `X(ln f) = c` on D, where `c = c_0 + c_i u^i` is what the demands of [`super::frame`]
-//! make of minus the divergence; for `f = (det m)^k |l|^s`
+//! `f mu_C` is invariant iff `X(ln f) = c` on D. Here `c = c_0 + c_i u^i` is minus the divergence, as given by the
+//! demands of [`super::frame`]. For `f = (det m)^k |l|^s` the condition is
 //!
 //! ```text
 //! s X(l) = (c - k X(ln det m)) l        on D
 //! ```
 //!
-//! For given `s` and `k` the equation is linear in `l`: a null space modulo a prime over terms `function of q * velocity
-//! or momentum`, at random points of D with parameters frozen. Coefficients are reconstructed as rational numbers, or as
-//! polynomials in the parameters. What was found is certified from itself alone at fresh points modulo other primes.
+//! For given `s` and `k` the equation is linear in `l`. Its solutions form a null space modulo a prime, over terms
+//! `function of q * velocity or momentum`, at random points of D with fixed (frozen) parameters. Coefficients are
+//! reconstructed as rational numbers, or as polynomials in the parameters. A factor found is certified independently of
+//! the search, at fresh points modulo other primes.
 
 use dalembert_expr::{
     ExprId, Frozen, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId,
@@ -25,22 +26,22 @@ use super::problem::Problem;
 use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
-/// Exponents of the factor as numerator and denominator; the first is that of an inverse Jacobi multiplier.
+/// Exponents `s` of the factor, as numerator and denominator. The first one is that of an inverse Jacobi multiplier.
 const EXPONENTS: [(i64, i64); 5] = [(-1, 1), (-2, 1), (-1, 2), (1, 1), (2, 1)];
-/// Exponents of `det m`.
+/// Exponents `k` of `det m`.
 const MASS_EXPONENTS: [(i64, i64); 3] = [(0, 1), (1, 2), (1, 1)];
-/// Terms up to which all exponents are tried; beyond, only the first.
+/// Largest number of terms for which all exponents are tried. For more terms only the first is tried.
 const FEW: usize = 80;
-/// Unknowns of a search with coefficients that depend on parameters.
+/// Largest number of unknowns of a search with coefficients that depend on parameters.
 const UNKNOWNS: usize = 160;
-/// Equations beyond the number of unknowns.
+/// Number of equations in excess of the unknowns.
 const SURPLUS: usize = 8;
-/// Number of fresh points at which a factor is certified, and of those of each branch if there are several.
+/// Number of fresh points of a certificate: with a single branch, and for each of several branches.
 const CERTIFIED: (usize, usize) = (12, 3);
-/// Turns the seed of a search into that of a certificate: the fractional digits of the square root of 3.
+/// Makes the seed of a certificate from that of the search (fractional digits of the square root of 3).
 const FRESH: u64 = 0xbb67_ae85_84ca_a73b;
 
-/// `s` and `k`.
+/// The exponents `s` and `k`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Shape {
     pub(super) exponent: Rational,
@@ -50,7 +51,7 @@ pub(super) struct Shape {
 /// Values at a point of D.
 struct Observation {
     field: Modulus,
-    /// The value and the rate of each term.
+    /// Value and rate of each term.
     terms: Vec<[u64; 2]>,
     /// `c`
     demand: u64,
@@ -72,10 +73,10 @@ impl Observation {
     }
 }
 
-/// Terms of a factor with their coefficients at frozen parameters, if these are small numbers.
+/// Terms of a factor. Each has its coefficient at frozen parameters if that is a small rational number.
 pub(super) type Support = Vec<(ExprId, Option<Rational>)>;
 
-/// Subject of a search.
+/// Input of a search.
 pub(super) struct Search<'s> {
     pub(super) problem: &'s Problem,
     pub(super) dynamics: &'s Dynamics,
@@ -83,7 +84,7 @@ pub(super) struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// The factors at frozen parameters that solve the equation for one of the shapes.
+    /// The factors at frozen parameters that solve the equation, with their shapes.
     pub(super) fn factors(
         &self,
         model: &Model,
@@ -99,7 +100,7 @@ impl Search<'_> {
         let Some(field) = seen.first().map(|first| first.field) else {
             return Ok(Vec::new());
         };
-        // What vanishes on D is no factor.
+        // Combinations of terms that vanish on D are removed.
         let values = seen
             .iter()
             .map(|observation| observation.terms.iter().map(|[value, _]| *value).collect())
@@ -128,7 +129,7 @@ impl Search<'_> {
         Ok(found)
     }
 
-    /// Observations at random points modulo one prime, `frozen` symbols the same at all of them.
+    /// Observations at random points modulo one prime. `frozen` symbols have the same value at all points.
     fn observe(
         &self,
         pool: &Pool,
@@ -177,7 +178,7 @@ impl Search<'_> {
         for (slope, component) in slopes.iter().zip(&self.problem.variables) {
             mass_rate = field.add(mass_rate, field.mul(*slope, direction[*component]));
         }
-        // The drift comes first and counts once. The independent velocities follow.
+        // The drift comes first, with coefficient 1. The independent velocities follow.
         let free = (0..self.problem.coordinates).filter(|i| !frame.dependent.contains(i));
         let mut coordinates: Vec<u64> = free.map(|i| motion.qdot[i]).collect();
         if coordinates.len() < frame.demands.len() {
@@ -196,8 +197,8 @@ impl Search<'_> {
         })
     }
 
-    /// The factor with coefficients that do not depend on frozen values: numbers if they are small, else polynomials in
-    /// the parameters.
+    /// The factor for all parameters. Its coefficients are numbers if these are small, otherwise polynomials in the
+    /// parameters.
     pub(super) fn reconstruct(
         &self,
         model: &mut Model,
@@ -254,7 +255,8 @@ impl Search<'_> {
         symbols.filter(occurs).collect()
     }
 
-    /// True if a factor solves the equation at fresh points, and does not vanish at all of them.
+    /// The certificate of a factor that solves the equation at fresh points and does not vanish at all of them. `None`
+    /// if it fails.
     pub(super) fn certify(
         &self,
         pool: &Pool,
@@ -284,7 +286,7 @@ impl Search<'_> {
         }
         primes.sort_unstable();
         primes.dedup();
-        // As for a density of the configuration; the motion adds as much as the demand.
+        // The degree is bounded as for a density of the configuration. The motion adds as much as the demand.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
         let error = covered.error(&branches, degree / 2f64.powi(60));
@@ -320,7 +322,7 @@ mod tests {
     use super::*;
     use crate::{mechanics, model, spec};
 
-    /// The flat metric with `dz = (x + y) dx`: `sqrt(det m)/|xdot + ydot|` is invariant.
+    /// Flat metric with `dz = (x + y) dx`: `sqrt(det m)/|xdot + ydot|` is invariant.
     const PARTICLE: &str = "Particle {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -328,7 +330,7 @@ mod tests {
         outputs { factor: dot(x) + dot(y); other: dot(x); none: dot(z) - (x + y)*dot(x); }
     }";
 
-    /// True if the outputs are certified as factors for `s` and `k`.
+    /// For each output: true if it is certified as a factor with the exponents `s` and `k`.
     fn certified(s: (i64, i64), k: (i64, i64)) -> Vec<bool> {
         let spec = spec::parse(PARTICLE.parse().unwrap()).unwrap();
         let mut model = model::check(&spec).unwrap();

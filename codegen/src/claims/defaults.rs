@@ -1,7 +1,8 @@
-//! Claims at the declared values of parameters: what holds for indeterminate parameters may fail at special ones.
+//! Claims at the declared defaults of parameters. A claim that holds for indeterminate parameters may fail at special
+//! values.
 //!
-//! A default is an exact number, so that the decision is taken once more with it: the claim is about the model that was
-//! declared. Of other special values nothing is said here.
+//! A default is an exact number. The decision is repeated with it, because the claim is about the model as declared.
+//! Other special values are not examined.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
@@ -15,7 +16,7 @@ use super::potential::Potential;
 use super::problem::Problem;
 use crate::model::{Existence, Model};
 
-/// Singular points after which a search for a regular one ends.
+/// Number of singular points after which a search for a regular one ends.
 const ATTEMPTS: usize = 128;
 
 /// Parameters and their declared values.
@@ -26,7 +27,7 @@ pub(super) struct Defaults {
 }
 
 impl Defaults {
-    /// Defaults of the parameters on which `roots` depend, without inputs.
+    /// Defaults of those parameters on which `roots` depend. Inputs are left out.
     pub(super) fn of(model: &Model, roots: &[ExprId]) -> Self {
         let mut values = Vec::new();
         let mut texts = Vec::new();
@@ -52,17 +53,17 @@ impl Defaults {
         }
     }
 
-    /// True if no parameter has a default.
+    /// True if `roots` depend on no parameter with a default.
     pub(super) fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// Parameters and their replacements.
+    /// Symbols of the parameters and their values.
     pub(super) fn replacements(&self) -> &[(SymbolId, ExprId)] {
         &self.values
     }
 
-    /// The verdict on a claim that is proved for indeterminate parameters, from the one at the defaults.
+    /// The verdict on a claim that is proved for indeterminate parameters. `declared`: the verdict at the defaults.
     pub(super) fn confirmed(&self, generic: Verdict, declared: Verdict) -> Verdict {
         let place = format!(
             "it holds for indeterminate parameters; at the declared defaults {},",
@@ -122,7 +123,8 @@ pub(super) fn absence_at_defaults(
     ))
 }
 
-/// The verdict where forces that are not linear in the velocities leave no density: open if they do at the defaults.
+/// The verdict on a model without density because its forces are not linear in the velocities: undecided unless the
+/// defaults show it, too.
 pub(super) fn curvature_at_defaults(
     model: &mut Model,
     problem: &Problem,
@@ -176,7 +178,7 @@ fn is_obstructed(pool: &Pool, declared: &Problem, seed: u64) -> bool {
     screen(pool, declared, &mut points, ATTEMPTS, &[]) == Some(false)
 }
 
-/// A closed form with the defaults in its coefficients; its terms are those of the problem with parameters replaced.
+/// A closed form with the defaults in its coefficients and terms.
 fn at(pool: &mut Pool, potential: &Potential, defaults: &Defaults) -> Potential {
     let terms = potential.terms.iter().map(|(coefficient, term)| {
         let coefficient = pool.substitute(*coefficient, defaults.replacements());

@@ -6,8 +6,8 @@
 //! m^{ab} lambda_b = -[ W^a.(f - drift) + curvature_a ]
 //! ```
 //!
-//! The terms are those that the emitted field is made of (see [`crate::mechanics`]): metric, velocity-linear part,
-//! potential and forces may depend on time, forces on velocities, constraints may be affine.
+//! The terms are those of the emitted field (see [`crate::mechanics`]): metric, velocity-linear part, potential and
+//! forces may depend on time, forces on velocities, and constraints may be affine.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Pool, Series, SymbolId};
 
@@ -17,19 +17,19 @@ use super::linear::{Matrix, dot, solve, transpose};
 use crate::mechanics::{ConstraintForm, Derivation};
 use crate::model::Model;
 
-/// A number of a point.
+/// A number at a point.
 pub(super) type Number<P> = <<P as ExpansionPoint>::Field as Arithmetic>::Scalar;
 
 /// The equations of motion of a model, to be evaluated at points.
 #[derive(Debug, Clone)]
 pub struct Dynamics {
-    /// `eta^a` and `eta^a_0` at the end, M rows of N + 1, with the order in which they are evaluated.
+    /// M rows of N + 1 entries, `eta^a` and then `eta^a_0`, with their evaluation order.
     forms: Rows,
-    /// The rows that the velocities satisfy: those of linear constraints.
+    /// Indices of the rows of constraints that are linear in the velocities.
     linear: Vec<usize>,
     /// Constraints that are not linear, see [`Dynamics::on_branches`].
     branches: Vec<Branch>,
-    /// `g` and `f - drift` at the end, N rows of N + 1, then one row of the M curvatures.
+    /// N rows of N + 1 entries, `g` and then `f - drift`, followed by one row of the M curvatures.
     motion: Rows,
     q: Vec<SymbolId>,
     qdot: Vec<SymbolId>,
@@ -47,7 +47,7 @@ pub struct Motion<S> {
     pub multipliers: Vec<S>,
 }
 
-/// Rows of expressions.
+/// Rows of expressions, with an order in which to evaluate them.
 #[derive(Debug, Clone)]
 struct Rows {
     rows: Vec<Vec<ExprId>>,
@@ -68,8 +68,8 @@ impl Rows {
     }
 }
 
-/// A first-order system in the form of constraints on all velocities: `dq^i - f^i dt = 0`, with the curvatures `-(d_j
-/// f^i) qdot^j - d_t f^i`.
+/// A first-order system as constraints on all velocities: `dq^i - f^i dt = 0`, with the curvatures
+/// `-(d_j f^i) qdot^j - d_t f^i`.
 fn prescribed(model: &mut Model, rates: &[ExprId]) -> (Vec<Vec<ExprId>>, Vec<ExprId>) {
     let mut motion: Vec<(SymbolId, ExprId)> = Vec::new();
     for coordinate in &model.coordinates {
@@ -135,8 +135,8 @@ impl Dynamics {
         }
     }
 
-    /// Equations on each part of D that a choice of roots of nonlinear constraints gives; `None` if one of these
-    /// constraints cannot be solved, see [`branches()`].
+    /// The equations on each part of D. Every choice of roots of the nonlinear constraints gives a part. `None` if one
+    /// of these constraints cannot be solved, see [`branches()`].
     pub(super) fn on_branches(
         self,
         model: &mut Model,
@@ -182,12 +182,12 @@ impl Dynamics {
         }
     }
 
-    /// `eta^a` and `eta^a_0` by rows; `g` and `f - drift` by rows, and the row of the curvatures.
+    /// `eta^a` and `eta^a_0` by rows; `g` and `f - drift` by rows, then the row of the curvatures.
     pub(super) fn equations(&self) -> [&[Vec<ExprId>]; 2] {
         [&self.forms.rows, &self.motion.rows]
     }
 
-    /// All expressions that are evaluated.
+    /// All expressions to be evaluated.
     pub(super) fn roots(&self) -> Vec<ExprId> {
         let rows = self.forms.rows.iter().chain(&self.motion.rows);
         let roots = rows.flatten().copied();
@@ -196,8 +196,9 @@ impl Dynamics {
             .collect()
     }
 
-    /// The motion at the state on D with the point's coordinates and independent velocities; the dependent velocities
-    /// are set, and chosen as in `frame.rs` unless they are given. `None` at a singular point.
+    /// The motion at the state on D with the coordinates and independent velocities of `point`. Sets the dependent
+    /// velocities in `point`. `dependent` gives their indices; `None` chooses them as in `frame.rs`. Returns `None` at
+    /// a singular point.
     pub fn motion<P: ExpansionPoint>(
         &self,
         pool: &Pool,
@@ -221,7 +222,7 @@ impl Dynamics {
             branch.settle(pool, point)?;
         }
         if !self.branches.is_empty() {
-            // Their derivatives by the velocities depend on these.
+            // The forms of nonlinear constraints depend on the velocities just set.
             forms = constants(self.forms.at(pool, point)?);
         }
         let qdot = self
@@ -284,7 +285,8 @@ impl Dynamics {
         Some(())
     }
 
-    /// Rates of expressions of coordinates, velocities and time along a motion, at the point at which it was computed.
+    /// Time derivatives of expressions of coordinates, velocities and time along `motion`. `point` is the state of the
+    /// motion.
     pub fn rates<P: ExpansionPoint>(
         &self,
         pool: &Pool,
@@ -296,7 +298,7 @@ impl Dynamics {
         Some(pairs.into_iter().map(|[_, rate]| rate).collect())
     }
 
-    /// Same as [`Dynamics::rates`], with each rate after its value.
+    /// Each expression's value and its rate along `motion`; see [`Dynamics::rates`].
     pub fn values_and_rates<P: ExpansionPoint>(
         &self,
         pool: &Pool,
@@ -325,7 +327,8 @@ impl Dynamics {
     }
 }
 
-/// Accelerations and multipliers as series. `rows` are `(g | f - drift)`, `forms` are `(eta | eta_0)`.
+/// Accelerations and multipliers as series; `None` if metric or constraint mass matrix is singular. `rows` are
+/// `(g | f - drift)`, `forms` are `(eta | eta_0)`.
 pub(super) fn accelerate<A: Arithmetic>(
     jets: &Jets<'_, A>,
     rows: Matrix<A>,

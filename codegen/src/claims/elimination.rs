@@ -1,8 +1,8 @@
-//! Elimination modulo a prime: which columns of a matrix depend on those before them, and how.
+//! Gaussian elimination modulo a prime: independent columns of a matrix, and relations between columns.
 
 use dalembert_expr::Modulus;
 
-/// The columns that do not depend on those before them.
+/// Indices of the columns that do not depend on those before them.
 pub(super) fn independent_columns(field: Modulus, mut rows: Vec<Vec<u64>>) -> Vec<usize> {
     let width = rows.first().map_or(0, Vec::len);
     let mut pivots = Vec::new();
@@ -14,12 +14,12 @@ pub(super) fn independent_columns(field: Modulus, mut rows: Vec<Vec<u64>>) -> Ve
     pivots
 }
 
-/// The coefficients of the combination of columns that vanishes: of the first column that depends on those before it,
-/// with its own coefficient 1 and those after it 0. `None` if all columns are independent.
+/// Coefficients of a vanishing combination of columns. The first column that depends on those before it has coefficient
+/// 1, later columns have 0. `None` if all columns are independent.
 pub(super) fn first_relation(field: Modulus, mut rows: Vec<Vec<u64>>) -> Option<Vec<u64>> {
     let width = rows.first().map_or(0, Vec::len);
     let mut inverses = Vec::new();
-    // Until then every column has a pivot: that of column j is in row j.
+    // Every column before the dependent one has a pivot; that of column j is in row j.
     let column = (0..width).find(|column| {
         let inverse = eliminate(field, &mut rows, *column, *column);
         inverses.extend(inverse);
@@ -37,7 +37,8 @@ pub(super) fn first_relation(field: Modulus, mut rows: Vec<Vec<u64>>) -> Option<
     Some(relation)
 }
 
-/// Finds a pivot in a column from row `step` on, moves it there, and clears the column below; the pivot's inverse.
+/// Finds a pivot in a column from row `step` on, moves it to row `step`, and clears the column below. Returns the
+/// inverse of the pivot; `None` if there is none.
 fn eliminate(field: Modulus, rows: &mut [Vec<u64>], step: usize, column: usize) -> Option<u64> {
     let found = (step..rows.len()).find(|row| rows[*row][column] != 0)?;
     rows.swap(step, found);
@@ -63,7 +64,7 @@ mod tests {
     #[test]
     fn the_first_dependent_column_is_written_by_those_before_it() {
         let field = Modulus::MERSENNE;
-        // The third column is twice the first plus three times the second; so is the last, once each.
+        // The third column is twice the first plus three times the second. The last is the sum of the first two.
         let rows = vec![vec![1, 4, 14, 5], vec![2, 1, 7, 3], vec![0, 1, 3, 1]];
         assert_eq!(independent_columns(field, rows.clone()), vec![0, 1]);
         let minus = |value| field.neg(value);

@@ -1,5 +1,5 @@
-//! Symmetries of motion, impacts, resets and transitions together: decides whether the flow of a vector field takes motions to
-//! motions.
+//! Symmetries of motion, impacts, resets and transitions together: decides whether the flow of a vector field maps
+//! motions to motions.
 //!
 //! ```text
 //! Lagrangian   lift L = df/dt, D kept (symmetry.rs);  forces   lift F_i + F_j d_i xi^j = 0
@@ -8,8 +8,9 @@
 //! reset        lift psi^i = xi^i(psi),   lift w^i = w^j (d_j xi^i)(psi),   q+ = psi, qdot+ = w, where h = 0
 //! ```
 //!
-//! A transition is a reset with the field of the mode that is entered on the right. An impulse along `pi_D^* dh` is taken to another one
-//! where metric, D with the instantaneous constraints and the surface are kept, and a refraction without constraints where both Lagrangians are.
+//! A transition is treated as a reset, with the field of the entered mode on the right-hand side. The flow maps an
+//! impulse along `pi_D^* dh` to such an impulse if it preserves the metric, D with the instantaneous constraints, and
+//! the surface. It maps a refraction without constraints to a refraction if it preserves both Lagrangians.
 
 use dalembert_expr::{ExprId, SymbolId, Verdict as Zero};
 
@@ -27,19 +28,19 @@ use super::wall::Wall;
 use crate::mechanics::{Derivation, derive};
 use crate::model::{Law, Model};
 
-/// A vector field on each mode of a model, in order; one of a model without modes.
+/// A vector field on each mode of a model, in the order of the modes, or on a model without modes.
 pub(crate) struct Fields<'f> {
     /// The modes; empty for a model without modes.
     pub(crate) others: &'f [&'f Model],
-    /// The field in each of them, or of the model.
+    /// The field on each mode, or on the model.
     pub(crate) fields: &'f [Vec<ExprId>],
 }
 
 /// Checks that the field is a symmetry of a mode, of its surfaces and of their maps. Returns true if its momentum is
-/// shown to be conserved there.
+/// proved to be conserved in the mode.
 ///
 /// # Errors
-/// The place where it fails, and how, in words.
+/// The place where the check fails, and the reason.
 pub(crate) fn check_equivariance(
     model: &mut Model,
     derivation: &Derivation,
@@ -67,7 +68,7 @@ pub(crate) fn check_equivariance(
     Ok(keeps_momentum(model, &around, field))
 }
 
-/// A sentence for each surface of a first-order system without modes.
+/// One sentence for each surface of a first-order system without modes.
 pub(super) fn symmetry_at_surfaces(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -93,7 +94,7 @@ pub(super) fn symmetry_at_surfaces(
         .collect()
 }
 
-/// The reason for which a claim is not proved, at a place.
+/// Fails with the reason, prefixed by the place, if the verdict is not a proof.
 fn expect(place: &str, verdict: Verdict) -> Result<(), String> {
     match verdict {
         Verdict::Proved(_) => Ok(()),
@@ -102,7 +103,7 @@ fn expect(place: &str, verdict: Verdict) -> Result<(), String> {
     }
 }
 
-/// Checks that a surface with its law is kept.
+/// Checks that the flow preserves a surface and its law.
 fn check_surface(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -164,8 +165,8 @@ fn check_surface(
     Ok(())
 }
 
-/// Checks that the flow keeps the constraints of the model and the instantaneous ones of a surface together, as those of a model
-/// with both.
+/// Checks that the flow preserves the constraints of the model together with the instantaneous ones of a surface, as in
+/// a model that has both as constraints.
 fn check_instantaneous(
     model: &Model,
     surface: usize,
@@ -186,7 +187,8 @@ fn check_instantaneous(
     expect("its instantaneous constraints", verdict)
 }
 
-/// The difference between the image of the field and the field at the image, of a reset or a transition.
+/// Conditions of a reset or transition: differences between the image of the field and the field at the image, with
+/// descriptions.
 fn of_passage(
     model: &mut Model,
     all: &Fields<'_>,
@@ -245,7 +247,8 @@ fn of_passage(
     Ok(changes)
 }
 
-/// Checks that a refraction is kept: it is the momentum `p + c dh` at which the energies differ by `-c d_t h`, and goes on.
+/// Checks that a refraction is preserved. It maps to the momentum `p + c dh` at which the energies differ by
+/// `-c d_t h`, on the side to which the motion continues.
 fn check_refraction(
     model: &mut Model,
     entered: &mut Model,
@@ -262,7 +265,7 @@ fn check_refraction(
 }
 
 /// The function whose total derivative the Lagrangian gains along the flow of a symmetry: 0, or a polynomial of the
-/// positions.
+/// positions. `None` if it is not found.
 fn gained(model: &mut Model, field: &[ExprId], seed: u64) -> Option<ExprId> {
     if keeps_lagrangian(model, field, seed) {
         return Some(model.pool.zero());
@@ -274,7 +277,8 @@ fn gained(model: &mut Model, field: &[ExprId], seed: u64) -> Option<ExprId> {
     (!model.pool.depends_on(gained, model.time)).then_some(gained)
 }
 
-/// True if the momentum of a symmetry, less what the Lagrangian gains, is shown to be conserved by the motion and at all surfaces.
+/// True if the momentum of a symmetry, minus the function gained, is proved to be conserved by the motion and at all
+/// surfaces.
 fn keeps_momentum(model: &mut Model, around: &Surroundings<'_>, field: &[ExprId]) -> bool {
     if model.is_first_order() {
         return false;

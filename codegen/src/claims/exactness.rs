@@ -1,7 +1,9 @@
-//! Does a local density exist? Ranks of the hull of the demands at random points modulo primes.
+//! Existence of a local density: ranks of the hull of the demands (their closure under brackets) at random points
+//! modulo primes.
 //!
-//! A rank at a point never exceeds the generic rank of its branch, so the largest of a few samples of each branch counts. With all components in
-//! the hull an obstruction at one point is a proof; everything else is wrong with a chance below the stated bound.
+//! The rank at a point is at most the generic rank of its branch, so the largest rank of a few samples of each branch
+//! counts. If the hull contains all components, an obstruction at one point is a proof. Every other answer is wrong
+//! with a probability below the stated bound.
 
 use std::collections::BTreeMap;
 
@@ -23,14 +25,14 @@ use super::smoothness::{HOLES, cuts};
 use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
-/// Points of each branch that are sampled, each modulo the next prime.
+/// Number of points sampled on each branch, each modulo the next prime.
 const SAMPLES: usize = 3;
-/// Monomials of a series beyond which no higher order is tried.
+/// Largest number of monomials of a series. No higher order is tried above it.
 const MONOMIALS: usize = 20_000;
-/// The order of the first attempt; most hulls are closed within three brackets.
+/// Order of the first attempt. Most hulls are closed within three brackets.
 const FIRST_ORDER: usize = 3;
 
-/// Values that symbols are fixed to: conditions on parameters.
+/// Conditions on parameters: values to which symbols are fixed.
 pub(super) type Conditions = [(SymbolId, Fixed)];
 
 /// Value to which a symbol is fixed.
@@ -42,51 +44,52 @@ pub(super) enum Fixed {
     Same(SymbolId),
 }
 
-/// Last state of the hull of the demands.
+/// The hull of the demands with the best result, and the answer that it gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Local {
-    /// True if a local density exists at generic points.
+    /// True if a local density exists near generic points.
     pub exists: bool,
-    /// The rank of the hull of D, drift included.
+    /// Rank of the hull of D, drift included.
     pub rank: usize,
-    /// The rank of the hull of the demands: one more if there is an obstruction.
+    /// Rank of the hull of the demands. It is larger by 1 if there is an obstruction.
     pub extended_rank: usize,
-    /// The rank after each depth of brackets, D itself first.
+    /// Rank after each depth of brackets, from depth 0 (D itself).
     pub growth: Vec<usize>,
-    /// True if there is an obstruction on some branches only.
+    /// True if only some branches have an obstruction.
     pub is_partial: bool,
-    /// True if an obstruction is certain, not only overwhelmingly likely.
+    /// True if an obstruction is proved. False if it is only certain up to the probability `error`.
     pub is_proof: bool,
-    /// A bound of the chance that the answer is wrong.
+    /// Upper bound of the probability that the answer is wrong.
     pub error: f64,
-    /// The points that were sampled.
+    /// Number of sampled points.
     pub points: usize,
-    /// The primes that were used.
+    /// The primes in use.
     pub primes: Vec<u64>,
     pub(super) hull: Hull,
     pub(super) dependent: Vec<usize>,
 }
 
 impl Local {
-    /// The dependent velocities of the frame whose brackets were taken.
+    /// The dependent velocities of the frame in which brackets were computed.
     pub fn dependent(&self) -> &[usize] {
         &self.dependent
     }
 }
 
-/// Decides whether a local density exists.
+/// Decides whether a local density exists. `seed` gives the random points.
 ///
 /// # Errors
-/// [`Undecided`].
+/// [`Undecided`] with the reason.
 pub fn decide_local(pool: &Pool, problem: &Problem, seed: u64) -> Result<Local, Undecided> {
     decide_local_where(pool, problem, seed, &[])
 }
 
-/// Same as [`decide_local`], in the frame of D with these dependent velocities. Verdict and ranks are the same;
-/// brackets and obstruction are those of this frame.
+/// Same as [`decide_local`], in the frame of D with the given dependent velocities. Verdict and ranks are the same.
+/// Brackets and obstruction belong to this frame.
 ///
 /// # Errors
-/// [`Undecided`]; that no regular point was found also where these velocities do not depend on the others.
+/// [`Undecided`] with the reason; also if the given velocities cannot be expressed by the others, so that there is no
+/// regular point.
 pub fn decide_local_in(
     pool: &Pool,
     problem: &Problem,
@@ -144,7 +147,7 @@ fn decide_local_from(
         return Err(failure);
     }
     let covered = covered.ok_or(Undecided::Degenerate)?;
-    // A density must exist on all branches: an obstruction on any of them counts.
+    // A density must exist on all branches, so an obstruction on one of them counts.
     let is_obstructed = |hull: &Hull| hull.rank < hull.extended_rank;
     let (hull, dependent) = found_in
         .into_values()
@@ -199,7 +202,7 @@ pub(super) fn branches_of(
     }
 }
 
-/// Sets the symbols of conditions; `None` if the prime divides a denominator.
+/// Sets the symbols of conditions at a point; `None` if the prime divides a denominator.
 fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) -> Option<()> {
     let field = point.modulus();
     for (symbol, fixed) in conditions {
@@ -212,8 +215,8 @@ fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) -> Option
     Some(())
 }
 
-/// True if the demands are those of a function at the first regular point under conditions; `None` if `attempts` points
-/// are singular, or the hull is not closed within reach.
+/// True if the demands are satisfied by a function at the first regular point under the conditions. `None` if
+/// `attempts` points are singular, or if the hull is not closed within the largest order.
 pub(super) fn screen(
     pool: &Pool,
     problem: &Problem,
@@ -237,14 +240,15 @@ pub(super) fn screen(
         .map(|(hull, _)| hull.rank == hull.extended_rank)
 }
 
-/// True if the demands at a point are those of a function; `None` at a singular point, or where the hull is not closed within reach.
+/// True if the demands at a point are satisfied by a function; `None` at a singular point, or if the hull is not closed
+/// within the largest order.
 pub(super) fn exists_at(pool: &Pool, problem: &Problem, point: &mut ModularPoint) -> Option<bool> {
     let (hull, _) = sample(pool, problem, point, None, Until::Obstructed)?.ok()?;
     Some(hull.rank == hull.extended_rank)
 }
 
-/// The hull at a point, with series of increasing order until it is closed, and the dependent velocities; or the depth
-/// that was reached. `None` at a singular point.
+/// The hull at a point and the dependent velocities of its frame. The order of the series is increased until the hull
+/// is closed. The inner error is the depth reached without closure. `None` at a singular point.
 fn sample(
     pool: &Pool,
     problem: &Problem,
@@ -254,7 +258,7 @@ fn sample(
 ) -> Option<Result<(Hull, Vec<usize>), usize>> {
     let field = point.modulus();
     let variables = problem.variables.len();
-    // D has a hull after at most as many depths as components are missing, and one more shows that it is closed.
+    // The hull of D is complete after as many depths as D lacks components. One more depth shows that it is closed.
     let deepest = problem.forms.len() + 2 + usize::from(problem.is_time_dependent());
     let mut order = FIRST_ORDER.min(deepest);
     loop {
@@ -271,12 +275,12 @@ fn sample(
     }
 }
 
-/// A bound for the chance that a minor of the hull vanishes at a random point although it is not 0 (Schwartz,
-/// Zippel): its degree over the smallest prime.
+/// Upper bound of the probability that a minor of the hull vanishes at a random point although it is not identically 0
+/// (Schwartz, Zippel): its degree divided by the smallest prime.
 ///
-/// With entries of degree d in numerator and denominator, `W`, `m_ab` and the frame have common denominators of
-/// degree below `8 (N + M)^3 d`. A bracket adds at most twice the degrees of both sides, so depth k has degree below
-/// `4^k` times that of the frame, and a minor has at most one row for each component and the demand.
+/// With entries of degree d in numerator and denominator, `W`, `m_ab` and the frame have common denominators of degree
+/// below `8 (N + M)^3 d`. A bracket at most adds twice the degrees of both operands, so depth k has degree below `4^k`
+/// times that of the frame. A minor has at most one row per component and one for the demand.
 fn chance_of_accident(profile: &Profile, problem: &Problem, depth: usize) -> f64 {
     let sizes = (problem.coordinates + problem.forms.len()) as f64;
     let frame = 8.0 * sizes.powi(3) * profile.degree.max(1.0);
@@ -284,7 +288,7 @@ fn chance_of_accident(profile: &Profile, problem: &Problem, depth: usize) -> f64
     minor / 2f64.powi(60)
 }
 
-/// Result about the densities of a model that depend on the configuration alone.
+/// Result on the densities of a model that depend on the configuration only.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exactness {
     /// Result near generic points.
@@ -295,7 +299,7 @@ pub struct Exactness {
     pub global: Option<Global>,
 }
 
-/// Decides existence, and looks for the density.
+/// Decides the existence of a density, and searches for a closed form.
 ///
 /// # Errors
 /// [`Undecided`].
@@ -325,7 +329,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
     let mut singular: Option<(Potential, Certified)> = None;
     for allowed in [Allowed::Regular, Allowed::SingleValued, Allowed::All] {
         let pool = &mut model.pool;
-        // Each list contains the one before.
+        // Each list contains the one before it.
         if !has_points(pool, problem, &candidates, allowed, seed) {
             break;
         }
@@ -369,7 +373,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         ),
         None => without_closed_form(model, problem, &local, (&candidates, &parameters), seed),
     };
-    // A density that grows on a leaf where the closed form is singular differs from it nearby.
+    // On a leaf where the closed form is singular, a density that grows along a loop differs from it.
     let density = singular.filter(|_| !matches!(global, Global::Many { .. }));
     Ok(Exactness {
         global: Some(regularity::restrict(model, problem, global)),
@@ -378,7 +382,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
     })
 }
 
-/// The answer on all of Q where no density is a sum of candidates.
+/// The answer on all of Q if no density is a sum of candidates.
 fn without_closed_form(
     model: &mut Model,
     problem: &Problem,
@@ -398,7 +402,8 @@ fn without_closed_form(
     }
 }
 
-/// The growth on a closed leaf where a singular density vanishes, else the reason why the question stays open.
+/// Growth along a loop of a closed leaf on which a singular density vanishes; otherwise the reason why the question
+/// stays open.
 fn on_leaves(
     model: &mut Model,
     problem: &Problem,
@@ -411,8 +416,8 @@ fn on_leaves(
         .unwrap_or(Global::Undecided(reason))
 }
 
-/// True if regular candidates give a density for each value of the parameters, with coefficients whose dependence on
-/// them is not among the forms tried.
+/// True if regular candidates give a density for each value of the parameters. The dependence of the coefficients on
+/// the parameters need not be of one of the forms tried.
 fn exists_for_each_parameter(
     model: &Model,
     problem: &Problem,

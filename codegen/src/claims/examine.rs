@@ -1,4 +1,4 @@
-//! All claims of a model, one after the other.
+//! Verdicts on all claims of a model, in order.
 
 use dalembert_expr::{ExprId, SymbolId};
 
@@ -23,22 +23,22 @@ use crate::mechanics::Derivation;
 use crate::mechanics::energy::total_energy;
 use crate::model::{Claim, Existence, Model, Statement};
 
-/// Findings about the claims of a model.
+/// Results for the claims of a model.
 #[derive(Debug, Default)]
 pub struct Examined {
-    /// The verdicts, in order.
+    /// The findings, in the order of the claims.
     pub findings: Vec<Finding>,
-    /// Invariant volume whose density is proved and can be emitted; a stated one takes precedence over one that was
-    /// found. `None` if no claim is about one.
+    /// Invariant volume with a proved density that can be emitted. A stated density takes precedence over one that was
+    /// found. `None` if no claim is about a volume.
     pub volume: Option<Volume>,
 }
 
-/// Verdicts on all claims about a model itself. Without claims nothing is computed.
+/// Examines all claims about the model itself (not about a scene). Without claims nothing is computed.
 pub fn examine(model: &mut Model, derivation: &Derivation) -> Examined {
     examine_mode(model, derivation, &[])
 }
 
-/// Same as [`examine()`], for a mode of a model with the modes `others`, in order, this one included.
+/// Same as [`examine()`], for one mode of a model. `others` are all modes in order, this one included.
 pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model]) -> Examined {
     let claims = model.own_claims();
     if claims.is_empty() {
@@ -77,7 +77,8 @@ pub fn examine_mode(model: &mut Model, derivation: &Derivation, others: &[&Model
     Examined { findings, volume }
 }
 
-/// The verdicts on claims beside constraints that are not linear in the velocities: quantities and forms are examined.
+/// Verdicts for a model with constraints that are nonlinear in the velocities. Only conserved quantities and forms are
+/// examined.
 fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim]) -> Vec<Finding> {
     let seed = finding::seed_of(&model.snake_name);
     let whole = Dynamics::of(model, derivation);
@@ -100,7 +101,7 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
                 others: &[],
                 seed,
             };
-            // No other mode is looked at.
+            // Other modes are not examined.
             let (symplectic, name) = symplectic::symplectic_form(model);
             let stated = match &claim.statement {
                 Statement::Invariant(form) => {
@@ -123,7 +124,7 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
         .collect()
 }
 
-/// Same as [`examine()`], for a scene. With `volume`, a density is looked for if no claim is about one.
+/// Same as [`examine()`], for a scene. If the scene asks for a volume and no claim is about one, a density is sought.
 pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
     let mut examined = examine(model, derivation);
     if model.extras.volume && examined.volume.is_none() {
@@ -140,7 +141,7 @@ pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
     examined
 }
 
-/// Finding about `density: exact`, claimed or not, and the volume if one can be emitted.
+/// Verdict on `density: exact`, whether claimed or not, with remarks, and the volume if it can be emitted.
 pub fn examine_volume(
     model: &mut Model,
     derivation: &Derivation,
@@ -155,7 +156,7 @@ pub fn examine_volume(
         return (Verdict::Undecided(reason), Vec::new(), None);
     }
     let (verdict, remarks) = examiner.existence(Existence::Global);
-    // A density for indeterminate parameters alone is not one of the declared model.
+    // A density found only for indeterminate parameters is not a density at the declared values.
     let is_special = |exactness: &Exactness| {
         !matches!(verdict, Verdict::Proved(_)) && exactness.global == Some(Global::Exists)
     };
@@ -172,7 +173,7 @@ pub fn examine_volume(
     (verdict, remarks, volume)
 }
 
-/// Finding for a claim that stays open.
+/// The finding on a claim that stays open for a reason.
 fn open(claim: &Claim, reason: Undecided) -> Finding {
     Finding {
         claim: claim.text.clone(),
@@ -184,7 +185,7 @@ fn open(claim: &Claim, reason: Undecided) -> Finding {
     }
 }
 
-/// Data shared by the verdicts on several claims.
+/// Data shared by the verdicts on all claims.
 struct Examiner<'e> {
     model: &'e mut Model,
     derivation: &'e Derivation,
@@ -275,7 +276,7 @@ impl<'e> Examiner<'e> {
         }
     }
 
-    /// Verdict on a symmetry, with the change of its momentum along the motion and at surfaces.
+    /// Verdict on a symmetry. The remarks give the change of its momentum along the motion and at surfaces.
     fn symmetry(&mut self, field: &[ExprId]) -> (Verdict, Vec<String>) {
         let (verdict, mut remarks) =
             symmetry::check_symmetry(self.model, &self.dynamics, field, self.seed);
@@ -289,7 +290,7 @@ impl<'e> Examiner<'e> {
         (verdict, remarks)
     }
 
-    /// The density that a proof of existence is about, if it has a closed form.
+    /// The closed form of the density whose existence was proved, if there is one.
     fn closed_form(&self, statement: &Statement, verdict: &Verdict) -> Option<ClosedForm> {
         let is_found = match statement {
             Statement::Existence(Existence::Global | Existence::Local) => true,
@@ -307,7 +308,7 @@ impl<'e> Examiner<'e> {
         })
     }
 
-    /// The verdict on a density of the motion between impacts.
+    /// Verdict on a density for the motion between impacts.
     fn existence_of_the_motion(&mut self, existence: Existence) -> Verdict {
         let decision = match self.decision.take() {
             Some(decision) => decision,
@@ -317,7 +318,7 @@ impl<'e> Examiner<'e> {
         let generic = existence::check_existence(self.model, problem, &decision, existence, seed);
         let is_generic = matches!(generic, Verdict::Proved(_));
         let verdict = match (&decision, existence) {
-            // NOTE: a local density stays one where the periods of a default happen to vanish.
+            // NOTE: a local density stays one even if periods vanish at the defaults by accident.
             (Ok(_), Existence::Local) => generic,
             (Err(_), _) if problem.curved().is_some() => {
                 curvature_at_defaults(self.model, problem, &self.dynamics, generic, seed)
@@ -336,14 +337,14 @@ impl<'e> Examiner<'e> {
         verdict
     }
 
-    /// The verdict on a claim of existence, with what impacts do to the volume.
+    /// Verdict on a claim of existence. The remarks give the effects of impacts on the volume.
     fn existence(&mut self, existence: Existence) -> (Verdict, Vec<String>) {
         let verdict = self.existence_of_the_motion(existence);
         let is_none = existence == Existence::None;
         let Some(Ok(exactness)) = self.decision.take() else {
             return (verdict, Vec::new());
         };
-        // A density for indeterminate parameters alone is not one of the declared model.
+        // A density found only for indeterminate parameters is not a density at the declared values.
         let is_special = match &verdict {
             Verdict::Proved(_) => false,
             Verdict::Undecided(_) => true,
@@ -364,7 +365,7 @@ impl<'e> Examiner<'e> {
         (self.qualified(verdict, &effects), remarks)
     }
 
-    /// A verdict on a density of the motion, with the surfaces that do not keep its volume.
+    /// The verdict on a density of the motion, qualified by the surfaces that do not preserve its volume.
     fn qualified(&self, verdict: Verdict, effects: &[Effect]) -> Verdict {
         match verdict {
             Verdict::Proved(proof) => Verdict::Proved(kept::qualified(self.model, proof, effects)),
@@ -386,7 +387,7 @@ impl<'e> Examiner<'e> {
         (self.qualified(verdict, &effects), self.sentences(&effects))
     }
 
-    /// The verdict on a stated density of the motion between impacts.
+    /// Verdict on a stated density, for the motion between impacts.
     fn density_of_the_motion(&mut self, stated: (ExprId, &str)) -> Verdict {
         let (problem, dynamics) = (&self.problem, &self.dynamics);
         if let Some(rates) = self.model.field.clone() {
@@ -396,7 +397,7 @@ impl<'e> Examiner<'e> {
         self.stated_at_defaults(stated, generic)
     }
 
-    /// Verdict on one volume that all modes and surfaces keep.
+    /// Verdict on one volume that all modes and surfaces preserve.
     fn volume_kept(&mut self) -> (Verdict, Vec<String>) {
         let stated = kept::stated_or_one(self.model);
         let is_looked_for = stated.written.is_none() && self.model.field.is_none();
@@ -441,7 +442,7 @@ impl<'e> Examiner<'e> {
         impact::check_conserved_under(model, &around, surface, (value, written), holds)
     }
 
-    /// The verdict on a stated density, from the one for indeterminate parameters.
+    /// Verdict on a stated density at the default parameters, given the verdict for indeterminate parameters.
     fn stated_at_defaults(
         &mut self,
         (value, written): (ExprId, &str),
@@ -457,8 +458,8 @@ impl<'e> Examiner<'e> {
         defaults.confirmed(generic, declared)
     }
 
-    /// An expression and the motion with the declared values of parameters; `None` if there are none, or nothing is
-    /// proved.
+    /// The defaults, and with them the expression and the motion. `None` if there are no defaults, or if `generic` is
+    /// not a proof.
     fn at_defaults(
         &mut self,
         value: ExprId,
@@ -476,7 +477,7 @@ impl<'e> Examiner<'e> {
         Some((defaults, value, dynamics))
     }
 
-    /// Remedies in words if no density exists.
+    /// Suggestions for a model without a density, in words.
     fn alternatives(&mut self, exactness: &Exactness) -> Vec<String> {
         alternatives::alternatives(
             self.model,
@@ -487,13 +488,13 @@ impl<'e> Examiner<'e> {
         )
     }
 
-    /// Density that was found, written out as far as possible.
+    /// The density that was found, written out as far as possible.
     fn found_density(&mut self, exactness: &Exactness) -> Density {
         let potential = exactness.density.as_ref().map(|(density, _)| density);
         kept::of_potential(&mut self.model.pool, potential)
     }
 
-    /// Effects of all surfaces on a volume.
+    /// Effects of all surfaces on the volume of a density.
     fn effects(&mut self, density: &Density) -> Vec<Effect> {
         let (model, around) = self.around();
         hybrid::effects(model, &around, density)
@@ -504,7 +505,7 @@ impl<'e> Examiner<'e> {
         effects.iter().map(sentence).collect()
     }
 
-    /// Model, with what else is known of impacts.
+    /// The model, with the data for the examination of its surfaces.
     fn around(&mut self) -> (&mut Model, Surroundings<'_>) {
         let around = Surroundings {
             derivation: self.derivation,
@@ -515,7 +516,7 @@ impl<'e> Examiner<'e> {
         (self.model, around)
     }
 
-    /// Emission of a density without closed form, in words.
+    /// Remark on the emission of a density without closed form.
     fn numeric(&self, volume: Option<&Volume>) -> Option<String> {
         let exactness = self.decision.as_ref()?.as_ref().ok()?;
         if exactness.global.is_none() || exactness.density.is_some() {
@@ -534,7 +535,7 @@ impl<'e> Examiner<'e> {
         Some(format!("`InvariantVolume` is not implemented: {reason}"))
     }
 
-    /// The volume that these statements are about.
+    /// The volume of the proved statements.
     fn volume(&mut self, proved: &[&Statement]) -> Option<Volume> {
         if self.model.is_first_order() {
             return None;
@@ -568,13 +569,13 @@ impl<'e> Examiner<'e> {
     }
 }
 
-/// True if the claims state no density.
+/// True if no claim states a density.
 fn stated_density_is_absent(model: &Model) -> bool {
     let mut claims = model.claims.iter().filter(|claim| claim.scene.is_none());
     claims.all(|claim| !matches!(claim.statement, Statement::Density(_)))
 }
 
-/// The expression with energy and momenta written out.
+/// The expression with energy and momenta replaced by their definitions.
 pub(super) fn explicit(model: &mut Model, value: ExprId) -> ExprId {
     let whole = model.lagrangian.whole;
     let mut replacements: Vec<(SymbolId, ExprId)> = Vec::new();

@@ -1,8 +1,9 @@
 //! Values of one parameter at which an obstruction may vanish: rational roots and poles of delta.
 //!
-//! At a point modulo a prime, all other parameters frozen, delta (see [`super::obstruction`]) is a rational function of
-//! the parameter, known from a few of its values. A root or a pole that is a small fraction is no accident of a random
-//! point; yet it is only a candidate: other obstructions may be left, or the model degenerate there.
+//! At a point modulo a prime, with all other parameters fixed, delta (see [`super::obstruction`]) is a rational
+//! function of the parameter. A few of its values determine it. A root or a pole that is a small fraction is no
+//! accident of a random point. It is only a candidate: other obstructions may remain, or the model may be degenerate
+//! there.
 
 use dalembert_expr::{ExprId, ModularPoint, Node, Pool, Rational, SymbolId};
 
@@ -14,14 +15,14 @@ use super::obstruction::elements_at;
 use super::polynomial::{Polynomial, rational_function, roots};
 use super::problem::Problem;
 
-/// Numbers of values of delta after which its degrees are determined, in order.
+/// Numbers of values of delta after which an interpolation is tried, in order.
 const VALUES: [usize; 4] = [8, 16, 32, 48];
-/// Values beyond the number of coefficients.
+/// Number of values beyond the number of coefficients. They check the interpolation.
 const SURPLUS: usize = 2;
 
 /// Small fractions at which delta has a root or a pole as a function of `parameter`; empty if delta is not a rational
 /// function of it, or one of too high a degree. `trials` is the number of values that may still be computed; `None` if
-/// it did not suffice.
+/// it is too small.
 pub(super) fn exceptional_values(
     pool: &Pool,
     problem: &Problem,
@@ -59,13 +60,13 @@ pub(super) struct Column<'c> {
     pub(super) pool: &'c Pool,
     pub(super) problem: &'c Problem,
     pub(super) local: &'c Local,
-    /// The element of the hull that is obstructed.
+    /// Index of the obstructed element of the hull.
     pub(super) obstruction: usize,
     pub(super) parameter: SymbolId,
 }
 
 impl Column<'_> {
-    /// True if the parameter occurs outside of roots and functions only.
+    /// True if neither a root nor a function depends on the parameter.
     pub(super) fn is_rational(&self) -> bool {
         let depends = |id: ExprId| self.pool.depends_on(id, self.parameter);
         let order = self.pool.reachable(&self.problem.roots());
@@ -121,7 +122,8 @@ impl Column<'_> {
         Some(None)
     }
 
-    /// Demand of the obstructing element minus that of the combination of other elements that is the same vector field.
+    /// Demand of the obstructing element minus the demand of the combination of other elements that equals it as a
+    /// vector field.
     fn delta(&self, point: &mut ModularPoint) -> Option<u64> {
         let field = point.modulus();
         let hull = &self.local.hull;
@@ -137,7 +139,7 @@ impl Column<'_> {
             .map(|i| columns.iter().map(|column| elements[*column][i]).collect())
             .collect();
         let relation = first_relation(field, rows)?;
-        // The others are independent here too.
+        // If the relation ends before the obstructing element, the other elements are dependent at this point.
         if relation.last() != Some(&1) {
             return None;
         }

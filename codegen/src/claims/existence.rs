@@ -1,4 +1,4 @@
-//! `density: exact`, `locally_exact`, `none`: the verdict on the existence of a density, in words.
+//! `density: exact`, `locally_exact`, `none`: the verdict on the existence of a density, with its text.
 
 use dalembert_expr::{Node, Pool, Verdict as Zero};
 
@@ -14,7 +14,7 @@ use super::sample::Sample;
 use super::undecided::Undecided;
 use crate::model::{Existence, Model};
 
-/// Finding about densities, or the reason for which there is none.
+/// Result on densities, or the reason why it is undecided.
 pub type Decision = Result<Exactness, Undecided>;
 
 /// The verdict on a claim of existence.
@@ -54,10 +54,11 @@ pub(super) fn check_existence(
     }
 }
 
-/// Reason for which forces whose divergence is not linear in the velocities exclude a density of the configuration.
+/// Reason why forces whose divergence is not linear in the velocities exclude a density of the configuration.
 const CURVED: &str = "no density depends on q alone: the forces change volumes at a rate that is not linear in the velocities";
 
-/// The verdict where forces change volumes in a way that no function of the configuration balances, as states in a row show.
+/// Verdict for forces that change volumes at a rate that no function of the configuration balances. Equidistant states
+/// on a line of velocities show it.
 fn curved_forces(
     model: &Model,
     (sample, values): (&Sample, &[(String, f64)]),
@@ -140,7 +141,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `, where k != 0`: parameters by which a closed form divides and that may be 0.
+    /// Text of exceptions such as `, where k != 0`: parameters in denominators of a closed form that may be 0.
     fn exceptions(&self, potential: &Potential) -> String {
         let pool = &self.model.pool;
         let mut divisors = Vec::new();
@@ -255,7 +256,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `d_x + 0.41 d_y`
+    /// Text of a vector, such as `d_x + 0.41 d_y`.
     fn vector(&self, components: &[f64]) -> String {
         let mut text = String::new();
         for (i, value) in components.iter().enumerate() {
@@ -327,7 +328,7 @@ impl Writer<'_> {
         })
     }
 
-    /// `when psi1 makes a turn`
+    /// Text of a loop, such as `when psi1 makes a turn`.
     fn turns(&self, turns: &[(usize, i64)]) -> String {
         let each: Vec<String> = turns
             .iter()
@@ -341,7 +342,7 @@ impl Writer<'_> {
     }
 }
 
-/// Calls whose mutual relations are invisible to residues.
+/// Up to four function calls whose relations to each other are not visible modulo primes.
 fn unrelated_atoms(pool: &Pool, problem: &Problem) -> Vec<String> {
     let parts = pool.reachable(&problem.roots());
     let is_atom = |id: &dalembert_expr::ExprId| {

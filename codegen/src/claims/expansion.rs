@@ -1,7 +1,8 @@
-//! Expressions with their derivatives by the variables of a state, tangent vectors of the states of one time, and forms on these.
+//! First-order expansions of expressions in positions, velocities and time; tangent vectors of D at a fixed time;
+//! exterior forms on these vectors.
 //!
 //! ```text
-//! D at one time    eta^a(qdot) + eta^a_0 = 0: positions and independent velocities are its coordinates
+//! D at one time    eta^a(qdot) + eta^a_0 = 0: positions and independent velocities are coordinates
 //! c df_1 ^ .. ^ df_k on v_1, .., v_k    c det(df_i(v_j))
 //! ```
 
@@ -21,14 +22,14 @@ use super::sample::{ATTEMPTS, state_on_d};
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
-/// Components of a form beyond which it is not examined, times the products in the determinant of one.
+/// Largest number of components times `2^degree` of a form that is examined.
 const LARGEST: usize = 1 << 17;
 
 /// Expressions with their derivatives by positions, velocities and time.
 #[derive(Debug)]
 pub(super) struct Expansions {
     variables: Vec<SymbolId>,
-    /// Values and derivatives as they are evaluated, by the expression that they are of.
+    /// Value and derivatives as they are evaluated, keyed by the expression before any restriction.
     entries: BTreeMap<ExprId, (ExprId, Vec<ExprId>)>,
 }
 
@@ -58,7 +59,7 @@ impl Expansions {
         }
     }
 
-    /// Replaces a coordinate by its value on a surface in what is evaluated.
+    /// Replaces a coordinate by its value on a surface, in values and derivatives.
     pub(super) fn restrict(&mut self, pool: &mut Pool, solution: (SymbolId, ExprId)) {
         for (value, slopes) in self.entries.values_mut() {
             *value = pool.substitute(*value, &[solution]);
@@ -66,7 +67,7 @@ impl Expansions {
         }
     }
 
-    /// All that is evaluated.
+    /// All expressions to be evaluated.
     pub(super) fn roots(&self) -> impl Iterator<Item = ExprId> + '_ {
         let of =
             |(value, slopes): &(ExprId, Vec<ExprId>)| std::iter::once(*value).chain(slopes.clone());
@@ -108,7 +109,7 @@ impl Expansions {
     }
 }
 
-/// `sum a_i b_i`, as far as both go.
+/// `sum a_i b_i`, up to the end of the shorter one.
 pub(super) fn inner<A: Arithmetic>(
     field: A,
     row: impl Iterator<Item = A::Scalar>,
@@ -119,17 +120,17 @@ pub(super) fn inner<A: Arithmetic>(
     })
 }
 
-/// Tangent vectors of the states of one time, by positions and independent velocities.
+/// Tangent vectors of D at a fixed time, in positions and independent velocities.
 #[derive(Debug, Clone)]
 pub(super) struct Tangents {
-    /// `eta^a(qdot) + eta^a_0`, which the expansions have.
+    /// `eta^a(qdot) + eta^a_0`. The expansions must contain them.
     pub(super) residuals: Vec<ExprId>,
-    /// The velocities that follow from the others.
+    /// Indices of the dependent velocities.
     dependent: Vec<usize>,
     /// The number of coordinates.
     coordinates: usize,
     is_first_order: bool,
-    /// True if vectors stay on the leaves of integrable constraints: `eta^a(v) = 0` for their positions `v`.
+    /// True if vectors are tangent to the leaves of integrable constraints: `eta^a(v) = 0` for their position part `v`.
     pub(super) is_along_leaves: bool,
 }
 
@@ -165,7 +166,7 @@ impl Tangents {
         })
     }
 
-    /// The same with velocities that follow from the others at a wall, where others may than elsewhere.
+    /// The same vectors with dependent velocities chosen at a wall, where those of the interior may be singular.
     pub(super) fn at_wall(&self, model: &Model, around: &Surroundings<'_>, wall: &Wall) -> Self {
         if self.dependent.is_empty() {
             return self.clone();
@@ -182,7 +183,7 @@ impl Tangents {
         }
     }
 
-    /// Those of the leaves of integrable constraints: positions depend as velocities do.
+    /// Tangent vectors of the leaves of integrable constraints: positions are dependent wherever velocities are.
     pub(super) fn along_leaves(&self) -> Self {
         Self {
             is_along_leaves: true,
@@ -190,7 +191,7 @@ impl Tangents {
         }
     }
 
-    /// The states that they belong to, in words that follow a form.
+    /// Text after the name of a form: the states to which the vectors belong.
     pub(super) fn place(&self) -> &'static str {
         match self.is_along_leaves {
             true => " on the leaves of the constraints",
@@ -198,7 +199,7 @@ impl Tangents {
         }
     }
 
-    /// The dimension of the states.
+    /// Number of tangent vectors.
     pub(super) fn dimension(&self) -> usize {
         match self.is_first_order {
             true => self.coordinates,
@@ -206,12 +207,12 @@ impl Tangents {
         }
     }
 
-    /// The place of the first vector of a velocity: those of positions come before.
+    /// Index of the first vector of a velocity. Vectors of positions come first.
     pub(super) fn first_velocity(&self) -> usize {
         self.positions().count()
     }
 
-    /// Positions that are free.
+    /// Indices of the independent positions.
     fn positions(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.coordinates).filter(|i| !self.is_along_leaves || !self.dependent.contains(i))
     }
@@ -231,7 +232,8 @@ impl Tangents {
         positions.chain(velocities).collect()
     }
 
-    /// The vectors by positions, velocities and time; `None` where the dependent velocities do not follow.
+    /// The vectors, with components for positions, velocities and time; `None` if the dependent velocities are not
+    /// determined.
     pub(super) fn vectors<A: Arithmetic>(
         &self,
         field: A,
@@ -270,8 +272,8 @@ impl Tangents {
         Some(vectors)
     }
 
-    /// Sets the dependent positions or velocities of vectors, whose places begin at `first`, so that what
-    /// residuals lack on vectors becomes 0.
+    /// Sets the dependent components of vectors, at indices `first + j`, so that the residuals vanish along them.
+    /// `lacking`: residuals along the vectors before, one row per residual.
     fn complete<A: Arithmetic>(
         &self,
         field: A,
@@ -308,7 +310,7 @@ impl Tangents {
     }
 }
 
-/// Velocities that follow from the others at a real state.
+/// Indices of the dependent velocities at a real state.
 fn dependent(model: &Model, dynamics: &Dynamics, point: &mut RealPoint) -> Option<Vec<usize>> {
     let [forms, _] = dynamics.equations();
     let roots: Vec<ExprId> = forms.iter().flatten().copied().collect();
@@ -323,16 +325,16 @@ fn dependent(model: &Model, dynamics: &Dynamics, point: &mut RealPoint) -> Optio
     choose_dependent(&jets, &forms.iter().map(row).collect())
 }
 
-/// Values of coefficients, each with the rows of its differentials on all tangent vectors.
+/// A form on all tangent vectors: the value of each coefficient, with the rows of its differentials.
 #[derive(Debug)]
 pub(super) struct Products<S> {
     products: Vec<(S, Vec<Vec<S>>)>,
 }
 
-/// Components of a form that a question is about.
+/// Components of a form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Part {
-    /// All of them, with random weights.
+    /// All of them, added up with random weights of this seed.
     All(u64),
     /// The component on these tangent vectors.
     One(Vec<usize>),
@@ -349,7 +351,7 @@ impl<S: Copy> Products<S> {
         self.products.push((coefficient, rows));
     }
 
-    /// The component on some of the vectors.
+    /// The component on the vectors with the indices `places`.
     pub(super) fn component<A: Arithmetic<Scalar = S>>(
         &self,
         field: A,
@@ -370,7 +372,7 @@ impl<S: Copy> Products<S> {
         self.products.is_empty().then_some(rows)
     }
 
-    /// The components of a part together.
+    /// The component, or the weighted sum of components, that `part` names.
     pub(super) fn total<A: Arithmetic<Scalar = S>>(
         &self,
         field: A,
@@ -391,7 +393,7 @@ impl<S: Copy> Products<S> {
 }
 
 impl Products<f64> {
-    /// A size beside which rounding is small.
+    /// Scale of the components, for comparison with rounding errors.
     pub(super) fn size(&self) -> f64 {
         let largest = |row: &Vec<f64>| {
             row.iter()
@@ -404,7 +406,7 @@ impl Products<f64> {
     }
 }
 
-/// The chance that random weights hide a component.
+/// Probability that random weights hide a component.
 pub(super) const CHANCE: f64 = 1.0 / (1_u64 << 60) as f64;
 
 /// A random weight below `2^60` (splitmix64).
@@ -415,7 +417,7 @@ pub(super) fn weight(seed: u64, index: u64) -> i64 {
     ((z ^ (z >> 31)) >> 4) as i64
 }
 
-/// All choices of as many places as the degree, in order.
+/// All increasing choices of `degree` indices below `dimension`, in lexicographic order.
 pub(super) fn choices(dimension: usize, degree: usize) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..degree {
@@ -432,7 +434,7 @@ pub(super) fn choices(dimension: usize, degree: usize) -> Vec<Vec<usize>> {
     found
 }
 
-/// True if there are more components, or longer ones, than are examined.
+/// True if a form has too many components, or determinants too large, to be examined.
 pub(super) fn is_too_large(dimension: usize, degree: usize) -> bool {
     let mut count: usize = 1;
     for step in 0..degree.min(dimension) {
@@ -441,7 +443,7 @@ pub(super) fn is_too_large(dimension: usize, degree: usize) -> bool {
     degree > super::minors::LARGEST || count.saturating_mul(1 << degree) > LARGEST
 }
 
-/// A form with energy, momenta and, in a first-order system, velocities written out.
+/// A form with its expressions mapped by `explicit`.
 pub(super) fn written_out(
     form: &ExteriorForm,
     mut explicit: impl FnMut(ExprId) -> Option<ExprId>,
@@ -456,7 +458,7 @@ pub(super) fn written_out(
     Some(form)
 }
 
-/// A form of a first-order system with velocities replaced by rates.
+/// A form of a first-order system with velocities replaced by `rates`.
 pub(super) fn with_rates(model: &mut Model, form: ExteriorForm, rates: &[ExprId]) -> ExteriorForm {
     let velocities = model.coordinates.iter().map(|coordinate| coordinate.qdot);
     let replacements: Vec<_> = velocities.zip(rates.iter().copied()).collect();
@@ -475,7 +477,7 @@ pub(super) fn explicit_form(model: &mut Model, form: &ExteriorForm) -> ExteriorF
     }
 }
 
-/// The accelerations that the equations of motion give for the velocities of a point, as series.
+/// Accelerations from the equations of motion at the velocities of a point, as series.
 pub(super) fn accelerations<A: Arithmetic>(
     jets: &Jets<'_, A>,
     equations: [&[Vec<ExprId>]; 2],
@@ -490,7 +492,7 @@ pub(super) fn accelerations<A: Arithmetic>(
     Some(accelerations)
 }
 
-/// A number of a point as the constant series.
+/// Constant series of the values at a point, by expression.
 pub(super) fn constants<'c, P: ExpansionPoint>(
     jets: &'c Jets<'_, P::Field>,
     values: &'c [Number<P>],

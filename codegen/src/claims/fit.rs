@@ -1,8 +1,9 @@
-//! The density itself: combinations of candidates for `G` with `X_i(G) = c_i`, by linear algebra modulo a prime.
+//! Closed forms of the density: combinations of candidates for `G` with `X_i(G) = c_i`, by linear algebra modulo a
+//! prime.
 //!
-//! The unknown constants `k_b` of `sum k_b X_i(b) = c_i` at random points are solved for modulo a prime and
-//! reconstructed as rational numbers. What was found is then certified from itself alone, at fresh points modulo other
-//! primes: the certificate does not depend on how it was found.
+//! The constants `k_b` in `sum k_b X_i(b) = c_i` at random points are computed modulo a prime and reconstructed as
+//! rational numbers. A density found is then certified independently of the search, at fresh points modulo other
+//! primes.
 
 use dalembert_expr::{
     ExprId, Frozen, JetSpace, Jets, ModularPoint, Modulus, Pool, Rational, SymbolId,
@@ -14,27 +15,27 @@ use super::potential::{Allowed, Candidates, Potential, Term};
 use super::problem::Problem;
 use super::undecided::{LARGEST_CHANCE, Undecided};
 
-/// Largest numerator and denominator of a coefficient that is accepted.
+/// Largest accepted numerator and denominator of a coefficient.
 const LARGEST: i64 = 50;
-/// Number of fresh points at which a density is certified, and of those of each branch if there are several.
+/// Number of fresh points of a certificate: with a single branch, and for each of several branches.
 const CERTIFIED: (usize, usize) = (12, 3);
-/// Number of points, not used to find a solution, at which the solution must hold.
+/// Number of further points at which a solution must hold.
 const FRESH_POINTS: usize = 3;
-/// Equations beyond the number of unknowns.
+/// Number of equations in excess of the unknowns.
 const SURPLUS: usize = 8;
 
-/// Place and method of the certification of a density.
+/// Certificate of a density: points, primes and error probability.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certified {
-    /// Fresh points at which every demand was satisfied.
+    /// Number of fresh points at which every demand is satisfied.
     pub points: usize,
     /// The primes.
     pub primes: Vec<u64>,
-    /// Upper bound of the probability that it is not a density.
+    /// Upper bound of the probability that the result is not a density.
     pub error: f64,
 }
 
-/// The combination of candidates with constant rational coefficients that is a density, if there is one.
+/// The combination of candidates with rational coefficients that is a density, if one exists.
 pub(super) fn fit(
     pool: &mut Pool,
     problem: &Problem,
@@ -54,7 +55,7 @@ pub(super) fn fit(
     Some(Potential { terms: found })
 }
 
-/// True if points are found at which all candidates have residues: many independent roots refuse almost all points.
+/// True if points are found at which all candidates have residues. Many independent roots reject almost all points.
 pub(super) fn has_points(
     pool: &Pool,
     problem: &Problem,
@@ -76,7 +77,7 @@ pub(super) fn has_points(
 
 /// Same as [`fit`], with coefficients that are products of powers of parameters.
 ///
-/// Doubling a parameter multiplies such a coefficient by a power of 2.
+/// Each exponent is read off by doubling a parameter, which multiplies the coefficient by a power of 2.
 pub(super) fn fit_with_parameters(
     pool: &mut Pool,
     problem: &Problem,
@@ -134,7 +135,7 @@ pub(super) fn fit_with_parameters(
 /// Exponents of parameters that are tried.
 const EXPONENTS: std::ops::RangeInclusive<i64> = -4..=4;
 
-/// The e with `after = 2^e before`.
+/// The exponent e with `after = 2^e before`, if it is one of [`EXPONENTS`].
 fn power_of_two(field: Modulus, before: u64, after: u64) -> Option<i64> {
     EXPONENTS.into_iter().find(|e| {
         let power = field.integer(1 << e.unsigned_abs());
@@ -147,7 +148,8 @@ fn power_of_two(field: Modulus, before: u64, after: u64) -> Option<i64> {
     })
 }
 
-/// The coefficients modulo a prime, later candidates only where earlier ones do not suffice; `None` if there are none.
+/// The coefficients modulo a prime. Later candidates are used only if earlier ones do not suffice. `None` if there is
+/// no solution.
 pub(super) fn solve_for_coefficients(
     pool: &Pool,
     problem: &Problem,
@@ -170,7 +172,7 @@ pub(super) fn solve_for_coefficients(
         rows.extend(at_next(&mut modulus)?);
     }
     let field = modulus?;
-    // Equations at one point may be trivial, so as many as unknowns may not determine them.
+    // Some equations at a point may be trivial, so there may be too few to determine all unknowns.
     loop {
         let solution = solve_rows(field, rows.clone(), terms.len())?;
         let mut is_solved = true;
@@ -189,7 +191,7 @@ pub(super) fn solve_for_coefficients(
     }
 }
 
-/// True if a row `(unknowns.. | right)` holds for a solution.
+/// True if a solution satisfies the row `(unknowns.. | right)`.
 fn is_satisfied(field: Modulus, row: &[u64], solution: &[u64]) -> bool {
     let mut left = 0;
     for (entry, unknown) in row.iter().zip(solution) {
@@ -204,7 +206,7 @@ fn roots(problem: &Problem, terms: &[Term]) -> Vec<ExprId> {
     roots
 }
 
-/// Equations `[X_i(b) for each term .., c_i]` of each demand at a point.
+/// The equations `[X_i(b) for each term .., c_i]` of all demands at a point.
 fn equations(
     pool: &Pool,
     problem: &Problem,
@@ -214,7 +216,7 @@ fn equations(
     let field = point.modulus();
     let space = JetSpace::new(problem.variables.len(), 1, usize::MAX)?;
     let frame = frame(pool, problem, &Jets::new(field, &space), point, None)?;
-    // A density may depend on coordinates that nothing else depends on.
+    // A density may depend on coordinates that do not occur in metric, constraints and forces.
     let all = JetSpace::new(problem.components(), 1, usize::MAX)?;
     let expressions: Vec<ExprId> = terms.iter().filter_map(|t| t.expression()).collect();
     let series = pool.taylor(
@@ -254,7 +256,7 @@ fn equations(
     Some(frame.demands.iter().map(row).collect())
 }
 
-/// The derivatives of `ln |f|` by the variables of a series of first order.
+/// Derivatives of `ln |f|`, from the first-order series of `f`.
 pub(super) fn of_logarithm(field: Modulus, series: &[u64]) -> Option<Vec<u64>> {
     let (value, slopes) = series.split_first()?;
     let factor = field.inv(*value)?;
@@ -266,7 +268,7 @@ pub(super) fn of_logarithm(field: Modulus, series: &[u64]) -> Option<Vec<u64>> {
     )
 }
 
-/// The solution of `rows (unknowns.. | right)` with the last dependent unknowns 0; `None` if there is none.
+/// Solution of the rows `(unknowns.. | right)`, with free unknowns set to 0; `None` if there is no solution.
 fn solve_rows(field: Modulus, mut rows: Vec<Vec<u64>>, unknowns: usize) -> Option<Vec<u64>> {
     let mut pivots = Vec::new();
     for column in 0..=unknowns {
@@ -300,7 +302,7 @@ fn solve_rows(field: Modulus, mut rows: Vec<Vec<u64>>, unknowns: usize) -> Optio
     Some(solution)
 }
 
-/// The rational number of small numerator and denominator with this residue.
+/// The rational number with small numerator and denominator that has this residue, if there is one.
 pub(super) fn reconstruct(field: Modulus, residue: u64) -> Option<Rational> {
     let size = |value: u64| value.min(field.prime() - value) as i64;
     (1..=LARGEST).find_map(|denominator| {
@@ -310,7 +312,8 @@ pub(super) fn reconstruct(field: Modulus, residue: u64) -> Option<Rational> {
     })
 }
 
-/// True if a potential satisfies every demand, at fresh points modulo two primes and more.
+/// The certificate of a potential that satisfies every demand at fresh points modulo several primes. `None` if a demand
+/// fails.
 ///
 /// # Errors
 /// [`Undecided`].
@@ -325,7 +328,7 @@ pub(super) fn certify(
     let mut roots = roots(problem, &terms);
     roots.extend(&coefficients);
     let profile = pool.profile_of(&roots);
-    // Points other than those of the search, for any seed of it.
+    // The points differ from those of the search for every seed.
     let mut points = sample_points(pool, &roots, &profile, seed ^ FRESH)?;
     let branches = branches_of(pool, &roots, &profile, &points).ok_or(Undecided::Branches)?;
     let each = branches.points_of_each(CERTIFIED);
@@ -357,7 +360,7 @@ pub(super) fn certify(
     }))
 }
 
-/// Turns the seed of a search into that of a certificate: the fractional digits of the square root of 2.
+/// Makes the seed of a certificate from that of the search (fractional digits of the square root of 2).
 const FRESH: u64 = 0x6a09_e667_f3bc_c908;
 
 fn residuals(field: Modulus, rows: &[Vec<u64>], coefficients: &[u64]) -> Vec<u64> {

@@ -1,4 +1,4 @@
-//! A frame of the constraint distribution as series at a point, with the demands that an invariant density makes.
+//! A frame of the constraint distribution as series at a point, with the conditions on an invariant density.
 //!
 //! `exp(G) mu_C` is invariant iff `X_i(G) = c_i` for a frame `X_i` of D, and `X_0(G) = c_0` for the drift:
 //!
@@ -19,7 +19,7 @@ use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Jets, Pool, Series};
 use super::linear::{Matrix, Solution, dot, largest, solve, transpose};
 use super::problem::{Friction, Problem};
 
-/// A vector field with the demand on the derivative of G along it, as the last component.
+/// A vector field `X`, followed by the demand: the derivative of G along `X` that an invariant density needs.
 pub(super) type Demand<A> = Vec<Series<A>>;
 
 /// The geometry at a point.
@@ -54,7 +54,7 @@ struct Expanded<A: Arithmetic> {
 }
 
 /// The frame with series of the order of `jets`, the demands one order less; `None` if the point is singular or an
-/// expression has no value there. The dependent velocities are chosen unless they are given.
+/// expression has no value there. `dependent`: indices of the dependent velocities; `None` chooses them.
 pub(super) fn frame<P: ExpansionPoint>(
     pool: &Pool,
     problem: &Problem,
@@ -146,13 +146,13 @@ fn identity<A: Arithmetic>(jets: &Jets<'_, A>, size: usize) -> Matrix<A> {
         .collect()
 }
 
-/// Fraction of the largest entry below which a pivot may be rounding.
+/// Fraction of the largest entry below which a pivot may be a rounding error.
 const PIVOT: f64 = 1e-9;
 
-/// The greedy choice of columns with an invertible minor, from the last column to the first.
+/// Greedy choice of columns with an invertible minor, from the last column to the first.
 ///
-/// NOTE: coordinates that place a body are mostly declared first and its shape last, yet a wheel's angle often has
-/// constant coefficients nowhere; any choice is right, and this one is the documented order of the volume.
+/// NOTE: any choice is right. This one is documented as the order of the volume. Coordinates that place a body are
+/// mostly declared first, and coordinates of its shape last; an angle of a wheel often has no constant coefficient.
 pub(super) fn choose_dependent<A: Arithmetic>(
     jets: &Jets<'_, A>,
     forms: &Matrix<A>,
@@ -194,7 +194,7 @@ fn extended<A: Arithmetic>(mut field: Vec<Series<A>>, demand: Series<A>) -> Dema
     field
 }
 
-/// Derivatives of series by components, on which they may not depend.
+/// Derivatives of series by components: coordinates and time. The derivative by a component without variable is 0.
 struct Calculus<'c, 's, A> {
     jets: Jets<'s, A>,
     problem: &'c Problem,
@@ -284,7 +284,7 @@ impl<A: Arithmetic> Calculus<'_, '_, A> {
         field
     }
 
-    /// The dependent velocities of a unit in one column.
+    /// Sets the dependent velocities that follow from a unit velocity in `column`.
     fn follow(
         &self,
         field: &mut [Series<A>],
@@ -299,7 +299,7 @@ impl<A: Arithmetic> Calculus<'_, '_, A> {
     }
 }
 
-/// A column.
+/// Column `j` of a matrix.
 pub(super) fn column<T: Clone>(rows: &[Vec<T>], j: usize) -> Vec<T> {
     rows.iter().map(|row| row[j].clone()).collect()
 }

@@ -1,4 +1,4 @@
-//! Quantities of the criterion as numbers at a point, for checks of it.
+//! Quantities of the density criterion as numbers at a point, for checks of the criterion.
 
 use dalembert_expr::{JetSpace, Jets, Pool, RealPoint, SymbolId};
 
@@ -24,8 +24,8 @@ pub struct Geometry {
     pub dependent_determinant: f64,
 }
 
-/// The geometry where coordinates and parameters have these values; `None` if it is singular there. The dependent
-/// velocities are chosen unless they are given.
+/// The geometry at these values of coordinates and parameters; `None` if the point is singular. `dependent`: indices of
+/// the dependent velocities; `None` chooses them.
 pub fn geometry_at(
     pool: &Pool,
     problem: &Problem,

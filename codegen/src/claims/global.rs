@@ -1,4 +1,5 @@
-//! Global existence from local existence: decides whether the density is single-valued on the declared circles.
+//! Global existence of a density from local existence: decides whether the local density is single-valued on the
+//! declared circles.
 
 use std::f64::consts::TAU;
 
@@ -15,44 +16,45 @@ use super::regularity::LEAVES;
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
-/// True if the density exists on all of Q.
+/// Answer on the existence of a density on all of Q.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Global {
     /// A single-valued density exists.
     Exists,
-    /// The density is multiplied by `exp(period)` along a loop.
+    /// Every density is multiplied by `exp(period)` along a loop.
     Many {
-        /// The coordinates that run around their circles, with the number of turns.
+        /// The circles of the loop: coordinate, and number of turns.
         turns: Vec<(usize, i64)>,
-        /// Growth of `G`.
+        /// Growth of `G` along the loop.
         period: f64,
-        /// The values of parameters (and of the other coordinates) at which it was computed.
+        /// Values of parameters and of the other coordinates at which the period was computed.
         sample: Sample,
     },
-    /// Neither was shown.
+    /// Neither was proved; with the reason.
     Undecided(&'static str),
 }
 
-/// Points of a loop at a first look.
+/// Number of points on a loop in a first test.
 const PROBES: usize = 12;
-/// Fraction of the integral of the absolute value below which a sum over few points is small.
+/// Fraction of the integral of the absolute value below which a sum over these points counts as small.
 const SMALL: f64 = 5e-2;
-/// Rounding error, relative to the integral of the absolute value, where all other terms vanish.
+/// Rounding error allowed in addition, an absolute bound for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
-/// Reason for which a period was not found.
+/// Reason why a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
-/// Reason for which a period that is not 0 in double precision leaves the question open.
+/// Reason why a period that is not 0 in double precision leaves the question open.
 const GROWS: &str = "G seems to grow along a circle, but so little beside its variation that no enclosure of the period excludes 0";
-/// The seed of the points at which symmetries are tested.
+/// Seed of the points at which symmetries are tested.
 const PERIODS: u64 = 7;
-/// Reason for which a period that seems to be 0 leaves the question open.
+/// Reason why a period that seems to be 0 leaves the question open.
 const NUMERIC: &str = "G was found in no closed form, and that its periods on the circles are 0 to rounding proves nothing: declare the angles of these circles as lines, or as intervals";
-/// Fraction of the integral of the absolute value from which a period counts.
+/// Smallest period that counts as different from 0, relative to the integral of the absolute value.
 const PERIOD: f64 = 1e-12;
-/// Samples at which periods are computed: the declared defaults, which may hide what depends on a parameter, and others.
+/// Samples at which periods are computed: the declared defaults, which may hide the effect of a parameter, and another
+/// one.
 const ATTEMPTS: [usize; 2] = [0, 9];
 
-/// The answer of a density that was found in closed form with multiples of angles.
+/// The answer for a density that was found in closed form and contains multiples of angles.
 pub(super) fn from_angles(
     model: &Model,
     problem: &Problem,
@@ -129,7 +131,7 @@ pub(super) fn from_angles(
     )
 }
 
-/// Certifies at one of the samples that `G` grows along a loop, which then lies in the domain of the declaration.
+/// Certifies at one of the samples that `G` grows along a loop. The loop then lies in the domain of the declaration.
 fn certify(
     model: &Model,
     problem: &Problem,
@@ -145,7 +147,7 @@ fn certify(
     certified(first).or_else(|_| certified(second)).map(|_| ())
 }
 
-/// The reason that is printed.
+/// The text of a reason.
 fn reason_of(uncertain: Uncertain) -> &'static str {
     match uncertain {
         Uncertain::Leaves => LEAVES,
@@ -160,7 +162,8 @@ fn angles(model: &Model, problem: &Problem) -> Vec<usize> {
         .collect()
 }
 
-/// Turns of up to six circles, few turns first, the first one positive: up to four turns of two circles, one of many.
+/// Combinations of turns of up to six circles, those with few turns first, the first turn positive. Each circle has up
+/// to 4 turns for two circles, 2 for three, 1 for more.
 fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
     let most = match angles.len() {
         0..=2 => 4,
@@ -188,7 +191,7 @@ fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
     all
 }
 
-/// The hull of D at a random point, to ask which loops lie in its leaves.
+/// The hull of D at a random point, for tests of whether loops lie in its leaves.
 struct Leaves {
     field: Modulus,
     space: JetSpace,
@@ -197,7 +200,7 @@ struct Leaves {
 }
 
 impl Leaves {
-    /// `None` if the hull is not closed within reach.
+    /// The hull of D; `None` if it is not closed within the order tried.
     fn of(pool: &Pool, problem: &Problem) -> Option<Self> {
         let roots = problem.roots();
         let profile = pool.profile_of(&roots);
@@ -208,7 +211,7 @@ impl Leaves {
             let space = JetSpace::new(problem.variables.len(), order, 1 << 14)?;
             let jets: Jets<'_, Modulus> = Jets::new(field, &space);
             let mut demands = frame(pool, problem, &jets, point, None)?.demands;
-            // Only the vector parts matter here.
+            // Only the vector parts matter here, so the demands are cleared.
             demands.iter_mut().for_each(|demand| {
                 if let Some(last) = demand.last_mut() {
                     last.clear();
@@ -225,7 +228,7 @@ impl Leaves {
         })
     }
 
-    /// True if the field with constant components `turns` lies in the hull.
+    /// True if the constant vector field `turns` lies in the hull.
     fn hold(&self, problem: &Problem, turns: &[(usize, i64)]) -> bool {
         let jets = Jets::new(self.field, &self.space);
         let mut turn = vec![Vec::new(); problem.components() + 1];
@@ -239,8 +242,8 @@ impl Leaves {
     }
 }
 
-/// The answer of the growth of `G` along loops, certified by enclosures: with all components in the hull of D along each circle,
-/// else along the combinations of circles that lie in leaves.
+/// The answer from the growth of `G` along loops, certified by enclosures. If the hull of D contains all components,
+/// the loops are the single circles. Otherwise they are the combinations of circles that lie in leaves.
 pub(super) fn from_periods(
     model: &Model,
     problem: &Problem,
@@ -261,7 +264,7 @@ pub(super) fn from_periods(
     let has_no_period =
         |angle| reflection::has_no_period(model, problem, local, (angle, cuts), PERIODS);
     let (mut is_open, mut uncertain) = (false, None);
-    // Circles along which the growth is 0 by symmetry, or may be.
+    // Circles along which the growth is proved to be 0 by symmetry, and circles where this is open.
     let (mut proved, mut left) = (0, Vec::new());
     for turns in loops {
         if !is_whole
@@ -274,7 +277,7 @@ pub(super) fn from_periods(
         if let [(angle, _)] = turns[..]
             && is_whole
         {
-            // A proof takes less than a sum that converges to nothing.
+            // The proof takes less work than a sum that converges to 0.
             if seems_closed(model, problem, local, &turns) && has_no_period(angle) {
                 proved += 1;
                 continue;
@@ -320,8 +323,8 @@ pub(super) fn from_periods(
     }
 }
 
-/// True if a few points of a loop add up to little. A proof that `G` does not grow along the loop is then worth a
-/// search.
+/// True if the sum over a few points of a loop is small. Then a search for a proof that `G` does not grow along the
+/// loop is worthwhile.
 fn seems_closed(model: &Model, problem: &Problem, local: &Local, turns: &[(usize, i64)]) -> bool {
     let sample = sample(model, ATTEMPTS[0], uses(&model.pool, &problem.roots()));
     Loop::new(model, problem, local, turns)

@@ -1,9 +1,9 @@
-//! Growth of `G` along a loop: as a sum over points, which tells where to look, and as an enclosure, which is a proof.
+//! Growth of `G` along a loop: as a sum over points, for the search, and as an enclosure, for the proof.
 //!
-//! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements. `dG` of the tangent is that
-//! combination of their demands. The enclosure divides the loop into cells, on which all coordinates of the loop are
-//! intervals, and halves cells until the sum over them excludes 0. The elements belong to a frame of D that may have poles
-//! on the loop; another frame replaces it there.
+//! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements. `dG` of the tangent is the
+//! same combination of their demands. The enclosure divides the loop into cells, on which the coordinates are
+//! intervals, and bisects cells until the sum over them excludes 0. The elements belong to a frame of D, which may have
+//! poles on the loop. Another frame replaces it there.
 
 use std::f64::consts::TAU;
 
@@ -21,29 +21,29 @@ use super::problem::Problem;
 use super::sample::{self, Sample};
 use crate::model::Model;
 
-/// Points on a circle for the trapezoidal rule, which converges geometrically for periodic functions: they are doubled
-/// until the growth changes by no more than this part of the integral of the absolute value.
+/// Smallest and largest number of points of the trapezoidal rule, which converges geometrically for periodic functions.
+/// The points are doubled until the growth changes by at most this fraction of the integral of the absolute value.
 const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
-/// Fraction of that integral below which doubles lack digits that are printed.
+/// Fraction of that integral below which doubles lose some of the printed digits.
 const CANCELLED: f64 = 1e-2;
-/// Rounding error, relative to that integral, where all other terms vanish.
+/// Rounding error allowed in addition, an absolute bound for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
-/// Position of the points between two multiples of the step.
+/// Offset of the points, as a fraction of the step.
 const SHIFT: f64 = 0.382;
 /// Number of cells of the first enclosure, and number of enclosures after which the question stays open.
 const CELLS: usize = 32;
 const ENCLOSURES: usize = 1024;
-/// Orders of the series in cells: the second one for growths that are small beside the variation of `G`.
+/// Orders of the series in cells. The second one is for growths that are small relative to the variation of `G`.
 const ORDERS: [usize; 2] = [2, 8];
 /// Number of monomials beyond which a series is not computed.
 const MONOMIALS: usize = 2000;
-/// The seed of the hull in other frames.
+/// Seed for the hull in other frames.
 const SEED: u64 = 7;
 /// Number of frames among which a regular one is sought.
 const FRAMES: usize = 4;
 
-/// A loop: of some coordinates, around their circles.
+/// A loop: some coordinates turn around their circles.
 pub(super) struct Loop<'l> {
     model: &'l Model,
     problem: &'l Problem,
@@ -51,20 +51,21 @@ pub(super) struct Loop<'l> {
     turns: &'l [(usize, i64)],
     /// The hull in frames that are regular on parts of the loop.
     frames: Vec<Local>,
-    /// Subexpressions of the rest of the Lagrangian and of the forces. A motion exists where all of them have values.
+    /// Subexpressions of the velocity-linear part, the potential and the forces. A motion exists where all of them have
+    /// values.
     defined: Vec<ExprId>,
 }
 
-/// Reason for which the growth along a loop is not certified to differ from 0.
+/// Reason why the growth along a loop is not certified to differ from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Uncertain {
     /// The loop may leave the domain of the declaration.
     Leaves,
-    /// The growth is too small beside the variation of `G`, or its sum does not converge.
+    /// The growth is too small relative to the variation of `G`, or its sum does not converge.
     Small,
 }
 
-/// A part of a loop between two fractions of it, with its contribution to the growth.
+/// A part of a loop, with its contribution to the growth. `ends` are fractions of the loop.
 struct Cell {
     ends: [f64; 2],
     part: Option<Interval>,
@@ -76,12 +77,12 @@ struct Places {
     middle: EnclosedPoint,
     /// The middle, as a fraction of the loop.
     fraction: f64,
-    /// The length of the part, where the loop has length 2 pi.
+    /// The length of the part; the whole loop has length 2 pi.
     length: Interval,
 }
 
 impl<'l> Loop<'l> {
-    /// A loop in a leaf of a hull.
+    /// A loop in a leaf of the hull of `local`. `turns`: coordinates and their numbers of turns.
     pub(super) fn new(
         model: &'l Model,
         problem: &'l Problem,
@@ -100,11 +101,10 @@ impl<'l> Loop<'l> {
         }
     }
 
-    /// Growth with all printed digits, certified not to be 0 when every symbol of a sample has a value next to its own,
-    /// or a value in a given range.
+    /// Growth with all printed digits, certified to differ from 0. The certificate holds if every symbol of the sample
+    /// has a value next to its own, or a value in its given range.
     ///
-    /// # Errors
-    /// If it is not certified.
+    /// # Errors If the growth is not certified.
     pub(super) fn certified(&mut self, sample: &Sample, ranges: &Domain) -> Result<f64, Uncertain> {
         let (growth, size, points) = self.converged_by(sample).ok_or(Uncertain::Small)?;
         let mut domain = sample.ranges();
@@ -132,7 +132,7 @@ impl<'l> Loop<'l> {
         Some((growth, size))
     }
 
-    /// The same, and the number of points.
+    /// Growth, integral of the absolute values, and number of points.
     fn converged_by(&self, sample: &Sample) -> Option<(f64, f64, usize)> {
         let mut points = POINTS.0;
         let mut coarse = self.sum(sample, points)?;
@@ -147,11 +147,12 @@ impl<'l> Loop<'l> {
         None
     }
 
-    /// The same by a number of points.
+    /// Growth and integral of the absolute values from a number of points.
     pub(super) fn sum(&self, sample: &Sample, points: usize) -> Option<(f64, f64)> {
         let (mut sum, mut size) = (0.0, 0.0);
         for k in 0..points {
-            // NOTE: off the fractions of pi, where frames of D often have poles that the density does not have.
+            // NOTE: the points avoid fractions of pi, where frames of D often have poles that the density does not
+            // have.
             let turn = (k as f64 + SHIFT) / points as f64;
             let mut point = sample.point();
             for (i, count) in self.turns {
@@ -174,7 +175,7 @@ impl<'l> Loop<'l> {
         let mut point = BallPoint::of(&sample.point());
         let mut sum = Ball::ZERO;
         for k in 0..points {
-            // NOTE: the sum converges for points of equal distance, which `k + SHIFT` in doubles are not.
+            // NOTE: the sum converges for equidistant points. `k + SHIFT` in doubles are not equidistant.
             let turn = (Ball::integer(k as i64) + Ball::double(SHIFT)) * step;
             for (i, count) in self.turns {
                 let angle = whole * turn * Ball::integer(*count);
@@ -187,8 +188,8 @@ impl<'l> Loop<'l> {
         Some((sum * whole * step).nearest())
     }
 
-    /// Terms of the derivative of `G` along the loop, as series of an order; `None` where the elements of the hull are
-    /// dependent.
+    /// Terms of the derivative of `G` along the loop, as series of order `order`; `None` where the elements of the hull
+    /// are dependent.
     fn parts<P: ExpansionPoint>(
         &self,
         local: &Local,
@@ -203,7 +204,7 @@ impl<'l> Loop<'l> {
         let width = problem.components();
         let basis = || hull.basis.iter().map(|e| &elements[*e]);
         let vectors: Matrix<P::Field> = basis().map(|element| element[..width].to_vec()).collect();
-        // The tangent is a combination of the basis: as many components as vectors determine it.
+        // The tangent is a combination of the basis. As many components as basis vectors determine it.
         let components = choose_dependent(&jets, &vectors)?;
         let (mut rows, mut tangent) = (Matrix::<P::Field>::new(), Matrix::<P::Field>::new());
         for i in components {
@@ -218,7 +219,7 @@ impl<'l> Loop<'l> {
         Some(parts.map(|(demand, c)| jets.mul(demand, &c[0])).collect())
     }
 
-    /// The monomials of series of an order in front of the brackets of a hull.
+    /// The monomials of series of order `order` after the brackets of a hull, each of which takes one order.
     fn space(&self, local: &Local, order: usize) -> Option<JetSpace> {
         let order = local.hull.growth.len() + order;
         JetSpace::new(self.problem.variables.len(), order, MONOMIALS)
@@ -236,7 +237,7 @@ impl<'l> Loop<'l> {
         found
     }
 
-    /// The same by series of an order.
+    /// Looks for an enclosure that excludes 0, by series of order `order`.
     fn certify_by(
         &mut self,
         order: usize,
@@ -256,7 +257,8 @@ impl<'l> Loop<'l> {
                 return Ok(());
             }
             let width = total.map_or(f64::INFINITY, |total| total.hi - total.lo);
-            // NOTE: a power of the length of cells: so many would be needed.
+            // NOTE: the width falls like the cell length to the power `order`. `needed` cells make it as small as the
+            // growth.
             let excess = (width / growth.abs()).powf(1.0 / order as f64);
             let needed = excess * cells.len() as f64;
             let is_beyond = |count: f64| count > ENCLOSURES as f64;
@@ -308,7 +310,7 @@ impl<'l> Loop<'l> {
         Cell { ends, part }
     }
 
-    /// True if the rest of the Lagrangian and the forces have values all over a box.
+    /// True if the velocity-linear part, the potential and the forces have values all over a box.
     fn is_defined(&self, place: &EnclosedPoint) -> bool {
         let values = place.clone().values(&self.model.pool, &self.defined);
         values.is_some_and(|values| {
@@ -369,7 +371,7 @@ impl<'l> Loop<'l> {
         sum
     }
 
-    /// The hull in a frame that is regular at a fraction of the loop, if it is not known yet.
+    /// The hull in a frame that is regular at a fraction of the loop; `None` if this frame is known already.
     fn regular_at(&self, turn: f64, sample: &Sample) -> Option<Local> {
         let mut point = sample.point();
         for (i, count) in self.turns {

@@ -1,6 +1,7 @@
-//! `involution: f, g, ..`: are the brackets of these functions with each other 0 on D?
+//! `involution: f, g, ..`: decides whether the brackets of these functions with each other vanish on D.
 //!
-//! The bracket is that of [`crate::mechanics::bracket`]: Poisson without constraints, almost Poisson with them. Forces have no part in it.
+//! The bracket is that of [`crate::mechanics::bracket`]: Poisson without constraints, almost Poisson with them. Forces
+//! do not enter.
 
 use dalembert_expr::ExprId;
 
@@ -12,7 +13,7 @@ use super::together::Together;
 use crate::mechanics::bracket::{FunctionOnD, derive_bracket};
 use crate::model::{Model, StatedFunction};
 
-/// Characters of a bracket beyond which a message gives its value alone.
+/// Largest length of the text of a bracket in a message. Of longer ones only the value is given.
 const READABLE: usize = 120;
 
 /// The verdict on `involution: f, g, ..`.
@@ -51,7 +52,7 @@ pub(super) fn check_involution(
     together.verdict()
 }
 
-/// The verdict on one bracket.
+/// Verdict on one bracket.
 fn vanishes(
     model: &mut Model,
     around: &Surroundings<'_>,

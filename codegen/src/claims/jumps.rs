@@ -1,6 +1,6 @@
-//! Effects of surfaces on a symmetry xi and on its momentum `J = xi^i dL/dqdot^i`. The flow of xi keeps an impact by a law where it keeps the
-//! surface: `xi(h) = 0` where `h = 0`. An impulse `p+ = p + eps pi_D^* dh` changes it by
-//! `eps dh(pi_D xi)` (W. Clark, thesis, chapter VI), `eps dh(xi)` where xi is in D.
+//! Effects of surfaces on a symmetry xi and on its momentum `J = xi^i dL/dqdot^i`. The flow of xi preserves an impact
+//! law if it preserves the surface: `xi(h) = 0` where `h = 0`. An impulse `p+ = p + eps pi_D^* dh` changes the momentum
+//! by `eps dh(pi_D xi)` (W. Clark, thesis, chapter VI), which is `eps dh(xi)` if xi lies in D.
 
 use dalembert_expr::{ExprId, Verdict as Zero};
 
@@ -12,7 +12,7 @@ use super::impact::{Wanted, changes_at};
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
-/// A sentence for each surface.
+/// One sentence for each surface.
 pub(super) fn momentum_at_surfaces(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -63,13 +63,13 @@ fn at_surface(
     }
 }
 
-/// True if a surface gives an impulse along `pi_D^* dh` and nothing else.
+/// True if the only effect of a surface is an impulse along `pi_D^* dh`.
 fn is_impulse(model: &Model, surface: usize) -> bool {
     let declared = &model.surfaces[surface];
     declared.instantaneous.is_empty() && !matches!(declared.law, Law::Reset | Law::Transition)
 }
 
-/// The verdict, in words, on the claim that the flow keeps a surface with a law; empty for other maps.
+/// Text of the verdict on the invariance of a surface and its law under the flow. Empty for maps that are not impulses.
 fn surface_is_kept(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -96,7 +96,7 @@ fn surface_is_kept(
     }
 }
 
-/// The value of a form on the field.
+/// The value of a one-form on the field.
 fn along(model: &mut Model, form: &[ExprId], field: &[ExprId]) -> ExprId {
     let terms = form.iter().zip(field);
     let terms: Vec<ExprId> = terms.map(|(a, b)| model.pool.mul(*a, *b)).collect();
@@ -104,7 +104,7 @@ fn along(model: &mut Model, form: &[ExprId], field: &[ExprId]) -> ExprId {
     model.pool.simplify(sum)
 }
 
-/// The size of the change, of an impulse.
+/// Text of the change of the momentum, for an impulse.
 fn jump(model: &mut Model, around: &Surroundings<'_>, surface: usize, field: &[ExprId]) -> String {
     if !is_impulse(model, surface) {
         return String::new();

@@ -1,8 +1,9 @@
-//! `volume: kept` and `density under s: factor = e`: do the motion and all that happens at surfaces keep one volume, and what does
-//! a surface multiply it by?
+//! `volume: kept` and `density under s: factor = e`: preservation of one volume by the motion and at all surfaces, and
+//! the factor by which a surface multiplies it.
 //!
-//! The volume is `f mu_C`, or `f dq` of a first-order system, with the density `f` that the claims state (`density = f`). Where they
-//! state none, `volume: kept` takes the one that the motion is found to keep, and a factor is that of `mu_C`.
+//! The volume is `f mu_C`, or `f dq` of a first-order system, with the density `f` that the claims state
+//! (`density = f`). Without a stated density, `volume: kept` takes the density found for the motion, and a factor
+//! refers to `mu_C`.
 
 use std::cmp::Ordering;
 
@@ -22,7 +23,7 @@ use super::sliding::{may_slide, unless_it_slides};
 use super::wall::Wall;
 use crate::model::{Law, Model};
 
-/// The density that the claims state, else that of `mu_C` itself.
+/// The density that the claims state, else 1, the density of `mu_C`.
 pub(super) fn stated_or_one(model: &mut Model) -> Density {
     match stated_density(model) {
         Some((value, written)) => Density {
@@ -38,7 +39,7 @@ pub(super) fn stated_or_one(model: &mut Model) -> Density {
     }
 }
 
-/// The density of a potential, as far as it is written out.
+/// The density `exp(G)` of a potential `G`, without a value if `exp(G)` is not written out.
 pub(super) fn of_potential(pool: &mut Pool, potential: Option<&Potential>) -> Density {
     let written = potential.and_then(|potential| exponential(pool, potential));
     Density {
@@ -48,7 +49,7 @@ pub(super) fn of_potential(pool: &mut Pool, potential: Option<&Potential>) -> De
     }
 }
 
-/// `exp(G)`, if all its terms are written out.
+/// `exp(G)`; `None` if a term is a determinant, or a logarithm whose coefficient is no number.
 fn exponential(pool: &mut Pool, potential: &Potential) -> Option<ExprId> {
     let mut factors = Vec::new();
     for (coefficient, term) in &potential.terms {
@@ -70,7 +71,8 @@ fn exponential(pool: &mut Pool, potential: &Potential) -> Option<ExprId> {
     Some(pool.product(&factors))
 }
 
-/// The verdict on `volume: kept`, given that on the density of the flow, with what each surface does.
+/// The verdict on `volume: kept`, with sentences on the effects of surfaces. `flow`: the verdict on the density of the
+/// motion between impacts.
 pub(super) fn check_kept(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -207,7 +209,8 @@ pub(super) fn check_factor(
     }
 }
 
-/// The verdict on a factor that has the right size, and may be negative. Between fields the factor itself is known, and a state shows it.
+/// The verdict on a factor with the right absolute value and a sign that may be negative. At a transition between
+/// fields the factor itself is known, and a state shows the sign.
 fn up_to_its_sign(
     model: &Model,
     around: &Surroundings<'_>,
@@ -234,7 +237,7 @@ fn up_to_its_sign(
     }
 }
 
-/// The question whether a function is negative anywhere on a wall.
+/// The question whether a function is negative at a state on a wall.
 struct Negative<'n> {
     value: ExprId,
     written: &'n str,
@@ -273,7 +276,7 @@ impl AtImpact for Negative<'_> {
     }
 }
 
-/// The verdict where there is no map between volumes of one dimension.
+/// The verdict where no map relates volumes of the same dimension.
 fn without_map(
     model: &mut Model,
     unknown: Unknown,
@@ -313,7 +316,8 @@ fn without_map(
     }
 }
 
-/// The certificate of a density, restricted in words to the motion between impacts if surfaces do not keep its volume.
+/// The certificate of a density. If surfaces do not keep its volume, its text is restricted to the motion between
+/// impacts.
 pub(super) fn qualified(
     model: &Model,
     certificate: Certificate,

@@ -1,8 +1,9 @@
 //! Check that resets keep the constraints. The state after an impact must be in D at its new position, and on the same
 //! level of every integrable constraint: positions are brought back to that level after every step.
 //!
-//! A reset that residues and real points refute is refused. Constraints on velocities may stay open, because every run
-//! checks them at every impact. Levels must be proved to be kept, because no run checks them.
+//! A reset is refused if evaluations modulo primes and at real points refute it. Constraints on velocities may stay
+//! undecided, because every run checks them at every impact. Levels must be proved to be kept, because no run checks
+//! them.
 
 use dalembert_expr::{ExprId, SymbolId};
 
@@ -15,7 +16,7 @@ use crate::mechanics::Derivation;
 use crate::model::{Model, Reset, Surface};
 use crate::spec::ItemId;
 
-/// Mistakes in resets: place, text and advice.
+/// Errors in resets: item, message and advice.
 pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId, String, String)> {
     let surfaces = model.surfaces.iter();
     if derivation.constraints.is_empty() || surfaces.clone().all(|surface| surface.reset.is_none())
@@ -47,8 +48,8 @@ pub fn check_landings(model: &mut Model, derivation: &Derivation) -> Vec<(ItemId
     mistakes
 }
 
-/// Remark on constraints that are not linear in the velocities: every run checks velocities after a reset, and levels
-/// are not examined.
+/// Errors for models with constraints that are not linear in the velocities. Every run checks velocities after a reset.
+/// Levels are not examined, so resets that move positions are refused.
 fn unexamined(model: &Model) -> Vec<(ItemId, String, String)> {
     let levels = model.constraints.iter();
     let Some(level) = levels.clone().find(|constraint| constraint.level.is_some()) else {
@@ -75,7 +76,7 @@ struct Landings<'l> {
 }
 
 impl Landings<'_> {
-    /// Violation by the velocities after the reset, and advice, if known.
+    /// Violation of a constraint by the velocities after the reset, with advice; `None` if it is not refuted.
     fn check_velocity(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
         let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
         let residual = residual(model, a);
@@ -97,7 +98,7 @@ impl Landings<'_> {
         }
     }
 
-    /// The same for the level of an integrable constraint.
+    /// Change of the level of an integrable constraint, with advice; `None` if the level is proved to be kept.
     fn check_level(&self, model: &mut Model, a: usize) -> Option<(String, String)> {
         let level = model.constraints[a].level.filter(|_| self.reset.moves())?;
         let (name, constraint) = (&self.name, model.constraints[a].name.display.clone());
@@ -116,7 +117,7 @@ impl Landings<'_> {
         })
     }
 
-    /// An expression of the state after the reset as one of the state before it.
+    /// An expression at the state after the reset, in terms of the state before it.
     fn after(&self, model: &mut Model, value: ExprId) -> ExprId {
         let replacements = self.reset.replacements(&model.coordinates);
         model.pool.substitute(value, &replacements)

@@ -1,11 +1,11 @@
 //! Closed leaves on which no density is single-valued.
 //!
-//! A density in closed form that is 0 or infinite where a function `f` vanishes has `X(f) = 0` there for all fields of D:
-//! the surface `f = 0` consists of leaves of the hull of D. If the hull has one dimension less than Q, the surface is one
-//! leaf. Every density, regular or not, grows on a loop in it by the same factor, because the growth is the integral of
-//! regular demands. A circle of an angle that `f` does not contain is such a loop. Enclosures of `f` and of its derivative
-//! certify that `f` has a simple zero. An enclosure of the growth over all possible places of the zero certifies that the
-//! growth is not 0.
+//! Let a density in closed form be 0 or infinite where a function `f` vanishes. Then `X(f) = 0` there for all fields X
+//! of D, so the surface `f = 0` consists of leaves of the hull of D. If the rank of the hull is one less than the
+//! dimension of Q, the surface is a single leaf. Along a loop in it every density, regular or not, grows by the same
+//! factor, because the growth is the integral of regular demands. The circle of an angle that does not occur in `f` is
+//! such a loop. Enclosures of `f` and of its derivative prove that `f` has a simple zero. An enclosure of the growth
+//! over all possible positions of the zero proves that the growth is not 0.
 
 use dalembert_expr::{Domain, ExprId, Interval, JetSpace, Jets, Reals, SymbolId, Zeros};
 
@@ -19,12 +19,12 @@ use super::regularity::{domain, factors_with_zeros};
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
-/// Halvings of a segment on which a function changes its sign: to the last digit.
+/// Largest number of bisections of a segment on which a function changes sign, down to the last digit.
 const BISECTIONS: usize = 200;
-/// Relative size of the neighbourhood of a zero in which the derivative must keep its sign.
+/// Relative size of the neighbourhood of a zero in which the derivative must have constant sign.
 const AROUND: f64 = 1e-7;
 
-/// The growth on a closed leaf where a density in closed form is singular, if one is found.
+/// Growth along a loop of a closed leaf on which a density in closed form is singular, if one is found.
 pub(super) fn grown_on_leaf(
     model: &mut Model,
     problem: &Problem,
@@ -67,7 +67,8 @@ fn regular_there(model: &Model, problem: &Problem, sample: &Sample, seed: u64) -
     decide_local_in(&model.pool, problem, &frame.dependent, seed).ok()
 }
 
-/// Configuration at which a function has a simple zero, except for one coordinate, and the range of that coordinate.
+/// A configuration near a simple zero of a function, and an interval of one coordinate that contains the zero if all
+/// others have these values.
 fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, Domain)> {
     let domain = domain(model, id);
     let slopes: Vec<ExprId> = domain
@@ -87,7 +88,7 @@ fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, 
     let all: Domain = place.iter().map(|(s, x)| (*s, around(*x))).collect();
     let ranges = pool.enclose(&pool.reachable(&slopes), &all);
     let order = pool.reachable(&[id]);
-    // A function that changes its sign along one direction, where all other symbols have their values.
+    // The function changes sign along one direction, with all other symbols at their values.
     let zero = (0..place.len()).find_map(|i| {
         ranges[slopes[i].index()].filter(|slope| slope.excludes_zero())?;
         let (symbol, range) = all[i];
@@ -110,9 +111,9 @@ fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, 
     Some((sample, vec![zero]))
 }
 
-/// A zero with nine decimals, if such a zero exists.
+/// The zero rounded to nine decimals, if that is a zero as well.
 fn shortened(model: &Model, id: ExprId, place: Vec<(SymbolId, f64)>) -> Vec<(SymbolId, f64)> {
-    // Adding 0 takes the sign off a zero.
+    // Adding 0 turns -0 into 0.
     let short = |x: f64| (x * 1e9).round() / 1e9 + 0.0;
     let rounded: Vec<_> = place
         .iter()
@@ -132,7 +133,7 @@ fn value(model: &Model, id: ExprId, place: &[(SymbolId, f64)]) -> f64 {
     model.pool.eval(&[id], &value)[0]
 }
 
-/// Point on the segment between two points at which a function changes its sign.
+/// The point on the segment between `above` and `below` at which the function changes sign.
 fn bisected(
     model: &Model,
     id: ExprId,

@@ -1,17 +1,17 @@
-//! Determinants without division: what is singular has one, and so have ranges that contain 0.
+//! Determinants without division. They exist for singular matrices, and for matrices of intervals that contain 0.
 
 use dalembert_expr::Arithmetic;
 
-/// Rows beyond which no determinant is expanded.
+/// Largest number of rows of an expanded determinant.
 pub(super) const LARGEST: usize = 14;
 
-/// The determinant of a square matrix, by its minors of the first rows; `None` if it is too large.
+/// Determinant of a square matrix, by expansion into the minors of its first rows; `None` if the matrix is too large.
 pub(super) fn determinant<A: Arithmetic>(field: A, rows: &[Vec<A::Scalar>]) -> Option<A::Scalar> {
     let n = rows.len();
     if n > LARGEST {
         return None;
     }
-    // The minor of the first rows in a set of as many columns, by set.
+    // `minors[set]` is the minor of the columns in `set` (a bit mask) and of as many first rows.
     let mut minors = vec![field.integer(0); 1 << n];
     minors[0] = field.integer(1);
     for set in 1_usize..1 << n {

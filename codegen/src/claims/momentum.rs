@@ -1,6 +1,6 @@
 //! Densities that depend on velocities: `f = (det m)^k |l|^s` relative to `mu_C`, `l` linear in the velocities on D.
 //!
-//! They are singular, or 0, where `l = 0`, which may attract the motion. See [`super::darboux`] for how they are found.
+//! They are singular or 0 where `l = 0`. This set may attract the motion. [`super::darboux`] describes the search.
 
 use dalembert_expr::{ExprId, Pool, Rational};
 
@@ -25,7 +25,7 @@ pub struct MomentumDensity {
     pub exponent: Rational,
     /// `k`, the exponent of `det m^{ab}`.
     pub mass_exponent: Rational,
-    /// Place of the certification.
+    /// Result of the certification.
     pub certified: Certified,
 }
 
@@ -54,10 +54,11 @@ impl MomentumDensity {
 }
 
 /// A density that depends on velocities, for a model without a density of the configuration alone on all of Q; `None`
-/// if there is none of the forms that are tried.
+/// if no density of the forms tried exists. `exactness`: the decision about densities of the configuration. `seed`
+/// determines the random points.
 ///
 /// # Errors
-/// [`Undecided`], if no points can be had.
+/// [`Undecided`], if there are no sample points.
 pub fn find_momentum_density(
     model: &mut Model,
     derivation: &Derivation,
@@ -93,7 +94,7 @@ pub fn find_momentum_density(
     Ok(None)
 }
 
-/// The shortest way found to write an expression on D: as it is, or without the dependent velocities.
+/// The shortest known form of an expression on D: as it is, or without the dependent velocities.
 fn shortest(model: &mut Model, derivation: &Derivation, factor: ExprId) -> ExprId {
     let mut free = factor;
     for (a, j) in regular_minor(&model.pool, &derivation.constraints)

@@ -1,5 +1,5 @@
-//! Reason for which there is no density, in real numbers: a bracket that is a combination of others as a vector field
-//! while its demand is not the same combination of theirs.
+//! Obstruction to a density, in real numbers: a bracket that is a combination of others as a vector field, while its
+//! demand differs from the same combination of their demands.
 
 use dalembert_expr::{
     Arithmetic, BallPoint, EnclosedPoint, ExpansionPoint, JetSpace, Jets, Pool, RangePoint,
@@ -17,39 +17,39 @@ use crate::model::Model;
 /// An obstruction at a real point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstruction {
-    /// Place of the obstruction.
+    /// The point of the obstruction.
     pub sample: Sample,
-    /// The frame: the name of each generator and its components.
+    /// The frame: name and components of each generator.
     pub frame: Vec<(String, Vec<f64>)>,
-    /// The bracket, `[X2,[X1,X2]]`.
+    /// The bracket, for example `[X2,[X1,X2]]`.
     pub bracket: String,
-    /// Coefficients of the bracket in the elements before it, as a vector field; zeros are left out.
+    /// Coefficients of the bracket, as a vector field, in the elements before it. Zeros are omitted.
     pub relation: Vec<(String, f64)>,
-    /// Demand of the bracket on the derivative of `G` minus that of the combination.
+    /// Demand of the bracket on the derivative of `G`, minus that of the combination.
     pub delta: f64,
-    /// The size of what `delta` was computed from.
+    /// Size of the terms of `delta`.
     pub scale: f64,
-    /// True if the obstruction is certain: by an enclosure of `delta`, or by residues alone.
+    /// True if the obstruction is proved, by an enclosure of `delta` or by residues alone.
     pub is_certain: bool,
 }
 
-/// Points that are tried.
+/// Largest number of points that are tried.
 const ATTEMPTS: usize = 64;
-/// Number of monomials beyond which series are computed in doubles first. The values in doubles are kept if `delta` is
-/// not a small fraction of its scale.
+/// Number of monomials from which series are first computed in doubles, and smallest ratio of `delta` to its scale at
+/// which these doubles are used.
 const LARGE: usize = 200;
 const CLEAR_IN_DOUBLES: f64 = 1e-4;
-/// Relative radius below which the printed digits are certain.
+/// Largest relative radius at which the printed digits are certain.
 const SHARP: f64 = 1e-9;
-/// Largest relative remainder, in doubles or in balls, of a combination that counts as one.
+/// Largest remainder of a combination, relative to the elements: in doubles, and in balls.
 const REMAINDER: f64 = 1e-9;
 const REMAINDER_OF_BALLS: f64 = 1e-30;
-/// Smallest pivot of an elimination; vectors with a smaller one count as dependent.
+/// Smallest pivot of an elimination. Vectors with a smaller pivot count as dependent.
 const LEAST_PIVOT: f64 = 1e-9;
 
-/// Obstruction of a refuted density at the first real point where it shows; `None` if it shows at none. If the hull
-/// does not span, a combination of its elements is known only on the branches that residues saw. A density with roots
-/// must then show the obstruction at all points tried.
+/// The obstruction at the first real point that shows one; `None` if no point tried shows one. If the hull does not
+/// span all components, combinations of its elements are known only on the branches that were sampled modulo primes.
+/// For a density with roots all points tried must then show the obstruction.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
     let spans = local.rank == problem.components();
@@ -77,7 +77,7 @@ pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Opti
 }
 
 impl Obstruction {
-    /// The obstruction where coordinates and parameters have these values; `None` if there is none, or the point is
+    /// The obstruction for the given values of coordinates and parameters; `None` if there is none, or if the point is
     /// singular.
     pub fn at(
         model: &Model,
@@ -93,7 +93,7 @@ impl Obstruction {
         obstruction_at(model, problem, local, sample)
     }
 
-    /// The same, as numbers that doubles represent with certainty.
+    /// The obstruction with numbers rounded to eight digits, which doubles represent exactly when printed.
     fn with_eight_digits(mut self) -> Self {
         self.delta = eight_digits(self.delta);
         for (_, value) in &mut self.relation {
@@ -134,7 +134,7 @@ fn obstruction_at(
     question.enclosed::<BallPoint>(REMAINDER_OF_BALLS)
 }
 
-/// A hull with an obstruction, and a point.
+/// A hull with an obstruction, and a point to show it at.
 struct Question<'q> {
     model: &'q Model,
     problem: &'q Problem,
@@ -142,21 +142,21 @@ struct Question<'q> {
     sample: Sample,
 }
 
-/// Parts of an obstruction.
+/// The ingredients of an obstruction.
 struct Parts<S> {
-    /// The elements of the hull, the demand last.
+    /// Elements of the hull. The demand is the last entry of each.
     elements: Vec<Vec<S>>,
-    /// The basis in front of the bracket, with the coefficients of the bracket in it.
+    /// The basis of the elements before the bracket: index, and coefficient of the bracket in it.
     relation: Vec<(usize, S)>,
-    /// The bracket less the combination.
+    /// Remainder: the bracket minus the combination.
     rest: Vec<S>,
-    /// The demands of the bracket and of the terms of the combination, and the difference.
+    /// Demands of the bracket and of the terms of the combination, and their difference `delta`.
     demands: Vec<S>,
     delta: S,
 }
 
 impl Question<'_> {
-    /// The obstruction in doubles, which are shown where residues alone decide.
+    /// The obstruction in doubles. They are printed if residues alone decide.
     fn in_doubles(&self) -> Option<Obstruction> {
         let parts = self.parts(&mut self.sample.point())?;
         let size = |values: &[f64]| {
@@ -176,8 +176,8 @@ impl Question<'_> {
         })
     }
 
-    /// Obstruction in ranges. It is certain if `delta` excludes 0 and all shown values are sharp. A combination may
-    /// leave a remainder of `least` times the size of the vectors.
+    /// The obstruction in ranges. It is certain if `delta` excludes 0 and all printed values are sharp. `least` is the
+    /// largest accepted remainder of the combination, relative to the elements.
     fn enclosed<P: RangePoint>(&self, least: f64) -> Option<Obstruction> {
         let parts = self.parts(&mut P::of(&self.sample.point()))?;
         let sizes = |ranges: &[Number<P>]| {
@@ -187,7 +187,8 @@ impl Question<'_> {
             sizes.fold(0.0, f64::max)
         };
         let whole = parts.elements.iter().map(|element| sizes(element));
-        // NOTE: with other branches of roots than modulo the primes, the bracket may be no combination of those before it.
+        // NOTE: if roots are on other branches than modulo the primes, the bracket may not be a combination of the
+        // elements before it.
         let may_vanish = |range: &Number<P>| P::sign(*range).is_none();
         let is_combination = parts.rest.iter().all(may_vanish)
             && sizes(&parts.rest) <= least * whole.fold(0.0, f64::max);
@@ -237,7 +238,7 @@ impl Question<'_> {
         })
     }
 
-    /// The numbers that are shown.
+    /// The numbers to be printed.
     fn obstruction<S: Copy>(
         &self,
         parts: &Parts<S>,
@@ -279,7 +280,7 @@ impl Question<'_> {
     }
 }
 
-/// `target` less a combination of vectors.
+/// `target` minus a combination of vectors.
 fn remainder<A: Arithmetic>(
     field: A,
     vectors: &[&[A::Scalar]],
@@ -295,7 +296,7 @@ fn remainder<A: Arithmetic>(
     rest
 }
 
-/// Number rounded to eight digits, which doubles represent with certainty.
+/// The number rounded to eight digits, which survive conversion from and to text.
 fn eight_digits(value: f64) -> f64 {
     format!("{value:.7e}").parse().unwrap_or(value)
 }
@@ -305,7 +306,7 @@ fn drift(problem: &Problem, pool: &Pool) -> bool {
     problem.has_drift(pool)
 }
 
-/// The values of a hull's elements at a point, the demand last.
+/// Values of the elements of a hull at a point. The demand is the last entry of each.
 pub(super) fn elements_at<P: ExpansionPoint>(
     pool: &Pool,
     problem: &Problem,
@@ -321,7 +322,8 @@ pub(super) fn elements_at<P: ExpansionPoint>(
     Some(elements.iter().map(values).collect())
 }
 
-/// A hull's elements at a point, the demand last: series of the order by which that of `jets` exceeds the depth of the hull.
+/// Elements of a hull at a point, as series; the demand is the last entry of each. Their order is that of `jets` minus
+/// the depth of the hull.
 pub(super) fn elements_in<P: ExpansionPoint>(
     pool: &Pool,
     problem: &Problem,
@@ -334,7 +336,7 @@ pub(super) fn elements_in<P: ExpansionPoint>(
     for origin in &hull.elements {
         let element = match origin {
             Origin::Generator(i) => frame.demands[*i].clone(),
-            // NOTE: brackets are cut off by no order of their own; coefficients beyond their validity reach no value.
+            // NOTE: brackets are not truncated to their valid order. Coefficients above it do not affect any value.
             Origin::Bracket(i, position) => bracket(
                 jets,
                 &problem.variables,
@@ -347,7 +349,7 @@ pub(super) fn elements_in<P: ExpansionPoint>(
     Some(elements)
 }
 
-/// `X1`, `[X1,X2]`, .. for the first elements of a hull; the drift is `X0`.
+/// Names `X1`, `[X1,X2]`, .. of the first `count` elements of a hull. The drift is `X0`.
 fn names(hull: &Hull, count: usize, has_drift: bool) -> Vec<String> {
     let generator = |i: usize| format!("X{}", if has_drift { i } else { i + 1 });
     let mut names: Vec<String> = Vec::new();
@@ -360,8 +362,8 @@ fn names(hull: &Hull, count: usize, has_drift: bool) -> Vec<String> {
     names
 }
 
-/// The coefficients of `target` in independent vectors that span it, by elimination with pivots; `None` if they are
-/// dependent here.
+/// Coefficients of `target` in independent vectors that span it, by elimination with pivoting; `None` if the vectors
+/// are dependent at the point.
 pub(super) fn combine<A: Arithmetic>(
     field: A,
     vectors: &[&[A::Scalar]],

@@ -1,6 +1,6 @@
-//! Polynomials modulo a prime: rational functions from their values, common divisors, roots.
+//! Polynomials modulo a prime: interpolation of rational functions, greatest common divisors, roots.
 //!
-//! A polynomial is its coefficients from the constant on, the last one not 0; the polynomial 0 is empty.
+//! A polynomial is the list of its coefficients from the constant on. The last one is not 0; the polynomial 0 is empty.
 
 use dalembert_expr::Modulus;
 
@@ -48,7 +48,7 @@ fn divide(field: Modulus, a: &[u64], b: &[u64]) -> Option<(Polynomial, Polynomia
     Some((trim(quotient), trim(rest)))
 }
 
-/// The common divisor of highest degree.
+/// A greatest common divisor.
 pub(super) fn common_divisor(field: Modulus, a: &[u64], b: &[u64]) -> Polynomial {
     let (mut a, mut b) = (a.to_vec(), b.to_vec());
     while let Some((_, rest)) = divide(field, &a, &b) {
@@ -57,8 +57,8 @@ pub(super) fn common_divisor(field: Modulus, a: &[u64], b: &[u64]) -> Polynomial
     a
 }
 
-/// Numerator and denominator of the rational function with these values at distinct points, if its degrees leave
-/// `surplus` of the values as a check (Cauchy interpolation by Euclid's algorithm).
+/// Numerator and denominator of the rational function with these values at distinct points; `None` unless its degrees
+/// leave `surplus` values as a check (Cauchy interpolation by Euclid's algorithm).
 pub(super) fn rational_function(
     field: Modulus,
     values: &[(u64, u64)],
@@ -67,7 +67,7 @@ pub(super) fn rational_function(
     let mut whole = vec![1];
     let mut interpolant: Polynomial = Vec::new();
     for (x, y) in values {
-        // The next coefficient in Newton's form.
+        // The next coefficient of Newton's form.
         let missing = field.sub(*y, value(field, &interpolant, *x));
         let factor = field.mul(missing, field.inv(value(field, &whole, *x))?);
         let minus: Vec<u64> = whole
@@ -77,7 +77,7 @@ pub(super) fn rational_function(
         interpolant = sub(field, &interpolant, &minus);
         whole = mul(field, &whole, &[field.neg(*x), 1]);
     }
-    // Remainders r and cofactors t with r = t * interpolant modulo `whole`.
+    // Remainders r with cofactors t: r = t * interpolant modulo `whole`.
     let (mut old, mut new) = ((whole, Vec::new()), (interpolant, vec![1]));
     loop {
         let unknowns = new.0.len() + new.1.len();
@@ -97,7 +97,7 @@ pub(super) fn value(field: Modulus, a: &[u64], x: u64) -> u64 {
     })
 }
 
-/// The roots in the field, each once, in increasing order.
+/// The distinct roots in the field, in increasing order.
 pub(super) fn roots(field: Modulus, a: &[u64]) -> Vec<u64> {
     let mut roots = Vec::new();
     if a.len() > 1 {
@@ -114,8 +114,8 @@ pub(super) fn roots(field: Modulus, a: &[u64]) -> Vec<u64> {
     roots
 }
 
-/// The roots of a product of distinct linear factors: for half of the shifts `c`, `x + c` is a square at some and not at
-/// others (Cantor and Zassenhaus).
+/// The roots of a product of distinct linear factors. For about half of the shifts `c`, `x + c` is a square at some
+/// roots and a non-square at others (Cantor and Zassenhaus).
 fn split_roots(field: Modulus, a: &[u64], shift: u64, roots: &mut Vec<u64>) {
     match a {
         [] | [_] => {}

@@ -1,4 +1,4 @@
-//! Ingredients of the density of a model: metric, constraints, and the dependence of its forces on velocities.
+//! Ingredients of the density problem of a model: metric, constraints, and the velocity-dependence of its forces.
 
 use dalembert_expr::{ExprId, Node, Pool, SymbolId, Verdict};
 
@@ -10,43 +10,42 @@ use super::undecided::Undecided;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
-/// The data of the question whether an invariant volume exists.
+/// The data that determine whether an invariant volume exists.
 ///
-/// Components are the coordinates in order and, if `t` occurs, time after them.
+/// Components are the coordinates in order, followed by time if `t` occurs.
 #[derive(Debug, Clone)]
 pub struct Problem {
     /// `g`, N rows of N.
     pub(super) metric: Vec<Vec<ExprId>>,
     /// `eta^a`, M rows of N.
     pub(super) forms: Vec<Vec<ExprId>>,
-    /// `eta_0^a`; all the zero node if the constraints are linear.
+    /// `eta_0^a`, M entries. All are the zero node if the constraints are linear.
     pub(super) affine: Vec<ExprId>,
-    /// `dF_i/dqdot^j` at rest, N rows of N, and its derivatives by velocities `[i][j][k]`; `None` without forces
-    /// that depend on velocities.
+    /// Velocity-dependent part of the forces; `None` if the forces do not depend on velocities.
     pub(super) friction: Option<Friction>,
-    /// The symbols of the components.
+    /// Symbols of the components.
     pub(super) symbols: Vec<SymbolId>,
-    /// The components on which anything depends, in order: the variables of all series.
+    /// Indices of the components that occur anywhere, in order. They are the variables of all series.
     pub(super) variables: Vec<usize>,
-    /// The number of coordinates, N.
+    /// N, the number of coordinates.
     pub(super) coordinates: usize,
 }
 
 /// The part of the forces that depends on velocities.
 #[derive(Debug, Clone)]
 pub(super) struct Friction {
-    /// `dF_i/dqdot^j` at `qdot = 0`.
+    /// `dF_i/dqdot^j` at `qdot = 0`, N rows of N.
     pub(super) at_rest: Vec<Vec<ExprId>>,
-    /// `d^2F_i/dqdot^j dqdot^k` at rest.
+    /// `d^2F_i/dqdot^j dqdot^k` at `qdot = 0`, indexed `[i][j][k]`.
     pub(super) slope: Vec<Vec<Vec<ExprId>>>,
-    /// `dF_i/dqdot^j`, as far as they are not 0.
+    /// `dF_i/dqdot^j`, entries that are not 0.
     pub(super) entries: Vec<ForceSlope>,
-    /// The dependence of the divergence of the forces on the velocities of D.
+    /// Dependence of the divergence of the forces on velocities in D.
     pub(super) dependence: Dependence,
 }
 
 impl Problem {
-    /// The problem of a model.
+    /// The problem of a model with its derivation.
     pub fn of(model: &mut Model, derivation: &Derivation) -> Self {
         let metric = model.lagrangian.metric.clone();
         let forms: Vec<_> = derivation
@@ -86,7 +85,7 @@ impl Problem {
         problem
     }
 
-    /// Determines the dependence of the divergence of forces that are not quadratic on the velocities.
+    /// Determines the velocity-dependence of the divergence for forces that are not quadratic.
     fn examine_forces(&mut self, model: &mut Model, derivation: &Derivation) {
         let is_open = |friction: &Friction| friction.dependence == Dependence::Unknown;
         if !self.friction.as_ref().is_some_and(is_open) {
@@ -95,7 +94,7 @@ impl Problem {
         let seed = seed_of(&model.snake_name);
         let dynamics = Dynamics::of(model, derivation);
         let found = dependence(model, self, &dynamics, seed);
-        // The derivatives at rest determine a linear force, if rest is on D and they exist there.
+        // The derivatives at rest determine a linear force, if rest lies in D and the derivatives exist there.
         let has_rest = self
             .affine
             .iter()
@@ -115,7 +114,7 @@ impl Problem {
         };
     }
 
-    /// `dF_i/dqdot^j` of all forces, as far as they are not 0.
+    /// `dF_i/dqdot^j` of all forces, entries that are not 0.
     pub(super) fn force_slopes(&self) -> impl Iterator<Item = ExprId> {
         let entries = self.friction.iter().flat_map(|friction| &friction.entries);
         entries.map(|(_, slope)| *slope)
@@ -129,7 +128,7 @@ impl Problem {
         }
     }
 
-    /// The problem with parameters replaced.
+    /// The problem with parameters replaced by expressions.
     pub(super) fn substituted(&self, pool: &mut Pool, replacements: &[(SymbolId, ExprId)]) -> Self {
         let mut problem = self.clone();
         let mut replace = |ids: &mut Vec<ExprId>| *ids = pool.substitute_all(ids, replacements);
@@ -147,7 +146,7 @@ impl Problem {
         problem
     }
 
-    /// Leaves out time where it does not occur, and finds the variables.
+    /// Removes time if it does not occur, and determines the variables.
     fn settle(&mut self, pool: &Pool) {
         let roots = self.roots();
         let occurs = |symbol: &SymbolId| roots.iter().any(|id| pool.depends_on(*id, *symbol));
@@ -159,7 +158,7 @@ impl Problem {
             .collect();
     }
 
-    /// Refuses forces that the criterion does not cover: their divergence is not known to be linear in the velocities.
+    /// Rejects forces whose divergence is not known to be linear in the velocities. The criterion does not cover them.
     ///
     /// # Errors
     /// [`Undecided::Forces`].
@@ -170,8 +169,8 @@ impl Problem {
         }
     }
 
-    /// State from which steps show that the divergence of the forces is not linear in the velocities, with the values
-    /// seen there.
+    /// A state on a line of equidistant velocities where the divergence of the forces is not linear in the velocities,
+    /// with the values found.
     pub(super) fn curved(&self) -> Option<(&Sample, &[(String, f64)])> {
         match &self.friction.as_ref()?.dependence {
             Dependence::Curved(sample, values) => Some((sample, values)),
@@ -179,7 +178,7 @@ impl Problem {
         }
     }
 
-    /// The positions of the parameters that occur.
+    /// Indices of the parameters that occur.
     pub(super) fn parameters(&self, model: &Model) -> Vec<usize> {
         let roots = self.roots();
         let occurs = |position: &usize| {
@@ -199,12 +198,12 @@ impl Problem {
         self.symbols.len()
     }
 
-    /// The symbols of the variables.
+    /// Symbols of the variables.
     pub(super) fn variable_symbols(&self) -> Vec<SymbolId> {
         self.variables.iter().map(|i| self.symbols[*i]).collect()
     }
 
-    /// All expressions that are expanded.
+    /// All expressions of the problem.
     pub(super) fn roots(&self) -> Vec<ExprId> {
         let mut roots: Vec<_> = self.metric.iter().flatten().copied().collect();
         roots.extend(self.forms.iter().flatten());
@@ -216,8 +215,7 @@ impl Problem {
         roots
     }
 
-    /// True if the motion on D has a part that does not vanish with the velocities, or if the volume has a rate at
-    /// rest.
+    /// True if the motion on D or the volume has a rate at zero velocity.
     pub fn has_drift(&self, pool: &Pool) -> bool {
         self.is_time_dependent()
             || self.friction.is_some()
@@ -240,8 +238,8 @@ impl Friction {
     }
 }
 
-/// True if velocities occur in sums, products and integer powers alone. `abs(v)*v` is smooth in pieces only, and does
-/// not qualify.
+/// True if velocities occur only in sums, products and integer powers. Forces like `abs(v)*v`, which are smooth only
+/// piecewise, do not qualify.
 fn is_rational(pool: &Pool, value: ExprId, velocities: &[SymbolId]) -> bool {
     let parts = pool.reachable(&[value]);
     parts.iter().all(|id| match pool.node(*id) {

@@ -1,8 +1,8 @@
-//! Regularity of a density on all of Q, decided at real points where residues give no answer.
+//! Regularity of a density on all of Q. It is decided at real points, because residues say nothing about it.
 //!
-//! The model may have no real values. A closed form may be 0 or infinite where metric and constraints are regular: with
-//! `dx = x dy` the density `1/|x|` is invariant on both sides of the leaf `x = 0`, but it is not a density on the leaf.
-//! A circle may also leave the domain in which the constraints are independent, and the system ends there.
+//! The model may be undefined at all real points. A closed form may be 0 or infinite where metric and constraints are
+//! regular. For `dx = x dy` the density `1/|x|` is invariant on both sides of the leaf `x = 0`, but it is not a density
+//! on the leaf. A circle may leave the domain in which the constraints are independent. The system ends there.
 
 use std::f64::consts::TAU;
 
@@ -20,26 +20,26 @@ use super::problem::Problem;
 use super::sample::{ATTEMPTS, sample, uses};
 use crate::model::{Assumption, Model, Topology};
 
-/// Reason for which a singular density leaves the question open.
+/// Reason why a singular density leaves the question open.
 pub(super) const SINGULAR: &str =
     "the density found is 0 or infinite at configurations where metric and constraints are regular";
-/// Reason for which a circle without a regular turn leaves the question open.
+/// Reason why a circle that leaves the regular domain leaves the question open.
 pub(super) const LEAVES: &str = "a circle leaves the domain where the constraints are regular and forces and Lagrangian have values";
 
-/// Points on a circle.
+/// Number of points on a circle.
 const POINTS: usize = 64;
-/// Bisections: to the last digit of a number of order 1.
+/// Number of golden-section steps. They shrink an interval by the factor `3e-13`.
 const BISECTIONS: usize = 60;
-/// Fraction of its largest value below which a determinant counts as 0, and fraction below which it may become 0 near a
-/// point: squares of the sine are at a distance of half a step.
+/// Fraction of the largest determinant below which a value counts as 0, and fraction below which a minimum near a point
+/// is sought. A determinant that vanishes like the square of a sine is below the latter half a step from its zero.
 const SMALL: f64 = 1e-9;
 const LOW: f64 = 0.1;
 
 /// Values of coordinates, time and parameters.
 type Values = Vec<(SymbolId, f64)>;
 
-/// True if the model is regular at any real point. Roots and logarithms have residues even where they have no real
-/// values.
+/// True if the model is regular at one of the real points tried. Roots and logarithms have residues even where they
+/// have no real values.
 pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     let roots = problem.roots();
     (0..ATTEMPTS).any(|attempt| {
@@ -49,8 +49,8 @@ pub(super) fn is_real(model: &Model, problem: &Problem) -> bool {
     })
 }
 
-/// True if a density has no zero and no pole where the model has values. Every term whose logarithm it contains is then
-/// certified to be nonzero for all values of coordinates and parameters.
+/// True if a density has neither zeros nor poles where the model is defined: every term in its logarithms is proved to
+/// be nonzero for all values of coordinates and parameters.
 pub(super) fn is_regular(
     model: &mut Model,
     problem: &Problem,
@@ -61,7 +61,7 @@ pub(super) fn is_regular(
         .is_some_and(|terms| terms.into_iter().all(|term| is_never_zero(model, term)))
 }
 
-/// The factors of a density in closed form that may be 0 somewhere.
+/// Factors of a density in closed form that may be 0.
 pub(super) fn factors_with_zeros(
     model: &mut Model,
     problem: &Problem,
@@ -77,7 +77,7 @@ pub(super) fn factors_with_zeros(
     factors
 }
 
-/// Terms whose logarithms a density contains and that may be 0; `None` if one is too large to be written out.
+/// Terms in logarithms of a density that may be 0; `None` if one of them is too large to be written out.
 fn logarithms(
     model: &mut Model,
     problem: &Problem,
@@ -97,7 +97,7 @@ fn logarithms(
     Some(logarithms)
 }
 
-/// The factors of a product that are not in a denominator.
+/// The factors of a product outside its denominator.
 fn numerators(model: &Model, id: ExprId) -> Vec<ExprId> {
     let (_, product) = model.pool.as_multiple(id);
     match model.pool.node(product) {
@@ -109,10 +109,10 @@ fn numerators(model: &Model, id: ExprId) -> Vec<ExprId> {
     }
 }
 
-/// Constraints whose minor is written out.
+/// Largest number of constraints whose minor is written out.
 const LARGEST_MINOR: usize = 4;
 
-/// The determinant of some columns of the constraint forms, written out; `None` for many constraints.
+/// Determinant of some columns of the constraint forms, written out; `None` for too many constraints.
 pub(super) fn determinant(
     model: &mut Model,
     forms: &[Vec<ExprId>],
@@ -141,7 +141,7 @@ pub(super) fn determinant(
     Some(model.pool.sum(&terms))
 }
 
-/// True if an expression is certified to be different from 0 wherever it is defined.
+/// True if an expression is proved to be nonzero wherever it is defined.
 pub(super) fn is_never_zero(model: &mut Model, id: ExprId) -> bool {
     if model.pool.sign(id).is_nonzero() || is_positive_on_chart(model, id) {
         return true;
@@ -158,11 +158,11 @@ pub(super) fn is_never_zero(model: &mut Model, id: ExprId) -> bool {
     if model.pool.zeros_on(id, &slopes, &domain) == Zeros::None {
         return true;
     }
-    // What is 0 makes the product with its conjugate 0.
+    // At a zero of the expression, its product with the conjugate is 0 as well.
     conjugate_product(model, id).is_some_and(|product| is_never_zero(model, product))
 }
 
-/// `a^2 - b^2 r` of a sum `a + b sqrt(r)`, with one root less.
+/// The product `a^2 - b^2 r` of a sum `a + b sqrt(r)` with its conjugate, which has one root less.
 fn conjugate_product(model: &mut Model, id: ExprId) -> Option<ExprId> {
     let (constant, terms) = model.pool.linear_form(id);
     let root = |term: ExprId| {
@@ -189,7 +189,7 @@ fn conjugate_product(model: &mut Model, id: ExprId) -> Option<ExprId> {
     let product = model.pool.sub(squares[0], squares[1]);
     let product = model.pool.multiply_out(product);
     let product = model.pool.simplify(product);
-    // NOTE: a product without fewer roots would come back.
+    // NOTE: without this condition the recursion might not terminate.
     let count = |id: ExprId| {
         model
             .pool
@@ -208,7 +208,7 @@ fn root_below(pool: &Pool, id: ExprId) -> bool {
     factors.iter().any(|(_, power)| !power.is_integer())
 }
 
-/// True if it is the sine or cosine of a coordinate on a chart on which that is positive.
+/// True for the sine or cosine of a coordinate that is positive on its chart.
 fn is_positive_on_chart(model: &Model, id: ExprId) -> bool {
     let Node::Call(function, argument) = model.pool.node(id) else {
         return false;
@@ -239,10 +239,10 @@ fn is_positive_on_chart(model: &Model, id: ExprId) -> bool {
     }
 }
 
-/// The ranges of the symbols of an expression.
+/// Ranges of the symbols that occur in an expression.
 pub(super) fn domain(model: &Model, id: ExprId) -> Domain {
     let pool = &model.pool;
-    // A part of a declaration may have a longer period than the whole, if it contains fractions of angles.
+    // Parts of a declaration may have a longer period than the whole if they contain fractions of angles.
     let turns = pool.profile_of(&[id]).denominator.unwrap_or(1) as f64;
     let mut domain = Domain::new();
     let ends = |low: ExprId, high: ExprId| {
@@ -273,7 +273,7 @@ pub(super) fn domain(model: &Model, id: ExprId) -> Domain {
     domain
 }
 
-/// `global`, unless a circle leaves the domain where the constraints are regular.
+/// Replaces `Global::Exists` by an open answer if a circle leaves the domain where the constraints are regular.
 pub(super) fn restrict(model: &Model, problem: &Problem, global: Global) -> Global {
     let leaves = |i: usize| {
         model.coordinates[i].topology == Topology::Angle && leaves_domain(model, problem, i)
@@ -294,8 +294,8 @@ fn numbers(model: &Model, ids: &[ExprId], values: &Values) -> Vec<f64> {
     model.pool.eval(ids, &value)
 }
 
-/// True if the constraint mass matrix becomes singular along a circle. Its determinant is not negative, so its minimum
-/// is sought.
+/// True if the constraint mass matrix becomes singular along a circle. Its determinant is never negative, so its
+/// minimum is sought.
 fn leaves_domain(model: &Model, problem: &Problem, i: usize) -> bool {
     if problem.forms.is_empty() {
         return false;
@@ -321,7 +321,7 @@ fn leaves_domain(model: &Model, problem: &Problem, i: usize) -> bool {
     })
 }
 
-/// `det m^{ab}`; `None` where the metric or the matrix itself is singular.
+/// `det m^{ab}`; `None` where the metric or the constraint mass matrix is singular.
 fn mass_determinant(model: &Model, problem: &Problem, values: &Values) -> Option<f64> {
     let space = JetSpace::new(0, 0, 1)?;
     let jets = Jets::new(Reals, &space);
@@ -343,7 +343,7 @@ fn mass_determinant(model: &Model, problem: &Problem, values: &Values) -> Option
     Some(jets.value(&solve(&jets, mass, none)?.determinant))
 }
 
-/// The least value near a point, by golden sections.
+/// Smallest value of `f` within `step` of a point, by golden-section search.
 fn least(f: &dyn Fn(f64) -> f64, center: f64, step: f64) -> f64 {
     const RATIO: f64 = 0.618_033_988_749_894_9;
     let (mut low, mut high) = (center - step, center + step);

@@ -1,4 +1,4 @@
-//! Real points with short coordinates, at which a person can follow a computation.
+//! Real points with short coordinates, which can be checked by hand.
 
 use dalembert_expr::{
     Assumption as Known, Domain, ExprId, Function, Interval, Node, Pool, RealPoint, SymbolId,
@@ -7,10 +7,10 @@ use dalembert_expr::{
 use super::dynamics::Dynamics;
 use crate::model::{Assumption, Model, Topology};
 
-/// A real point: values of parameters and coordinates that a person can type.
+/// A real point, with values of parameters and coordinates that are short to type.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sample {
-    /// Names and values, coordinates first.
+    /// Names and values. Coordinates come first.
     pub values: Vec<(String, f64)>,
     symbols: Vec<SymbolId>,
 }
@@ -25,13 +25,14 @@ impl Sample {
         point
     }
 
-    /// Symbols and values.
+    /// Pairs of symbol and value.
     pub(super) fn point_values(&self) -> Vec<(SymbolId, f64)> {
         let values = self.values.iter().map(|(_, value)| *value);
         self.symbols.iter().copied().zip(values).collect()
     }
 
-    /// Ranges of one unit in the last place around the values. They contain the printed values and exact defaults.
+    /// Intervals of one unit in the last place around the values. They contain the printed values and the exact
+    /// defaults.
     pub(super) fn ranges(&self) -> Domain {
         let near = |value: f64| Interval::new(value.next_down(), value.next_up());
         let values = self.point_values().into_iter();
@@ -46,15 +47,15 @@ impl Sample {
         Some(self.values[position].1)
     }
 
-    /// Sets a symbol that the sample has.
+    /// Sets the value of a symbol of the sample; no effect for other symbols.
     pub(super) fn set(&mut self, symbol: SymbolId, value: f64) {
         if let Some(position) = self.symbols.iter().position(|known| *known == symbol) {
             self.values[position].1 = value;
         }
     }
 
-    /// True if all coordinates lie in their declared sets. A surface may lie at an end, so rounding beyond it is
-    /// allowed.
+    /// True if all coordinates lie in their declared sets, up to rounding, because a surface may lie at an end of an
+    /// interval.
     pub(super) fn is_allowed(&self, model: &Model) -> bool {
         let is_above = |value: f64, end: f64| value >= end - ROUNDING * (1.0 + end.abs());
         model.coordinates.iter().all(|coordinate| {
@@ -76,13 +77,13 @@ impl Sample {
         })
     }
 
-    /// Adds a symbol.
+    /// Adds a symbol with its name and value.
     pub(super) fn push(&mut self, name: String, symbol: SymbolId, value: f64) {
         self.values.push((name, value));
         self.symbols.push(symbol);
     }
 
-    /// `x = 0.36, y = -0.53, m = 2`, without the names in `omit`.
+    /// Text such as `x = 0.36, y = -0.53, m = 2`.
     pub fn text(&self) -> String {
         let entries: Vec<String> = self
             .values
@@ -96,25 +97,25 @@ impl Sample {
     }
 }
 
-/// Hundredths in `(-1, 1)`, none of them near 0, in an irregular order.
+/// Hundredths of values in `(-1, 1)` that are not near 0, in an irregular order.
 const HUNDREDTHS: [i32; 16] = [
     36, -53, 39, 81, -28, 67, -74, 45, 92, -17, 58, -86, 23, 71, -42, 64,
 ];
 
-/// Relative error that a root found in doubles may have.
+/// Allowed relative error of a root computed in doubles.
 const ROUNDING: f64 = 1e-12;
 
-/// Attempts with the declared defaults of parameters.
+/// Number of attempts in which parameters have their declared defaults, unless these are 0.
 const DECLARED: usize = 8;
 /// Number of attempts with coordinates between -1 and 1. Later attempts multiply coordinates on lines by one of the
-/// scales, because roots and logarithms may have values only far from 0.
+/// scales, because roots and logarithms may be defined only far from 0.
 const NEAR: usize = 16;
 const SCALES: [f64; 4] = [1.0, 8.0, 64.0, 1.0 / 8.0];
-/// Number of samples without a real state after which none is believed to exist.
+/// Number of samples without a real state after which the search ends.
 pub(super) const ATTEMPTS: usize = 64;
 
-/// The `attempt`-th sample for the symbols that `uses` accepts, time included: parameters at their defaults where
-/// they have one.
+/// Sample number `attempt` for the symbols that `uses` accepts, time included. Parameters have their defaults where
+/// these are declared.
 pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> bool) -> Sample {
     let mut sample = Sample::default();
     let mut drawn = attempt * 5;
@@ -147,7 +148,7 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
         let default = parameter
             .default
             .map(|default| model.pool.eval(&[default], &|_| 0.0)[0]);
-        // A default may hide what depends on the parameter, 0 always does.
+        // A default may hide the effect of a parameter, and the default 0 always does.
         let value = match (&parameter.assumption, default) {
             (_, Some(default)) if attempt == 0 || (default != 0.0 && attempt < DECLARED) => default,
             (Assumption::Positive | Assumption::NonNegative, _) => round(1.0 + unit.abs()),
@@ -164,7 +165,7 @@ pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> b
     sample
 }
 
-/// Moves coordinates between the zeros of arguments of absolute values, with another choice in each attempt. The first
+/// Moves coordinates between the zeros of arguments of absolute values, to another interval in each attempt. The first
 /// attempts are left unchanged.
 pub(super) fn move_between_knots(
     model: &Model,
@@ -191,13 +192,13 @@ pub(super) fn move_between_knots(
         let middles = knots.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
         let mut places: Vec<f64> = middles.collect();
         places.extend([first - 0.5, last + 0.5]);
-        // The step has no small divisors, so every combination of places occurs sooner or later.
+        // The stride has no small divisors, so that every combination of places occurs in some attempt.
         let place = places[(attempt * (2 * i + 1) + attempt / (7 + i)) % places.len()];
         sample.set(coordinate.q, place);
     }
 }
 
-/// The values of a coordinate at which an argument that is linear in it is 0, in order.
+/// The sorted values of a coordinate at which arguments that are linear in it vanish.
 fn knots(model: &Model, arguments: &[ExprId], symbol: SymbolId, sample: &Sample) -> Vec<f64> {
     let at = |argument: ExprId, place: f64| {
         let value = |asked| match asked == symbol {
@@ -222,7 +223,7 @@ fn knots(model: &Model, arguments: &[ExprId], symbol: SymbolId, sample: &Sample)
     knots
 }
 
-/// A number inside of an interval, in hundredths if the interval contains them.
+/// A number inside an interval. It is rounded to hundredths if the result lies in the interval.
 fn between(low: f64, high: f64, unit: f64) -> f64 {
     let value = low + (high - low) * (0.5 + 0.4 * unit);
     let short = round(value);
@@ -232,7 +233,7 @@ fn between(low: f64, high: f64, unit: f64) -> f64 {
     }
 }
 
-/// Rounds to hundredths, if that leaves more than two digits.
+/// Rounds to hundredths, unless this leaves too few digits.
 fn round(value: f64) -> f64 {
     if value.abs() > 0.1 && value.abs() < 1e6 {
         (value * 100.0).round() / 100.0
@@ -246,10 +247,10 @@ pub(super) fn uses<'a>(pool: &'a Pool, roots: &'a [ExprId]) -> impl Fn(SymbolId)
     move |symbol| roots.iter().any(|root| pool.depends_on(*root, symbol))
 }
 
-/// Independent velocities of real states.
+/// Independent velocities of the states.
 const VELOCITIES: [f64; 7] = [0.5, -0.75, 1.25, 0.25, -1.5, 1.75, -0.25];
 
-/// A real state on D with short independent velocities. The values shown for it include all velocities.
+/// A real state on D with short independent velocities. Its printed values include all velocities.
 pub(super) fn state_on_d(
     model: &Model,
     dynamics: &Dynamics,
@@ -261,7 +262,7 @@ pub(super) fn state_on_d(
     with_velocities(model, dynamics, sample, attempt)
 }
 
-/// The sample with velocities on D, and its point.
+/// The sample extended by velocities on D, and its point.
 pub(super) fn with_velocities(
     model: &Model,
     dynamics: &Dynamics,
@@ -269,7 +270,7 @@ pub(super) fn with_velocities(
     attempt: usize,
 ) -> Option<(Sample, RealPoint)> {
     let mut point = sample.point();
-    // Other steps from one velocity to the next, so that all pairs of signs occur.
+    // The stride changes with the attempt, so that all pairs of signs occur.
     let step = 1 + attempt / VELOCITIES.len() % (VELOCITIES.len() - 1);
     for (i, coordinate) in model.coordinates.iter().enumerate() {
         let velocity = VELOCITIES[(i * step + attempt) % VELOCITIES.len()];

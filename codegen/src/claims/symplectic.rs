@@ -1,14 +1,15 @@
-//! `symplectic`: do the motion and all that happens at surfaces keep `dp_i dq^i`?
+//! `symplectic`: decides whether the motion and all events at surfaces preserve `dp_i ^ dq^i`.
 //!
 //! ```text
 //! motion        L_X (dp_i dq^i) = d(F_i dq^i) + d(lambda_a eta^a)
 //! surfaces      the same on vectors that the motion through h = 0 carries along, see `invariant.rs`
 //! ```
 //!
-//! Without constraints the motion keeps the form iff `F_i dq^i` is closed. With them the form on D is not kept where
-//! `lambda_a deta^a(X, Y)` differs from 0 for two fields of D: `deta^a(X, Y)` is the value of `d(lambda_a eta^a)` on their lifts, as
-//! both are annihilated by `eta^a`. Where that is 0 the form on all states of D decides, as `invariant` does. If it is not kept there and the
-//! constraints are integrable, the form on their leaves decides, see `leaves.rs`. An impulse along `dh` keeps the form iff it keeps the volume.
+//! Without constraints the motion preserves the form iff `F_i dq^i` is closed. With constraints it does not preserve
+//! the form on D where `lambda_a deta^a(X, Y)` is not 0 for two fields X, Y of D: `deta^a(X, Y)` is the value of
+//! `d(lambda_a eta^a)` on their lifts, as `eta^a` annihilates both. If this value is 0, the form on all states of D
+//! decides, as for the claim `invariant`. If that form is not preserved and the constraints are integrable, the form on
+//! their leaves decides; see `leaves.rs`. An impulse along `dh` preserves the form iff it preserves the volume.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
@@ -69,7 +70,7 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
     }
 }
 
-/// The verdict on a surface of a mode without constraints, given its effect on volumes.
+/// Verdict on a surface of a mode without constraints, given the effect of the surface on volumes.
 fn at_surface(model: &mut Model, around: &Surroundings<'_>, effect: Effect) -> Verdict {
     let surface = effect.surface;
     let wall = Wall::of(model, around.derivation, surface, around.others);
@@ -82,7 +83,7 @@ fn at_surface(model: &mut Model, around: &Surroundings<'_>, effect: Effect) -> V
     let is_declared = |passage: &Passage| matches!(passage.velocities, Velocities::Declared(..));
     match effect.verdict {
         _ if leads_to_more => map_to_more_keeps(model, around, surface),
-        // A map that changes volumes does not keep the form.
+        // A map that changes volumes does not preserve the form.
         Verdict::Proved(_) if wall.passage.as_ref().is_some_and(is_declared) => {
             map_keeps(model, around, surface)
         }
@@ -103,7 +104,8 @@ fn at_surface(model: &mut Model, around: &Surroundings<'_>, effect: Effect) -> V
     }
 }
 
-/// The refutation at a surface that does not keep volumes; at a state where the form itself shows it, if volumes need none.
+/// The refutation at a surface that does not preserve volumes. If the change of volumes was proved without a state, a
+/// state that refutes the form is shown.
 fn changed_with_volumes(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -119,7 +121,7 @@ fn changed_with_volumes(
     Verdict::Refuted(witness)
 }
 
-/// The verdict on a motion with forces: `F_i dq^i` is a closed form of the positions.
+/// Verdict on a motion with forces: `F_i dq^i` must be a closed form of the positions.
 fn forces_are_closed(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     let n = model.coordinates.len();
     let mut force = vec![model.pool.zero(); n];
@@ -155,7 +157,7 @@ fn forces_are_closed(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     Verdict::Proved(certificate)
 }
 
-/// The verdict on an expression that must be 0 at all states.
+/// Verdict on an expression that must be 0 at all states.
 fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: String) -> Verdict {
     let question = AtStates::value(around.dynamics, value, shown);
     let wording = Wording {
@@ -166,7 +168,7 @@ fn vanishes(model: &Model, around: &Surroundings<'_>, value: ExprId, shown: Stri
     evidence(model, &question, around.seed).verdict(true, wording, around.seed)
 }
 
-/// The verdict on constraints: that on two fields of D, that on all states of D, else that on the leaves of D.
+/// Verdict under constraints: first on two fields of D, then on all states of D, then on the leaves of D.
 fn on_constraints(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     if let Some(refuted) = changed_on_fields(model, around) {
         return refuted;
@@ -191,7 +193,7 @@ fn on_constraints(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
             }
             with_behind(model, around, &tangents, form, (verdict, &[]))
         }
-        // A vector off the leaves of integrable constraints says nothing of them.
+        // A vector across the leaves of integrable constraints is no refutation.
         found if matches!(on_d, Verdict::Refuted(_)) && !connects(model, around) => {
             let is_known = matches!(found, Verdict::Refuted(_));
             Verdict::Undecided(if is_known { LEAVES } else { UNKNOWN }.to_owned())
@@ -200,7 +202,7 @@ fn on_constraints(model: &mut Model, around: &Surroundings<'_>) -> Verdict {
     }
 }
 
-/// The verdict with that on what surfaces carry vectors to.
+/// The verdict, extended by the vectors that surfaces carry to other modes.
 fn with_behind(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -225,13 +227,13 @@ fn with_behind(
     together.verdict()
 }
 
-/// The reason for which a surface is open, with its name.
+/// An open verdict with the name of a surface and the reason.
 fn unknown(model: &Model, surface: usize, reason: &str) -> Verdict {
     let name = &model.surfaces[surface].name.display;
     Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
 }
 
-/// The verdict on the vectors that one surface carries to another mode.
+/// Verdict on the vectors that one surface carries to another mode.
 fn check_mode_behind(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -247,8 +249,8 @@ fn check_mode_behind(
     })
 }
 
-/// The verdict on all states of a mode that is entered: its motion and its surfaces keep the form there, and so do the modes behind it. Those on the way to
-/// it are assumed to: they are being examined.
+/// Verdict on all states of an entered mode: its motion, its surfaces and the modes behind it must preserve the form.
+/// Modes that are already under examination (`assumed`) are taken to preserve it.
 fn keeps_all(entered: &mut Entered, around: &Surroundings<'_>, assumed: &[usize]) -> Verdict {
     let index = entered.index.unwrap_or(usize::MAX);
     if assumed.contains(&index) {
@@ -274,14 +276,14 @@ fn keeps_all(entered: &mut Entered, around: &Surroundings<'_>, assumed: &[usize]
     with_behind(model, around, &tangents, form, (on_d, &assumed))
 }
 
-/// True if brackets of fields of D span all directions: there are no leaves.
+/// True if brackets of fields of D span all directions, so that there are no leaves.
 fn connects(model: &mut Model, around: &Surroundings<'_>) -> bool {
     let problem = Problem::of(model, around.derivation);
     let found = decide_local(&model.pool, &problem, around.seed);
     found.is_ok_and(|local| local.rank == problem.components())
 }
 
-/// The refutation by two fields of D, between which constraint forces change the form.
+/// Refutation by two fields of D on which constraint forces change the form.
 fn changed_on_fields(model: &mut Model, around: &Surroundings<'_>) -> Option<Verdict> {
     let n = model.coordinates.len();
     let q: Vec<SymbolId> = model
@@ -331,7 +333,7 @@ fn changed_on_fields(model: &mut Model, around: &Surroundings<'_>) -> Option<Ver
     None
 }
 
-/// The verdict on a declared map of velocities without constraints.
+/// Verdict on a declared map of velocities, without constraints.
 fn map_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Verdict {
     let Some(tangents) = Tangents::of(model, around.dynamics) else {
         return Verdict::Undecided(Undecided::Degenerate.to_string());
@@ -340,7 +342,8 @@ fn map_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Ve
     kept_at_surface(model, around, &tangents, stated(form, written), surface)
 }
 
-/// The verdict on a map to states of more dimensions, which have no volume of these: the form decides, on vectors along leaves of constraints there.
+/// Verdict on a map to states of higher dimension, where volumes cannot be compared. The form decides, on vectors along
+/// the leaves of the constraints there.
 fn map_to_more_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usize) -> Verdict {
     let kept = map_keeps(model, around, surface);
     let (Verdict::Proved(all), Some(tangents)) = (&kept, Tangents::of(model, around.dynamics))
@@ -355,7 +358,7 @@ fn map_to_more_keeps(model: &mut Model, around: &Surroundings<'_>, surface: usiz
     refuted.unwrap_or_else(|| together.verdict())
 }
 
-/// The symplectic form as one that is stated.
+/// The symplectic form in the shape of a stated form.
 pub(super) fn stated<'f>(form: &'f ExteriorForm, written: &'f str) -> Stated<'f> {
     Stated {
         form,
@@ -364,7 +367,7 @@ pub(super) fn stated<'f>(form: &'f ExteriorForm, written: &'f str) -> Stated<'f>
     }
 }
 
-/// `dp_i ^ dq^i`, and its text.
+/// `dp_i ^ dq^i`, with its text.
 pub(super) fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
     let mut form = ExteriorForm::zero(2);
     let mut texts = Vec::new();
@@ -381,7 +384,7 @@ pub(super) fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
     (form, texts.join(" + "))
 }
 
-/// Something that must be 0 at all states on D.
+/// A question: must this be 0 at all states on D?
 pub(super) struct AtStates<'s> {
     dynamics: &'s Dynamics,
     part: Part<'s>,

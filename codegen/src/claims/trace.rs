@@ -1,8 +1,8 @@
-//! Recorded arithmetic: the computation that decides at a random point, as a list of steps that can be lowered to code.
+//! Recorded arithmetic: the decision at a random point as a list of operations that can be lowered to code.
 //!
-//! Every step carries its residue at the point. A residue of 0 means that the value vanishes identically, up to the
-//! probability of error of all claims. Such a value is dropped, and pivots are chosen among the others. The list is
-//! therefore valid at almost all points, and as sparse as the problem.
+//! Every step has its residue at the point. A residue of 0 means that the value vanishes identically, up to the
+//! probability of error of all claims. Such a value is dropped, and pivots are chosen among the other values. The list
+//! is therefore valid at almost all points, and as sparse as the problem.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -51,14 +51,14 @@ pub enum Operation {
 /// A list of steps.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Trace {
-    /// The operations, in an order that can be carried out.
+    /// The operations. Operands come before the operations that use them.
     pub operations: Vec<Operation>,
     residues: Vec<u64>,
     known: HashMap<Operation, Step, WordHash>,
 }
 
 impl Trace {
-    /// A list whose first step is 0.
+    /// A list whose only step is 0.
     fn new() -> Self {
         let mut trace = Self::default();
         trace.operations.push(Operation::Number(Rational::ZERO));
@@ -89,7 +89,7 @@ impl Trace {
     }
 }
 
-/// The arithmetic of steps.
+/// Arithmetic that records every operation as a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tracer<'t> {
     trace: &'t RefCell<Trace>,
@@ -194,7 +194,7 @@ pub(super) struct TracedPoint<'t> {
 }
 
 impl<'t> TracedPoint<'t> {
-    /// Steps at a point are written to `trace`.
+    /// Starts an empty `trace`, which records the steps at this point.
     pub(super) fn new(point: ModularPoint, trace: &'t RefCell<Trace>) -> Self {
         let field = point.modulus();
         *trace.borrow_mut() = Trace::new();

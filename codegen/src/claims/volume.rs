@@ -18,7 +18,7 @@ use crate::model::Model;
 /// An invariant volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Volume {
-    /// `G`, but for an integral.
+    /// `G`, without the integral.
     pub potential: Potential,
     /// Part of `G` without closed form.
     pub integral: Option<Integral>,
@@ -32,8 +32,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Volume that a decision about the model found, in closed form or as an integral; `None` if none exists, or if no
-    /// gradient determines it.
+    /// Volume found by the decision `exactness` about the model, in closed form or as an integral; `None` if none
+    /// exists, or if no gradient determines it. `seed` determines the random points.
     pub fn found(
         model: &Model,
         derivation: &Derivation,
@@ -47,7 +47,7 @@ impl Volume {
         let (potential, integral) = match &exactness.density {
             Some((potential, _)) => (potential.clone(), None),
             None => {
-                // Brackets of a frame that is nowhere singular are not either.
+                // If a frame is nowhere singular, its brackets are not either.
                 let local = decide_local_in(&model.pool, problem, &dependent, seed).ok()?;
                 let integral = Integral::of(model, problem, &local, seed)?;
                 (Potential::default(), Some(integral))
@@ -62,9 +62,10 @@ impl Volume {
         })
     }
 
-    /// The volume with this density, which was proved; `None` if it depends on velocities.
+    /// The volume of a proved density; `None` if the density depends on velocities. `seed` determines the random
+    /// points.
     ///
-    /// Stated densities are periodic in every angle: the language asks for it.
+    /// Stated densities are periodic in every angle: the language requires it.
     pub fn stated(
         model: &mut Model,
         derivation: &Derivation,
@@ -94,8 +95,8 @@ impl Volume {
     }
 }
 
-/// Dependent velocities that follow from the others at every state, if the forms show some. Otherwise the coordinates
-/// of the volume fail at some states: for a wheel, where it points along an axis.
+/// Dependent velocities that are determined by the others at every state; `None` if the forms show none. Otherwise the
+/// coordinates of the volume are singular at some states: for a wheel, where it points along an axis.
 fn nowhere_singular(model: &Model, derivation: &Derivation) -> Option<Vec<usize>> {
     let pairs = regular_minor(&model.pool, &derivation.constraints)?;
     let mut dependent: Vec<usize> = pairs.into_iter().map(|(_, column)| column).collect();
@@ -103,7 +104,7 @@ fn nowhere_singular(model: &Model, derivation: &Derivation) -> Option<Vec<usize>
     Some(dependent)
 }
 
-/// Dependent velocities that follow from the others at a random state, hence at almost all.
+/// Dependent velocities that are determined by the others at a random state, hence at almost all states.
 fn almost_nowhere_singular(pool: &Pool, problem: &Problem, seed: u64) -> Option<Vec<usize>> {
     let roots = problem.roots();
     let mut points = sample_points(pool, &roots, &pool.profile_of(&roots), seed).ok()?;
@@ -114,7 +115,7 @@ fn almost_nowhere_singular(pool: &Pool, problem: &Problem, seed: u64) -> Option<
     })
 }
 
-/// `ln |f|` as a sum over the factors of `f`. A product might overflow where the sum does not.
+/// `ln |f|` as a sum over the factors of `f`. The product may overflow where the sum does not.
 fn logarithm(pool: &mut Pool, f: ExprId) -> Vec<(ExprId, Term)> {
     let mut terms = Vec::new();
     let mut factors = vec![(Rational::ONE, f)];

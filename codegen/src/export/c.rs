@@ -1,13 +1,13 @@
-//! A header of C99: nothing is allocated, nothing is called but `math.h`.
+//! A C99 header. Its functions do not allocate, and call only functions of `math.h`.
 
 use std::fmt::{self, Write as _};
 
 use super::{Fault, Line, Operand, Part, Routine, Takes};
 
-/// The header with these models.
+/// The header for these models.
 pub fn header(parts: &[Part]) -> String {
     let mut text = String::new();
-    // Writing to a text does not fail.
+    // Writing to a `String` does not fail.
     let _ = write(&mut text, parts);
     text
 }
@@ -103,7 +103,7 @@ fn write_routine(text: &mut String, part: &Part, routine: &Routine) -> fmt::Resu
     for line in &lines.lines {
         writeln!(text, "    {}", statement(line, &named))?;
     }
-    // All results are taken before any is written: `out` may be the state.
+    // All results are computed before any is written, because `out` may be the state.
     let results = lines.outputs.iter().enumerate();
     for (index, output) in results.clone() {
         writeln!(text, "    const double r{index} = {};", named(output))?;
@@ -157,7 +157,7 @@ fn code(fault: Fault) -> i32 {
     }
 }
 
-/// An operand as an expression that binds tightest.
+/// An operand as a C expression that needs no parentheses.
 struct Named(Operand, Takes);
 
 impl fmt::Display for Named {
@@ -174,7 +174,7 @@ impl fmt::Display for Named {
     }
 }
 
-/// A number whose digits are read back as the same number.
+/// A number with enough digits to be read back exactly.
 struct Number(f64);
 
 impl fmt::Display for Number {

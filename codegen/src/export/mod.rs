@@ -1,12 +1,14 @@
-//! The functions of a model for other languages and programs, as lines that each of them writes in its own words.
+//! Export of the functions of a model to other languages and programs, as a list of lines that each target writes in
+//! its own syntax.
 //!
 //! | file | job |
 //! |---|---|
-//! | `mod.rs` | what is exported: models and modes with their functions |
-//! | `lines.rs` | a function as lines |
-//! | `c.rs` | all of it as a header of C |
+//! | `mod.rs` | the exported data: models and modes with their functions |
+//! | `lines.rs` | a function as a list of lines |
+//! | `c.rs` | a C header of all functions |
 //!
-//! The state is that in which the model is run: positions with momenta, with quasi-velocities, or alone.
+//! The state is that of a run: positions followed by momenta or quasi-velocities, or positions alone for a first-order
+//! system.
 
 mod c;
 mod lines;
@@ -26,21 +28,21 @@ use crate::{compile_modes, compile_spec};
 /// A model, one of its scenes, or one of its modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// The name in snake case; that of a mode or a scene behind it.
+    /// Name of the model in snake case, followed by that of the mode or scene.
     pub name: String,
-    /// Doc comment.
+    /// Text of the doc comment.
     pub documentation: String,
     /// Names of the coordinates.
     pub coordinates: Vec<String>,
-    /// Names of the rest of the state.
+    /// Names of the other components of the state, after the coordinates.
     pub motion: Vec<String>,
-    /// The parameters with their defaults, then the inputs.
+    /// Parameters, then inputs, each with its default.
     pub parameters: Vec<(String, Option<f64>)>,
-    /// The functions.
+    /// The exported functions.
     pub routines: Vec<Routine>,
 }
 
-/// Arguments of a function besides time and parameters.
+/// Arguments of a function other than time and parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {
     /// The state.
@@ -49,23 +51,24 @@ pub enum Takes {
     Velocities,
 }
 
-/// A function.
+/// An exported function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Routine {
-    /// The name: `rate`, `impact_floor`.
+    /// Name, for example `rate` or `impact_floor`.
     pub name: String,
-    /// The meaning of its results.
+    /// Description of the results.
     pub about: String,
     /// Its arguments.
     pub takes: Takes,
-    /// The lines.
+    /// The lines of its body, with its results.
     pub lines: Lines,
 }
 
-/// The model of a text, a scene of it, or all of its modes. Its claims are not examined.
+/// Exports the model of a declaration, one of its scenes, or all of its modes. Claims are not examined. `source` is the
+/// text of the declaration.
 ///
 /// # Errors
-/// [`ReportError`] for a text that declares no model; `Ok(None)` without such a scene.
+/// [`ReportError`] for a text that does not declare a valid model. `Ok(None)` if there is no scene of this name.
 pub fn export(source: &str, scene: Option<&str>) -> Result<Option<Vec<Part>>, ReportError> {
     match declaration(source)?.without_claims() {
         Declaration::Model(spec) => {
@@ -117,7 +120,8 @@ fn part(form: &FormOf<'_>, name: String) -> Part {
     }
 }
 
-/// The functions that make sense outside of a run. Those of velocities come first: others read them.
+/// The functions that are useful outside of a run. The function of velocities comes first, because others use its
+/// results.
 fn routines(form: &FormOf<'_>) -> Vec<Routine> {
     let mut kernels = form.program.kernels();
     kernels.sort_by_key(|(kernel, _)| *kernel != Kernel::Velocity);
@@ -127,7 +131,7 @@ fn routines(form: &FormOf<'_>) -> Vec<Routine> {
     named.collect()
 }
 
-/// A function under its exported name; `None` for one that stays inside.
+/// A function under its exported name; `None` for an internal function.
 fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Routine> {
     let model = form.model;
     let surface = |s: usize| {
@@ -208,7 +212,7 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
     })
 }
 
-/// The result of `motion`.
+/// Description of the result of `motion`.
 fn motion(form: &FormOf<'_>) -> String {
     match form.program.form {
         Form::Reduced => "the quasi-velocities of the state".into(),
@@ -220,13 +224,13 @@ fn surfaces(model: &Model) -> Vec<&String> {
     model.surfaces.iter().map(|it| &it.name.display).collect()
 }
 
-/// Words with the names that the results have.
+/// The description `about`, followed by the names of the results.
 fn list(model: &Model, about: &str, names: impl Fn(&Model) -> Vec<&String>) -> String {
     let names: Vec<&str> = names(model).into_iter().map(String::as_str).collect();
     format!("{about}: {}", names.join(", "))
 }
 
-/// The declared outputs by name; of an integral along a run, the integrand.
+/// Description of the declared outputs. For an integral along a run the function gives the integrand.
 fn outputs(model: &Model) -> String {
     let names = model.outputs.iter().map(|output| match output.is_integral {
         true => format!("the integrand of {}", output.name.display),
@@ -236,7 +240,7 @@ fn outputs(model: &Model) -> String {
     format!("the declared outputs: {}", names.join(", "))
 }
 
-/// The state after a blow, whose results are its size, its share and its direction.
+/// Replaces the results of an impact law (size, share and direction of its impulse) by the state after the impact.
 fn strike(lines: &mut Lines, form: &FormOf<'_>) {
     let n = form.dimension();
     let blow = core::mem::take(&mut lines.outputs);

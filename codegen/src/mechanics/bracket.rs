@@ -1,4 +1,4 @@
-//! Bracket of functions on D at one time: Poisson without constraints, almost Poisson with them.
+//! Bracket of functions on D at a fixed time: Poisson without constraints, almost Poisson with constraints.
 //!
 //! ```text
 //! {f, g} = {f o P, g o P} on D      P the projection of momenta to D along the constraint forces, p - A -> pi_D^*(p - A)
@@ -22,23 +22,23 @@ use super::inverse::{Matrix, NoMinor, dot, independent_minor, inverse, tidy};
 use super::{Derivation, Frame};
 use crate::model::Model;
 
-/// Reason for which there is no bracket.
+/// Reason why a model has no bracket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoBracket {
-    /// The rates are declared, not derived.
+    /// The rates are declared: a first-order system.
     FirstOrder,
-    /// Constraints that are not linear in the velocities.
+    /// Some constraints are not linear in the velocities.
     Nonlinear,
-    /// A matrix that is not inverted by minors.
+    /// A matrix is too large to be inverted by minors.
     TooLarge,
-    /// Constraints that depend on each other.
+    /// The constraints depend on each other.
     Dependent,
-    /// Constraints that are not known to be independent, nor to depend on each other.
+    /// The constraints were neither proved to be independent nor to be dependent.
     Undecided,
 }
 
 impl NoBracket {
-    /// The reason in words.
+    /// The text of the reason.
     pub fn text(self) -> &'static str {
         match self {
             Self::FirstOrder => "a system of first order has no bracket",
@@ -70,42 +70,42 @@ impl From<NoMinor> for NoBracket {
 pub(crate) struct FrameOfD {
     /// `X_i`, N - M rows of N.
     pub(crate) fields: Matrix,
-    /// The symbols of `u`.
+    /// The symbols of `u`, N - M.
     pub(crate) u: Vec<SymbolId>,
-    /// Velocities by `u`.
+    /// Pairs of a velocity and its expression in `u`.
     pub(crate) velocity: Vec<(SymbolId, ExprId)>,
-    /// Each `u` by velocities; empty where it is one.
+    /// Pairs of a symbol in `u` and its expression in velocities. Empty if every `u` is a velocity.
     pub(crate) quasi: Vec<(SymbolId, ExprId)>,
 }
 
 /// A function on D with its derivatives.
 #[derive(Debug, Clone)]
 pub struct FunctionOnD {
-    /// The function, of positions and quasi-velocities.
+    /// The function, in positions and quasi-velocities.
     pub value: ExprId,
-    /// `df/dmu_i`
+    /// `df/dmu_i`, N - M entries.
     by_momenta: Vec<ExprId>,
 }
 
 /// The bracket of a model.
 #[derive(Debug, Clone)]
 pub struct Bracket {
-    /// The frame that it is written in.
+    /// The frame in which the bracket is expressed.
     pub(crate) frame: FrameOfD,
-    /// The coordinates.
+    /// Symbols of the coordinates.
     pub(crate) q: Vec<SymbolId>,
-    /// `G^{-1}`
+    /// `G^{-1}`, (N - M) by (N - M).
     pub(crate) inverse: Matrix,
-    /// `S_ij`
+    /// `S_ij`, (N - M) by (N - M).
     structure: Matrix,
-    /// Momenta and energy that functions may name, with what they are on D.
+    /// Symbols of momenta and energy, with their values as functions on D.
     named: Vec<(SymbolId, FunctionOnD)>,
 }
 
 /// Derives the bracket of a model.
 ///
 /// # Errors
-/// [`NoBracket`].
+/// [`NoBracket`] with the reason.
 pub fn derive_bracket(model: &mut Model, derivation: &Derivation) -> Result<Bracket, NoBracket> {
     let frame = frame_of_d(model, derivation)?;
     let q: Vec<SymbolId> = (model.coordinates.iter())
@@ -155,7 +155,8 @@ pub fn derive_bracket(model: &mut Model, derivation: &Derivation) -> Result<Brac
 }
 
 impl Bracket {
-    /// The same, with momenta and energy. Their derivatives are not solved for where they are known.
+    /// The bracket with values for momenta and energy. Where their derivatives are known, no linear system is solved
+    /// for them.
     fn with_names(mut self, model: &mut Model) -> Self {
         let is_free = model.constraints.is_empty();
         let is_linear = (model.constraints.iter())
@@ -183,13 +184,13 @@ impl Bracket {
         self
     }
 
-    /// A function of positions, velocities, momenta and energy on D.
+    /// A function of positions, velocities, momenta and energy, restricted to D.
     pub fn on_d(&self, pool: &mut Pool, function: ExprId) -> FunctionOnD {
         let mut values = self.frame.velocity.clone();
         let named = self.named.iter();
         values.extend(named.map(|(symbol, known)| (*symbol, known.value)));
         let value = pool.substitute(function, &values);
-        // Momenta and energy stay symbols: their own changes are added.
+        // Momenta and energy are kept as symbols here; their derivatives are added below.
         let held = pool.substitute(function, &self.frame.velocity);
         let mut by_momenta = self.solved(pool, held);
         for (symbol, known) in &self.named {
@@ -209,7 +210,7 @@ impl Bracket {
         }
     }
 
-    /// A function of positions and quasi-velocities by velocities, tidied.
+    /// A function of positions and quasi-velocities, expressed in velocities and simplified.
     pub fn written(&self, pool: &mut Pool, function: ExprId) -> ExprId {
         let settled = settled(pool, function);
         let written = pool.substitute(settled, &self.frame.quasi);
@@ -217,7 +218,7 @@ impl Bracket {
         pool.generic(written)
     }
 
-    /// `{f, g}` of functions of positions and quasi-velocities.
+    /// `{f, g}`, in positions and quasi-velocities.
     pub fn between(&self, pool: &mut Pool, f: &FunctionOnD, g: &FunctionOnD) -> ExprId {
         let [first, second] = [f, g].map(|function| &function.by_momenta);
         let changes = |pool: &mut Pool, function: &FunctionOnD| -> Vec<ExprId> {
@@ -264,7 +265,7 @@ impl Bracket {
     }
 }
 
-/// The expression multiplied out, 0 if it is shown to be.
+/// The expression multiplied out, or 0 if it is proved to be 0.
 pub(crate) fn settled(pool: &mut Pool, expression: ExprId) -> ExprId {
     match pool.zero_test(expression) {
         Verdict::Proved => pool.zero(),
@@ -312,7 +313,7 @@ pub(crate) fn exterior(
     pool.sub(first, second)
 }
 
-/// A frame of D: the one that the motion is reduced in, or one of independent velocities that is regular at almost all states.
+/// A frame of D: that of the reduced motion, or one of independent velocities that is regular at almost all states.
 pub(crate) fn frame_of_d(
     model: &mut Model,
     derivation: &Derivation,
@@ -338,7 +339,8 @@ pub(crate) fn frame_of_d(
     Ok(turned.unwrap_or(velocities))
 }
 
-/// A frame of velocities turned into that of quasi-velocities; `None` where these are velocities, or are not solved for.
+/// Converts a frame of velocities to the declared quasi-velocities. `None` if these are velocities, or cannot be solved
+/// for.
 fn turned(model: &mut Model, known: &FrameOfD, frame: &Frame) -> Option<FrameOfD> {
     if frame.quasi.iter().all(|quasi| quasi.coordinate.is_some()) {
         return None;
@@ -401,7 +403,7 @@ fn turned(model: &mut Model, known: &FrameOfD, frame: &Frame) -> Option<FrameOfD
     })
 }
 
-/// The frame that the motion is reduced in, where it is written out.
+/// The frame of the reduced motion, if its expressions are available.
 fn of_motion(model: &mut Model, frame: &Frame) -> Option<FrameOfD> {
     let invariant = frame.invariant.as_ref()?;
     let fields: Option<Matrix> = (invariant.written.iter())
@@ -426,7 +428,7 @@ fn of_motion(model: &mut Model, frame: &Frame) -> Option<FrameOfD> {
     })
 }
 
-/// A frame of as many velocities as are independent.
+/// A frame whose quasi-velocities are independent velocities.
 fn of_velocities(model: &mut Model) -> Result<FrameOfD, NoBracket> {
     let n = model.coordinates.len();
     let forms: Matrix = (model.constraints.iter())

@@ -1,43 +1,45 @@
-//! Constraint forms and the terms of `d/dt (eta(qdot) + eta_0)` that do not hold the acceleration.
+//! Constraint forms, and the terms of `d/dt (eta(qdot) + eta_0)` that do not contain accelerations.
 //!
-//! A constraint `phi(t, q, qdot) = 0` that is not linear in the velocities has the form `eta = dphi/dqdot` of Chetaev's rule:
-//! virtual displacements are those along which `phi` does not change with the velocity, and the force is `lambda eta`. Its
-//! rate is `eta(qddot) + curvature` as for the others, with the derivative of `phi` at fixed velocity for curvature.
+//! A constraint `phi(t, q, qdot) = 0` that is nonlinear in the velocities has the form `eta = dphi/dqdot` (Chetaev's
+//! rule): virtual displacements are the changes of velocity that leave `phi` unchanged to first order, and the
+//! constraint force is `lambda eta`. Its time derivative is `eta(qddot) + curvature` as for the other constraints. The
+//! curvature is the derivative of `phi` along the motion at constant velocity.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 
 use super::{Coordinates, Entry, gradient};
 use crate::model::Model;
 
-/// One constraint, differentiated.
+/// A constraint with its derivatives.
 #[derive(Debug)]
 pub struct ConstraintForm {
     /// `eta_j`, N entries.
     pub form: Vec<ExprId>,
-    /// `eta_0`.
+    /// `eta_0`
     pub affine: ExprId,
-    /// `eta(qdot) + eta_0`, or `phi`.
+    /// `eta(qdot) + eta_0`, or `phi` if the constraint is nonlinear.
     pub residual: ExprId,
-    /// The natural size of `residual`: its terms without their signs, sines and cosines counted as 1. With the
-    /// sines themselves a term `cos(pi/2) v`, zero but for rounding, would have to vanish to the last digit.
+    /// Scale of `residual`: the sum of the absolute values of its terms, with sines and cosines counted as 1. With the
+    /// sines themselves, a term like `cos(pi/2) v`, which is 0 up to rounding, would have to vanish to the last digit.
     pub scale: ExprId,
     /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`.
     pub curvature: ExprId,
-    /// `eta_j` and `curvature` without the number that all components have in common; the motion does not depend on it.
+    /// `eta_j` and `curvature`, divided by the numerical factor that all components have in common. The motion does not
+    /// depend on it.
     pub primitive: (Vec<ExprId>, ExprId),
-    /// `d_k eta_j`, index `[j, k]`.
+    /// Non-zero `d_k eta_j`, index `[j, k]`.
     pub form_gradient: Vec<Entry<2>>,
-    /// `d_k eta_0`, index `[k]`.
+    /// Non-zero `d_k eta_0`, index `[k]`.
     pub affine_gradient: Vec<Entry<1>>,
-    /// `d_t eta_j`, index `[j]`.
+    /// Non-zero `d_t eta_j`, index `[j]`.
     pub form_rate: Vec<Entry<1>>,
-    /// `f(t, q)` kept by the motion, when the form is exact with a known function.
+    /// The function `f(t, q)` that the motion conserves, if the form is exact with a known integral.
     pub level: Option<ExprId>,
-    /// The natural size of `level`, as `scale` is that of `residual`, of an equation of positions `level = 0`.
+    /// Scale of `level`, in analogy to `scale`, for a position-level constraint `level = 0`.
     pub level_scale: Option<ExprId>,
 }
 
-/// Differentiates every constraint.
+/// Derives the form of every constraint, in the order of declaration.
 pub(super) fn derive_constraints(
     model: &mut Model,
     coordinates: &Coordinates,
@@ -95,7 +97,7 @@ fn primitive(pool: &mut Pool, form: &[ExprId], curvature: ExprId) -> (Vec<ExprId
     (form, pool.scale(&scale, curvature))
 }
 
-/// `eta(qdot) + eta_0`.
+/// `eta(qdot) + eta_0`
 pub(super) fn derive_residual(
     model: &mut Model,
     coordinates: &Coordinates,
@@ -141,8 +143,8 @@ fn derive_form_rate(
     entries
 }
 
-/// The expression without its signs, sines and cosines counted as 1: a bound of `|expression|` for which terms
-/// cannot cancel.
+/// A bound of `|expression|` without cancellation: all terms have their absolute values, sines and cosines are replaced
+/// by 1.
 pub(super) fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
     match pool.node(expression).clone() {
         Node::Number(number) => pool.number(number.abs()),
@@ -158,7 +160,7 @@ pub(super) fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
         Node::Product(factors) => {
             let mut bounds = Vec::with_capacity(factors.len());
             for (base, exponent) in factors.iter() {
-                // Only numerators may be replaced by their bounds: a denominator may be small.
+                // Only numerators are replaced by their bounds, because a denominator may be small.
                 let bound = if exponent.is_positive() {
                     amplitude(pool, *base)
                 } else {
@@ -174,9 +176,9 @@ pub(super) fn amplitude(pool: &mut Pool, expression: ExprId) -> ExprId {
     }
 }
 
-/// A coordinate for each constraint such that the velocities of these coordinates follow from the others at every
-/// state: pairs of constraint and coordinate in an order in which they can be solved for, each entry on the
-/// diagonal never zero. `None` if no order of rows and columns makes such a minor triangular.
+/// One coordinate per constraint, such that the velocities of these coordinates are functions of the others at every
+/// state. Returns pairs of constraint and coordinate, in an order in which the velocities can be solved for one by one;
+/// the diagonal entries are never zero. `None` if no order of rows and columns makes such a minor triangular.
 pub(crate) fn regular_minor(
     pool: &Pool,
     constraints: &[ConstraintForm],
@@ -200,7 +202,7 @@ pub(crate) fn regular_minor(
         rows.retain(|&row| row != pair.0);
         pairs.push(pair);
     }
-    // A row taken away early may hold the columns of later ones, never the other way round.
+    // A row removed early may contain columns of later rows, but not conversely.
     pairs.reverse();
     Some(pairs)
 }

@@ -1,15 +1,15 @@
-//! Rows of the factors `g = L D L^T` that are no larger than the rows of `g` they come from.
+//! Symbolic rows of the factorisation `g = L D L^T` that are no larger than the rows of `g`.
 //!
-//! If the centre of mass of a body is not its origin, elimination removes a term that the metric adds: `I + m a^2`
-//! becomes `I`. The expressions formed here cancel exactly, numbers only up to rounding. Rows that would grow are
-//! computed in numbers.
+//! If the origin of a body is not its centre of mass, elimination removes a term of the metric: `I + m a^2` becomes
+//! `I`. Symbolic expressions cancel exactly, numbers only up to rounding. Rows whose expressions would grow are
+//! factorised numerically.
 
 use dalembert_expr::{ExprId, Pool};
 
-/// Number of coordinates beyond which no rows are sought.
+/// Largest number of coordinates for which rows are sought.
 const COORDINATES: usize = 8;
 
-/// A row of the factors.
+/// A row of the factorisation.
 #[derive(Debug, Clone)]
 pub struct FactorRow {
     /// `L_ij`, `j < i`.
@@ -18,7 +18,7 @@ pub struct FactorRow {
     pub pivot: ExprId,
 }
 
-/// The rows; `None` for those without a coupling, which are those of `g`, and for those that would grow.
+/// The rows. `None` for a row without couplings, which equals that of `g`, and for a row that would grow.
 pub(super) fn derive_factors(pool: &mut Pool, metric: &[Vec<ExprId>]) -> Vec<Option<FactorRow>> {
     if metric.len() > COORDINATES {
         return vec![None; metric.len()];

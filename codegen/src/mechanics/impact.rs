@@ -1,7 +1,8 @@
 //! Differentials of the impact surfaces: `dh`, `d_t h` and the gap rate `dh(qdot) + d_t h`.
 //!
-//! Every law but `reset` is an impulse along `pi_D^* dh`. Its effect on the state is the same for every multiple of
-//! `dh`. For a wall that stands still, only the direction matters: its *ray*, without factors that are never zero.
+//! Every law but `reset`, `stop` and transitions is an impulse along `pi_D^* dh`, plus impulses of instantaneous
+//! constraints. Its effect on the state is the same for every multiple of `dh`. For a wall at rest, only the direction
+//! of `dh` matters: its *ray*, without factors that are never zero.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -10,10 +11,10 @@ use super::constraint::derive_residual;
 use super::{Coordinates, Frame};
 use crate::model::{Constraint, Model};
 
-/// Distinct parts beyond which a ray on D is not written out.
+/// Largest number of distinct subexpressions of a ray on D that is written out.
 const PARTS: usize = 400;
 
-/// A constraint `psi(qdot) + psi_0 = 0` that holds in the moment of an impact, and where the motion is held by the
+/// A constraint `psi(qdot) + psi_0 = 0` that holds during an impact, and while the motion stays in contact with the
 /// surface.
 #[derive(Debug)]
 pub struct InstantaneousForm {
@@ -23,7 +24,7 @@ pub struct InstantaneousForm {
     pub affine: ExprId,
     /// `psi(qdot) + psi_0`
     pub residual: ExprId,
-    /// The rate of `residual` at fixed velocity.
+    /// Time derivative of `residual` at fixed velocity.
     pub curvature: ExprId,
 }
 
@@ -38,15 +39,15 @@ pub struct SurfaceForm {
     pub rate: ExprId,
     /// `dh(qdot) + d_t h`.
     pub gap_rate: ExprId,
-    /// The rate of `gap_rate` at fixed velocity: `d^2h/dt^2` without `dh(qddot)`.
+    /// Time derivative of `gap_rate` at fixed velocity: `d^2h/dt^2` without `dh(qddot)`.
     pub curvature: ExprId,
     /// Functions whose signs decide where the surface counts, see [`Surface::margins`](crate::model::Surface::margins).
     pub margins: Vec<ExprId>,
-    /// The constraints that hold in the moment of an impact only.
+    /// The constraints that hold during an impact only.
     pub instantaneous: Vec<InstantaneousForm>,
-    /// Direction of `dh` for a wall that stands still, without common factors that are never zero.
+    /// Direction of `dh` without common factors that are never zero; `None` for a moving wall.
     pub ray: Option<Vec<ExprId>>,
-    /// The ray of `X^T dh`, where it can be written out.
+    /// The ray of `X^T dh`, with the frame `X` of D as columns; `None` if it is not written out.
     pub ray_on_d: Option<Vec<ExprId>>,
 }
 
@@ -102,7 +103,7 @@ fn derive_instantaneous(
     declared.into_iter().map(derive).collect()
 }
 
-/// `X^T dh`; `None` where a component of `X` that it takes is not written out.
+/// `X^T dh`; `None` where a component of `X` in it is not written out, or if the result is too long.
 fn restricted(pool: &mut Pool, frame: &Frame, form: &[ExprId]) -> Option<Vec<ExprId>> {
     let fields = &frame.invariant.as_ref()?.written;
     let mut entries = Vec::with_capacity(fields.len());

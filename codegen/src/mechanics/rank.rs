@@ -1,10 +1,11 @@
-//! Proofs that the constraint forms are independent at every state.
+//! Proofs that the constraint forms are linearly independent at every state.
 //!
-//! Each step of a proof keeps the property "independent at every state". A form with columns of its own that never vanish
-//! together is left out; a form with an entry that is never zero is eliminated from the others. The squares of all minors
-//! of the remaining forms are added up: the forms are independent where the sum is positive (Cauchy and Binet).
+//! Each step of the proof leaves fewer forms, which are independent at every state iff the former ones are. A form is
+//! removed if it has columns of its own whose entries never vanish together. A form with an entry that is never zero is
+//! eliminated from the others. For the remaining forms the squares of all minors are added: the forms are independent where the
+//! sum is positive (Cauchy and Binet).
 //!
-//! A form that is the differential of a function may vanish at states that no motion reaches: see [`keeps_off`].
+//! A form that is the differential of a function may vanish at states that no motion reaches; see [`keeps_off`].
 
 use dalembert_expr::{ExprId, Pool, Rational, SymbolId};
 
@@ -12,20 +13,21 @@ use super::ConstraintForm;
 use super::constraint::{never_zero, regular_minor};
 use super::inverse::{Matrix, determinant};
 
-/// Largest number of forms whose minors are all tested.
+/// Largest number of forms for which all minors are tested.
 const MINORS: usize = 3;
 
-/// Entries beyond which no form is eliminated from others, and no minor is made.
+/// Largest number of entries for which forms are eliminated and minors are formed.
 const ENTRIES: usize = 256;
 
-/// A form that is left.
+/// A remaining form.
 struct Row {
     entries: Vec<ExprId>,
-    /// The function whose differential it is, if that is known and the form is as it was declared.
+    /// The function whose differential the form is. Known only for forms that were not changed by elimination.
     level: Option<ExprId>,
 }
 
-/// True if it is proved that no motion from a state with independent forms reaches a state with dependent ones. The pool is left as it is.
+/// True if it is proved that no motion leads from a state with independent forms to one with dependent forms. The pool
+/// is left unchanged.
 pub(super) fn is_constant(pool: &Pool, q: &[SymbolId], constraints: &[ConstraintForm]) -> bool {
     if regular_minor(pool, constraints).is_some() {
         return true;
@@ -51,7 +53,8 @@ pub(super) fn is_constant(pool: &Pool, q: &[SymbolId], constraints: &[Constraint
     true
 }
 
-/// True if the entries of a form in columns that no other form has never vanish together, or not along a motion.
+/// True if the entries of form `a` in columns where all other forms are 0 never vanish together, at least along a
+/// motion.
 fn stands_alone(pool: &mut Pool, q: &[SymbolId], rows: &[Row], a: usize) -> bool {
     let is_alone = |j: &usize| {
         let mut rows = rows.iter().enumerate();
@@ -63,7 +66,7 @@ fn stands_alone(pool: &mut Pool, q: &[SymbolId], rows: &[Row], a: usize) -> bool
     if never_vanish_together(pool, &entries) {
         return true;
     }
-    // Without elimination the columns are the coordinates.
+    // The columns are the coordinates, because a form with a level has seen no elimination.
     rows[a].level.is_some_and(|level| {
         let along: Vec<SymbolId> = columns.iter().map(|&j| q[j]).collect();
         keeps_off(pool, &along, level)
@@ -92,9 +95,9 @@ fn quadratic_level(pool: &mut Pool, q: &[SymbolId], constraint: &ConstraintForm)
     is_level.then_some(level)
 }
 
-/// True if the derivatives of a function by these coordinates vanish together at no state of a motion that keeps the
-/// function, unless they vanish at all of its states. This holds for `c + sum_j c_j l_j^2` with `c_j > 0`, or all
-/// negative, and a derivative in proportion to each `l_j`: the derivatives vanish exactly where the function is `c`.
+/// True if the derivatives of a function with respect to the coordinates `along` cannot begin to vanish together along
+/// a motion that conserves the function. This holds for `c + sum_j c_j l_j^2` with all `c_j` of one sign, and with
+/// derivatives proportional to the `l_j`: the derivatives vanish together exactly where the function equals `c`.
 fn keeps_off(pool: &mut Pool, along: &[SymbolId], level: ExprId) -> bool {
     let (_, terms) = pool.linear_form(level);
     let varying = pool.combine(&terms);
@@ -118,7 +121,7 @@ fn keeps_off(pool: &mut Pool, along: &[SymbolId], level: ExprId) -> bool {
     is_definite && !signs.is_empty() && pool.is_syntactic_zero(rest)
 }
 
-/// True if the sum of the squares is positive.
+/// True if the sum of the squares of the entries is proved to be positive.
 fn never_vanish_together(pool: &mut Pool, entries: &[ExprId]) -> bool {
     let squares: Vec<ExprId> = entries
         .iter()
@@ -129,14 +132,14 @@ fn never_vanish_together(pool: &mut Pool, entries: &[ExprId]) -> bool {
     never_zero(pool, sum) || never_zero(pool, simple)
 }
 
-/// A form and a column with an entry that is never zero.
+/// A form and a column whose entry is never zero.
 fn pivot(pool: &Pool, rows: &[Row]) -> Option<(usize, usize)> {
     let entries = |a: usize| (0..rows[a].entries.len()).map(move |j| (a, j));
     let mut places = (0..rows.len()).flat_map(entries);
     places.find(|&(a, j)| never_zero(pool, rows[a].entries[j]))
 }
 
-/// Eliminates a form from the others, then removes it and the column of its pivot.
+/// Eliminates form `a` from the others, then removes it and the column of its pivot.
 fn eliminate(pool: &mut Pool, rows: &mut Vec<Row>, (a, column): (usize, usize)) {
     let pivot_row = rows.remove(a).entries;
     for Row {
@@ -188,7 +191,7 @@ fn collect_minors(
 mod tests {
     use crate::compile;
 
-    /// True if the rank of these constraints is known to be constant.
+    /// True if the rank of these constraints is proved to be constant.
     fn is_constant(constraints: &str) -> bool {
         let source = format!(
             "pub Model {{

@@ -7,9 +7,9 @@
 //! B^a = dA^a + 1/2 C_bc^a A^b ^ A^c                   dA^a on horizontal vectors
 //! ```
 //!
-//! Without constraints A is the mechanical connection `I^{ab} g(xi_b, .)`, else the nonholonomic connection; it exists where the orbits and
-//! D span all directions. Sources: W. Clark, thesis, VI.24, VI.25, VI.31 to VI.37; A. Bloch, P. Krishnaprasad, J. Marsden and R. Murray, Arch.
-//! Rational Mech. Anal. 136 (1996).
+//! Without constraints A is the mechanical connection `I^{ab} g(xi_b, .)`, else the nonholonomic connection. It exists
+//! where the orbits and D together span all directions. Sources: W. Clark, thesis, VI.24, VI.25, VI.31 to VI.37; A.
+//! Bloch, P. Krishnaprasad, J. Marsden and R. Murray, Arch. Rational Mech. Anal. 136 (1996).
 
 mod structure;
 
@@ -21,20 +21,20 @@ use super::{Derivation, SurfaceForm};
 use crate::model::{Law, Model, Topology};
 use structure::structure;
 
-/// Reason for which fields are no group to reduce by.
+/// Reason why the fields give no reduction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NoReduction {
     /// There is no bracket.
     NoBracket(NoBracket),
     /// The fields are dependent at all configurations.
     Dependent,
-    /// The bracket of these two is no combination of the fields with constant factors.
+    /// The bracket of these two fields is proved to be no combination of the fields with constant coefficients.
     NotClosed(usize, usize),
-    /// The bracket of these two is not known to be such a combination, nor to be none.
+    /// Undecided: the bracket of these two fields may or may not be such a combination.
     Undecided(usize, usize),
-    /// The fields, or the constraints on them, are not known to be independent, nor to depend on each other.
+    /// Undecided: the fields, or the constraints on them, may or may not be independent.
     UndecidedRank,
-    /// A matrix that is not inverted by minors.
+    /// A matrix is too large for inversion by minors.
     TooLarge,
 }
 
@@ -56,32 +56,33 @@ pub struct Reduction {
     pub locked: Matrix,
     /// `J_a`
     pub momenta: Vec<ExprId>,
-    /// `e_i`; the fields themselves without constraints.
+    /// `e_i`, N components each. Without constraints these are the fields themselves.
     pub sections: Matrix,
     /// `g(e_i, e_j)`
     pub constrained: Matrix,
     /// `<p, e_i>` on D
     pub momenta_on_d: Vec<ExprId>,
-    /// Rates of these along the motion, where they are written out.
+    /// Rates of `momenta_on_d` along the motion; `None` if constraints are affine or the model depends on time.
     pub rates: Option<Vec<ExprId>>,
-    /// Forms `A^a`, where the orbits and D span all directions.
+    /// Forms `A^a`; `None` unless the orbits and D together span all directions.
     pub connection: Option<Matrix>,
-    /// `B^a` in coordinates.
+    /// `B^a_kl` in coordinates, an N by N matrix for each `a`.
     pub curvature: Vec<Matrix>,
-    /// Equations for what the group leaves, where the frame of the motion is invariant.
+    /// The reduced equations; `None` unless the frame of the motion is proved to be invariant.
     pub reduced: Option<Reduced>,
-    /// Jumps at surfaces; `None` for a declared map.
+    /// Jumps at surfaces; `None` for a law that is no single impulse.
     pub impacts: Vec<Option<Jump>>,
 }
 
-/// The motion on D up to the group: positions that it does not move, and quasi-velocities that it does not change.
+/// The motion on D modulo the group: coordinates that the group does not move, and quasi-velocities that it does not
+/// change.
 #[derive(Debug)]
 pub struct Reduced {
-    /// Indices of these coordinates, with their rates.
+    /// Indices and rates of the coordinates that the group does not move.
     pub shape: Vec<(usize, ExprId)>,
-    /// Quasi-velocities: their symbols, what they are of velocities, and their rates.
+    /// Quasi-velocities: symbols, expressions in the velocities, and rates.
     pub quasi: Vec<(SymbolId, ExprId, ExprId)>,
-    /// The other coordinates, with their rates.
+    /// Indices and rates of the other coordinates.
     pub group: Vec<(usize, ExprId)>,
 }
 
@@ -90,11 +91,12 @@ pub struct Reduced {
 pub struct Jump {
     /// `dh(e_i)`
     pub slopes: Vec<ExprId>,
-    /// `eps`, beside linear constraints.
+    /// `eps`; `None` if constraints are affine, or if the metric is too large to be inverted.
     pub impulse: Option<ExprId>,
 }
 
-/// Derives what a group of symmetries gives; the fields are known to be symmetries of the Lagrangian and of the constraints.
+/// Derives the quantities of a reduction by a group. `fields` must be symmetries of the Lagrangian and of the
+/// constraints.
 ///
 /// # Errors
 /// [`NoReduction`].
@@ -150,7 +152,7 @@ pub fn derive_reduction(
     })
 }
 
-/// Combinations of fields that forms annihilate, and true if the forms are independent on the fields.
+/// Combinations of fields that all forms annihilate. True if the forms are independent on the fields.
 fn kernel(
     pool: &mut Pool,
     forms: &[Vec<ExprId>],
@@ -182,7 +184,8 @@ fn kernel(
     Ok((sections, rows.len() == forms.len()))
 }
 
-/// A basis of the directions of D along the orbits: combinations of the symmetries, or of the frame of D, whichever is shorter.
+/// A basis of the directions of D along the orbits: combinations of the symmetries, or of the frame of D, whichever is
+/// shorter.
 fn simplest(
     pool: &mut Pool,
     bracket: &Bracket,
@@ -209,7 +212,7 @@ fn simplest(
     })
 }
 
-/// The field of a coordinate, or its differential.
+/// Unit vector `k` of length `n`: a coordinate field, or a differential.
 fn axis(pool: &Pool, n: usize, k: usize) -> Vec<ExprId> {
     let entry = |l: usize| if k == l { pool.one() } else { pool.zero() };
     (0..n).map(entry).collect()
@@ -230,7 +233,7 @@ fn lowered(pool: &mut Pool, metric: &[Vec<ExprId>], fields: &[Vec<ExprId>]) -> M
         .collect()
 }
 
-/// `<p, xi_a>` by velocities.
+/// `<p, xi_a>` in terms of velocities.
 fn momenta(model: &mut Model, fields: &[Vec<ExprId>]) -> Vec<ExprId> {
     let whole = model.lagrangian.whole;
     let velocities: Vec<SymbolId> = (model.coordinates.iter())
@@ -244,7 +247,7 @@ fn momenta(model: &mut Model, fields: &[Vec<ExprId>]) -> Vec<ExprId> {
     fields.iter().map(|field| dot(pool, field, &p)).collect()
 }
 
-/// `<p, e_i>` on D, of positions and quasi-velocities.
+/// `<p, e_i>` on D, in terms of positions and quasi-velocities.
 fn momenta_of(model: &mut Model, bracket: &Bracket, sections: &[Vec<ExprId>]) -> Vec<ExprId> {
     let momenta = momenta(model, sections);
     let values = momenta.into_iter();
@@ -256,7 +259,8 @@ fn momenta_of(model: &mut Model, bracket: &Bracket, sections: &[Vec<ExprId>]) ->
         .collect()
 }
 
-/// The sum of the forces on D; `None` where the motion is not that of the bracket: affine constraints, or what depends on time.
+/// The sum of the forces on D; `None` if constraints are affine, or if the equations depend on time. The bracket does
+/// not give the motion in these cases.
 fn forces_on_d(
     model: &mut Model,
     bracket: &Bracket,
@@ -297,7 +301,7 @@ fn forces_on_d(
     Some(sums.collect())
 }
 
-/// `{J_i, H} + F(e_i)` by velocities.
+/// `{J_i, H} + F(e_i)` in terms of velocities.
 fn rates_of(
     model: &mut Model,
     bracket: &Bracket,
@@ -380,7 +384,7 @@ fn curvature(
         .collect()
 }
 
-/// The equations for what the group leaves; `None` where the frame, or what follows in it, is not shown to be invariant.
+/// The reduced equations; `None` unless the frame and the equations in it are proved to be invariant.
 fn reduced(
     model: &mut Model,
     bracket: &Bracket,
@@ -444,7 +448,7 @@ fn reduced(
     })
 }
 
-/// True if the lift of a field is shown to keep a function of positions and velocities on D.
+/// True if the derivative of a function along the lift of a field is proved to vanish on D.
 fn change_along(model: &mut Model, bracket: &Bracket, field: &[ExprId], function: ExprId) -> bool {
     let coordinates = model.coordinates.clone();
     let pool = &mut model.pool;
@@ -462,7 +466,7 @@ fn change_along(model: &mut Model, bracket: &Bracket, field: &[ExprId], function
     pool.zero_test(change) == Verdict::Proved
 }
 
-/// An expression without the coordinates that the group moves; `None` if it is not shown not to depend on them.
+/// `value` at fixed values of the coordinates that the group moves; `None` unless it is proved independent of them.
 fn without(model: &mut Model, q: &[SymbolId], moved: &[bool], value: ExprId) -> Option<ExprId> {
     let mut value = settled(&mut model.pool, value);
     for (k, symbol) in q.iter().enumerate() {
@@ -486,7 +490,7 @@ fn without(model: &mut Model, q: &[SymbolId], moved: &[bool], value: ExprId) -> 
     Some(value)
 }
 
-/// The jump at a surface of an impulse.
+/// The jump of momenta at a surface; `None` if the law is no single impulse.
 fn jump(
     model: &mut Model,
     bracket: &Bracket,
@@ -525,7 +529,7 @@ fn impulse(
     let on_d: Vec<ExprId> = (bracket.frame.fields.iter())
         .map(|field| dot(pool, field, &surface.form))
         .collect();
-    // Squares of long gradients are not multiplied out.
+    // The sum keeps squares of long gradients as products.
     let mut squares = Vec::new();
     for (i, row) in bracket.inverse.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {

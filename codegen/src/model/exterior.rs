@@ -1,15 +1,17 @@
-//! Differential forms on the states of one time: sums of `c df_1 ^ .. ^ df_k`, with functions c and f of positions, velocities and time.
+//! Differential forms on the states at one time: sums of `c df_1 ^ .. ^ df_k` with functions c and f of positions,
+//! velocities and time.
 //!
-//! `energy` and momenta stay symbols. Sums, products by functions, wedge products and exterior derivatives keep this shape.
+//! `energy` and momenta are kept as symbols. Sums, products with functions, wedge products and exterior derivatives
+//! preserve this shape.
 
 use dalembert_expr::{ExprId, Pool};
 
-/// A sum of wedge products of one degree.
+/// A sum of wedge products of the same degree.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExteriorForm {
     /// The degree.
     pub degree: usize,
-    /// The terms; none of the form 0.
+    /// The terms. The form 0 has none.
     pub terms: Vec<Wedge>,
 }
 
@@ -18,12 +20,12 @@ pub struct ExteriorForm {
 pub struct Wedge {
     /// `c`
     pub coefficient: ExprId,
-    /// The functions f, in the order of their indices.
+    /// The functions f, sorted by their ids, without repetition.
     pub differentials: Vec<ExprId>,
 }
 
 impl ExteriorForm {
-    /// The form 0 of a degree.
+    /// The zero form of a degree.
     pub fn zero(degree: usize) -> Self {
         Self {
             degree,
@@ -31,7 +33,7 @@ impl ExteriorForm {
         }
     }
 
-    /// A function.
+    /// A function as a form of degree 0.
     pub fn function(pool: &Pool, value: ExprId) -> Self {
         let term = Wedge {
             coefficient: value,
@@ -113,7 +115,7 @@ impl ExteriorForm {
         sum
     }
 
-    /// All functions.
+    /// All functions and coefficients in the form.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> + '_ {
         let of = |term: &Wedge| {
             term.differentials
@@ -125,7 +127,8 @@ impl ExteriorForm {
     }
 }
 
-/// The product with its differentials in order; `None` if one of them occurs twice.
+/// The wedge product with its differentials sorted, and the sign of the permutation in the coefficient; `None` if a
+/// differential occurs twice.
 fn sorted(pool: &mut Pool, coefficient: ExprId, mut differentials: Vec<ExprId>) -> Option<Wedge> {
     let mut is_odd = false;
     for end in (1..differentials.len()).rev() {
@@ -155,7 +158,7 @@ mod tests {
 
     use super::*;
 
-    /// `d(x)`, `d(y)` and `x`.
+    /// The forms `d(x)` and `d(y)`, and `x`.
     fn forms(pool: &mut Pool) -> ([ExteriorForm; 2], ExprId) {
         let [x, y] = ["x", "y"].map(|name| pool.symbol(name, name, Assumption::None));
         let [x, y] = [x, y].map(|symbol| pool.variable(symbol));

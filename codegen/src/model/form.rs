@@ -8,7 +8,7 @@ use super::degree::{
 use super::resolve::{Resolver, Scope, Value};
 use crate::spec::{Equation, Quantity, Scalar, ScalarKind};
 
-/// A one-form taken apart.
+/// The parts of a one-form.
 #[derive(Debug)]
 pub(super) struct OneForm {
     /// `eta_i`, one for each coordinate.
@@ -17,23 +17,23 @@ pub(super) struct OneForm {
     pub(super) affine: ExprId,
     /// `f` with `df = eta + eta_0 dt`, where known.
     pub(super) level: Option<ExprId>,
-    /// Vanishing function that is not linear in the velocities; the form is then its derivative with respect to them.
+    /// Function `phi` of a constraint `phi = 0` that is not linear in the velocities. `form` is then `dphi/dqdot`.
     pub(super) nonlinear: Option<ExprId>,
-    /// True if the equation is one of positions: `level = 0` itself is declared.
+    /// True if the equation `level = 0` in positions is declared itself.
     pub(super) is_of_positions: bool,
 }
 
 /// Admitted dependence of a constraint on velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dependence {
-    /// Linear or affine; the text is the noun for the constraint in messages.
+    /// Linear or affine. The text is the noun for the constraint in messages.
     Linear(&'static str),
     /// Any dependence.
     Any,
 }
 
 impl Resolver<'_> {
-    /// The one-form `left - right` of a constraint, exactly as written.
+    /// The one-form of the constraint `left = right`, as written.
     pub(super) fn constraint_form(
         &mut self,
         equation: &Equation,
@@ -111,7 +111,7 @@ impl Resolver<'_> {
         let form = coefficients(&mut self.pool, value.expr, velocities);
         let affine = at_zero(&mut self.pool, value.expr, velocities);
         let affine = without_hidden_zero(&self.pool, affine);
-        // What has no value where the coefficients have none either may go as well.
+        // An affine part that vanishes wherever the coefficients have values is dropped.
         let affine = match is_defined_with(&self.pool, affine, &form) && is_zero(&self.pool, affine)
         {
             true => self.pool.zero(),
@@ -154,7 +154,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Refuses an equation of positions where one of velocities is wanted.
+    /// Refuses an equation of positions where an equation of velocities is needed.
     fn refuse_positions<T>(&mut self, equation: &Equation, what: &str) -> Option<T> {
         let at = equation.left.at.to(equation.right.at);
         let text = format!("{what} restrict velocities, and this equation has none");
@@ -222,7 +222,7 @@ impl Resolver<'_> {
         Some(())
     }
 
-    /// Every term of a one-form has a differential.
+    /// Refuses a one-form with a term that has no differential.
     fn check_every_term(
         &mut self,
         side: &Scalar,
@@ -346,7 +346,7 @@ impl Resolver<'_> {
     }
 }
 
-/// True if `d(..)` or `dot(..)` is written in an expression.
+/// True if an expression contains `d(..)` or `dot(..)`.
 fn mentions_rate(scalar: &Scalar) -> bool {
     match &scalar.kind {
         ScalarKind::Number(..) | ScalarKind::Name(_) | ScalarKind::Member(..) => false,

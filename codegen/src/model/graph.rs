@@ -1,10 +1,7 @@
-//! Model with modes: each mode is a model, and transitions connect them.
+//! Models with modes: every mode is a model, and transitions connect the modes.
 //!
 //! The model as a whole has the coordinates, constraints, surfaces, forces and outputs of all modes, one for each name.
 //! Coordinate `i` of a mode is coordinate `places.coordinates[i]` of the whole.
-//!
-//! Coordinates, constraints, surfaces, forces and outputs of the whole are those of all modes, one for each name; what a mode
-//! calls its coordinate `i` is the coordinate `places.coordinates[i]` of the whole.
 
 use dalembert_expr::Pool;
 
@@ -18,7 +15,7 @@ use crate::spec::{self, STEPS};
 /// A checked model with modes.
 #[derive(Debug)]
 pub struct ModeGraph {
-    /// The modes, in order; the first is where a run begins.
+    /// The modes, in order of declaration. A run begins in the first one.
     pub modes: Vec<Mode>,
     /// The coordinates of all modes.
     pub coordinates: Vec<Entry>,
@@ -37,15 +34,15 @@ pub struct ModeGraph {
 /// A mode.
 #[derive(Debug)]
 pub struct Mode {
-    /// Names, as for a scene.
+    /// Names of the mode, in the form of those of a scene.
     pub scene: Scene,
     /// The mode as a model.
     pub model: Model,
-    /// Indices of its declarations in the whole.
+    /// Indices of its declarations in the whole model.
     pub places: Places,
 }
 
-/// Indices in the whole, in the order of the mode.
+/// Indices in the whole model, in the order of the mode.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     /// Coordinates.
@@ -58,29 +55,29 @@ pub struct Places {
     pub outputs: Vec<usize>,
 }
 
-/// A declared name, with the first mode that has it and its index there.
+/// A declared name, with the first mode that declares it and its index there.
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The first mode that has it.
+    /// Index of the first mode that declares it.
     pub mode: usize,
     /// Index in that mode.
     pub place: usize,
 }
 
 impl ModeGraph {
-    /// True if the modes are first-order systems. Either all of them are, or none.
+    /// True if the modes are first-order systems. All modes are, or none.
     pub fn is_first_order(&self) -> bool {
         self.modes.iter().all(|mode| mode.model.is_first_order())
     }
 }
 
 impl ModeGraph {
-    /// Pairs of transitions between first-order modes that cross one surface in opposite directions and keep the state.
-    /// The gap of the second, as written, is the negative of the first.
+    /// Pairs of transitions between first-order modes that cross the same surface in opposite directions and keep the
+    /// state. The gap of the second, as written, is the negative of that of the first.
     pub fn opposites(&self) -> impl Iterator<Item = [usize; 2]> {
         let leaving = |index: usize| {
             let mode = &self.modes[index];
@@ -118,7 +115,7 @@ impl ModeGraph {
 /// Checks every mode and the relations between modes.
 ///
 /// # Errors
-/// Every mistake, each at the smallest part of the declaration that is wrong.
+/// All mistakes, each at the smallest part of the declaration that is wrong.
 pub fn check_modes(declared: &spec::Modes) -> Result<ModeGraph, Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     check_names(declared, &mut diagnostics);
@@ -144,7 +141,7 @@ pub fn check_modes(declared: &spec::Modes) -> Result<ModeGraph, Diagnostics> {
     Ok(graph)
 }
 
-/// Refuses names that are not valid for a type and a module.
+/// Rejects names that are not valid as names of a type or a module.
 fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     const MODULES: [&str; 7] = [
         "coordinate",
@@ -191,7 +188,7 @@ fn check_names(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Refuses modes that no transition enters, and transitions whose source or target mode does not exist.
+/// Rejects modes that no transition enters, and transitions whose source or target mode does not exist.
 fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     let names: Vec<&str> = (declared.modes.iter())
         .map(|mode| mode.name.text.as_str())
@@ -215,7 +212,7 @@ fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
             let help = "write an impact of this mode: `impacts { name: h >= 0 => reset { .. }; }`";
             diagnostics.error(transition.to.at, text).help(help);
         }
-        // Those of one mode are told apart with its other surfaces.
+        // Transitions that leave the same mode are compared with the other surfaces of that mode.
         let is_same = |other: &spec::Transition| {
             other.name.text == transition.name.text && other.from.text != transition.from.text
         };
@@ -253,7 +250,7 @@ fn check_reached(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Refuses mechanical modes next to first-order ones: a run has an energy in all modes or in none.
+/// Rejects a mixture of mechanical and first-order modes: a run has an energy in all modes or in none.
 fn check_kind(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     let is_first_order = |mode: &&spec::Mode| mode.spec.field.is_some();
     let first = declared.modes.iter().find(is_first_order);
@@ -268,7 +265,7 @@ fn check_kind(declared: &spec::Modes, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Finds the transitions between modes of the same Lagrangian.
+/// Marks the transitions between modes with the same Lagrangian.
 fn compare_lagrangians(models: &mut [Model]) {
     let texts: Vec<Vec<String>> = models.iter().map(lagrangian_text).collect();
     for (index, model) in models.iter_mut().enumerate() {
@@ -280,8 +277,8 @@ fn compare_lagrangians(models: &mut [Model]) {
     }
 }
 
-/// Metric, velocity-linear terms and potential as text. Expressions have one order, so equal texts are equal functions.
-/// Two ways of writing one function may count as different.
+/// Metric, velocity-linear terms and potential as text. Expressions are kept in a canonical order, so equal texts are
+/// equal functions. Equal functions that are written differently may have different texts.
 fn lagrangian_text(model: &Model) -> Vec<String> {
     let lagrangian = &model.lagrangian;
     let parts = lagrangian.metric.iter().flatten().chain(&lagrangian.linear);
@@ -292,7 +289,7 @@ fn lagrangian_text(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Keeps notes that all modes share once, from the first mode. A parameter may be unused in one mode.
+/// Removes notes on unused parameters, unless the parameter is unused in all modes.
 fn keep_common_notes(models: &mut [Model]) {
     let unused = |note: &String| note.ends_with("is not used");
     let lists: Vec<Vec<String>> = models.iter().map(|model| model.notes.clone()).collect();
@@ -303,7 +300,7 @@ fn keep_common_notes(models: &mut [Model]) {
     }
 }
 
-/// The lists of all modes.
+/// The model as a whole: the lists of all modes, joined.
 fn joined(declared: &spec::Modes, models: Vec<Model>) -> ModeGraph {
     let mut graph = ModeGraph {
         modes: Vec::new(),
@@ -355,7 +352,7 @@ fn joined(declared: &spec::Modes, models: Vec<Model>) -> ModeGraph {
     graph
 }
 
-/// Adds the entries of a mode that are new; returns the indices of all its entries.
+/// Adds the new entries of a mode to a list. Returns the indices of all its entries in the list.
 fn place<'e>(
     list: &mut Vec<Entry>,
     mode: usize,
@@ -377,7 +374,7 @@ fn place<'e>(
     places
 }
 
-/// Refuses a coordinate that is a line in one mode and an angle in another.
+/// Rejects a coordinate whose topology differs between modes.
 fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     let kind = |model: &Model, coordinate: &Coordinate| match coordinate.topology {
@@ -406,7 +403,7 @@ fn check_topologies(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Dia
     diagnostics.finish(())
 }
 
-/// Refuses integrals that are values in other modes, and those that a mode lacks.
+/// Rejects an integral that is an ordinary output in another mode, or that a mode lacks.
 fn check_integrals(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     for (place, entry) in graph.outputs.iter().enumerate() {
@@ -448,7 +445,7 @@ fn check_integrals(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diag
     diagnostics.finish(())
 }
 
-/// Refuses surfaces that differ between modes but share a name. Events and laws refer to surfaces by name.
+/// Rejects surfaces of the same name that differ between modes, because events and laws refer to surfaces by name.
 fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagnostics> {
     let mut diagnostics = Diagnostics::new();
     let text = |model: &Model, surface: usize| {

@@ -1,8 +1,8 @@
 //! Stage 2, check: resolves every name of a declaration and checks every rule of the language. Nothing is derived yet.
 //!
-//! A [`Model`] can only be had from [`check()`], so it satisfies every rule a declaration must: the Lagrangian is
-//! natural, the metric is not degenerate, the constraints are independent, surfaces can be
-//! reached. Indices are in order of declaration throughout: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
+//! A [`Model`] is only created by [`check()`]. It therefore satisfies all rules of the language: the Lagrangian is
+//! natural, the metric is not degenerate, the constraints are independent, the surfaces can be reached. Indices follow
+//! the order of declaration: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
 
 mod call;
 mod check;
@@ -45,40 +45,40 @@ pub use law::{Law, Reset};
 pub use scene::{Extras, Parts, Scene};
 pub use transition::{Map, Transition};
 
-/// A checked model: all expressions live in `pool`.
+/// A checked model. All its expressions are in `pool`.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// The expressions.
+    /// The pool of the expressions.
     pub pool: Pool,
-    /// The type's name, `RollingDisk`.
+    /// Name of the type, for example `RollingDisk`.
     pub name: String,
-    /// Snake case of `name`, `rolling_disk`.
+    /// Name in snake case, for example `rolling_disk`.
     pub snake_name: String,
-    /// The visibility as written: ``, `pub`, `pub(crate)`.
+    /// Visibility as written: empty, `pub`, `pub(crate)`.
     pub visibility: String,
     /// Lines of the doc comment.
     pub documentation: Vec<String>,
-    /// The declaration as text.
+    /// Text of the declaration.
     pub source: String,
-    /// The symbol of time `t`.
+    /// Symbol of the time `t`.
     pub time: SymbolId,
-    /// Coordinates, families expanded.
+    /// Coordinates, with families expanded.
     pub coordinates: Vec<Coordinate>,
-    /// Parameters, families expanded; then inputs.
+    /// Parameters, with families expanded, followed by the inputs.
     pub parameters: Vec<Parameter>,
     /// The Lagrangian and its parts.
     pub lagrangian: Lagrangian,
-    /// The rates of the coordinates of a first-order system, functions of `(t, q)`. The Lagrangian has no meaning then.
+    /// Rates of the coordinates of a first-order system, functions of `(t, q)`. The Lagrangian is unused then.
     pub field: Option<Vec<ExprId>>,
-    /// Constraints, families expanded.
+    /// Constraints, with families expanded.
     pub constraints: Vec<Constraint>,
-    /// The cost that an optimal input makes least.
+    /// Cost that an optimal input minimises.
     pub cost: Option<Cost>,
     /// Named forces.
     pub forces: Vec<Force>,
-    /// The declared quasi-velocities, N - M or none.
+    /// Declared quasi-velocities: N - M of them, or none.
     pub frame: Vec<QuasiForm>,
-    /// Impact surfaces, families expanded.
+    /// Impact surfaces, with families expanded.
     pub surfaces: Vec<Surface>,
     /// The declared initial condition.
     pub initial: Initial,
@@ -86,25 +86,25 @@ pub struct Model {
     pub view: Option<View>,
     /// The declared outputs.
     pub outputs: Vec<Output>,
-    /// The declared scenes; a scene itself has none.
+    /// Declared scenes. A scene has none itself.
     pub scenes: Vec<Scene>,
-    /// Extras in use besides forces and surfaces.
+    /// Optional parts of the generated code that are in use, besides forces and surfaces.
     pub extras: Extras,
     /// The declared claims.
     pub claims: Vec<Claim>,
-    /// Symbols that stand for derived quantities in outputs and claims.
+    /// Symbols for derived quantities in outputs and claims.
     pub derived: DerivedSymbols,
-    /// Remarks a person should see: velocity-linear terms, integrable constraints, unused parameters.
+    /// Notes for the author: velocity-linear terms, integrable constraints, unused parameters.
     pub notes: Vec<String>,
 }
 
 impl Model {
-    /// True if the rates of the coordinates were declared, in place of a Lagrangian.
+    /// True if the model declares rates of its coordinates instead of a Lagrangian.
     pub fn is_first_order(&self) -> bool {
         self.field.is_some()
     }
 
-    /// The inputs, with their indices among the parameters.
+    /// The inputs, with their indices in `parameters`.
     pub fn inputs(&self) -> impl Iterator<Item = (usize, &Parameter)> {
         let all = self.parameters.iter().enumerate();
         all.filter(|(_, parameter)| parameter.is_input)
@@ -118,12 +118,12 @@ impl Model {
     }
 }
 
-/// A name as the user knows it, and as Rust and formulas write it.
+/// A name in messages, and in Rust and formulas.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
-    /// Form in messages and on the command line: `theta`, `theta.3`.
+    /// The name in messages and on the command line: `theta`, `theta.3`.
     pub display: String,
-    /// The Rust field or family: `theta`.
+    /// Name of the Rust field or family: `theta`.
     pub field: String,
     /// 1-based index in its family.
     pub member: Option<usize>,
@@ -136,17 +136,17 @@ pub struct Coordinate {
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The set it runs through.
+    /// The set of its values.
     pub topology: Topology,
     /// The symbol of the coordinate.
     pub q: SymbolId,
-    /// The symbol of its velocity; named `dot(x)`.
+    /// The symbol of its velocity, named `dot(x)`.
     pub qdot: SymbolId,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// The set a coordinate runs through.
+/// The set of values of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topology {
     /// The real line.
@@ -169,9 +169,9 @@ pub struct Parameter {
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The demand on its values.
+    /// Declared condition on its values.
     pub assumption: Assumption,
-    /// Default, an expression without symbols.
+    /// Default value, an expression without symbols.
     pub default: Option<ExprId>,
     /// True for an input: a parameter that the caller may change at every instant. Inputs come after all parameters.
     pub is_input: bool,
@@ -181,7 +181,7 @@ pub struct Parameter {
     pub item: ItemId,
 }
 
-/// The demand on a parameter's values.
+/// Condition on the values of a parameter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Assumption {
     /// Any finite number.
@@ -204,106 +204,106 @@ pub enum Assumption {
 /// `L = 1/2 qdot^T g qdot + A.qdot - V`.
 #[derive(Debug, Clone)]
 pub struct Lagrangian {
-    /// The whole as written, in coordinates, velocities, parameters and time.
+    /// The whole Lagrangian as written, in coordinates, velocities, parameters and time.
     pub whole: ExprId,
-    /// `g`, N rows of N, symmetric, free of velocities.
+    /// `g`, N rows of N, symmetric, independent of velocities.
     pub metric: Vec<Vec<ExprId>>,
-    /// `A`, N entries, free of velocities; zero without velocity-linear terms.
+    /// `A`, N entries, independent of velocities. All zero without velocity-linear terms.
     pub linear: Vec<ExprId>,
-    /// `V`, free of velocities.
+    /// `V`, independent of velocities.
     pub potential: ExprId,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// `eta(qdot) + eta_0 = 0`.
+/// A constraint `eta(qdot) + eta_0 = 0`.
 #[derive(Debug, Clone)]
 pub struct Constraint {
     /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// `eta`, N entries: left side minus right side, exactly as written.
+    /// `eta`, N entries: left side minus right side, as written.
     pub form: Vec<ExprId>,
-    /// `eta_0`.
+    /// `eta_0`
     pub affine: ExprId,
-    /// `f(t, q)` with `df = eta + eta_0 dt`, when the form is exact with a known function.
+    /// `f(t, q)` with `df = eta + eta_0 dt`, if the form is exact with a known integral.
     pub level: Option<ExprId>,
-    /// `phi(t, q, qdot)` of a constraint `phi = 0` that is not linear in the velocities. Its form is `dphi/dqdot`, its affine
-    /// part `phi - eta(qdot)`, both functions of the velocities.
+    /// `phi(t, q, qdot)` for a constraint `phi = 0` that is nonlinear in the velocities. Then `form` is `dphi/dqdot`
+    /// and `affine` is `phi - eta(qdot)`, both functions of the velocities.
     pub nonlinear: Option<ExprId>,
-    /// True if the equation itself is one of positions, `f = 0` with `f` the level.
+    /// True if the equation was written at position level: `f = 0`, with `f` the level.
     pub is_of_positions: bool,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
 impl Constraint {
-    /// `eta` and `eta_0`.
+    /// The entries of `eta`, then `eta_0`.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.form.iter().copied().chain([self.affine])
     }
 }
 
-/// `J = integral of running + terminal at the end`, which an optimal input makes least.
+/// The cost `J = integral of running dt + terminal at the end`, which an optimal input minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cost {
-    /// A function of time, state and inputs, quadratic in the inputs.
+    /// Running cost: a function of time, state and inputs, quadratic in the inputs.
     pub running: ExprId,
-    /// A function of time and state.
+    /// Terminal cost: a function of time and state.
     pub terminal: ExprId,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// A force as a one-form; coefficients may depend on coordinates, velocities and time.
+/// A force as a one-form. Its coefficients may depend on coordinates, velocities and time.
 #[derive(Debug, Clone)]
 pub struct Force {
     /// Name.
     pub name: Name,
-    /// N entries.
+    /// The coefficients, N entries.
     pub form: Vec<ExprId>,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// A one-form whose value on the velocity is a quasi-velocity.
+/// A one-form. Its value on the velocity is a quasi-velocity.
 #[derive(Debug, Clone)]
 pub struct QuasiForm {
     /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// N entries.
+    /// The coefficients, N entries.
     pub form: Vec<ExprId>,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// A condition on time and position: a function of them is positive.
+/// A condition on time and position: `margin > 0`, or `margin >= 0`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
-    /// The function.
+    /// The margin, a function of time and position.
     pub margin: ExprId,
-    /// True if it may be 0, too.
+    /// True for `margin >= 0`.
     pub is_closed: bool,
 }
 
-/// Relation of a surface to others with the same gap. A list of conditions holds if all of them hold.
+/// Relation of a surface to others with the same gap. A list of conditions holds if all its conditions hold.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Beside {
     /// The surface counts by its own conditions.
     #[default]
     Independent,
-    /// `otherwise`: the surface counts where none of these lists, those of the others, holds.
+    /// `otherwise`: the surface counts where none of these lists holds, the conditions of the other surfaces.
     Otherwise(Vec<Vec<Condition>>),
-    /// The last of several transitions with one gap. Where neither its own conditions nor one of these lists holds, a
-    /// motion that reaches the surface ends.
+    /// The last of several transitions with the same gap. A motion that reaches the surface ends there if neither its
+    /// own conditions nor one of these lists holds.
     Last(Vec<Vec<Condition>>),
 }
 
 impl Beside {
-    /// The conditions of the others.
+    /// The lists of conditions of the other surfaces.
     pub fn others(&self) -> &[Vec<Condition>] {
         match self {
             Self::Independent => &[],
@@ -313,8 +313,8 @@ impl Beside {
 }
 
 impl Surface {
-    /// All functions whose signs decide where the surface counts: its own first, then those of the others, list after
-    /// list.
+    /// All functions whose signs decide if the surface counts: its own margins first, then those of the other surfaces,
+    /// list by list.
     pub fn margins(&self) -> impl Iterator<Item = ExprId> {
         let others = self.beside.others().iter().flatten();
         self.conditions
@@ -324,56 +324,57 @@ impl Surface {
     }
 }
 
-/// An impact surface `h = 0`; motion is allowed where `h >= 0`.
+/// An impact surface `h = 0`. Motion is allowed where `h >= 0`.
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Name.
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// `h(t, q)`.
+    /// The gap `h(t, q)`.
     pub gap: ExprId,
     /// Conditions under which the surface counts.
     pub conditions: Vec<Condition>,
-    /// Relation to the other surfaces of the same gap.
+    /// Relation to other surfaces with the same gap.
     pub beside: Beside,
-    /// Law.
+    /// Impact law.
     pub law: Law,
     /// The map of the law `reset`.
     pub reset: Option<Reset>,
-    /// The mode that is entered here.
+    /// The transition to another mode, if the surface is one.
     pub transition: Option<Transition>,
-    /// Constraints that hold at an impact, and while the surface holds the motion; without levels.
+    /// Constraints that hold during an impact, and while the surface holds the motion. They have no levels.
     pub instantaneous: Vec<Constraint>,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// The declared initial condition: expressions of the parameters.
+/// The declared initial condition. All values are expressions of the parameters.
 #[derive(Debug, Clone, Default)]
 pub struct Initial {
-    /// Positions by coordinate; unnamed ones are 0.
+    /// Positions by coordinate. `None` means 0.
     pub q: Vec<Option<ExprId>>,
-    /// Velocities by coordinate; unnamed ones follow from the constraints.
+    /// Velocities by coordinate. `None` means that the velocity is determined by the constraints and the given
+    /// velocities.
     pub qdot: Vec<Option<ExprId>>,
-    /// The horizon.
+    /// End time of the run.
     pub until: Option<ExprId>,
 }
 
-/// View of a picture.
+/// The view of the configuration that plots show.
 #[derive(Debug, Clone)]
 pub struct View {
-    /// The point drawn, two functions of `(t, q)`.
+    /// The plotted point, two functions of `(t, q)`.
     pub path: [ExprId; 2],
-    /// The two expressions of the path as written.
+    /// The two expressions of `path` as written.
     pub labels: [String; 2],
-    /// The indices of the coordinates that `path` consists of, if it does.
+    /// Indices of the two coordinates, if `path` consists of coordinates.
     pub plane: Option<[usize; 2]>,
-    /// A function of `(t, q)`, positive in the region where motion is allowed.
+    /// A function of `(t, q)` that is positive where motion is allowed.
     pub region: Option<ExprId>,
 }
 
-/// A quantity carried to tables and plots.
+/// A quantity written to tables and plots.
 #[derive(Debug, Clone)]
 pub struct Output {
     /// Name.
@@ -388,22 +389,22 @@ pub struct Output {
     pub item: ItemId,
 }
 
-/// A theorem about the model that its author states.
+/// A claim: a theorem about the model, stated by its author.
 #[derive(Debug, Clone)]
 pub struct Claim {
     /// Statement.
     pub statement: Statement,
-    /// The claim as written: `conserved: energy`.
+    /// The claim as written, for example `conserved: energy`.
     pub text: String,
-    /// True if an open answer is accepted.
+    /// True if an undecided verdict is accepted.
     pub is_assumed: bool,
-    /// Index of the scene; `None` for the model itself.
+    /// Index of the scene that the claim is about; `None` for the model itself.
     pub scene: Option<usize>,
     /// Place of the declaration.
     pub item: ItemId,
 }
 
-/// A function of a claim about several.
+/// One of several functions in a claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StatedFunction {
     /// The function.
@@ -412,14 +413,14 @@ pub struct StatedFunction {
     pub written: String,
 }
 
-/// Statement of a claim. Its expressions depend on coordinates, velocities, parameters, time and [`DerivedSymbols`].
+/// Statement of a claim. Its expressions may contain coordinates, velocities, parameters, time and [`DerivedSymbols`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Statement {
-    /// Extent to which a density of the configuration exists.
+    /// Existence of a density of the configuration: on all of Q, locally, or none.
     Existence(Existence),
-    /// The measure with this factor of `mu_C` is invariant.
+    /// The measure `mu_C` multiplied by this density is invariant.
     Density(ExprId),
-    /// A quantity is conserved, or not.
+    /// A quantity is conserved, or is claimed not to be.
     Conserved {
         /// The quantity.
         value: ExprId,
@@ -428,26 +429,27 @@ pub enum Statement {
         /// True if the quantity is claimed to be conserved.
         holds: bool,
     },
-    /// The flow of this vector field, N components, keeps the Lagrangian and the constraints.
+    /// The flow of this vector field, N components, preserves the Lagrangian and the constraints.
     Symmetry(Vec<ExprId>),
-    /// The motion and every event at a surface keep a differential form.
+    /// The motion and every event at a surface preserve a differential form.
     Invariant(ExteriorForm),
-    /// The brackets of these functions with each other are 0.
+    /// The brackets of these functions with each other vanish.
     Involution(Vec<StatedFunction>),
-    /// These functions are as many as D has dimensions, conserved by motion and events, in involution and independent.
+    /// Integrability: these functions are conserved by motion and events, in involution and independent, and there are
+    /// as many of them as D has dimensions.
     Integrable(Vec<StatedFunction>),
-    /// The motion and every event at a surface keep one invariant volume.
+    /// The motion and every event at a surface preserve one invariant volume.
     VolumeKept,
-    /// Factor of the volume at a surface.
+    /// Factor by which a surface multiplies the volume.
     Factor {
         /// The factor.
         value: ExprId,
-        /// The index of the surface.
+        /// Index of the surface.
         under: usize,
     },
-    /// The motion and every event at a surface keep the symplectic form.
+    /// The motion and every event at a surface preserve the symplectic form.
     Symplectic,
-    /// The energy after an impact at the surface of this index is not above that before it.
+    /// The energy after an impact at the surface of this index is at most that before it.
     EnergyNotIncreasing(usize),
 }
 
@@ -470,7 +472,7 @@ impl Statement {
         }
     }
 
-    /// Index of the surface that it names.
+    /// Index of the surface that the statement names, if it names one.
     pub fn surface(&self) -> Option<usize> {
         match self {
             Self::Conserved { under, .. } => *under,
@@ -479,7 +481,7 @@ impl Statement {
         }
     }
 
-    /// The same statement about a surface of another index.
+    /// The same statement about the surface of another index. Other statements are unchanged.
     pub(crate) fn at_surface(self, surface: usize) -> Self {
         match self {
             Self::Conserved { value, holds, .. } => Self::Conserved {
@@ -497,7 +499,7 @@ impl Statement {
     }
 }
 
-/// Symbols that stand for derived quantities where outputs and claims name them.
+/// Symbols for derived quantities in outputs and claims.
 #[derive(Debug, Clone)]
 pub struct DerivedSymbols {
     /// `energy`

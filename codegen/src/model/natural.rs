@@ -1,5 +1,5 @@
 //! Splits the Lagrangian `L = 1/2 qdot^T g qdot + A.qdot - V`: `g = d^2L/dqdot^2`, `A = dL/dqdot` and `V = -L` at
-//! `qdot = 0`. Anything else is refused, naming the term.
+//! `qdot = 0`. Any other Lagrangian is refused, with the term at fault.
 
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId};
 
@@ -8,7 +8,7 @@ use super::degree::{at_zero, degree_bound, has_degree, is_zero, without_hidden_z
 use super::resolve::{Resolver, Scope};
 use crate::spec::{ItemId, Scalar, ScalarKind};
 
-/// The parts of a resolved Lagrangian, if it is natural.
+/// The parts of a resolved Lagrangian; `None` if it is not natural.
 pub(super) fn split(
     resolver: &mut Resolver<'_>,
     written: &Scalar,
@@ -55,8 +55,8 @@ fn metric(pool: &mut Pool, slopes: &[ExprId], velocities: &[SymbolId]) -> Vec<Ve
         for j in i..size {
             let second = pool.diff(slopes[i], velocities[j]);
             let entry = at_zero(pool, second, velocities);
-            // A diagonal entry is a sum of squares, where `cos^2 + sin^2` collects: often down to a constant, whose
-            // sign is known and whose pivot needs no check.
+            // A diagonal entry is a sum of squares, in which `cos^2 + sin^2` is collected. Often a constant is left,
+            // with a known sign and a pivot that needs no check.
             let entry = if i == j { pool.simplify(entry) } else { entry };
             let entry = without_hidden_zero(pool, entry);
             metric[i][j] = entry;
@@ -106,7 +106,7 @@ pub(super) fn check_metric(resolver: &mut Resolver<'_>, written: &Scalar, lagran
     resolver.refuse::<()>(written.at, text, &help);
 }
 
-/// Refuses coordinates whose velocity does not appear, one of each family.
+/// Refuses coordinates whose velocity does not appear; one error for each family.
 fn check_velocities(resolver: &mut Resolver<'_>, lagrangian: &Lagrangian) {
     let mut refused: Vec<ItemId> = Vec::new();
     for (index, row) in lagrangian.metric.iter().enumerate() {
@@ -150,7 +150,7 @@ fn check_diagonal(resolver: &mut Resolver<'_>, written: &Scalar, lagrangian: &La
     }
 }
 
-/// The term of the Lagrangian that makes the square of a velocity count negatively.
+/// The term of the Lagrangian with a negative coefficient of the square of a velocity.
 fn negative_term<'a>(
     resolver: &mut Resolver<'_>,
     written: &'a Scalar,

@@ -1,5 +1,5 @@
 //! Order of definitions: a definition may use only earlier ones. Finds cycles, uses before the definition, and unknown
-//! names in functions.
+//! names in function definitions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,8 @@ struct Use<'s> {
     is_call: bool,
 }
 
-/// Records every use of a definition that does not stand above; returns the positions of the definitions at fault.
+/// Reports every use of a definition that is not declared above. Returns the positions of the definitions with such
+/// uses.
 pub(super) fn check<'s>(resolver: &mut Resolver<'s>, spec: &'s Spec) -> BTreeSet<usize> {
     let mut first: BTreeMap<&str, usize> = BTreeMap::new();
     for (position, definition) in spec.definitions.iter().enumerate() {
@@ -45,7 +46,7 @@ pub(super) fn check<'s>(resolver: &mut Resolver<'s>, spec: &'s Spec) -> BTreeSet
     faulty
 }
 
-/// Refuses the use of a definition that stands below, or of the definition in itself.
+/// Refuses the use of a later definition, or of the definition itself.
 fn refuse_use(
     resolver: &mut Resolver<'_>,
     spec: &Spec,
@@ -79,7 +80,7 @@ fn refuse_use(
     }
 }
 
-/// The definitions on the way from `from` to `to`, both included, if `from` uses `to` through others.
+/// The chain of definitions from `from` to `to`, both included; `None` if `from` does not use `to`.
 fn path(
     uses: &[Vec<Use<'_>>],
     first: &BTreeMap<&str, usize>,
@@ -112,7 +113,7 @@ fn path(
     None
 }
 
-/// The value of a function is resolved where it is called; its names are checked even if it never is.
+/// Checks the names in a function definition. Its value is resolved at calls only, so this finds errors without a call.
 fn check_known(resolver: &mut Resolver<'_>, definition: &Definition, uses: &[Use<'_>]) {
     if definition.arguments.is_none() {
         return;
@@ -125,7 +126,7 @@ fn check_known(resolver: &mut Resolver<'_>, definition: &Definition, uses: &[Use
     }
 }
 
-/// The names in the value of a definition that are not its own arguments or indices.
+/// The names in the value of a definition, without its arguments and indices.
 fn uses(definition: &Definition) -> Vec<Use<'_>> {
     let mut bound: Vec<&str> = Vec::new();
     if let Some(arguments) = &definition.arguments {

@@ -1,7 +1,7 @@
-//! Every declaration is periodic in each angle: it does not change when an angle grows by `2*pi`.
+//! Every declaration must be periodic in each angle: unchanged if an angle grows by `2*pi`.
 //!
 //! An angle that occurs only as an integer multiple inside of `sin`, `cos` and `tan` needs no further test. For any
-//! other occurrence the change of the whole declaration under `theta -> theta + 2*pi` is tested to be zero.
+//! other occurrence, the change of the whole declaration under `theta -> theta + 2*pi` is tested for zero.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId};
 
@@ -11,14 +11,14 @@ use super::resolve::{Resolver, Scope};
 use crate::spec::{Scalar, ScalarKind};
 
 impl Resolver<'_> {
-    /// Refuses a declaration that is not periodic in an angle. `expr` is the declared quantity, `written` the text it
-    /// came from.
+    /// Refuses a declaration that is not periodic in an angle. `expr`: the declared quantity. `written`: its source
+    /// text.
     pub(super) fn check_periodic(&mut self, written: &[&Scalar], scope: &Scope, expr: ExprId) {
         self.check_turns(written, scope, expr, is_periodic);
     }
 
-    /// Same as [`Resolver::check_periodic`], for an expression that is an angle itself: one turn of an angle changes it
-    /// by a whole number of turns.
+    /// Same as [`Resolver::check_periodic`], for an expression that is an angle itself: a turn of an angle may change
+    /// it by a whole number of turns.
     pub(super) fn check_periodic_angle(
         &mut self,
         written: &[&Scalar],
@@ -100,7 +100,8 @@ impl Resolver<'_> {
         self.refuse::<()>(parent.at, text, &help);
     }
 
-    /// The smallest part with the fault that is not a name alone, unless the name stands alone in a sum.
+    /// The smallest subexpression with the error. A name alone is replaced by the product or power that contains it
+    /// directly.
     fn last_compound<'a>(
         &mut self,
         written: &'a Scalar,
@@ -147,7 +148,7 @@ fn bare_symbols(pool: &Pool, expr: ExprId, angles: &[SymbolId]) -> Vec<SymbolId>
         }
     };
     mark(expr, &mut visible);
-    // Users come after their operands: from the last to the first, a node is done before its operands are met.
+    // Operands precede their users. In reverse order, every user is visited before its operands.
     for index in (0..order.len()).rev() {
         if !visible[index] {
             continue;
@@ -177,7 +178,7 @@ fn not_periodic_terms(pool: &Pool, argument: ExprId, angles: &[SymbolId]) -> Vec
     others.map(|(_, term)| term).collect()
 }
 
-/// `expr` where `angle` has grown by `2*pi`.
+/// `expr` with `angle` replaced by `angle + 2*pi`.
 fn after_a_turn(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> ExprId {
     let variable = pool.variable(angle);
     let two = pool.int(2);
@@ -187,15 +188,15 @@ fn after_a_turn(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> ExprId {
     pool.substitute(expr, &[(angle, turned)])
 }
 
-/// Number of turns by which `expr` grows in a turn of `angle`, from its value at a point.
+/// Number of turns of `expr` in one turn of `angle`, from its values at a point.
 fn turns(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> i64 {
     let after = after_a_turn(pool, expr, angle);
     let values = pool.eval(&[after, expr], &|symbol| point(symbol, 0));
-    // Saturates where there is no value; then nothing is periodic.
+    // An undefined value counts as 0 turns.
     ((values[0] - values[1]) / core::f64::consts::TAU).round() as i64
 }
 
-/// True if `expr` does not change when `angle` grows by `2*pi`: proved, or seen at several points.
+/// True if `expr` is unchanged when `angle` grows by `2*pi`: proved, or not refuted at any of several points.
 fn is_periodic(pool: &mut Pool, expr: ExprId, angle: SymbolId) -> bool {
     let after = after_a_turn(pool, expr, angle);
     let change = pool.sub(after, expr);
@@ -209,7 +210,7 @@ fn point(symbol: SymbolId, seed: u32) -> f64 {
     0.3 + spread.fract()
 }
 
-/// True if two expressions have the same value at a point, up to rounding; points outside their domain say nothing.
+/// True if two expressions have equal values at a point, up to rounding, or no finite values there.
 fn agrees_at(pool: &Pool, left: ExprId, right: ExprId, seed: u32) -> bool {
     let values = pool.eval(&[left, right], &|symbol| point(symbol, seed));
     let [left, right] = values.as_slice() else {

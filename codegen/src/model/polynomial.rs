@@ -3,7 +3,7 @@
 
 use dalembert_expr::Rational;
 
-/// The coefficients, lowest first; the last is not 0, and there are none for the polynomial 0.
+/// The coefficients, lowest degree first. The last one is not 0; the polynomial 0 has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Polynomial(Vec<Rational>);
 
@@ -38,7 +38,7 @@ impl Polynomial {
         self.0.len().saturating_sub(1)
     }
 
-    /// The greatest common divisor with the derivative: its roots are the multiple roots.
+    /// The greatest common divisor with the derivative. Its roots are the multiple roots.
     pub(super) fn repeated_factor(&self) -> Self {
         self.common_factor(self.derivative())
     }
@@ -53,7 +53,7 @@ impl Polynomial {
         left
     }
 
-    /// True if there is a real root strictly between two numbers, or beyond all numbers where there is none.
+    /// True if there is a real root strictly between `low` and `high`. A missing end is infinite.
     pub(super) fn has_root_between(&self, low: Option<&Rational>, high: Option<&Rational>) -> bool {
         if self.degree() == 0 {
             return false;
@@ -73,7 +73,7 @@ impl Polynomial {
                 break;
             }
             let (_, rest) = before.divided_by(last);
-            // A positive factor changes no sign and keeps the numbers short.
+            // A positive factor changes no sign, and keeps the numbers short.
             chain.push(rest.negated_monic());
         }
         chain
@@ -123,7 +123,7 @@ impl Polynomial {
         leading.map_or_else(|| self.clone(), |leading| self.scaled(&leading))
     }
 
-    /// Minus this polynomial, divided by the size of its leading coefficient.
+    /// Minus this polynomial, divided by the absolute value of its leading coefficient.
     fn negated_monic(&self) -> Self {
         let leading = self
             .0
@@ -133,7 +133,7 @@ impl Polynomial {
         leading.map_or_else(|| self.clone(), |leading| self.scaled(&-leading))
     }
 
-    /// The sign at a number, or beyond all numbers of the given sign.
+    /// The sign at `at`; without a number, at infinity with the sign of `beyond`.
     fn sign_at(&self, at: Option<&Rational>, beyond: i64) -> i64 {
         let value = match at {
             Some(at) => self.value(at),

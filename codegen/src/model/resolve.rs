@@ -1,8 +1,8 @@
 //! Resolution of syntax to expressions: names, indices, families, sums, definitions, `dot` and `d`.
 //!
 //! `dot(e) = d_i e qdot^i + d_t e` and `d(e) = d_i e dq^i + d_t e dt`. The differentials `dq^i`, `dt` are symbols until
-//! the equation that contains them is taken apart. A value carries its *level* next to its expression: the function `f`
-//! of `(t, q)` whose `dot(f)` or `d(f)` it is, if the way it is written shows that.
+//! the equation that contains them is split into components. A value has a *level* next to its expression: the function
+//! `f(t, q)` with `expr = dot(f)` or `expr = d(f)`, if its form as written shows that there is one.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use crate::spec::{
 pub(super) struct Value {
     /// The expression.
     pub(super) expr: ExprId,
-    /// `f` with `expr = dot(f)` or `expr = d(f)`, where known.
+    /// The level: `f` with `expr = dot(f)` or `expr = d(f)`, if known.
     pub(super) level: Option<ExprId>,
 }
 
@@ -32,24 +32,24 @@ impl From<ExprId> for Value {
     }
 }
 
-/// Names that are known only inside of an expression: indices and arguments.
+/// Names that are known only inside an expression: indices and arguments.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scope {
     locals: Vec<(String, Value)>,
 }
 
 impl Scope {
-    /// Makes `name` known.
+    /// Binds `name` to a value.
     pub(super) fn bind(&mut self, name: &str, value: Value) {
         self.locals.push((name.to_owned(), value));
     }
 
-    /// Forgets the name made known last.
+    /// Removes the binding added last.
     pub(super) fn unbind(&mut self) {
         self.locals.pop();
     }
 
-    /// Meaning of `name` in this scope.
+    /// The value of `name` in this scope. The binding added last takes precedence.
     pub(super) fn get(&self, name: &str) -> Option<Value> {
         self.locals
             .iter()
@@ -58,13 +58,13 @@ impl Scope {
             .map(|(_, value)| *value)
     }
 
-    /// The names known here.
+    /// The names bound in this scope.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.locals.iter().map(|(name, _)| name.as_str())
     }
 }
 
-/// Section of an expression, as far as it decides which derived quantities the expression may name.
+/// Section of an expression. It decides which derived quantities may be named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DerivedNames {
     /// None.
@@ -75,33 +75,33 @@ pub(super) enum DerivedNames {
     Claims,
 }
 
-/// Turns expressions as written into expressions of the pool. What cannot be resolved is recorded and gives `None`,
-/// so that every independent mistake is found.
+/// Resolves expressions as written to expressions of the pool. Where this fails, an error is recorded and the result is
+/// `None`, so that all independent mistakes are found.
 pub(super) struct Resolver<'s> {
     pub(super) spec: &'s Spec,
-    /// The modes of the model that this one is a mode of.
+    /// All modes of the model, if the declaration is a mode.
     pub(super) modes: &'s [Peer],
     pub(super) pool: Pool,
     pub(super) symbols: Symbols,
     pub(super) diagnostics: Diagnostics,
     pub(super) definitions: BTreeMap<&'s str, Definition<'s>>,
-    /// Calls of defined functions met before, so that sharing survives them.
+    /// Results of calls of defined functions, so that equal calls share their expressions.
     pub(super) calls: BTreeMap<(&'s str, Vec<ExprId>), Option<Value>>,
-    /// The symbols of multipliers by the display name of their constraint.
+    /// Symbols of multipliers, by the display name of the constraint.
     pub(super) multipliers: BTreeMap<String, SymbolId>,
-    /// Derived quantities that may be named.
+    /// Derived quantities that may be named in the present section.
     pub(super) derived_names: DerivedNames,
-    /// The fields `partial(x)` of the coordinates, where they may be named.
+    /// The coordinate vector fields `partial(x)`, where they may be named.
     pub(super) partials: Vec<SymbolId>,
-    /// The Lagrangian, once it is resolved.
+    /// The Lagrangian, once resolved.
     pub(super) lagrangian: Option<ExprId>,
     parts: usize,
     depth: usize,
-    /// Place at which the budget of the pool ended.
+    /// Place at which the pool's budget was exceeded.
     pub(super) exhausted: Option<Location>,
 }
 
-/// Terms that are added before their numbers are looked at.
+/// Number of terms that are added before the size of numbers is checked.
 const TERMS_AT_ONCE: usize = 64;
 
 const FEWER_DIGITS: &str = "write it as a decimal";
@@ -116,7 +116,7 @@ fn too_deep() -> String {
 }
 
 impl<'s> Resolver<'s> {
-    /// A resolver that knows no names yet, with a budget for its algebra.
+    /// A resolver without names. `steps` is the budget of its algebra.
     pub(super) fn new(spec: &'s Spec, steps: u64) -> Self {
         let mut pool = Pool::with_budget(steps);
         let symbols = Symbols::new(&mut pool);
@@ -138,7 +138,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// The value of an expression.
+    /// Resolves an expression to its value.
     pub(super) fn resolve(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<Value> {
         self.parts += 1;
         if self.parts > RESOLVED_PARTS {
@@ -156,7 +156,7 @@ impl<'s> Resolver<'s> {
         self.within_limits(scalar, value.expr).then_some(value)
     }
 
-    /// The expression of an expression.
+    /// Resolves an expression, without its level.
     pub(super) fn expression(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<ExprId> {
         self.resolve(scalar, scope).map(|value| value.expr)
     }
@@ -180,7 +180,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// Records an error once and gives nothing.
+    /// Records an error, unless it was recorded before. Returns `None`.
     pub(super) fn refuse<T>(
         &mut self,
         at: Location,
@@ -200,7 +200,7 @@ impl<'s> Resolver<'s> {
         self.within_budget(scalar.at)
     }
 
-    /// Limit that an expression exceeds, and advice.
+    /// The limit that an expression exceeds and a help text, if it exceeds one.
     fn beyond_limits(&self, scalar: &Scalar, expr: ExprId) -> Option<(String, &'static str)> {
         if self.pool.number_bits(expr) > NUMBER_BITS {
             return Some((too_long(), FEWER_DIGITS));
@@ -222,7 +222,7 @@ impl<'s> Resolver<'s> {
         })
     }
 
-    /// True if algebra may go on; the place where it could not is remembered.
+    /// True if the budget of the algebra is not exceeded. Otherwise the first such place is stored.
     pub(super) fn within_budget(&mut self, at: Location) -> bool {
         if self.pool.is_exhausted() && self.exhausted.is_none() {
             self.exhausted = Some(at);
@@ -235,7 +235,7 @@ impl<'s> Resolver<'s> {
         self.times(value, factor)
     }
 
-    /// A value times something that does not change in time.
+    /// The product of a value and a factor that is constant in time.
     pub(super) fn times(&mut self, value: Value, factor: ExprId) -> Value {
         let level = value.level.map(|level| self.pool.mul(level, factor));
         Value {
@@ -260,8 +260,8 @@ impl<'s> Resolver<'s> {
         self.add_bounded(at, &values?)
     }
 
-    /// The sum of values, as [`Resolver::add`]. Where their numbers may grow, it is taken part by part, so that it
-    /// ends when a number is too long.
+    /// The sum of values, as by [`Resolver::add`]. Where its numbers may become long, it is added in portions and stops
+    /// at the first number that is too long.
     fn add_bounded(&mut self, at: Location, values: &[Value]) -> Option<Value> {
         let bits = values.iter().map(|value| self.pool.number_bits(value.expr));
         if bits.sum::<u64>() <= NUMBER_BITS {
@@ -273,7 +273,7 @@ impl<'s> Resolver<'s> {
             total = self.add(&[total, part]);
             self.short_numbers(at, total.expr)?;
         }
-        // The level is that of all terms, where a 0 in front would count as a term without one.
+        // The level is computed from all terms at once. A leading 0 would count as a term without level.
         let level = self.sum_level(values);
         Some(Value { level, ..total })
     }
@@ -285,7 +285,7 @@ impl<'s> Resolver<'s> {
         Some(())
     }
 
-    /// The sum of values; its level is known if that of every term is, where a constant `c` counts as `dot(c*t)`.
+    /// The sum of values. Its level is known if the level of every term is; a constant `c` counts as `dot(c*t)`.
     pub(super) fn add(&mut self, values: &[Value]) -> Value {
         let exprs: Vec<ExprId> = values.iter().map(|value| value.expr).collect();
         Value {
@@ -312,7 +312,7 @@ impl<'s> Resolver<'s> {
         Some(self.pool.sum(&levels))
     }
 
-    /// True if an expression consists of numbers and parameters.
+    /// True if an expression contains only numbers and parameters.
     pub(super) fn is_constant(&self, expr: ExprId) -> bool {
         !self.pool.depends_on_any(expr, &self.symbols.moving())
     }
@@ -415,7 +415,7 @@ impl<'s> Resolver<'s> {
             let text = "the Lagrangian is not known here";
             return self.refuse(at, text, "it may be used in `outputs`");
         }
-        // A mistake in its declaration is told there.
+        // A mistake in the Lagrangian is reported at its declaration.
         self.lagrangian.map(Value::from)
     }
 

@@ -1,4 +1,4 @@
-//! Advice on names that nothing declares: misspelt, pasted from a paper, or written as in another language.
+//! Advice on undeclared names: misspelt, copied from a paper, or in the notation of another language.
 
 use super::latex::greek_name;
 use super::resolve::{DerivedNames, Resolver, Scope, Value};
@@ -6,7 +6,7 @@ use super::symbols::Meaning;
 use crate::diagnostics::{Location, listed, nearest};
 use crate::spec::{Declared, FUNCTIONS, PIECEWISE, Word, foreign_function, is_not_differentiable};
 
-/// Letters with a dot, as papers write velocities.
+/// Letters with a dot above, the notation of velocities in papers.
 const DOTTED: [(char, char); 22] = [
     ('ȧ', 'a'),
     ('ḃ', 'b'),
@@ -32,7 +32,7 @@ const DOTTED: [(char, char); 22] = [
     ('Ẏ', 'Y'),
 ];
 
-/// The dot that stands above the letter before it.
+/// The combining dot above the preceding letter.
 const COMBINING_DOT: char = '\u{307}';
 
 /// Letters of other scripts that look like Latin ones.
@@ -95,7 +95,7 @@ impl Resolver<'_> {
         self.refuse(at, format!("unknown name `{name}`"), &help)
     }
 
-    /// A name that is declared, but not known where constants are read: before everything else, in order.
+    /// Message for a declared name that is not known yet. Constants are read in order, before all other declarations.
     pub(super) fn not_yet_known(&self, name: &str) -> Option<(String, &'static str)> {
         let spec = self.spec;
         if spec
@@ -185,7 +185,7 @@ impl Resolver<'_> {
             .find_map(|family| index(family))
     }
 
-    /// Names that other notations have for what is written differently here.
+    /// Advice on names from other notations.
     fn foreign_help(&self, name: &str) -> Option<String> {
         let momentum = name
             .strip_prefix("p_")
@@ -253,7 +253,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// The declared name that a Greek or Cyrillic one looks like or spells, and what the letter is.
+    /// The declared name that a Greek or Cyrillic name resembles or spells, with a description of the letter.
     fn lookalike(&self, name: &str) -> Option<(String, String)> {
         let foreign = name.chars().find(|letter| {
             !letter.is_ascii() && (greek_name(*letter).is_some() || latin(*letter).is_some())
@@ -267,7 +267,7 @@ impl Resolver<'_> {
         Some((letter, declared))
     }
 
-    /// The declared name that is spelt or looks like this one.
+    /// The declared name that results from spelling out foreign letters, or from replacing them by Latin lookalikes.
     fn ascii_name(&self, name: &str) -> Option<String> {
         let spelt: String = name
             .chars()

@@ -1,8 +1,7 @@
 //! Builds a function: value numbering, exact folding of constants, structural zeros.
 //!
-//! Rewrites made here are those of arithmetic on structural zeros and ones (`0 + a`, `1 * a`, `0 * a` where the
-//! zero is a zero of the sparsity pattern, not of a measured number), of signs, and commutativity. Nothing is
-//! reassociated.
+//! The rewrites are arithmetic on exact zeros and ones (`0 + a`, `1 * a`, `0 * a`), signs, and commutativity. Such
+//! zeros belong to the sparsity pattern; they are no rounded values. Nothing is reassociated.
 
 use std::collections::HashMap;
 
@@ -70,12 +69,12 @@ impl Builder {
         self.integer(0)
     }
 
-    /// The circle constant.
+    /// The number pi.
     pub fn pi(&mut self) -> Value {
         self.push(Op::Pi)
     }
 
-    /// The number a value is, if it is one.
+    /// The exact number of a value; `None` if the value is no constant.
     pub fn as_number(&self, value: Value) -> Option<&Rational> {
         match self.op(value) {
             Op::Number(number) => Some(number),
@@ -111,7 +110,7 @@ impl Builder {
         }
     }
 
-    /// `y - x`, if the value is `x - y` and both were computed before.
+    /// `y - x`, if the value is `x - y` and `y - x` was computed before.
     fn existing_opposite(&self, value: Value) -> Option<Value> {
         match *self.op(value) {
             Op::Sub(x, y) => self.numbered.get(&Op::Sub(y, x)).copied(),
@@ -245,12 +244,12 @@ impl Builder {
         self.push(Op::Atan2(y, x))
     }
 
-    /// Ends the function with a fault unless the guard holds.
+    /// Makes the function return an error unless the guard holds.
     pub fn guard(&mut self, guard: Guard) {
         self.push(Op::Guard(guard));
     }
 
-    /// Gives a value a name, unless it is an argument or a number or has one already.
+    /// Gives a value a name, unless it is an argument, a number or a negation, or has a name already.
     pub fn name(&mut self, value: Value, name: impl Into<String>) {
         let nameless = self.names[value.index()].is_none();
         if nameless && !self.ops[value.index()].is_leaf() && !matches!(self.op(value), Op::Neg(_)) {
@@ -258,7 +257,7 @@ impl Builder {
         }
     }
 
-    /// Adds an operation of a finished function, whose values became these. Returns the value.
+    /// Adds an operation of a finished function. `values`: the values of that function's operations in this builder.
     pub fn replay_one(&mut self, op: &Op, values: &[Value]) -> Value {
         self.push(op.clone().with_operands(|value| values[value.index()]))
     }
@@ -278,7 +277,7 @@ impl Builder {
         outputs.map(|output| values[output.index()]).collect()
     }
 
-    /// The finished function with every operation, needed or not.
+    /// The finished function with all operations, whether used or not.
     pub fn finish_whole(self, outputs: Vec<Value>) -> Function {
         let cost = Cost::of(&self.ops);
         Function {
@@ -289,7 +288,7 @@ impl Builder {
         }
     }
 
-    /// The finished function, without operations that the outputs and guards do not need.
+    /// The finished function without operations that neither outputs nor guards use.
     pub fn finish(self, outputs: Vec<Value>) -> Function {
         let (ops, names, outputs) = schedule::prune(self.ops, self.names, outputs);
         let cost = Cost::of(&ops);

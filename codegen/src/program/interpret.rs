@@ -1,11 +1,11 @@
-//! Executes a function without a compiler: the reference that emitted code is compared with.
+//! Executes a function without a compiler, as a reference for emitted code.
 
 use dalembert_expr::Function as Elementary;
 use dalembert_numbers::Numbers;
 
 use super::{Function, Guard, Input, Op, Value};
 
-/// Executes `function` with the given arguments.
+/// Executes `function`. `input` returns the value of each argument. The results are in the order of the outputs.
 ///
 /// # Errors
 /// The guard that did not hold.

@@ -1,31 +1,32 @@
-//! Linear algebra as operations: sparse LDL^T of the metric, and the constraint solve by orthogonalisation.
+//! Linear algebra as operations: sparse `L D L^T` of the metric, and solution for the multipliers by orthogonalisation.
 //!
-//! **Metric.** `g = L D L^T`, `L` unit lower triangular, in coordinate order; entries that are zero by structure
-//! are never touched. A pivot that is not known to be positive is guarded.
+//! **Metric.** `g = L D L^T` with unit lower triangular `L`, in coordinate order. Structural zeros cost no operations.
+//! A pivot that is not known to be positive has a guard.
 //!
-//! **Constraints.** With `C = L^{-1} eta^T` (N rows, M columns) and the inner product `<u, v> = u^T D^{-1} v`,
-//! `m^{ab} = <C_a, C_b>`. Modified Gram-Schmidt without square roots gives `C = Q U`, `U` unit upper triangular,
-//! `<Q_a, Q_b> = n_a delta_ab`, hence `m = U^T diag(n) U` although `m` is never formed: forming it would square
-//! the condition number and lose every digit when forms are nearly dependent. The right-hand side is
-//! orthogonalised as a further column, which makes the solve backward stable (Bjorck, BIT 7 (1967)). Many constraints
-//! that meet few others are the exception: see [`super::mass`].
+//! **Constraints.** Let `C = L^{-1} eta^T` (N rows, M columns), and let `<u, v> = u^T D^{-1} v` be the inner product,
+//! so that `m^{ab} = <C_a, C_b>`. Modified Gram-Schmidt without square roots gives `C = Q U` with unit upper triangular
+//! `U` and `<Q_a, Q_b> = n_a delta_ab`. Hence `m = U^T diag(n) U`, although `m` is never formed. Forming it would
+//! square the condition number, and lose all digits for nearly dependent forms. The right-hand side is orthogonalised
+//! as a further column, which makes the solution backward stable (Bjorck, BIT 7 (1967)). Many constraints that each
+//! meet few others are an exception: see [`super::mass`].
 
 use super::builder::Builder;
 use super::{Guard, Value};
 
-/// `g = L D L^T`.
+/// The factorisation `g = L D L^T`.
 #[derive(Debug)]
 pub struct Ldlt {
-    /// `below[i][j]`, `j < i`: the entries of `L` below the diagonal.
+    /// Entries of `L` below the diagonal: `below[i][j]`, `j < i`.
     below: Vec<Vec<Value>>,
-    /// `D_i`; their product is `det g`.
+    /// `D_i`, N entries. Their product is `det g`.
     pub pivots: Vec<Value>,
-    /// `1 / D_i`.
+    /// `1 / D_i`
     inverse_pivots: Vec<Value>,
 }
 
 impl Ldlt {
-    /// Factorises; `metric[i][j]` for `j <= i`. `positive[i]` is true if `metric[i][i]` is known to be positive.
+    /// Factorises a metric, given by `metric[i][j]` for `j <= i`. `positive[i]` is true if `metric[i][i]` is known to
+    /// be positive.
     pub fn factor(builder: &mut Builder, metric: &[Vec<Value>], positive: &[bool]) -> Self {
         Self::factor_guarded(builder, metric, &[], |builder, i, value| {
             if !(positive[i] && value == metric[i][i]) {
@@ -34,7 +35,8 @@ impl Ldlt {
         })
     }
 
-    /// Factorises, except for the rows that are known; `guard` receives each pivot before any division by it.
+    /// Factorises a metric whose rows may be partly `known`. `guard` is called for each pivot before any division by
+    /// it.
     pub fn factor_guarded(
         builder: &mut Builder,
         metric: &[Vec<Value>],
@@ -62,7 +64,7 @@ impl Ldlt {
         }
     }
 
-    /// `y^T D^{-1} y`, with one division for each pivot that is different.
+    /// `y^T D^{-1} y`, with one division per distinct pivot.
     pub fn weighted_square(&self, builder: &mut Builder, y: &[Value]) -> Value {
         let mut sums: Vec<(Value, Value)> = Vec::new();
         for (&component, &pivot) in y.iter().zip(&self.pivots) {
@@ -80,7 +82,7 @@ impl Ldlt {
         total
     }
 
-    /// The factors of the identity: `<u, v>` is the ordinary product of rows.
+    /// The factors of the identity matrix. Their inner product is the ordinary one.
     pub fn identity(builder: &mut Builder, n: usize) -> Self {
         let (zero, one) = (builder.zero(), builder.integer(1));
         Self {
@@ -103,7 +105,7 @@ impl Ldlt {
         y
     }
 
-    /// `L^{-T} D^{-1} y`: the second half of a solve.
+    /// `L^{-T} D^{-1} y`, the second half of a solution.
     pub fn backward(&self, builder: &mut Builder, y: &[Value]) -> Vec<Value> {
         let mut x: Vec<Value> = (0..y.len())
             .map(|i| builder.mul(y[i], self.inverse_pivots[i]))
@@ -149,7 +151,7 @@ impl Ldlt {
     }
 }
 
-/// A row of the factors that is known before.
+/// A row of the factors that is known in advance.
 #[derive(Debug)]
 pub struct KnownRow {
     /// `L_ij`, `j < i`.
@@ -158,7 +160,7 @@ pub struct KnownRow {
     pub pivot: Value,
 }
 
-/// The row of `L` and the pivot that a row of the metric leaves.
+/// Row of `L` and pivot, by elimination from a row of the metric.
 fn eliminate(
     builder: &mut Builder,
     metric: &[Value],
@@ -166,7 +168,7 @@ fn eliminate(
     inverse_pivots: &[Value],
 ) -> (Vec<Value>, Value) {
     let i = below.len();
-    // Row i of the unscaled factor: scaled[j] = L_ij D_j.
+    // Row i of the unscaled factor: `scaled[j] = L_ij D_j`.
     let mut scaled: Vec<Value> = Vec::with_capacity(i);
     for j in 0..i {
         let mut entry = metric[j];
@@ -185,22 +187,23 @@ fn eliminate(
     (row, pivot)
 }
 
-/// `L^{-1} eta^T = Q U` with `<Q_a, Q_b> = n_a delta_ab`.
+/// The factorisation `L^{-1} eta^T = Q U` with `<Q_a, Q_b> = n_a delta_ab`.
 #[derive(Debug)]
 pub struct Orthogonal {
-    /// The columns of `Q`.
+    /// Columns of `Q`.
     columns: Vec<Vec<Value>>,
-    /// `above[a][b]`, `b < a`: the entry `U_ba`.
+    /// Entries of `U` above the diagonal: `above[a][b] = U_ba`, `b < a`.
     above: Vec<Vec<Value>>,
-    /// `n_a`; their product is `det m^{ab}`.
+    /// `n_a`, M entries. Their product is `det m^{ab}`.
     pub squares: Vec<Value>,
     /// `1 / n_a`
     inverse_squares: Vec<Value>,
 }
 
 impl Orthogonal {
-    /// Orthogonalises columns. `guard` makes the guard of a column, if there is to be one, from its number and its squared
-    /// norms: after the earlier columns were projected out, and before. The first column has no norm before.
+    /// Orthogonalises columns. `guard` makes the guard of a column, if it needs one. Its arguments are the index of the
+    /// column, and its squared norms after and before the earlier columns were projected out. The norm before is `None`
+    /// for the first column.
     pub fn factor<G: Into<Option<Guard>>>(
         builder: &mut Builder,
         ldlt: &Ldlt,
@@ -228,7 +231,7 @@ impl Orthogonal {
         factors
     }
 
-    /// Removes from `y` its components along the columns, one after the other. Returns the components and the rest.
+    /// Removes the components of `y` along the columns, one after the other. Returns the components and the remainder.
     pub fn reduce(
         &self,
         builder: &mut Builder,
@@ -247,7 +250,7 @@ impl Orthogonal {
         (coefficients, y)
     }
 
-    /// The `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
+    /// The multipliers `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
     pub fn solve(
         &self,
         builder: &mut Builder,
@@ -290,7 +293,7 @@ impl Orthogonal {
         x
     }
 
-    /// The `x` of least norm with `<C_a, x> = r_a`.
+    /// The vector `x` of least norm with `<C_a, x> = r_a`.
     pub fn least_norm(&self, builder: &mut Builder, r: &[Value]) -> Vec<Value> {
         let coefficients = self.transposed_solve(builder, r);
         let size = self.columns.first().map_or(0, Vec::len);

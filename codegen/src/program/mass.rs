@@ -1,43 +1,43 @@
-//! The constraint mass matrix `m^{ab} = eta^a(W^b)` itself, factorised where it is sparse.
+//! Factorisation of the constraint mass matrix `m^{ab} = eta^a(W^b)`, used where it is sparse.
 //!
-//! In a long chain each constraint meets two others: `m` is tridiagonal and its factors take O(M) operations, while
-//! orthogonal columns fill up. The price is that the condition number of the forms enters squared, so pivots are watched:
-//! `d_a/m^{aa}` is the squared sine of the angle between a form and those eliminated before it, and its reciprocal bounds
-//! how many times rounding errors grow there. Below [`Guard::LEAST_PIVOT_RATIO`] the function ends with
-//! `SingularConstraint` where orthogonalisation would still go on.
+//! In a long chain each constraint meets two others. Then `m` is tridiagonal and its factorisation takes O(M)
+//! operations, whereas orthogonal columns fill up. In return the condition number of the forms enters squared, so every
+//! pivot has a guard. `d_a/m^{aa}` is the squared sine of the angle between a form and the forms eliminated before it,
+//! and its reciprocal bounds the growth of rounding errors there. Below [`Guard::LEAST_PIVOT_RATIO`] the function ends
+//! with `SingularConstraint`, where orthogonalisation would still work.
 //!
-//! Constraints are eliminated in the order of minimum degree (Tinney and Walker, Proc. IEEE 55 (1967)).
+//! Constraints are eliminated in minimum-degree order (Tinney and Walker, Proc. IEEE 55 (1967)).
 
 use super::builder::Builder;
 use super::linear::{Ldlt, Orthogonal};
 use super::{Guard, Value};
 
-/// Number of constraints below which orthogonalisation is always used: its extra cost is small.
+/// Number of constraints below which orthogonalisation is always used, because its extra cost is small.
 const LEAST: usize = 8;
 
-/// Method of solution of the system of the constraint forms.
+/// Factorisation used to solve for the multipliers.
 #[derive(Debug)]
 pub enum ConstraintFactors {
-    /// Orthogonal columns.
+    /// By orthogonal columns.
     Orthogonal(Orthogonal),
-    /// The factors of `m^{ab}`.
+    /// By factors of `m^{ab}`.
     Sparse(SparseMass),
 }
 
-/// The factors of `m^{ab}` in an order that keeps them sparse.
+/// Factors of `m^{ab}`, in an order of elimination that keeps them sparse.
 #[derive(Debug)]
 pub struct SparseMass {
     /// `C_a = L^{-1} eta^a`
     columns: Vec<Vec<Value>>,
-    /// The constraint that is eliminated at each place.
+    /// Constraint eliminated at each step.
     order: Vec<usize>,
-    /// The factors, by place.
+    /// The factors, in the order of elimination.
     factors: Ldlt,
 }
 
 impl ConstraintFactors {
-    /// Factorises the columns `C_a = L^{-1} eta^a`, whose constraints are numbered `which`. `independent` is true if their
-    /// forms are known to be independent.
+    /// Factorises the columns `C_a = L^{-1} eta^a` of the constraints with the indices `which`. `independent` is true
+    /// if their forms are proved to be independent.
     pub fn factor(
         builder: &mut Builder,
         metric: &Ldlt,
@@ -56,7 +56,7 @@ impl ConstraintFactors {
         Self::Orthogonal(Orthogonal::factor(builder, metric, columns, guard))
     }
 
-    /// Numbers whose product is `det m^{ab}`.
+    /// Numbers whose product is `det m^{ab}`, M entries.
     pub fn squares(&self) -> &[Value] {
         match self {
             Self::Orthogonal(orthogonal) => &orthogonal.squares,
@@ -64,7 +64,7 @@ impl ConstraintFactors {
         }
     }
 
-    /// The part of `y` that is left without its components along the columns.
+    /// The remainder of `y` after its components along the columns are removed.
     pub fn project(&self, builder: &mut Builder, metric: &Ldlt, y: Vec<Value>) -> Vec<Value> {
         match self {
             Self::Orthogonal(orthogonal) => orthogonal.reduce(builder, metric, y).1,
@@ -72,7 +72,7 @@ impl ConstraintFactors {
         }
     }
 
-    /// The `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
+    /// The multipliers `lambda` with `m lambda = -(C^T D^{-1} y + s)`.
     pub fn solve(
         &self,
         builder: &mut Builder,
@@ -181,7 +181,7 @@ impl SparseMass {
                 self.solve(builder, &unit)
             })
             .collect();
-        // Of the two roundings of an entry one is used, so that the matrix is symmetric.
+        // Entries (a, b) and (b, a) differ by rounding. One of them is used for both, so that the matrix is symmetric.
         for a in 0..m {
             for b in 0..a {
                 rows[b][a] = rows[a][b];
@@ -191,7 +191,7 @@ impl SparseMass {
     }
 }
 
-/// The order of elimination, if the factors of `m` need less than half of the operations of orthogonal columns.
+/// The order of elimination, if the factorisation of `m` takes less than half of the operations of orthogonal columns.
 fn sparse_order(builder: &Builder, columns: &[Vec<Value>]) -> Option<Vec<usize>> {
     if columns.len() < LEAST {
         return None;
@@ -209,17 +209,18 @@ fn sparse_order(builder: &Builder, columns: &[Vec<Value>]) -> Option<Vec<usize>>
     (2 * sparse < orthogonal_work(&patterns)).then_some(order)
 }
 
-/// Number of components that two columns have in common.
+/// Number of non-zero components that two columns have in common.
 fn common(a: &[bool], b: &[bool]) -> usize {
     a.iter().zip(b).filter(|(a, b)| **a && **b).count()
 }
 
-/// Number of components of a column.
+/// Number of non-zero components of a column.
 fn entries(column: &[bool]) -> usize {
     common(column, column)
 }
 
-/// Products of the modified Gram-Schmidt method for columns with these components, and for one right-hand side with all components.
+/// Number of products in modified Gram-Schmidt for columns with these non-zero components, and for one full right-hand
+/// side.
 fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
     let mut filled: Vec<Vec<bool>> = Vec::new();
     let mut work = 0;
@@ -235,15 +236,15 @@ fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
                 }
             }
         }
-        // Its square, and the component of the right-hand side along it, taken off.
+        // Squared norm of the column, and removal of the right-hand side's component along it.
         work += 5 * entries(&pattern);
         filled.push(pattern);
     }
     work
 }
 
-/// The order in which the constraint with fewest neighbours comes next, and the products of the factorisation of `m` in
-/// this order and of one solve, with those of the entries of `m`.
+/// Minimum-degree order: each step eliminates the constraint with the fewest remaining neighbours. Also the number of
+/// products: for the entries of `m`, its factorisation in this order, and one solution.
 fn minimum_degree(patterns: &[Vec<bool>]) -> (Vec<usize>, usize) {
     let m = patterns.len();
     let mut meets: Vec<Vec<bool>> = patterns
@@ -267,7 +268,7 @@ fn minimum_degree(patterns: &[Vec<bool>]) -> (Vec<usize>, usize) {
     let mut order = Vec::with_capacity(m);
     while !left.is_empty() {
         let degree = |a: usize| left.iter().filter(|b| **b != a && meets[a][**b]).count();
-        // The first of those with fewest: the order is the same for every build.
+        // The first of the constraints with the fewest neighbours, so that every build has the same order.
         let Some(place) = (0..left.len()).min_by_key(|place| degree(left[*place])) else {
             break;
         };
@@ -288,7 +289,7 @@ fn minimum_degree(patterns: &[Vec<bool>]) -> (Vec<usize>, usize) {
 mod tests {
     use super::*;
 
-    /// Columns with ones at these components.
+    /// Columns with non-zero entries at these components.
     fn patterns(size: usize, columns: &[&[usize]]) -> Vec<Vec<bool>> {
         let column = |ones: &&[usize]| (0..size).map(|i| ones.contains(&i)).collect();
         columns.iter().map(column).collect()
@@ -311,7 +312,7 @@ mod tests {
     fn the_middle_of_a_star_is_eliminated_last() {
         let patterns = patterns(4, &[&[0, 1, 2, 3], &[0], &[1], &[2], &[3]]);
         let (order, _) = minimum_degree(&patterns);
-        // With one neighbour left the middle counts as much as what is left beside it.
+        // Then the centre and one ray are left, with one neighbour each.
         assert_eq!(order[..3], [1, 2, 3]);
     }
 }

@@ -1,9 +1,9 @@
-//! Stage 4, lower: from expressions to straight-line programs in static single assignment.
+//! Stage 4, lower: turns expressions into straight-line programs in static single assignment form.
 //!
-//! A [`Function`] is a list of operations in an order that can be executed; every operand was defined before
-//! it is used. Linear algebra has already become operations here (see [`linear`]), with guards where a pivot
-//! must be positive. No later stage decides anything: `dalembert-emit` writes the operations down, and
-//! [`interpret`] executes them without a compiler.
+//! A [`Function`] is a list of operations in execution order: every operand is defined before it is used. Linear
+//! algebra has become operations at this stage (see [`linear`]), with guards for pivots that must be positive. Later
+//! stages take no decisions: `dalembert-emit` writes the operations as Rust, and [`interpret`] executes them without a
+//! compiler.
 
 pub mod builder;
 pub mod coframe;
@@ -27,7 +27,7 @@ use dalembert_expr::{Function as Elementary, Rational};
 pub use cost::Cost;
 pub use lower::{Lowered, lower};
 
-/// A value: the result of the operation with this number in its function.
+/// A value of a function: the result of the operation with this index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Value(u32);
 
@@ -36,13 +36,13 @@ impl Value {
         Self(u32::try_from(index).unwrap_or(u32::MAX))
     }
 
-    /// Its number.
+    /// Index of the operation.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// Source of an argument of a function. Indices follow the order of declaration.
+/// Meaning of an argument of a function. Indices follow the order of declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Input {
     /// Time.
@@ -57,22 +57,22 @@ pub enum Input {
     Quasi(usize),
     /// A parameter.
     Parameter(usize),
-    /// An excess of a position-level value.
+    /// Deviation of the level of an integrable constraint.
     Excess(usize),
-    /// The rate of a momentum or quasi-velocity, or an impulse on it.
+    /// Rate of a momentum or quasi-velocity, or the change of one by an impulse.
     MotionRate(usize),
     /// A multiplier of a constraint.
     Multiplier(usize),
 }
 
-/// One operation.
+/// An operation.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Op {
     /// An argument.
     Input(Input),
-    /// An exact number, rounded once when emitted.
+    /// An exact number, which is rounded once when it is emitted.
     Number(Rational),
-    /// The circle constant.
+    /// The number pi.
     Pi,
     /// `-a`
     Neg(Value),
@@ -92,70 +92,71 @@ pub enum Op {
     Call(Elementary, Value),
     /// `atan2(y, x)`
     Atan2(Value, Value),
-    /// Not a value: the function ends with a fault here unless the guard holds.
+    /// A check without a value: the function ends with a fault unless the guard holds.
     Guard(Guard),
 }
 
-/// A condition that must hold to go on.
+/// A condition that must hold for the function to continue.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Guard {
-    /// `value > 0`, else `MetricNotPositive`.
+    /// `value > 0`; the fault is `MetricNotPositive`.
     Pivot {
-        /// Number of the pivot.
+        /// Index of the pivot.
         pivot: usize,
         /// The pivot.
         value: Value,
     },
-    /// `squared > least * reference`, else `SingularConstraint`; squared norms of a constraint form, after and
-    /// before the earlier forms were projected out. Without `reference`: `squared > 0`.
+    /// `squared > least * reference`; the fault is `SingularConstraint`. Both are squared norms of a constraint form:
+    /// after and before projection orthogonal to the earlier forms. Without `reference` the condition is `squared > 0`.
     Constraint {
-        /// Number of the constraint.
+        /// Index of the constraint.
         constraint: usize,
         /// Squared norm after projection.
         squared: Value,
-        /// Squared norm before; `None` where independence was proved.
+        /// Squared norm before projection; `None` if independence is proved.
         reference: Option<Value>,
     },
-    /// `pivot > least * diagonal`, else `SingularConstraint`; a pivot of the constraint mass matrix and the diagonal
-    /// entry it comes from.
+    /// `pivot > least * diagonal`; the fault is `SingularConstraint`. For a pivot of the constraint mass matrix and its
+    /// diagonal entry.
     Mass {
-        /// Number of the constraint.
+        /// Index of the constraint.
         constraint: usize,
         /// The pivot.
         pivot: Value,
-        /// The entry of the matrix.
+        /// The diagonal entry.
         diagonal: Value,
     },
     /// Same as [`Guard::Constraint`] for the form of a quasi-velocity; the fault is `SingularFrame`.
     Frame {
-        /// Number of the quasi-velocity.
+        /// Index of the quasi-velocity.
         quasi: usize,
         /// Squared norm after projection.
         squared: Value,
-        /// Squared norm before.
+        /// Squared norm before projection.
         reference: Option<Value>,
     },
-    /// `squared > 0`, else `SingularSurface`; with `reference` as [`Guard::Constraint`], for the instantaneous
-    /// constraints of the surface.
+    /// `squared > 0`, or with `reference` as [`Guard::Constraint`] for an instantaneous constraint of the surface; the
+    /// fault is `SingularSurface`.
     Surface {
-        /// Number of the surface.
+        /// Index of the surface.
         surface: usize,
-        /// `dh(pi_D grad h)`, or the squared norm of a form after projection.
+        /// `dh(pi_D grad h)`, or the squared norm of the form after projection.
         squared: Value,
-        /// Squared norm of the form before.
+        /// Squared norm of the form before projection.
         reference: Option<Value>,
     },
 }
 
 impl Guard {
-    /// Ratio of squared norms below which two constraint forms count as dependent: the square of `4 * 2^-52`, where the
-    /// projected form consists of rounding errors only.
+    /// Ratio of squared norms below which a form counts as dependent on the earlier ones: the square of `4 * 2^-52`.
+    /// Below it the projected form consists of rounding errors.
     pub const LEAST_SQUARED_RATIO: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 
-    /// Ratio of a pivot of the constraint mass matrix to its entry below which the solve loses more than six digits.
+    /// Ratio of a pivot of the constraint mass matrix to its diagonal entry below which the solution loses more than
+    /// six digits.
     pub const LEAST_PIVOT_RATIO: f64 = 1e-6;
 
-    /// The values the guard reads.
+    /// The values that the guard reads.
     pub fn operands(&self) -> impl Iterator<Item = Value> {
         let (first, second) = match *self {
             Self::Pivot { value, .. } => (value, None),
@@ -177,7 +178,7 @@ impl Guard {
 }
 
 impl Input {
-    /// The component of the state `(q, p)` or `(q, u)` of `n` coordinates that the input is.
+    /// Component of the state `(q, p)` or `(q, u)` that the input refers to; `n` is the number of coordinates.
     pub fn component(self, n: usize) -> Option<usize> {
         match self {
             Self::Coordinate(i) => Some(i),
@@ -193,7 +194,7 @@ impl Input {
 }
 
 impl Op {
-    /// The values the operation reads.
+    /// The values that the operation reads.
     pub fn operands(&self) -> Vec<Value> {
         match self {
             Self::Input(_) | Self::Number(_) | Self::Pi => Vec::new(),
@@ -209,7 +210,7 @@ impl Op {
         }
     }
 
-    /// True if the operation only names a quantity that is known without work.
+    /// True for an argument or a constant, which costs no operation.
     pub fn is_leaf(&self) -> bool {
         matches!(self, Self::Input(_) | Self::Number(_) | Self::Pi)
     }
@@ -218,48 +219,48 @@ impl Op {
 /// A straight-line function.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// The operations, in order.
+    /// The operations, in execution order.
     pub ops: Vec<Op>,
-    /// Names of values with a meaning, by value.
+    /// Names of meaningful values, indexed by value.
     pub names: Vec<Option<String>>,
-    /// The results.
+    /// The values of the results.
     pub outputs: Vec<Value>,
     /// Operation counts.
     pub cost: Cost,
 }
 
 impl Function {
-    /// True if the function can end with a fault.
+    /// True if the function contains a guard, so that it can end with a fault.
     pub fn is_fallible(&self) -> bool {
         self.ops.iter().any(|op| matches!(op, Op::Guard(_)))
     }
 }
 
-/// Components of the state of a motion.
+/// The variables of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Positions and momenta, `(q, p)` on T*Q: N + N numbers.
     Global,
     /// Positions and quasi-velocities, `(q, u)` on D: N + (N - M) numbers.
     Reduced,
-    /// Positions alone, of a first-order system: N numbers.
+    /// Positions of a first-order system: N numbers.
     FirstOrder,
 }
 
-/// Every function of a model in one form. Functions of features that were not declared are absent. `s` stands for the
-/// state: `(q, p)`, `(q, u)` or `q`. For a first-order system, functions of momenta and impulses have no mechanical
-/// meaning, or are empty, and are not emitted.
+/// All functions of a model in one form. Functions of features that are not declared are absent. `s` is the state:
+/// `(q, p)`, `(q, u)` or `q`. For a first-order system, functions of momenta and impulses are empty or have no
+/// mechanical meaning, and are not emitted.
 #[derive(Debug)]
 pub struct Program {
     /// The form.
     pub form: Form,
     /// `(t, s) -> (qdot, pdot)`, `(qdot, udot)` or `qdot`
     pub rate: Function,
-    /// True if the rate may have features that are narrow compared with the length of a step.
+    /// True if the rates may vary strongly within a small fraction of a step.
     pub can_be_narrow: bool,
-    /// Taylor coefficients along the motion, of the rate and, where they are analytic, of the gaps.
+    /// Taylor coefficients along the motion: of the rates and, if they are analytic, of the gaps.
     pub jet: jet::Jet,
-    /// `(t, q) ->` the unit of each component of the state.
+    /// `(t, q) ->` units of the components of the state
     pub scale: Function,
     /// `(t, s) -> qdot`
     pub velocity: Function,
@@ -271,18 +272,18 @@ pub struct Program {
     pub force: Function,
     /// Functions of the reduced form.
     pub reduced: Option<Reduced>,
-    /// Derived quantities at a state, by name: all of them in global form, which also holds off the constraints; in
-    /// reduced form those of the frame.
+    /// Derived quantities at a state, by name. The global form has all of them, also for states off the constraints.
+    /// The reduced form has those of the frame.
     pub geometry: recipes::Geometry,
     /// Functions of constraints.
     pub constrained: Option<Constrained>,
     /// Functions of surfaces.
     pub impacting: Option<Impacting>,
-    /// Functions of the density form, if volumes are asked for.
+    /// Functions of the density form, if the model uses volumes.
     pub density: Option<Density>,
-    /// Functions of an invariant volume.
+    /// Functions of a proved invariant volume.
     pub volume: Option<InvariantVolume>,
-    /// Functions of the power of named forces.
+    /// Functions of the powers of named forces.
     pub powers: Option<Powers>,
     /// The declared outputs: `(t, s) -> values`.
     pub outputs: Option<Function>,
@@ -290,20 +291,20 @@ pub struct Program {
     pub view_path: Option<Function>,
     /// The view's region: `(t, q) -> h`.
     pub view_region: Option<Function>,
-    /// The initial condition: `() -> q, qdot` with 0 where nothing was declared.
+    /// The initial condition: `() -> q, qdot`, with 0 for undeclared values.
     pub initial: Function,
-    /// The horizon, if declared.
+    /// The declared end time of runs.
     pub until: Option<Function>,
 }
 
 impl Program {
-    /// Largest number of operations of one function. An N-link chain reaches it near N = 40. A compiler takes minutes over
+    /// Largest number of operations of a function. An N-link chain reaches it near N = 40. Compilers take minutes for
     /// longer functions.
     pub const OPERATIONS: usize = 50_000;
 
-    /// Every function.
+    /// All functions.
     pub fn functions(&self) -> Vec<&Function> {
-        // NOTE: every field is named, so that a new function is not forgotten here.
+        // NOTE: destructuring makes a new field a compile error until it is added here.
         let Self {
             form: _,
             rate,
@@ -341,7 +342,7 @@ impl Program {
         functions
     }
 
-    /// The length of the longest function.
+    /// Number of operations of the longest function.
     pub fn longest(&self) -> usize {
         let lengths = self.functions().into_iter();
         lengths
@@ -358,9 +359,9 @@ pub struct Reduced {
     pub momentum: Function,
     /// `(t, q, qdot) -> u`
     pub quasi: Function,
-    /// `(t, q, p) -> u` of the nearest allowed velocity.
+    /// `(t, q, p) -> u` of the velocity on D nearest to that of `p`
     pub nearest_momenta: Function,
-    /// `(t, q, qdot) -> u` of the nearest allowed velocity.
+    /// `(t, q, qdot) -> u` of the velocity on D nearest to `qdot`
     pub nearest_velocities: Function,
 }
 
@@ -379,25 +380,26 @@ impl Reduced {
 /// Functions of a system with constraints.
 #[derive(Debug)]
 pub struct Constrained {
-    /// True if the forms may become dependent somewhere.
+    /// True unless the constraint forms are proved to stay independent.
     pub can_lose_rank: bool,
     /// `(t, s) -> lambda`
     pub multipliers: Function,
     /// `(t, q, qdot) -> residuals, scales`
     pub residuals: Function,
-    /// `(t, q) -> eta` row after row, then `eta_0`.
+    /// `(t, q) -> eta` (M rows of N, row-major), then `eta_0`
     pub forms: Function,
-    /// Functions that bring a state in global form to D.
+    /// Functions that project a state in global form to D.
     pub return_to_constraints: Option<Return>,
     /// `(t, q) -> f`, one per integrable constraint.
     pub levels: Function,
-    /// `(t, q) -> size of f`, one per integrable constraint, 0 where its value is not declared; `None` if none is.
+    /// `(t, q) -> scale of f`, one per integrable constraint, 0 for levels that are not declared; `None` if no level is
+    /// declared.
     pub level_scales: Option<Function>,
     /// `(t, q, excess) -> change of q`
     pub level_correction: Function,
     /// `(t, q, lambda) -> lambda_a eta^a`
     pub reaction_force: Function,
-    /// `(t, q, p) -> qdot` on D at `p + mu_a eta^a`, then `mu`.
+    /// `(t, q, p) -> qdot, mu`: the velocity on D at the momentum `p + mu_a eta^a`, and `mu`
     pub constrained_velocity: Function,
 }
 
@@ -423,12 +425,12 @@ impl Constrained {
     }
 }
 
-/// Functions that bring a state in global form back to the constraints.
+/// Functions that project a state in global form to the constraints.
 #[derive(Debug)]
 pub struct Return {
-    /// `(t, q, qdot) -> p` of the nearest allowed velocity.
+    /// `(t, q, qdot) -> p` of the velocity on D nearest to `qdot`
     pub nearest: Function,
-    /// `(t, q, p) -> p` on D*, after a step.
+    /// `(t, q, p) -> p` on D*, for the correction after a step
     pub restore: Function,
 }
 
@@ -438,12 +440,12 @@ impl Return {
     }
 }
 
-/// The rates at which the energy changes, by cause.
+/// Powers: rates of change of the energy, by cause.
 #[derive(Debug)]
 pub struct Powers {
-    /// The causes: named forces in order, then `constraints` and `time` where they do work.
+    /// The causes: named forces in order, then `constraints` and `time` if they do work.
     pub names: Vec<String>,
-    /// `(t, s) ->` their powers, whose sum is the rate of the energy.
+    /// `(t, s) ->` powers. Their sum is the rate of the energy.
     pub function: Function,
 }
 
@@ -466,15 +468,16 @@ impl Density {
 /// Functions of a system with an invariant volume `exp(G) mu_C`.
 #[derive(Debug)]
 pub struct InvariantVolume {
-    /// `(t, q) -> G`, but for an integral.
+    /// `(t, q) -> G`, without the part that is an integral
     pub log_density: Function,
-    /// `(t, q) -> G + ln det g - ln |det A_dep|`, but for an integral.
+    /// `(t, q) -> G + ln det g - ln |det A_dep|`, without the part that is an integral
     pub log_volume: Function,
-    /// Reference configuration and gradient of the rest of `G`, which is integrated along a path if it has no closed form.
+    /// Reference configuration, and gradient of the part of `G` without closed form. This part is integrated along a
+    /// path from the reference configuration.
     pub gradient: Option<(Vec<f64>, Function)>,
-    /// The velocities that are coordinates of the volume besides the positions, in order.
+    /// Indices of the velocities that are coordinates of the volume in addition to the positions.
     pub independent: Vec<usize>,
-    /// True if `G` is a function on Q, not only of unwrapped angles.
+    /// True if `G` is single-valued on Q, not only as a function of unwrapped angles.
     pub is_single_valued: bool,
 }
 
@@ -497,30 +500,32 @@ impl InvariantVolume {
 pub struct Impacting {
     /// `(t, q) -> h_s`
     pub gaps: Function,
-    /// Per surface `(t, q) -> h_s`, for enclosures of one gap at a time.
+    /// Per surface: `(t, q) -> h_s`, for enclosures of a single gap
     pub gap_alone: Vec<Function>,
     /// `(t, s) -> dh_s(qdot) + d_t h_s`
     pub gap_rates: Function,
-    /// `(t, s, w) -> d^2h_s/dt^2` for the rates `w` of the motion's part of the state
+    /// `(t, s, w) -> d^2h_s/dt^2` for the rates `w` of momenta or quasi-velocities
     pub gap_accelerations: Function,
-    /// `(t, s, w) ->` the changes of the gap rates by an impulse `w`
+    /// `(t, s, w) ->` changes of the gap rates by an impulse `w`
     pub gap_responses: Function,
-    /// Per surface `(t, q) -> conditions`; `None` where there are none.
+    /// Per surface: `(t, q) -> margins of its conditions`; `None` without conditions.
     pub conditions: Vec<Option<Function>>,
-    /// Per surface `(t, s) -> size, share, direction` of the blow by its law; `None` for a reset.
+    /// Per surface: `(t, s) -> size, share, direction` of the impulse of its law; `None` for a reset.
     pub blows: Vec<Option<Function>>,
-    /// Per surface `(t, s) -> gap_rate, constrained_rate, surface_rate, constrained_compliance,
-    /// free_compliance, direction`.
+    /// Per surface:
+    /// `(t, s) -> gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance, direction`
     pub contacts: Vec<Function>,
-    /// Per surface: the coefficient of its law, a function of the parameters.
+    /// Per surface: coefficient of its law, a function of the parameters.
     pub coefficients: Vec<Option<Function>>,
-    /// Per surface with the law `reset`: `(t, s) -> q, qdot` after it.
+    /// Per surface: `(t, s) -> q, qdot` after the law `reset`; `None` for other laws.
     pub resets: Vec<Option<Function>>,
-    /// Per surface that leads to another mode with a declared state: `(t, s) -> q, qdot` in that mode.
+    /// Per surface: `(t, s) -> q, qdot` in the entered mode; `None` unless it leads to another mode with a declared
+    /// state.
     pub entries: Vec<Option<Function>>,
-    /// Per surface with instantaneous constraints: `(t, s) ->` the impulse after which they hold.
+    /// Per surface: `(t, s) ->` impulse that establishes its instantaneous constraints; `None` without these.
     pub focuses: Vec<Option<Function>>,
-    /// Per surface with instantaneous constraints: `(t, s, w) ->` the addition to the rates `w` that keeps the constraints.
+    /// Per surface: `(t, s, w) ->` addition to the rates `w` that maintains its instantaneous constraints; `None`
+    /// without these.
     pub traces: Vec<Option<Function>>,
 }
 

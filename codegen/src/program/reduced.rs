@@ -1,5 +1,5 @@
 //! The motion reduced to D as operations: velocities from quasi-velocities, the metric on D, the rates of the
-//! quasi-velocities. Formulas: [`crate::mechanics::frame`].
+//! quasi-velocities. The formulas are in [`crate::mechanics::frame`].
 
 use dalembert_expr::{ExprId, Sign};
 
@@ -12,7 +12,7 @@ use crate::mechanics::Frame;
 use crate::mechanics::frame::{Invariant, Row};
 
 impl<'a> Kernel<'a> {
-    /// The frame. A function in reduced form is made only where there is one.
+    /// The frame. Functions in reduced form exist only if there is one.
     pub(super) fn frame(&self) -> Option<&'a Frame> {
         self.derivation.frame.as_ref().ok()
     }
@@ -48,7 +48,7 @@ impl<'a> Kernel<'a> {
         })
     }
 
-    /// Binds the symbols of the quasi-velocities.
+    /// Binds the symbols of the quasi-velocities to values.
     fn bind_quasi(&mut self, u: &[Value]) {
         let symbols = self.invariant().map_or(&[][..], |invariant| &invariant.u);
         for (&symbol, &value) in symbols.iter().zip(u) {
@@ -63,7 +63,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Expressions that do not depend on the configuration.
+    /// Simplified expressions that do not depend on the configuration.
     fn invariant(&self) -> Option<&'a Invariant> {
         self.frame()?.invariant.as_ref()
     }
@@ -89,7 +89,7 @@ impl<'a> Kernel<'a> {
         fields
     }
 
-    /// The components of `X_i` along some coordinates.
+    /// Components of `X_i` along some coordinates.
     fn frame_fields_along(&mut self, coordinates: &[bool]) -> Vec<Vec<Value>> {
         let invariant = self.invariant();
         (0..self.quasi_velocities())
@@ -143,7 +143,7 @@ impl<'a> Kernel<'a> {
         fields.iter().map(|field| self.dot(field, b)).collect()
     }
 
-    /// `G_D = X^T g X`, the lower triangle.
+    /// `G_D = X^T g X`, lower triangle
     pub fn reduced_metric(&mut self) -> Vec<Vec<Value>> {
         let known = self.known_metric();
         let is_known = |row: &Vec<Option<ExprId>>| row.iter().all(Option::is_some);
@@ -174,12 +174,12 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
-    /// The entries of `G_D` that are known as simpler expressions, the lower triangle.
+    /// Entries of `G_D` with a simplified expression, lower triangle.
     pub(super) fn known_metric(&self) -> Option<&'a Vec<Vec<Option<ExprId>>>> {
         self.invariant().map(|invariant| &invariant.metric)
     }
 
-    /// Runs `work` with the factors of `G_D`.
+    /// Calls `work` with the factors of `G_D`.
     pub fn with_reduced_ldlt<T>(&mut self, work: impl FnOnce(&mut Builder, &Ldlt) -> T) -> T {
         let ldlt = match self.reduced_ldlt.take() {
             Some(ldlt) => ldlt,
@@ -197,7 +197,7 @@ impl<'a> Kernel<'a> {
         result
     }
 
-    /// Runs `work` with the factors of the metric, or in reduced form with those of `G_D`.
+    /// Calls `work` with the factors of the metric, or in reduced form with those of `G_D`.
     pub fn with_state_ldlt<T>(
         &mut self,
         form: Form,
@@ -209,8 +209,8 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// True if the metric is diagonal with entries known to be positive. The diagonal entries of `G_D` are then positive
-    /// too, as no `X_i` vanishes.
+    /// True if the metric is diagonal with positive entries. The diagonal entries of `G_D` are then positive too,
+    /// because no `X_i` vanishes.
     fn metric_is_positive(&self) -> bool {
         let (pool, metric) = (&self.model.pool, &self.model.lagrangian.metric);
         metric.iter().enumerate().all(|(i, row)| {
@@ -219,7 +219,7 @@ impl<'a> Kernel<'a> {
         })
     }
 
-    /// True if an entry on the diagonal of `G_D` does not depend on the configuration and is known to be positive.
+    /// True if a diagonal entry of `G_D` has a simplified expression that is known to be positive.
     fn is_positive_entry(&self, i: usize) -> bool {
         let fixed = self
             .invariant()
@@ -232,7 +232,7 @@ impl<'a> Kernel<'a> {
         self.with_reduced_ldlt(|builder, ldlt| ldlt.solve(builder, b))
     }
 
-    /// `a = Xdot u + Xdot_0`, the acceleration at quasi-velocities that do not change.
+    /// `a = Xdot u + Xdot_0`, the acceleration at constant quasi-velocities
     pub fn frame_acceleration(&mut self) -> Vec<Value> {
         let Some(frame) = self.frame() else {
             return Vec::new();
@@ -318,7 +318,7 @@ impl<'a> Kernel<'a> {
         right
     }
 
-    /// `g(qdot, qdot)`, where it is known as a simpler expression.
+    /// `g(qdot, qdot)`, if it has a simplified expression.
     pub fn known_doubled_kinetic(&mut self) -> Option<Value> {
         let known = self.invariant()?.doubled_kinetic?;
         let u = self.quasi_inputs();
@@ -341,7 +341,7 @@ impl<'a> Kernel<'a> {
         density
     }
 
-    /// The quasi-velocities with `G_D u = X^T (b - g X_0)`: those of the allowed velocity nearest to `g^{-1} b`.
+    /// The solution of `G_D u = X^T (b - g X_0)`: quasi-velocities of the velocity on D that is nearest to `g^{-1} b`.
     pub fn nearest_quasi(&mut self, b: &[Value]) -> Vec<Value> {
         let affine = self.affine_field();
         let shift = self.lower_vector(&affine);

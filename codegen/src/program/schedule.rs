@@ -1,7 +1,7 @@
-//! Order and dead code: keeps the operations that outputs and guards need, in the order of construction.
+//! Dead code elimination: keeps the operations that outputs and guards need, in the order of construction.
 //!
-//! The order of construction is kept because it follows the derivation (position, velocity, factors, solve), which reads
-//! well, and because operands come first in it.
+//! The order of construction follows the derivation (position, velocity, factors, solve), which reads well. Operands
+//! come first in it.
 
 use super::{Guard, Op, Value};
 
@@ -39,7 +39,7 @@ pub(super) fn prune(
 }
 
 impl Op {
-    /// The operation with other operands; those of a sum or product in the order of values.
+    /// The operation with mapped operands. Operands of sums and products are sorted.
     pub(super) fn with_operands(self, map: impl Fn(Value) -> Value) -> Self {
         match self {
             Self::Input(_) | Self::Number(_) | Self::Pi => self,

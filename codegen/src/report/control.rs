@@ -11,10 +11,11 @@ use crate::spec::Declaration;
 use crate::tables::text_of;
 use dalembert_expr::ExprId;
 
-/// The maximum principle of a model with a cost, or of one of its scenes.
+/// The maximum principle of a model with a cost, or of one of its scenes. `source`: the declaration. `part`: name of
+/// the scene; `None` for the model.
 ///
 /// # Errors
-/// [`ReportError`]: a declaration that is refused, or for which no maximum principle is derived.
+/// [`ReportError`]: a declaration that is refused, or that has no maximum principle.
 pub fn control(source: &str, part: Option<&str>) -> Result<Report, ReportError> {
     let spec = match super::declaration(source)?.without_claims() {
         Declaration::Model(spec) => spec,
@@ -49,7 +50,7 @@ struct Printer<'a> {
 }
 
 impl Printer<'_> {
-    /// The shorter of the expression as it is emitted and the same multiplied out.
+    /// The expression as text and LaTeX: simplified as emitted or multiplied out, whichever is shorter.
     fn print(&mut self, expression: ExprId) -> [String; 2] {
         let pool = &mut self.model.pool;
         pool.lift_budget();
@@ -70,7 +71,7 @@ impl Printer<'_> {
         }
     }
 
-    /// State and costate of each component, printed.
+    /// State and costate of each component, as text and LaTeX.
     fn letters(&mut self) -> Vec<[[String; 2]; 2]> {
         let symbols = self.extremals.components.iter();
         let symbols: Vec<_> = symbols.map(|it| [it.state, it.costate]).collect();
@@ -170,7 +171,7 @@ impl Printer<'_> {
         items
     }
 
-    /// The costate at the end, of components that are free there.
+    /// The costate at the end, for components whose final state is free.
     fn end(&mut self) -> Section {
         let letters = self.letters();
         let components = self.extremals.components.clone();

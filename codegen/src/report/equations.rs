@@ -1,4 +1,4 @@
-//! The sections of a report that print expressions.
+//! The sections of a report with expressions.
 
 use dalembert_expr::ExprId;
 
@@ -6,7 +6,7 @@ use super::{Item, Section};
 use crate::mechanics::Derivation;
 use crate::model::{self, Beside, Model, Topology};
 
-/// Prints parts of a model.
+/// Writes the sections of a model.
 pub(super) struct Writer<'a> {
     pub(super) model: &'a mut Model,
     pub(super) derivation: &'a Derivation,
@@ -34,7 +34,7 @@ impl Writer<'_> {
         self.model.pool.is_syntactic_zero(expression)
     }
 
-    /// The coordinate's symbol as text and LaTeX.
+    /// Symbol of a coordinate, as text and as LaTeX.
     pub(super) fn coordinate(&mut self, i: usize) -> [String; 2] {
         let symbol = self.model.coordinates[i].q;
         let expression = self.model.pool.variable(symbol);
@@ -263,7 +263,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Formulas of a reset, one for each value that it sets.
+    /// Formulas of a reset: one for each value that it sets.
     fn reset(&mut self, s: usize, name: &str, subscript: &str) -> Vec<Item> {
         let Some(reset) = self.model.surfaces[s].reset.clone() else {
             return Vec::new();
@@ -281,7 +281,7 @@ impl Writer<'_> {
         formulas.collect()
     }
 
-    /// The constraints that hold in the moment of an impact only.
+    /// The instantaneous constraints of a surface, which hold during an impact only.
     fn instantaneous(&mut self, s: usize) -> Vec<Item> {
         let derivation = self.derivation;
         let mut items = Vec::new();
@@ -345,7 +345,7 @@ impl Writer<'_> {
     }
 }
 
-/// Underscores as LaTeX text wants them.
+/// The name with its underscores escaped for LaTeX.
 pub(super) fn escape(name: &str) -> String {
     name.replace('_', "\\_")
 }

@@ -1,4 +1,4 @@
-//! `derive --group xi1, xi2, ..`: what symmetries give a model by reduction.
+//! `derive --group xi1, xi2, ..`: reduction of a model by a group of symmetries.
 
 use std::mem;
 
@@ -12,10 +12,11 @@ use crate::claims::{Dynamics, Verdict, check_symmetry, keeps_lagrangian};
 use crate::mechanics::reduction::{NoReduction, Reduction, derive_reduction};
 use crate::model::Statement;
 
-/// The reduction of a model, of one of its scenes or modes, by fields in the language of claims: `partial(x), partial(phi) - y*partial(x) + x*partial(y)`.
+/// The reduction of a model. `source`: the declaration. `part`: name of a scene or mode; `None` for the model. `fields`
+/// are written as in claims, separated by commas: `partial(x), partial(phi) - y*partial(x) + x*partial(y)`.
 ///
 /// # Errors
-/// [`ReportError`]: a field that is no symmetry, with the reason; fields that are no group.
+/// [`ReportError`]: a field that is no symmetry, with the reason, or fields that span no group.
 pub fn group(source: &str, part: Option<&str>, fields: &str) -> Result<Report, ReportError> {
     Asked::check_list(fields, "partial(x), partial(y)")?;
     let claims: Vec<String> = (separated(tokens(fields)?).iter())
@@ -53,7 +54,7 @@ pub fn group(source: &str, part: Option<&str>, fields: &str) -> Result<Report, R
     Ok(asked.report(sections))
 }
 
-/// The parts of a list, separated by commas outside of parentheses.
+/// The parts of a list. Commas inside parentheses do not separate.
 fn separated(tokens: TokenStream) -> Vec<String> {
     let mut parts = Vec::new();
     let mut open = Vec::new();
@@ -72,7 +73,7 @@ fn separated(tokens: TokenStream) -> Vec<String> {
         .collect()
 }
 
-/// Refuses fields that are no symmetries, and those of which a total derivative is left.
+/// Refuses fields that are no symmetries, or that change the Lagrangian by a total time derivative.
 fn refuse_others(
     asked: &mut Asked,
     fields: &[Vec<ExprId>],
@@ -138,7 +139,7 @@ struct Group<'g> {
 }
 
 impl Group<'_> {
-    /// `sum of v_k of(k)` with symbols that are written before every coordinate.
+    /// `sum of v_k of(k)` over components `v_k`, with symbols `before(name)` for the coordinates.
     fn combination(&mut self, components: &[ExprId], before: &str, latex: &str) -> ExprId {
         let names: Vec<(String, String)> = (0..components.len())
             .map(|k| {
@@ -163,7 +164,7 @@ impl Group<'_> {
         self.as_written(name, latex, value)
     }
 
-    /// A formula that is not put together anew.
+    /// A formula printed without simplification.
     fn as_written(&mut self, text: &str, latex: &str, value: ExprId) -> Item {
         let pool = &self.writer.model.pool;
         Item::Formula {
@@ -267,7 +268,7 @@ impl Group<'_> {
         }
     }
 
-    /// The fields along the orbits that the constraints allow, with their momenta and inertia.
+    /// The fields along the orbits in D, with their momenta and inertia.
     fn sections(&mut self) -> Vec<Item> {
         let reduction = self.reduction;
         if reduction.sections.is_empty() {

@@ -1,4 +1,5 @@
-//! `orbit --modulo xi1, xi2, ..`: vector fields that are shown to be symmetries of a model, its surfaces and their maps.
+//! `orbit --modulo xi1, xi2, ..`: vector fields with a proof that they are symmetries of a model, its surfaces and
+//! their maps.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -16,20 +17,20 @@ use crate::model::Model;
 pub struct Symmetry {
     /// The field as written.
     pub text: String,
-    /// Names of the coordinates, of all modes.
+    /// Names of the coordinates of all modes.
     pub coordinates: Vec<String>,
-    /// N rows of N: the derivative of the field.
+    /// Derivative of the field: N rows of N.
     pub linear: Vec<Vec<f64>>,
-    /// The field at 0.
+    /// The field at the origin, N entries.
     pub constant: Vec<f64>,
-    /// Names of the parameters that it depends on.
+    /// Names of the parameters that the field depends on.
     pub parameters: Vec<String>,
-    /// True if its momentum is shown to be conserved, at surfaces too.
+    /// True if its momentum is proved to be conserved, also at surfaces.
     pub keeps_momentum: bool,
 }
 
 impl Symmetry {
-    /// A field that vanishes.
+    /// The field 0.
     fn of_none(text: String) -> Self {
         Self {
             text,
@@ -41,7 +42,7 @@ impl Symmetry {
         }
     }
 
-    /// The index of a coordinate, which is added if it is new.
+    /// Index of a coordinate. A new coordinate is added.
     fn index(&mut self, name: &str) -> usize {
         if let Some(known) = self.coordinates.iter().position(|known| known == name) {
             return known;
@@ -55,11 +56,12 @@ impl Symmetry {
     }
 }
 
-/// The symmetries that a list of fields names, in the language of claims, at values of parameters. `part` is a scene; of a
-/// model with modes each mode takes the terms whose coordinates it has.
+/// Proves that the vector fields in a list, written as in claims, are symmetries at the given values of parameters.
+/// `part` names a scene. In a model with modes, each mode uses the terms whose coordinates it has.
 ///
 /// # Errors
-/// [`ReportError`]: a field that is not shown to be a symmetry, with the place where it fails; a flow that is not affine.
+/// [`ReportError`] for a field without such a proof, with the place where the proof fails, and for a flow that is not
+/// affine.
 pub fn symmetries(
     source: &str,
     part: Option<&str>,
@@ -94,7 +96,7 @@ pub fn symmetries(
     Ok(found)
 }
 
-/// The parts of a list, separated by commas outside of brackets.
+/// Splits a list at its commas outside of brackets.
 fn parts(list: &str) -> Vec<String> {
     let (mut parts, mut depth) = (vec![String::new()], 0);
     for letter in list.chars() {
@@ -111,8 +113,8 @@ fn parts(list: &str) -> Vec<String> {
     parts.iter().map(|part| part.trim().to_owned()).collect()
 }
 
-/// A claim of symmetry with the terms of a field that name coordinates of a mode, or with all of them; `None` if no term is
-/// left.
+/// A claim of symmetry. Of the field's terms it keeps those that name only the given coordinates, or all terms if
+/// `coordinates` is empty. `None` if no term is left.
 fn claim(field: &str, coordinates: &[String]) -> Option<String> {
     let kept = match (field.parse(), coordinates) {
         (Ok(tokens), [_, ..]) => restricted(tokens, coordinates),
@@ -121,7 +123,7 @@ fn claim(field: &str, coordinates: &[String]) -> Option<String> {
     (!kept.is_empty()).then(|| format!("symmetry: {kept}"))
 }
 
-/// The terms of a sum that name no other coordinates than these.
+/// The terms of a sum that name no coordinates other than the given ones.
 fn restricted(tokens: TokenStream, coordinates: &[String]) -> String {
     let mut terms: Vec<Vec<TokenTree>> = vec![Vec::new()];
     for token in tokens {
@@ -148,7 +150,7 @@ fn restricted(tokens: TokenStream, coordinates: &[String]) -> String {
     kept.to_string()
 }
 
-/// The coordinates whose fields occur in a sum.
+/// The coordinates `x` of all `partial(x)` in a sum.
 fn named(tokens: &TokenStream) -> Vec<String> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let mut names = Vec::new();
@@ -166,7 +168,7 @@ fn named(tokens: &TokenStream) -> Vec<String> {
     names
 }
 
-/// The field of this number, proved on every mode.
+/// The field with this index, with the proof on every mode.
 fn symmetry(
     whole: &Whole,
     index: usize,
@@ -208,7 +210,7 @@ fn symmetry(
     Ok(found)
 }
 
-/// Adds the numbers of a field on one mode.
+/// Adds matrix and constant of a field on one mode.
 ///
 /// # Errors
 /// The coordinate whose component is not affine.

@@ -1,4 +1,4 @@
-//! Derivations that are asked for in the words of a claim: of the functions or the fields that it names.
+//! Derivations requested in the form of claims, about the functions or fields that these name.
 
 use dalembert_expr::ExprId;
 use proc_macro2::{Span, TokenStream};
@@ -11,7 +11,7 @@ use crate::refuse_exhausted;
 use crate::spec::{self, Declaration};
 use crate::tables::text_of;
 
-/// A model or a mode with what was asked of it.
+/// A model or a mode, with the statements requested of it.
 pub(super) struct Asked {
     pub(super) model: Model,
     pub(super) derivation: Derivation,
@@ -22,10 +22,11 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Reads a declaration and resolves claims about it, in place of its own. `part` names a scene or a mode; `None` is the model itself.
+    /// Reads a declaration and resolves `claims` about it instead of its own. `part` names a scene or a mode; `None` is
+    /// the model itself.
     ///
     /// # Errors
-    /// [`ReportError`]; a model with modes is none without the name of one.
+    /// [`ReportError`], also for a model with modes if no mode is named.
     pub(super) fn of(
         source: &str,
         part: Option<&str>,
@@ -89,7 +90,7 @@ impl Asked {
         })
     }
 
-    /// The functions of the only claim.
+    /// The functions of the claim, if it is a single claim of involution.
     pub(super) fn functions(&self) -> Vec<StatedFunction> {
         match self.statements.as_slice() {
             [Statement::Involution(functions)] => functions.clone(),
@@ -97,10 +98,10 @@ impl Asked {
         }
     }
 
-    /// Refuses a list that is empty or has other separators than commas. `example` is a right one.
+    /// Rejects a list that is empty or contains semicolons. `example` is a valid list for the help line.
     ///
     /// # Errors
-    /// [`ReportError`].
+    /// [`ReportError`] with the mistake.
     pub(super) fn check_list(list: &str, example: &str) -> Result<(), ReportError> {
         let text = match list.trim() {
             "" => "nothing is given",
@@ -111,7 +112,7 @@ impl Asked {
         Err(Self::refusal(text, &help))
     }
 
-    /// A refusal of what was asked.
+    /// An error about a request, with a help line unless `help` is empty.
     pub(super) fn refusal(text: impl Into<String>, help: &str) -> ReportError {
         let mut mistakes = Diagnostics::new();
         let at = Location::from(Span::call_site());
@@ -122,7 +123,7 @@ impl Asked {
         ReportError::Declaration(mistakes)
     }
 
-    /// The report of these sections.
+    /// A report with these sections. Empty ones are left out.
     pub(super) fn report(self, mut sections: Vec<Section>) -> Report {
         sections.retain(|section| !section.items.is_empty());
         Report {
@@ -136,26 +137,26 @@ impl Asked {
     }
 }
 
-/// All modes of a model with fields on each of them; a model without modes is the only one.
+/// All modes of a model, each with the requested fields. A model without modes is its own only mode.
 pub(super) struct Whole {
     pub(super) modes: Vec<Fielded>,
 }
 
-/// A mode with the fields that were asked for.
+/// A mode with the requested fields.
 pub(super) struct Fielded {
     pub(super) model: Model,
     pub(super) derivation: Derivation,
     pub(super) fields: Vec<Vec<ExprId>>,
-    /// The name, if there are several.
+    /// Name of the mode; `None` for a model without modes.
     pub(super) name: Option<String>,
 }
 
 impl Whole {
-    /// Reads a declaration with fields in place of its claims. `fields` gives those of a mode with these coordinates; none
-    /// stands for a field that vanishes.
+    /// Reads a declaration with fields in place of its claims. `fields` returns the texts of the fields on a mode,
+    /// given its coordinates; `None` is the field 0.
     ///
     /// # Errors
-    /// [`ReportError`].
+    /// [`ReportError`] with the mistakes.
     pub(super) fn of(
         source: &str,
         part: Option<&str>,
@@ -229,7 +230,7 @@ impl Whole {
     }
 }
 
-/// The field of a claim of symmetry.
+/// The vector field of a claim of symmetry.
 fn field(statement: &Statement) -> Option<Vec<ExprId>> {
     match statement {
         Statement::Symmetry(field) => Some(field.clone()),

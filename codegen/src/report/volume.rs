@@ -7,11 +7,11 @@ use super::equations::Writer;
 use super::{Item, Section};
 use crate::claims::{Potential, Term, Verdict, examine_volume, potential_text};
 
-/// A component that is printed with more characters is not printed.
+/// Largest number of characters of a component that is printed.
 const LONGEST: usize = 240;
 
 impl Writer<'_> {
-    /// Invariant volumes; empty if neither constraints nor claims ask for them.
+    /// Invariant volumes; empty for a model with neither constraints nor claims.
     pub(super) fn volume(&mut self) -> Section {
         let mut items = Vec::new();
         let is_constrained = !self.derivation.constraints.is_empty();

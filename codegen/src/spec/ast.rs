@@ -1,5 +1,5 @@
-//! Syntax tree: the declaration as written, with the place of every part. Nothing is resolved: names are words, indices
-//! are expressions.
+//! Syntax tree: the declaration as written, with the location of every part. Nothing is resolved: names are words,
+//! indices are expressions.
 
 mod claim;
 
@@ -10,22 +10,22 @@ use crate::diagnostics::{Diagnostics, Location};
 
 pub use claim::{Claim, Existence, Statement};
 
-/// A declaration. Later stages name what is faulty by its id; [`Spec::location`] knows where that is.
+/// Id of a declaration, by which later stages refer to it in errors. [`Spec::location`] gives its location.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ItemId(u32);
 
-/// A model as it was written.
+/// A model as written.
 #[derive(Debug)]
 pub struct Spec {
-    /// The type's name.
+    /// Name of the type.
     pub name: Word,
-    /// Snake case of the name, which names the module of indices.
+    /// The name in snake case, which is that of the module of indices.
     pub snake_name: String,
-    /// Empty, `pub` or `pub(crate)`.
+    /// Visibility: empty, `pub` or `pub(crate)`.
     pub visibility: String,
     /// Lines of the doc comment.
     pub documentation: Vec<String>,
-    /// The declaration as text.
+    /// Text of the declaration.
     pub source: String,
     /// `const N = 8;`
     pub constants: Vec<Constant>,
@@ -33,7 +33,7 @@ pub struct Spec {
     pub coordinates: Vec<Coordinate>,
     /// `parameters { .. }`
     pub parameters: Vec<Parameter>,
-    /// `let ..;`, in order.
+    /// `let ..;`, in order of declaration
     pub definitions: Vec<Definition>,
     /// `lagrangian = ..;`
     pub lagrangian: Option<Lagrangian>,
@@ -65,7 +65,7 @@ pub struct Spec {
 }
 
 impl Spec {
-    /// A model of which only the name is known.
+    /// A model with a name and no declarations.
     pub(super) fn new(name: Word, snake_name: String) -> Self {
         Self {
             name,
@@ -94,7 +94,7 @@ impl Spec {
         }
     }
 
-    /// A model with the name of this one and nothing else declared.
+    /// A model with the header of this one and no declarations.
     pub(super) fn beginning(&self) -> Self {
         Self {
             visibility: self.visibility.clone(),
@@ -104,13 +104,13 @@ impl Spec {
         }
     }
 
-    /// A new declaration at this place.
+    /// Registers a declaration at a location.
     pub(super) fn item(&mut self, at: Location) -> ItemId {
         self.items.push(at);
         ItemId(u32::try_from(self.items.len() - 1).unwrap_or(u32::MAX))
     }
 
-    /// Place of a declaration; the model's name for an id of another model.
+    /// Location of a declaration. For an id of another model: that of the model's name.
     pub fn location(&self, item: ItemId) -> Location {
         self.items
             .get(item.0 as usize)
@@ -118,18 +118,18 @@ impl Spec {
             .unwrap_or(self.name.at)
     }
 
-    /// The first token of a declaration.
+    /// First token of a declaration.
     pub fn span(&self, item: ItemId) -> Span {
         self.location(item).first
     }
 }
 
-/// A name with its place.
+/// A name with its location.
 #[derive(Debug, Clone)]
 pub struct Word {
     /// The name.
     pub text: String,
-    /// Place.
+    /// Location.
     pub at: Location,
 }
 
@@ -138,24 +138,24 @@ pub struct Word {
 pub struct Declared {
     /// The name.
     pub name: Word,
-    /// Index in brackets.
+    /// Index in brackets, if any.
     pub index: Option<Index>,
 }
 
-/// Contents of the brackets after a declared name.
+/// Content of the brackets after a declared name.
 #[derive(Debug, Clone)]
 pub enum Index {
-    /// `[N]`: a size where a family is declared, one member elsewhere.
+    /// `[N]`: the size in the declaration of a family, a member elsewhere.
     One(Scalar),
     /// `[i in a..=b]`
     Each(Binder),
 }
 
-/// Meaning of indices, given the constants of a model. The next stage supplies it, because it knows the meaning of
+/// Evaluation of indices from the constants of a model. The next stage provides it, because it knows the meaning of
 /// names.
 #[derive(Debug, Clone, Copy)]
 pub struct Indices {
-    /// The members that a declared name with its index stands for, counted from 1.
+    /// The members, counted from 1, that a declared name with its index stands for.
     pub members: fn(&Spec, &Declared) -> Result<Vec<usize>, Diagnostics>,
     /// The value of an index.
     pub value: fn(&Spec, &Scalar) -> Result<i64, Diagnostics>,
@@ -177,15 +177,15 @@ pub struct Binder {
 pub struct Scalar {
     /// Kind.
     pub kind: ScalarKind,
-    /// Place.
+    /// Location.
     pub at: Location,
 }
 
-/// The kinds of expressions. Sums and products are flat, so that the depth of the tree is bounded by the nesting
-/// of what was written and not by its length.
+/// Kinds of expressions. Sums and products are flat, so that the depth of the tree is bounded by the nesting of the
+/// text, not by its length.
 #[derive(Debug, Clone)]
 pub enum ScalarKind {
-    /// An integer or a decimal, exact, and as it was written.
+    /// An integer or a decimal: exact value, and text as written.
     Number(Rational, String),
     /// `x`
     Name(String),
@@ -193,9 +193,9 @@ pub enum ScalarKind {
     Member(Word, Box<Scalar>),
     /// `-e`
     Negative(Box<Scalar>),
-    /// `a + b - c`; `true` marks what is subtracted.
+    /// `a + b - c`; the flag is true for subtracted terms.
     Sum(Vec<(bool, Scalar)>),
-    /// `a * b / c % d`, from left to right.
+    /// `a * b / c % d`, from left to right
     Product(Vec<(Operator, Scalar)>),
     /// `a^b`
     Power(Box<Scalar>, Box<Scalar>),
@@ -205,7 +205,7 @@ pub enum ScalarKind {
     SumOver(Binder, Box<Scalar>),
 }
 
-/// Operator before a factor; the first factor of a product has `Times`.
+/// Operator before a factor. The first factor of a product has [`Operator::Times`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
     /// `*`
@@ -232,13 +232,13 @@ pub struct Coordinate {
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The set it runs through.
+    /// Set of its values.
     pub topology: Topology,
     /// The declaration.
     pub item: ItemId,
 }
 
-/// Declared set of a coordinate.
+/// Declared set of values of a coordinate.
 #[derive(Debug)]
 pub enum Topology {
     /// `x;`
@@ -256,9 +256,9 @@ pub struct Parameter {
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The demand on its values.
+    /// Declared condition on its values.
     pub assumption: Assumption,
-    /// Default.
+    /// Default value.
     pub default: Option<ParameterDefault>,
     /// The declaration.
     pub item: ItemId,
@@ -278,18 +278,18 @@ pub struct Supplied {
 /// `cost { running = e; terminal = e; }`
 #[derive(Debug)]
 pub struct Cost {
-    /// Cost of each moment of the motion.
+    /// Running cost, integrated over the motion.
     pub running: Option<Scalar>,
-    /// Cost of the end.
+    /// Terminal cost, at the end of the motion.
     pub terminal: Option<Scalar>,
     /// The declaration.
     pub item: ItemId,
 }
 
-/// Declared assumption on a parameter.
+/// Declared condition on the values of a parameter.
 #[derive(Debug)]
 pub enum Assumption {
-    /// No assumption.
+    /// No condition.
     Finite,
     /// `> 0`
     Positive,
@@ -301,12 +301,12 @@ pub enum Assumption {
     Within(Box<[Scalar; 2]>),
 }
 
-/// The default of a parameter or of all members of a family.
+/// Default of a parameter, or of the members of a family.
 #[derive(Debug)]
 pub enum ParameterDefault {
-    /// `= e`
+    /// `= e`, for all members
     One(Scalar),
-    /// `= [e, ..]`
+    /// `= [e, ..]`, one value per member; with the location of the list
     List(Vec<Scalar>, Location),
 }
 
@@ -315,7 +315,7 @@ pub enum ParameterDefault {
 pub struct Definition {
     /// Name, with the index of a family.
     pub declared: Declared,
-    /// Arguments, if it is a function.
+    /// Arguments; `None` if it is not a function.
     pub arguments: Option<Vec<Word>>,
     /// Value.
     pub value: Scalar,
@@ -376,16 +376,16 @@ pub struct Quantity {
     pub item: ItemId,
 }
 
-/// `greater >= less` or `greater > less`, whichever way round it was written.
+/// `greater >= less` or `greater > less`, in either notation.
 #[derive(Debug)]
 pub struct Comparison {
-    /// The side that is not less.
+    /// The greater side.
     pub greater: Scalar,
-    /// The side that is not greater.
+    /// The smaller side.
     pub less: Scalar,
-    /// True if both may be equal.
+    /// True if equality is allowed.
     pub is_closed: bool,
-    /// The whole.
+    /// Location of the whole comparison.
     pub at: Location,
 }
 
@@ -396,15 +396,15 @@ pub struct Surface {
     pub declared: Declared,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The allowed side.
+    /// The comparison that holds on the allowed side.
     pub gap: Comparison,
     /// Conditions under which the surface counts.
     pub conditions: Vec<Comparison>,
-    /// True if it counts where no other surface of the same gap does.
+    /// True for `otherwise`: the surface counts where no other surface of the same gap does.
     pub is_otherwise: bool,
-    /// Law; elastic if there is none.
+    /// Law; `None` means elastic.
     pub law: Option<Law>,
-    /// The mode that is entered here, of a transition.
+    /// For a transition: the mode that it enters.
     pub enters: Option<Word>,
     /// `instantaneous { .. }`
     pub instantaneous: Vec<Equation>,
@@ -415,14 +415,14 @@ pub struct Surface {
 /// Contents of one `model!`.
 #[derive(Debug)]
 pub enum Declaration {
-    /// A model, in one piece.
+    /// A model without modes.
     Model(Box<Spec>),
     /// A model with modes.
     Modes(Modes),
 }
 
 impl Declaration {
-    /// The same without its claims.
+    /// The declaration without its claims.
     #[must_use]
     pub fn without_claims(mut self) -> Self {
         match &mut self {
@@ -436,30 +436,30 @@ impl Declaration {
     }
 }
 
-/// A model with modes, families written out: what stands outside of `modes` belongs to each of them.
+/// A model with modes, with families written out. Declarations outside of `modes` belong to every mode.
 #[derive(Debug)]
 pub struct Modes {
-    /// The modes, in order; the first is where a run begins.
+    /// The modes, in order. A run begins in the first one.
     pub modes: Vec<Mode>,
-    /// The transitions, in order.
+    /// The transitions, in order of declaration.
     pub transitions: Vec<Transition>,
 }
 
-/// A mode as a model of its own: what it shares with the others, its own declarations, and as surfaces the transitions
+/// A mode as a model of its own. Its declarations are the shared ones and its own; its surfaces include the transitions
 /// that leave it.
 #[derive(Debug)]
 pub struct Mode {
-    /// Name: `rough`, or `spoke3` for a member of a family.
+    /// Name: `rough`, or `spoke3` for member 3 of a family.
     pub name: Word,
-    /// Name as written in a declaration: `rough`, `spoke[3]`.
+    /// Name as written in the declaration: `rough`, `spoke[3]`.
     pub written: String,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The model.
+    /// The mode as a model.
     pub spec: Spec,
 }
 
-/// Modes that a transition connects.
+/// A transition and the modes that it connects.
 #[derive(Debug)]
 pub struct Transition {
     /// Name.
@@ -483,7 +483,7 @@ pub struct Law {
     pub item: ItemId,
 }
 
-/// `theta = e;` or `dot(theta[i in 1..=N]) = e;` of a reset.
+/// An entry of a reset: `theta = e;` or `dot(theta[i in 1..=N]) = e;`
 #[derive(Debug)]
 pub struct Assignment {
     /// Target.
@@ -521,16 +521,16 @@ pub enum InitialTarget {
     Position,
     /// A velocity.
     Velocity,
-    /// The horizon.
+    /// The end time of runs.
     Until,
 }
 
 /// `view { path: (a, b); region: h >= 0; }`
 #[derive(Debug, Default)]
 pub struct View {
-    /// The point drawn.
+    /// The plotted point.
     pub path: Option<[Scalar; 2]>,
-    /// The allowed region.
+    /// The region where motion is allowed.
     pub region: Option<Comparison>,
 }
 
@@ -541,7 +541,7 @@ pub struct Scene {
     pub name: Word,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// The forces, surfaces, scenes and extras that it uses.
+    /// The forces, surfaces, scenes and extras in use.
     pub parts: Vec<Declared>,
     /// The declaration.
     pub item: ItemId,

@@ -1,4 +1,4 @@
-//! Expressions as a person writes them, for messages and labels.
+//! Expressions in the notation of the language, for messages and labels.
 
 use std::fmt;
 

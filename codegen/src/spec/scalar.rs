@@ -8,8 +8,8 @@
 //! atom    = number | name | name[sum] | name(sum, ..) | sum(i in a..=b: e) | (sum)
 //! ```
 //!
-//! Rust's own grammar reads `^` as exclusive or, looser than `+`; hence this one. An invisible group, made by
-//! `macro_rules`, is an atom.
+//! Rust's own grammar reads `^` as exclusive or, with a lower precedence than `+`. This grammar differs. An invisible
+//! group, made by `macro_rules`, is an atom.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenTree};
 
@@ -20,7 +20,7 @@ use super::limits::NESTING;
 use crate::diagnostics::Location;
 
 impl Cursor<'_> {
-    /// Reads an expression as far as it goes.
+    /// Reads the longest expression at the current position.
     pub(super) fn scalar(&mut self) -> Read<Scalar> {
         let sum = self.sum()?;
         match self.peek() {
@@ -35,7 +35,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Reads an expression that all remaining tokens belong to.
+    /// Reads an expression that must take all remaining tokens.
     pub(super) fn whole_scalar(&mut self) -> Read<Scalar> {
         let scalar = self.scalar()?;
         self.end()?;
@@ -80,7 +80,7 @@ impl Cursor<'_> {
         ))
     }
 
-    /// Takes `*`, `/` or `%`, if one comes next.
+    /// Takes `*`, `/` or `%` if it is next.
     fn product_operator(&mut self) -> Read<Option<Operator>> {
         let Some(TokenTree::Punct(punct)) = self.peek() else {
             return Ok(None);
@@ -177,7 +177,7 @@ impl Cursor<'_> {
         })
     }
 
-    /// Expression that begins with a name.
+    /// An expression that begins with a name.
     fn named(&mut self, ident: &Ident) -> Read<Scalar> {
         let name = self.word(ident)?;
         if matches!(name.text.as_str(), "if" | "match" | "else") {
@@ -210,7 +210,7 @@ impl Cursor<'_> {
         })
     }
 
-    /// The inside of the parentheses behind a name.
+    /// The contents of the parentheses after a name.
     fn call(&mut self, function: Word) -> Read<ScalarKind> {
         if function.text == "sum" {
             let form = "sum(i in 1..=N: e)";
@@ -250,7 +250,7 @@ impl Cursor<'_> {
     }
 }
 
-/// The only part, or all of them as one expression.
+/// The only part, or an expression of all parts.
 fn single<T>(
     mut parts: Vec<T>,
     only: fn(T) -> Scalar,

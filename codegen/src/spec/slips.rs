@@ -1,4 +1,4 @@
-//! Advice on tokens of other notations: frequent slips.
+//! Advice on frequent slips: tokens of other notations.
 
 use proc_macro2::{Delimiter, TokenTree};
 
@@ -7,14 +7,14 @@ use super::cursor::{Cursor, Read, Refused, token_text, tokens_of};
 use super::keyword::{LAWS, PIECEWISE, foreign_function, is_function};
 use crate::diagnostics::Location;
 
-/// Signs that end an expression where a relation is not allowed, and make it a matter of cases.
+/// Comparison and logical operators, which no expression contains.
 const COMPARISONS: [&str; 10] = ["<=", ">=", "==", "!=", "<", ">", "&&", "||", "&", "|"];
 
-/// Notation of numbers.
+/// The notation of numbers, for messages.
 pub(super) const NUMBERS: &str = "numbers are written `12`, `0.5`, `1.25e-7`";
 
 impl Cursor<'_> {
-    /// Refuses what stands behind a complete declaration or expression.
+    /// Refuses tokens after a complete declaration or expression.
     pub(super) fn end(&mut self) -> Read<()> {
         if self.is_at_end() {
             return Ok(());
@@ -40,7 +40,7 @@ impl Cursor<'_> {
         Err(self.unexpected("expected `;` or an operator", ""))
     }
 
-    /// The sign of comparison that comes next.
+    /// The next token as a comparison or logical operator.
     pub(super) fn comparison(&self) -> Option<&'static str> {
         COMPARISONS.into_iter().find(|sign| self.is_operator(sign))
     }
@@ -71,7 +71,7 @@ impl Cursor<'_> {
         )
     }
 
-    /// Refuses tokens that begin no expression where one is expected.
+    /// Refuses tokens that cannot begin an expression.
     pub(super) fn missing_expression(&mut self) -> Refused {
         if self.is_operator("+") {
             return self.refuse(self.here(), "there is no unary plus", "leave the sign out");
@@ -92,7 +92,7 @@ impl Cursor<'_> {
         self.unexpected("expected an expression", "")
     }
 
-    /// A function whose arguments do not stand in parentheses.
+    /// Refuses a function whose arguments are not in parentheses.
     pub(super) fn missing_parentheses(&mut self, function: &Word) -> Refused {
         const TEXT: &str = "function call needs parentheses";
         let name = &function.text;
@@ -120,7 +120,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// `q.1`, `x.dot`, `1.e5`
+    /// Refuses a point: `q.1`, `x.dot`, `1.e5`.
     pub(super) fn point(&mut self) -> Refused {
         let before = self.previous().map(token_text).unwrap_or_default();
         let help = match (self.previous(), self.peek_second()) {
@@ -141,7 +141,7 @@ impl Cursor<'_> {
         self.refuse(self.here(), "unexpected `.`", &help)
     }
 
-    /// A comma behind a complete entry: the end of it, or of the integer part of a number.
+    /// Refuses a comma after a complete entry. It stands for `;`, or for a decimal point.
     fn comma(&mut self) -> Refused {
         let help = match (self.previous(), self.peek_second()) {
             (Some(TokenTree::Literal(whole)), Some(TokenTree::Literal(decimals))) => {
@@ -152,13 +152,13 @@ impl Cursor<'_> {
         self.unexpected("expected `;`", &help)
     }
 
-    /// `(x, y)` as a factor.
+    /// Refuses `(x, y)` as a factor.
     pub(super) fn comma_in_parentheses(&mut self) -> Refused {
         let help = "one expression stands in parentheses; `(x, y)` is written only for the `path` of a view";
         self.unexpected("expected `)`", help)
     }
 
-    /// `1..3`; both ends are known, so that the range can be written out.
+    /// Refuses `1..3`. Both ends of a range belong to it.
     pub(super) fn open_range(&mut self, low: &Scalar) -> Refused {
         let dots = self.eat_operator("..").unwrap_or_else(|| self.last());
         let Ok(high) = self.scalar() else {

@@ -1,4 +1,4 @@
-//! Data of a model with modes: lengths of vectors, and the place of each mode's quantities among those of the model.
+//! Data of a model with modes: lengths of vectors, and indices of each mode's quantities among those of the model.
 
 use dalembert_numbers::Held;
 use dalembert_numbers::description::{Description, Documentation, ModeInfo};
@@ -13,7 +13,7 @@ use crate::spec::WHOLE;
 pub struct Whole<'a> {
     /// The declaration.
     pub graph: &'a ModeGraph,
-    /// Forms of each mode: its own, then the global one where the two differ.
+    /// Forms of each mode: its own first, then the global one if it is another.
     pub forms: Vec<Vec<FormOf<'a>>>,
 }
 
@@ -32,10 +32,10 @@ impl<'a> Whole<'a> {
         self.modes().map(length).max().unwrap_or(0)
     }
 
-    /// Numbers of things.
+    /// Sizes of the vectors, large enough for all modes.
     pub fn dimensions(&self) -> Dimensions {
         Dimensions {
-            // The number of the mode stands behind the components.
+            // The last component of the state is the index of the mode.
             state: self.longest(FormOf::state_dimension) + 1,
             coordinates: self.graph.coordinates.len(),
             motion: self.longest(FormOf::motion_dimension),
@@ -46,14 +46,14 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// Numbers of the largest kernel that gives several things at once.
+    /// Largest number of outputs of a kernel with several outputs.
     pub fn room(&self) -> usize {
         let rooms = self.forms.iter().flatten().map(FormOf::room);
         let others = [2 * self.graph.coordinates.len(), self.graph.outputs.len()];
         rooms.chain(others).max().unwrap_or(0)
     }
 
-    /// Gaps that have a series: all of them, or none if one of a mode has none.
+    /// Number of gaps with a series: all of them, or 0 if a gap of one mode has no series.
     pub fn series_gaps(&self) -> usize {
         let mut modes = self.modes();
         let have_series = modes.all(|mode| mode.series_gaps() == mode.model.surfaces.len());
@@ -63,12 +63,12 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// Work of expansions of the motion: the largest of any mode.
+    /// Work of expansions of the motion: the largest over all modes.
     pub fn work(&self) -> Option<Work> {
         self.modes().map(FormOf::work).reduce(Work::most)
     }
 
-    /// Tables of the whole.
+    /// Tables of the whole model.
     pub fn tables(&self) -> Tables {
         let of_modes: Vec<Tables> = self.modes().map(FormOf::tables).collect();
         let surfaces = self.graph.surfaces.iter();
@@ -115,7 +115,7 @@ impl<'a> Whole<'a> {
         })
     }
 
-    /// Self-description of the whole.
+    /// Self-description of the whole model.
     pub fn documentation(&self) -> Documentation {
         Documentation {
             description: self.description(),

@@ -1,4 +1,5 @@
-//! The maximum principle across impacts: its equations against differences of the model, values worked out by hand, refusals.
+//! Tests of the maximum principle across impacts: its equations against finite differences of the model, against values
+//! computed by hand, and error messages.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test may stop at the first surprise
 
@@ -22,7 +23,7 @@ const BALL: &str = "Ball {
     impacts { floor: x >= 0 => reset { y = -e*y; }; }
 }";
 
-/// The same ball by its Lagrangian, with the velocity in place of the momentum.
+/// The same ball, declared by its Lagrangian: the velocity replaces the momentum as a component of the state.
 const BALL_OF_LAGRANGE: &str = "Ball {
     coordinates { x; }
     parameters { m > 0 = 2; g > 0 = 1; e > 0 = 1; a > 0 = 10; }
@@ -33,7 +34,7 @@ const BALL_OF_LAGRANGE: &str = "Ball {
     impacts { floor: x >= 0 => newton(e); }
 }";
 
-/// A metric that depends on the position, a wall that is curved and moves, two inputs that are weighted together.
+/// A metric that depends on the position, a curved moving wall, and two inputs coupled by the cost.
 const CURVED: &str = "Curved {
     coordinates { r in (1/10, 10); phi: angle; }
     parameters { m > 0 = 3/2; e > 0 = 3/5; k = 2/3; }
@@ -44,7 +45,7 @@ const CURVED: &str = "Curved {
     impacts { wall: 3 + t/5 - r*(1 + cos(phi)/4) >= 0 => LAW; }
 }";
 
-/// A first-order system with a reset that moves the position too.
+/// A first-order system with a reset that also changes the position.
 const HOP: &str = "Hop {
     coordinates { x; v; z; }
     inputs { u; }
@@ -66,7 +67,7 @@ const CHAIN: &str = "Chain {
     scenes { free: motor[1]; }
 }";
 
-/// A model with its maximum principle, and values of its symbols by name.
+/// A model with its maximum principle, and the values of its symbols.
 struct Derived {
     model: Model,
     extremals: Extremals,
@@ -105,7 +106,7 @@ impl Derived {
         self.model.pool.eval(expressions, &value)
     }
 
-    /// Central difference of expressions by a symbol.
+    /// Central difference of expressions with respect to a symbol.
     fn slope(&self, expressions: &[ExprId], symbol: SymbolId) -> Vec<f64> {
         let step = 1e-5;
         let beside = |side: f64| {
@@ -120,7 +121,7 @@ impl Derived {
             .collect()
     }
 
-    /// The costate after the impact on a surface.
+    /// Costate after the impact on a surface.
     fn costate_after(&self, surface: usize) -> Vec<f64> {
         let jump = &self.extremals.jumps[surface];
         let mut values = self.values.clone();
@@ -186,10 +187,10 @@ fn assert_small(residuals: &[f64], what: &str) {
     );
 }
 
-/// `p_y+ = -p_y/e`, and `p_x+` from the equality of `H* = -p_y^2/2 + p_x y/m - m g p_y`, solved by hand.
+/// `p_y+ = -p_y/e`, and `p_x+` by hand from the equality of `H* = -p_y^2/2 + p_x y/m - m g p_y` before and after.
 #[test]
 fn the_costate_of_the_ball_jumps_as_worked_out_by_hand() {
-    // y, p_x, p_y, e; then y+, p_x+, p_y+.
+    // Columns: y, p_x, p_y, e; then y+, p_x+, p_y+.
     let cases = [
         ([-1.5, 0.5, 0.25, 1.0], [1.5, -11.0 / 6.0, -0.25]),
         ([-2.0, -1.0, 0.75, 0.5], [1.0, -5.3125, -1.5]),
@@ -207,7 +208,7 @@ fn the_costate_of_the_ball_jumps_as_worked_out_by_hand() {
                 "{found} {expected}"
             );
         }
-        // With v = y/m the costate of the velocity is m p_y.
+        // As v = y/m, the costate of the velocity is m p_y.
         let ball = Derived::of(
             BALL_OF_LAGRANGE,
             &set,
@@ -249,7 +250,7 @@ fn extremals_are_canonical_and_impacts_keep_the_energy() {
     assert_small(&hop.residuals(0), "hop");
 }
 
-/// The optimal input is better than its neighbours: `H` at `u` is `H*` plus a positive form of `u - u*`.
+/// The optimal input minimises `H`: at another input `u`, `H - H*` is a positive quadratic form of `u - u*`.
 #[test]
 fn other_inputs_have_a_larger_hamiltonian() {
     let source = CURVED.replace("LAW", "elastic");
@@ -292,7 +293,7 @@ fn other_inputs_have_a_larger_hamiltonian() {
     }
 }
 
-/// The generator proves that `H*` is conserved along extremals and at impacts.
+/// The claims prove that `H*` is conserved along extremals and at impacts.
 #[test]
 fn the_hamiltonian_is_proved_to_be_conserved() {
     let spec = spec::parse(BALL.parse().unwrap()).unwrap();
@@ -354,7 +355,7 @@ fn held_inputs_are_components_between_the_state_and_the_cost() {
     assert_eq!(names.collect::<Vec<_>>(), ["x", "x_dot", "u", "cost"]);
     assert_eq!((ball.inputs, ball.is_autonomous), (1, true));
     assert_eq!((model.outputs.len(), model.inputs().count()), (1, 0));
-    // The law changes the velocity alone.
+    // The law changes only the velocity.
     let reset = model.surfaces[0].reset.as_ref().unwrap();
     let changed: Vec<bool> = reset.q.iter().map(Option::is_some).collect();
     assert_eq!(changed, [false, true, false, false]);
@@ -412,7 +413,7 @@ fn a_cost_changes_nothing_of_the_model() {
     assert_eq!(program(&without), program(&with));
 }
 
-/// The printed equations of the ball are (9.13) and (9.14) of the thesis, with a coefficient of restitution.
+/// The printed equations of the ball are (9.13) and (9.14) of the thesis, extended by a coefficient of restitution.
 #[test]
 fn the_maximum_principle_is_printed() {
     let report = dalembert_codegen::report::control(BALL, None)

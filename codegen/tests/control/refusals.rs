@@ -1,4 +1,4 @@
-//! Models for which no maximum principle is derived: the message, and the part of the text it points at, marked `«..»`.
+//! Models without a maximum principle: the error message, and the source text that it points at, marked `«..»`.
 
 use dalembert_codegen::{compile_control, spec};
 

@@ -1,4 +1,5 @@
-//! Brackets by differences of functions of `(q, p)` that are made constant along the constraint forces, and what is printed of them.
+//! Brackets against finite differences of functions of `(q, p)` that are constant along the constraint forces, and
+//! their printed form.
 
 use dalembert_codegen::mechanics::{Bracket, bracket::derive_bracket};
 use dalembert_codegen::model::{Model, Statement};
@@ -11,7 +12,7 @@ use crate::values::{Row, inner, matrices, moving, projected, solved, value};
 
 const STEP: f64 = 1e-5;
 
-/// Coordinates in a plane that turns and is charged, with a knife edge that is dragged along.
+/// Coordinates with a coupled metric and velocity-linear terms, and a knife edge with an affine constraint.
 const DRAGGED: &str = "pub Dragged { coordinates { x; y; theta: angle; } parameters { a = 1/3; b = 3/4; v = 2/7; }
     lagrangian = (2 + x^2)*dot(x)^2/2 + dot(y)^2 + dot(theta)^2/3 + a*cos(theta)*dot(x)*dot(theta) + b*x*dot(y) - x*y;
     constraints { blade: dot(y)*cos(theta) = dot(x)*sin(theta) + v*x; } CLAIM }";
@@ -47,7 +48,7 @@ fn case(declaration: &str, functions: &str) -> Case {
 }
 
 impl Case {
-    /// The velocity in D of a momentum.
+    /// The velocity in D that belongs to a momentum.
     fn velocity(&self, q: &[f64], p: &[f64]) -> Row {
         let (metric, linear, ..) = matrices(&self.model, q);
         let kinetic: Row = p.iter().zip(&linear).map(|(p, a)| p - a).collect();
@@ -71,7 +72,8 @@ impl Case {
         value(&self.model, function, &state)
     }
 
-    /// `f_q g_p - f_p g_q` by central differences of functions at the velocities in D of momenta.
+    /// `f_q g_p - f_p g_q` by central differences. The functions are evaluated at the velocities in D that belong to
+    /// momenta.
     fn by_differences(&self, [f, g]: [ExprId; 2], q: &[f64], p: &[f64]) -> f64 {
         let slope = |function: ExprId, i: usize, of_momentum: bool| {
             let [ahead, behind] = [STEP, -STEP].map(|step| {
@@ -109,7 +111,7 @@ fn compare(declaration: &str, functions: &str) {
                 let p: Row = (n..2 * n).map(number).collect();
                 let velocity = case.velocity(&q, &p);
                 let derived = case.function(value, &q, &velocity);
-                // Differences are taken at a state on D.
+                // The differences need a state on D.
                 let (metric, linear, ..) = matrices(&case.model, &q);
                 let p: Row = (0..n)
                     .map(|i| inner(&metric[i], &velocity) + linear[i])
@@ -169,8 +171,8 @@ fn the_jacobiator_of_models_without_constraints_is_0() {
 
 #[test]
 fn the_jacobiator_of_a_rolling_disk_is_not_0() {
-    // X_theta = (R cos phi, R sin phi, 1, 0) and X_phi = (0, 0, 0, 1) do not commute: by hand, with mu = (I + m R^2) dot(theta) and
-    // nu = J dot(phi), {{x, mu}, nu} = {R cos phi, nu} = -R sin phi, and the two other terms are 0.
+    // X_theta = (R cos phi, R sin phi, 1, 0) and X_phi = (0, 0, 0, 1) do not commute. By hand, with mu = (I + m R^2)
+    // dot(theta) and nu = J dot(phi): {{x, mu}, nu} = {R cos phi, nu} = -R sin phi, and the two other terms are 0.
     let with = |functions: &str| printed(&disk(""), functions, BracketKind::Jacobiator);
     assert_eq!(with("x, (I + m*R^2)*dot(theta), J*dot(phi)"), "-R*sin(phi)");
     assert_eq!(with("x, y, momentum(theta)"), "0");

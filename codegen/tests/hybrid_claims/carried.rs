@@ -1,17 +1,17 @@
-//! Forms by differences: vectors at the start of a motion are carried through an impact by central differences of its end (see
-//! `differences.rs`), and the form is taken on them at both ends.
+//! Tests of invariant forms by finite differences. Vectors at the start of a motion are carried through an impact by
+//! central differences of the motion's end (see `differences.rs`), and the form is evaluated on them at both ends.
 //!
-//! Nothing of the generator takes part but the verdict.
+//! Only the verdict comes from the generator.
 
 use crate::Expected::{False, Shown, True};
 use crate::check;
 use crate::differences::{Hybrid, State, assert_close, one};
 use crate::systems::{ball, crossing, media, particle, spokes};
 
-/// A form of degree 2 on two vectors.
+/// A form of degree 2, as a function of two vectors.
 type Form<'f> = &'f dyn Fn(&[f64], &[f64]) -> f64;
 
-/// `sum over i of dp_i ^ dq_i` of a state `(q.., v..)` with the metric `m` times the identity.
+/// `sum over i of dp_i ^ dq_i` for states `(q.., v..)` with the metric `m` times the identity
 fn symplectic(m: f64) -> impl Fn(&[f64], &[f64]) -> f64 {
     move |v, w| {
         let n = v.len() / 2;
@@ -21,7 +21,7 @@ fn symplectic(m: f64) -> impl Fn(&[f64], &[f64]) -> f64 {
     }
 }
 
-/// The largest change of a form of degree 2 on pairs of basis vectors.
+/// Largest change of a form of degree 2 over all pairs of basis vectors.
 fn largest_change(
     hybrid: &Hybrid<'_>,
     start: &[f64],
@@ -75,8 +75,8 @@ fn a_refraction_carries_the_symplectic_form() {
     );
 }
 
-/// A wall at `x = 3` that pushes along itself with the height: on `partial(x), partial(y)` the form becomes 7.24 at the state that the
-/// verdict names.
+/// A wall at `x = 3` pushes along itself, in proportion to the height. At the state of the verdict, the form on
+/// `partial(x), partial(y)` becomes 7.24.
 #[test]
 fn a_push_along_a_wall_changes_the_symplectic_form() {
     let falls = |z: &[f64]| vec![z[2], z[3], 0.0, -1.0];
@@ -87,7 +87,7 @@ fn a_push_along_a_wall_changes_the_symplectic_form() {
         after: &falls,
         densities: [&one, &one],
     };
-    // At (3, -0.53) with the velocity (1/2, -3/4), a quarter of a unit of time before.
+    // The state (3, -0.53) with the velocity (1/2, -3/4), a quarter of a time unit earlier.
     let early: f64 = 0.25;
     let start = [
         3.0 - 0.5 * early,
@@ -106,7 +106,7 @@ fn a_push_along_a_wall_changes_the_symplectic_form() {
     );
 }
 
-/// W. Clark, thesis, Example IX.9 with its sign corrected: `dv+ = -dv - (2 g/v-) dx`.
+/// W. Clark, thesis, Example IX.9 with corrected sign: `dv+ = -dv - (2 g/v-) dx`
 #[test]
 fn a_ball_that_falls_earlier_is_slower_for_longer() {
     let falls = |z: &[f64]| vec![z[1], -1.0];
@@ -117,7 +117,7 @@ fn a_ball_that_falls_earlier_is_slower_for_longer() {
         after: &falls,
         densities: [&one, &one],
     };
-    // The ball meets the floor with the velocity -3/4.
+    // The ball meets the floor at the velocity -3/4.
     let start = [0.25 * (0.75 + 0.5) / 2.0, -0.5];
     let columns = floor.columns(&start, 0.5);
     assert_close(columns[0][1], 2.0 / 0.75);

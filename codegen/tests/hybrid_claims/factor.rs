@@ -1,4 +1,4 @@
-//! `density under s: factor = e`.
+//! Tests of the claim `density under s: factor = e`.
 
 use crate::Expected::{Barred, False, Open, Shown, True};
 use crate::check;
@@ -81,7 +81,7 @@ fn false_factors_are_refuted_at_a_point() {
     let floor = |law: &str, factor: &str, expected| {
         check(&ball(law), &claim(factor, "floor"), expected);
     };
-    // c = 0.7.
+    // The parameter c is 0.7.
     floor("restitution(c)", "c", Shown("Jacobian", 0.49));
     floor("restitution(c)", "1", Shown("Jacobian", 0.49));
     floor("elastic", "2", Shown("Jacobian", 1.0));
@@ -130,7 +130,7 @@ fn near_misses_are_refuted() {
     check(&ball("elastic"), &near("1 + 1e-9"), False("Jacobian"));
     let claim = "density under step: factor = cos(2*delta)^2 + 1e-9";
     check(&walker(RATE), claim, False("Jacobian"));
-    // Rates and surfaces that are moved by as much.
+    // Changes of rates and surfaces by 1e-9.
     let claim = "density under step: factor = cos(2*delta)^2";
     check(
         &walker("(cos(2*delta) + 1e-9)*dot(theta)"),

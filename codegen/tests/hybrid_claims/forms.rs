@@ -1,4 +1,4 @@
-//! `invariant: FORM`.
+//! Tests of the claim `invariant: FORM`.
 
 use crate::Expected::{Barred, False, Open, Shown, True};
 use crate::check;
@@ -9,10 +9,10 @@ const PLANE: &str = "invariant: d(momentum(x))^d(x) + d(momentum(y))^d(y)";
 const SPACE: &str = "invariant: d(x)^d(y)^d(dot(x))^d(dot(y))";
 const ON_D: &str = "invariant: d(x)^d(y)^d(theta)^d(phi)^d(dot(theta))^d(dot(phi))";
 
-/// A particle on a line without forces but those of a potential.
+/// A particle on a line in a potential.
 const QUARTIC: &str = "pub Quartic { coordinates { x; } lagrangian = dot(x)^2/2 - x^4; CLAIM }";
 
-/// Constant fields on both sides of `x = 0` with a parameter.
+/// Constant fields on both sides of `x = 0`, with a parameter.
 fn parametric(left: [&str; 2], parameter: &str) -> String {
     let declared = format!("coordinates {{ x; y; }} parameters {{ {parameter}; }}");
     crossing(["-2", "1"], left, "1").replace("coordinates { x; y; }", &declared)
@@ -38,7 +38,7 @@ fn forms_that_the_motion_keeps_are_proved() {
     check(&forced("x^3*d(x)"), "invariant: d(momentum(x)*d(x))", True);
     check(QUARTIC, "invariant: d(energy)", True);
     check(QUARTIC, "invariant: energy^2*d(x)^d(dot(x))", True);
-    // The volume shrinks with the rate c, and the factor grows with it.
+    // The volume shrinks at the rate c, and the factor grows at this rate.
     check(
         &forced("-c*dot(x)*d(x)"),
         "invariant: exp(c*t)*d(x)^d(dot(x))",
@@ -59,7 +59,7 @@ fn forms_that_the_motion_keeps_are_proved() {
 
 #[test]
 fn forms_that_the_motion_changes_are_refuted() {
-    // d(dot(x)) along x: the rate of dx is d(dot(x)).
+    // The form d(x): its rate along the motion is d(dot(x)).
     check(
         QUARTIC,
         "invariant: d(x)",
@@ -111,7 +111,7 @@ fn impacts_that_keep_forms_are_proved() {
         "invariant: d(dot(x)^2)^d(dot(y))",
         True,
     );
-    // The paper's Example 5: alpha^2 beta = 1.
+    // Example 5 of the paper: alpha^2 beta = 1.
     check(
         &particle("left: x >= 0 => reset { dot(x) = -5/4*dot(x); dot(y) = 16/25*dot(y); };"),
         SPACE,
@@ -162,7 +162,7 @@ fn impacts_that_change_forms_are_refuted() {
         PLANE,
         False("`left` changes"),
     );
-    // S = [[1, 0], [1, 1]]: a start further to the right meets the other rate later.
+    // S = [[1, 0], [1, 1]]: from a start further to the right, the motion reaches the other field later.
     check(
         &crossing(["-2", "1"], ["-2", "-1"], "1"),
         "invariant: d(y)",
@@ -238,7 +238,7 @@ fn near_misses_are_refuted() {
         "invariant: d(y)",
         False("`leftward` changes"),
     );
-    // A wall beside the place where the reset would be the identity of one coordinate.
+    // A wall next to the place where the reset of one coordinate would be the identity.
     check(
         &particle("left: x >= 1e-9 => reset { dot(x) = -dot(x); y = y + x*dot(y)*dot(x)^2; };"),
         PLANE,
@@ -246,7 +246,8 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// A fall with `g = 2` onto a floor that stops it: held there, and free behind a ceiling. By hand, of `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`.
+/// A fall with `g = 2` onto a floor that stops it: held at the floor, and free below a ceiling. Values by hand, from
+/// `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`.
 #[test]
 fn forms_change_behind_laws_that_stop_the_motion() {
     let stop = |surface: &str| {
@@ -255,13 +256,14 @@ fn forms_change_behind_laws_that_stop_the_motion() {
         )
     };
     let [floor, ceiling] = ["y >= 0 => impact_plastic", "y <= 0 => newton(0)"].map(stop);
-    // Along the surface the law alone decides.
+    // On vectors along the surface only the law matters.
     let along = "the form on partial(dot(y)) after";
     for held in [&floor, &ceiling] {
         check(held, "invariant: d(momentum(y) + 2*t)", Shown(along, 0.0));
         check(held, "invariant: d(dot(y)^2/2 + 2*y)", Shown(along, 0.0));
     }
-    // partial(y) goes on as 0: with the force of the floor, and with -1.6 partial(dot(y)) below the ceiling, where X has dot(y) = 1.25.
+    // partial(y) becomes 0 under the force of the floor, and -1.6 partial(dot(y)) below the ceiling, where X has dot(y)
+    // = 1.25.
     let fallen = "invariant: d(momentum(y))^d(y)";
     check(&floor, fallen, False("the motion behind it is held"));
     check(
@@ -271,7 +273,7 @@ fn forms_change_behind_laws_that_stop_the_motion() {
     );
     let fall = "invariant: exp(y + dot(y)^2/4)*d(dot(y)^2/4 + y)^d(x - t*dot(x))";
     check(&floor, fall, False("`stop` changes"));
-    // Without constraints this law is elastic; beside them it may let go.
+    // Without constraints this law is elastic. With constraints the motion may leave the surface.
     let elastic = stop("y >= 0 => nonholonomic_plastic");
     check(&elastic, "invariant: d(momentum(x))", True);
     check(&elastic, "invariant: d(x - t*dot(x))", True);
@@ -279,7 +281,8 @@ fn forms_change_behind_laws_that_stop_the_motion() {
     check(&rim, "invariant: d(dot(theta))", False("`rim` changes"));
 }
 
-/// A belt with the velocity `z` beside a wall along which it leads: `restitution(0)` stops the part across the belt, and the gap rate is that of the belt.
+/// A belt with the velocity `z` beside a wall, at an angle to it: `restitution(0)` stops the velocity across the belt,
+/// and leaves the gap rate of the belt.
 #[test]
 fn a_belt_carries_the_motion_away_from_a_wall() {
     let belt = |rate: &str, law: &str| {
@@ -291,10 +294,10 @@ fn a_belt_carries_the_motion_away_from_a_wall() {
     let pair = "invariant: d(z)^d(dot(x))";
     let along = "; the motion behind it goes on freely";
     check(&belt("1/4", "restitution(0)"), pair, False(along));
-    // By hand: partial(x) goes on with d(dot(x)) = -1/(dot(x) + 1/4), where dot(x) is -3/4.
+    // By hand: partial(x) becomes a vector with d(dot(x)) = -1/(dot(x) + 1/4), at dot(x) = -3/4.
     let after = "the form on partial(x), partial(z) after";
     check(&belt("1/4", "restitution(0)"), pair, Shown(after, -2.0));
-    // The velocity that the belt leads into the wall with stays, and no law turns it round.
+    // The velocity with which the belt leads into the wall remains; no law reverses it.
     check(
         &belt("-1/4", "restitution(0)"),
         pair,
@@ -304,7 +307,7 @@ fn a_belt_carries_the_motion_away_from_a_wall() {
     check(&belt("1/4", "newton(0)"), pair, False(held));
     check(&belt("1/4", "impact_plastic"), pair, False(held));
     check(&belt("0", "restitution(0)"), pair, False(held));
-    // Volumes are lost in any case.
+    // Volumes are lost in both cases.
     let volume = "invariant: d(x)^d(z)^d(dot(x))";
     check(
         &belt("-1/4", "restitution(0)"),
@@ -315,7 +318,7 @@ fn a_belt_carries_the_motion_away_from_a_wall() {
 
 #[test]
 fn forms_that_are_not_examined_stay_open() {
-    // The velocity that sticks pushes on the wall.
+    // The velocity that sticks exerts a force on the wall.
     let coupled = particle("hold: x >= 0 => elastic, instantaneous { stick: dot(y) = 0; };")
         .replace("dot(y)^2)/2", "dot(y)^2 + dot(x)*dot(y))/2");
     check(

@@ -1,18 +1,18 @@
-//! Forms and quantities behind instantaneous constraints: the projection onto them comes before the law.
+//! Forms and quantities after impacts with instantaneous constraints: the projection to these precedes the law.
 
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;
 use crate::differences::{Hybrid, assert_close, one};
 use crate::systems::{disk, particle};
 
-/// A wall at `x = 0` along which the particle is given a velocity.
+/// A wall at `x = 0` that prescribes the velocity of the particle along it.
 fn wall(law: &str, psi: &str) -> String {
     particle(&format!(
         "hold: x >= 0 => {law}, instantaneous {{ stick: {psi}; }};"
     ))
 }
 
-/// A solid cylinder that falls along a wall, and rolls along it where it touches it.
+/// A solid cylinder that falls along a wall, and rolls on the wall while it touches it.
 const ROLLER: &str = "pub Roller { coordinates { x; y; theta; } parameters { k > 0 = 1/2; }
     lagrangian = (dot(x)^2 + dot(y)^2 + k*dot(theta)^2)/2 - y;
     impacts { wall: x >= 0 => elastic, instantaneous { no_slip: dot(y) = dot(theta); }; } CLAIM }";
@@ -44,7 +44,7 @@ fn what_the_projection_leaves_is_proved() {
         "not conserved under hold: dot(x)^2",
         True,
     );
-    // The impulse along the wall turns the cylinder about the axis at the wall.
+    // The impulse along the wall rotates the cylinder about its line of contact.
     check(
         ROLLER,
         "conserved under wall: momentum(y) + momentum(theta)",
@@ -52,7 +52,7 @@ fn what_the_projection_leaves_is_proved() {
     );
     check(ROLLER, "conserved under wall: dot(x)^2", True);
     check(ROLLER, "energy under wall: not increasing", True);
-    // The disk does not turn any more, and rolls away.
+    // The disk stops turning about the vertical, and rolls away.
     let turned = disk("wall: 1 - x >= 0 => elastic, instantaneous { no_turn: d(phi) = 0; };");
     check(&turned, "conserved under wall: dot(theta)^2", True);
 }
@@ -79,13 +79,13 @@ fn what_it_takes_is_refuted_at_a_point() {
         "conserved under hold: energy",
         False("energy after"),
     );
-    // A belt gives energy to what it takes along.
+    // A belt gives energy to bodies that it takes along.
     check(
         &wall("elastic", "dot(y) = 3"),
         "energy under hold: not increasing",
         False("energy after"),
     );
-    // 1.25 and 1/4 become (1.25 + 1/4/2)/1.5.
+    // The velocities 1.25 and 1/4 become (1.25 + 1/4/2)/1.5.
     check(
         ROLLER,
         "conserved under wall: momentum(y)",
@@ -101,7 +101,7 @@ fn what_it_takes_is_refuted_at_a_point() {
         "conserved under wall: momentum(y) + (1 + 1e-9)*momentum(theta)",
         False("difference"),
     );
-    // By hand (4/9 + 8/9) 2/3: the free fall changes dot(y) alone, the common velocity by 2/3 of that.
+    // By hand (4/9 + 8/9) 2/3: free fall changes only dot(y), and the common velocity by 2/3 of that.
     check(
         ROLLER,
         "invariant: d(dot(y))^d(dot(theta))",
@@ -109,7 +109,8 @@ fn what_it_takes_is_refuted_at_a_point() {
     );
 }
 
-/// `dot(y)` and `dot(theta)` become their mean with the weights 1 and k, as differences of runs through the wall say too.
+/// `dot(y)` and `dot(theta)` become their mean with weights 1 and k. Finite differences of runs through the wall
+/// confirm it.
 #[test]
 fn vectors_are_carried_as_differences_carry_them() {
     let falls = |z: &[f64]| vec![z[3], z[4], z[5], 0.0, -1.0, 0.0];
@@ -123,7 +124,7 @@ fn vectors_are_carried_as_differences_carry_them() {
         after: &falls,
         densities: [&one, &one],
     };
-    // The state of the verdict, a quarter of a unit of time before: `x = 0`, `y = -0.74`, and the velocity (-3/4, 5/4, 1/4).
+    // The state of the verdict, a quarter of a time unit earlier: `x = 0`, `y = -0.74`, velocity (-3/4, 5/4, 1/4).
     let early = 0.25;
     let start = [
         0.75 * early,

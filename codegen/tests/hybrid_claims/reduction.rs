@@ -1,4 +1,5 @@
-//! Reduction by groups of symmetries: equations against the full motion, connections and jumps against their definitions.
+//! Reduction by groups of symmetries: reduced equations against the full motion, connections and jumps against their
+//! definitions.
 
 use dalembert_codegen::claims::Dynamics;
 use dalembert_codegen::mechanics::reduction::{Reduction, derive_reduction};
@@ -76,7 +77,7 @@ fn case(declaration: &str, group: &str) -> Case {
     }
 }
 
-/// The classical method of fourth order.
+/// One step of the classical Runge-Kutta method of order 4.
 fn stepped(rate: &dyn Fn(&[f64]) -> Row, start: &[f64], h: f64) -> Row {
     let moved =
         |by: &Row, h: f64| -> Row { start.iter().zip(by).map(|(x, v)| x + h * v).collect() };
@@ -91,7 +92,7 @@ fn stepped(rate: &dyn Fn(&[f64]) -> Row, start: &[f64], h: f64) -> Row {
 }
 
 impl Case {
-    /// Rates of positions and velocities, from the saddle system of metric and constraints.
+    /// Rates of positions and velocities, from the full equations with metric and constraints.
     fn full(&self, state: &[f64]) -> Row {
         let n = self.model.coordinates.len();
         let mut point = RealPoint::default();
@@ -107,7 +108,7 @@ impl Case {
         [state[n..].to_vec(), motion.qddot].concat()
     }
 
-    /// Symbols of the reduced state, with their rates: positions that stay, then quasi-velocities.
+    /// Symbols of the reduced state, with their rates: positions that the group does not move, then quasi-velocities.
     fn reduced(&self) -> Vec<(SymbolId, ExprId)> {
         let reduced = self.reduction.reduced.as_ref().expect("reduced equations");
         let shape = reduced.shape.iter();
@@ -116,7 +117,7 @@ impl Case {
         shape.chain(quasi.map(|(u, _, rate)| (*u, *rate))).collect()
     }
 
-    /// The reduced state of a state.
+    /// The reduced state that belongs to a full state.
     fn reduced_of(&self, state: &[f64]) -> Row {
         let reduced = self.reduction.reduced.as_ref().expect("reduced equations");
         let n = self.model.coordinates.len();
@@ -129,7 +130,7 @@ impl Case {
         shape.chain(quasi).collect()
     }
 
-    /// Full and reduced motion to `t = 1`, and the largest difference of the shapes on the way.
+    /// Largest difference between the reduced states of the full and of the reduced motion up to `t = 1`.
     fn difference(&self, start: &[f64]) -> f64 {
         const STEPS: usize = 600;
         let h = 1.0 / STEPS as f64;
@@ -299,7 +300,7 @@ fn connections_and_curvatures_are_what_defines_them() {
             let v: Row = (0..n).map(|k| (phase + k as f64 * 1.3).sin()).collect();
             horizontal(&case, &q, &v)
         });
-        // Horizontal velocities satisfy the constraints, and are orthogonal to what these allow along the group.
+        // Horizontal velocities satisfy the constraints, and are orthogonal to the allowed directions along the group.
         let (metric, _, constraints, _) = matrices(&case.model, &q);
         for form in &constraints {
             assert!(inner(form, &x).abs() < 1e-12, "{group}");
@@ -308,7 +309,7 @@ fn connections_and_curvatures_are_what_defines_them() {
             let lowered: Row = metric.iter().map(|row| inner(row, &section)).collect();
             assert!(inner(&lowered, &x).abs() < 1e-12, "{group}");
         }
-        // dA on two of them.
+        // dA on two horizontal velocities.
         let shifted = |k: usize, h: f64| {
             let mut q = q.clone();
             q[k] += h;
@@ -342,7 +343,7 @@ fn connections_and_curvatures_are_what_defines_them() {
     }
 }
 
-/// An elastic impact of the disk of W. Clark's thesis, 6.4, on the elliptic table, with 18 digits.
+/// An elastic impact of the disk in W. Clark's thesis, 6.4, on the elliptic table. The values have 18 digits.
 #[test]
 fn momenta_jump_at_impacts_as_they_do() {
     let source = "pub Disk { coordinates { x; y; theta: angle; phi: angle; }
@@ -387,8 +388,8 @@ fn momenta_jump_at_impacts_as_they_do() {
     assert_eq!(start.len(), 2);
 }
 
-/// An elastic impact at a wall with these slopes, from `dot(theta) = 3`, `dot(phi) = -3/4`. W. Clark's thesis has in (6.27) and (6.28) a wrong second
-/// momentum; these values come from the impulse in 30 digits.
+/// An elastic impact at a wall with these slopes, from `dot(theta) = 3`, `dot(phi) = -3/4`. The second momentum in
+/// (6.27) and (6.28) of W. Clark's thesis is wrong. The values here come from the impulse in 30 digits.
 #[test]
 fn a_disk_turns_at_a_wall_with_right_momenta() {
     let wall = "wall: 1 - 0.771650550527029756*(x + R*cos(phi)) - 0.301545095525314786*(y + R*sin(phi)) >= 0;";
@@ -418,7 +419,7 @@ fn a_disk_turns_at_a_wall_with_right_momenta() {
     }
 }
 
-/// The laws by their effect on the gap rate: `1 - c` times itself, c = 1 + e, 1, and the part of dh that D leaves.
+/// Effect of each law on the gap rate: it is multiplied by `1 - c`, with `c = 1 + e`, 1 or 2.
 #[test]
 fn laws_have_their_impulses() {
     for (law, expected) in [

@@ -1,11 +1,12 @@
-//! Symmetries of motion, surfaces and their maps together, for orbits that close up to a group; symmetries of first-order systems.
+//! Tests of symmetries of motion, surfaces and their maps together, as used for orbits modulo a group; and of
+//! symmetries of first-order systems.
 
 use dalembert_codegen::report::{Symmetry, symmetries};
 
 use super::Expected::{False, True};
 use super::check;
 
-/// The symmetries of a text, with all parameters 1, or the refusal.
+/// The symmetries in a list of fields with all parameters at 1 (`e` at 1/2), or the error message.
 fn found(source: &str, fields: &str) -> Result<Vec<Symmetry>, String> {
     let parameters = [("a", 1.0), ("e", 0.5), ("k", 1.0)];
     symmetries(source, None, fields, &parameters).map_err(|error| error.to_string())
@@ -24,7 +25,7 @@ fn refuse(source: &str, fields: &str, reasons: &[&str]) {
     }
 }
 
-/// A particle over a floor, with these parts instead of `@`.
+/// A particle above a floor, with further declarations.
 fn particle(parts: &str) -> String {
     format!(
         "Particle {{
@@ -47,7 +48,7 @@ fn translations_along_a_floor_are_symmetries_with_their_momentum() {
         (vec![1.0, 0.0], vec![vec![0.0; 2]; 2])
     );
     assert!(along.keeps_momentum && along.parameters.is_empty());
-    // Upwards the Lagrangian changes by a constant, but the floor does not move along.
+    // Upwards the Lagrangian changes by a constant, but the floor is not invariant.
     refuse(
         &text,
         "partial(y)",
@@ -64,7 +65,7 @@ fn translations_along_a_floor_are_symmetries_with_their_momentum() {
             "second derivative of this rate in dot(x) and dot(x) = 2",
         ],
     );
-    // A floor that is not even.
+    // An inclined floor.
     let text = particle(&format!(
         "{FREE} impacts {{ floor: y - k*x/1000000000 >= 0 => elastic; }}"
     ));
@@ -139,7 +140,7 @@ fn resets_are_kept_with_positions_and_velocities() {
         "partial(x)",
         &["mismatch in dot(y) behind it = 1"],
     );
-    // Turned by any angle, a velocity that is doubled is doubled; one component alone is not.
+    // Doubling the velocity commutes with rotations; doubling one component does not.
     let round = |map: &str| {
         let lagrangian = "lagrangian = (dot(x)^2 + dot(y)^2)/2;";
         particle(&format!(
@@ -155,7 +156,7 @@ fn resets_are_kept_with_positions_and_velocities() {
     );
 }
 
-/// A hopper with a foot that stands, in two modes.
+/// A hopper in two modes: in the air, and with its foot on the ground.
 const HOPPER: &str = "Hopper {
     parameters { k = 1; }
     coordinates { x; y; }
@@ -230,7 +231,7 @@ fn instantaneous_constraints_are_kept() {
     let [along, turned] = accept(&roller("dot(y) = dot(theta)"), "partial(y), partial(theta)")
         .try_into()
         .expect("two");
-    // The impulse along the wall changes the momentum along it, and that of the turn.
+    // The impulse along the wall changes the momentum along it, and the angular momentum.
     assert!(!along.keeps_momentum && !turned.keeps_momentum);
     let [rolled] = accept(
         &roller("dot(y) = dot(theta)"),
@@ -280,7 +281,7 @@ fn refractions_are_kept_where_both_lagrangians_are() {
         turn,
         &["surface `enter`", "one of its Lagrangians changes"],
     );
-    // Both media are turned into themselves, the momenta of one by a gauge only.
+    // Both media are invariant under rotation, but the momenta of one only up to a gauge.
     let charged = lens("kinetic", "2*kinetic + k*x*dot(y)", "x^2 + y^2");
     refuse(
         &charged,

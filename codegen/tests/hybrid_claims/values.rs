@@ -1,4 +1,4 @@
-//! Numbers of a model at a state, without the generator's algebra: matrices, projected velocities, small linear systems.
+//! Values of a model at a state by independent numerics: matrices, projected velocities, small linear systems.
 
 use dalembert_codegen::model::Model;
 use dalembert_expr::{ExprId, SymbolId};
@@ -6,7 +6,7 @@ use dalembert_expr::{ExprId, SymbolId};
 /// Components of a vector.
 pub(super) type Row = Vec<f64>;
 
-/// The value of an expression at a state, with the declared values of parameters.
+/// Value of an expression at a state. Other parameters have their declared defaults.
 pub(super) fn value(model: &Model, id: ExprId, state: &[(SymbolId, f64)]) -> f64 {
     let known = |symbol: SymbolId| {
         let given = state.iter().find(|(key, _)| *key == symbol);
@@ -30,13 +30,13 @@ pub(super) fn values(model: &Model, ids: &[ExprId], state: &[(SymbolId, f64)]) -
     ids.iter().map(|id| value(model, *id, state)).collect()
 }
 
-/// Positions as a state.
+/// The state with these positions.
 pub(super) fn at(model: &Model, q: &[f64]) -> Vec<(SymbolId, f64)> {
     let symbols = model.coordinates.iter().map(|coordinate| coordinate.q);
     symbols.zip(q.iter().copied()).collect()
 }
 
-/// Positions and velocities as a state.
+/// The state with these positions and velocities.
 pub(super) fn moving(model: &Model, q: &[f64], velocity: &[f64]) -> Vec<(SymbolId, f64)> {
     let symbols = model.coordinates.iter().map(|coordinate| coordinate.qdot);
     let mut state = at(model, q);
@@ -44,7 +44,7 @@ pub(super) fn moving(model: &Model, q: &[f64], velocity: &[f64]) -> Vec<(SymbolI
     state
 }
 
-/// Metric, `A`, constraint forms and their affine parts.
+/// Metric, `A`, constraint forms and their affine parts at a position.
 pub(super) fn matrices(model: &Model, q: &[f64]) -> (Vec<Row>, Row, Vec<Row>, Row) {
     let at = at(model, q);
     let lagrangian = &model.lagrangian;
@@ -63,7 +63,7 @@ pub(super) fn matrices(model: &Model, q: &[f64]) -> (Vec<Row>, Row, Vec<Row>, Ro
     )
 }
 
-/// A velocity projected to D along the constraint forces.
+/// The velocity projected to D along the constraint forces.
 pub(super) fn projected(model: &Model, q: &[f64], mut v: Row) -> Row {
     let (metric, _, forms, affine) = matrices(model, q);
     let duals: Vec<Row> = forms.iter().map(|form| solved(&metric, form)).collect();
@@ -82,12 +82,12 @@ pub(super) fn projected(model: &Model, q: &[f64], mut v: Row) -> Row {
     v
 }
 
-/// The sum of products.
+/// Inner product.
 pub(super) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `matrix^{-1} right` of a positive matrix.
+/// `matrix^{-1} right`, for a positive definite matrix
 pub(super) fn solved(matrix: &[Row], right: &[f64]) -> Row {
     let n = right.len();
     let mut rows: Vec<Row> = (matrix.iter().zip(right))

@@ -1,4 +1,4 @@
-//! `volume: kept`.
+//! Tests of the claim `volume: kept`.
 
 use crate::Expected::{False, Open, Shown, True};
 use crate::systems::{ball, crossing, disk, field, grooves, media, particle, spokes, walker};
@@ -118,14 +118,14 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// The walker's step without loss keeps the volume at the angle that it leads to, and at no other.
+/// The walker's step without loss preserves the volume at the declared angle, and at no other angle.
 #[test]
 fn a_surface_that_is_moved_is_seen() {
     let moved = walker("-dot(theta)").replace("theta >= -delta", "theta >= -delta + 1e-9");
     check(&moved, KEPT, False("Jacobian"));
 }
 
-/// Both fields lead to the surface: the motion slides, and volumes become 0 though both rates have one size.
+/// Both fields lead to the surface, so the motion slides. Volumes become 0 although both rates have the same size.
 #[test]
 fn a_motion_that_slides_keeps_no_volume() {
     let slide = crossing(["-1", "1"], ["1", "-1"], "1");
@@ -135,7 +135,7 @@ fn a_motion_that_slides_keeps_no_volume() {
         "density under leftward: factor = 1",
         Shown("Jacobian", -1.0),
     );
-    // Where y is negative the motion slides, and the factor is 0.
+    // For negative y the motion slides, and the factor is 0.
     let partly = crossing(["-1", "1"], ["-y", "1"], "1");
     let factor = "density under leftward: factor =";
     let slides = Shown("Jacobian", -0.53);
@@ -154,7 +154,7 @@ fn a_motion_that_slides_keeps_no_volume() {
     check(&never, &format!("{factor} 1 + y^2"), True);
 }
 
-/// Densities have any sign: it is the sizes that are compared, and the rates of the gap that say where the motion slides.
+/// Densities may have any sign. Their absolute values are compared, and the gap rates decide whether the motion slides.
 #[test]
 fn densities_that_are_negative_are_compared_by_their_size() {
     let claim = |rest: &str| format!("density = y; {rest}");
@@ -171,14 +171,14 @@ fn densities_that_are_negative_are_compared_by_their_size() {
         &claim("volume: kept"),
         False("difference = 5.3"),
     );
-    // A factor is not negative, whatever the densities are.
+    // A negative factor is refuted, whatever the densities are.
     check(&to("-1"), &factor("y/abs(y)"), False("is negative"));
-    // One field on both sides goes on, wherever it leads.
+    // With one field on both sides the motion crosses, in whichever direction it leads.
     let same = crossing(["-y - x^2", "0"], ["-y - x^2", "0"], "-y").replace("density = -y;", "");
     check(&same, "density under leftward: factor = 1", True);
 }
 
-/// A density that is found is one up to a factor, which a transition would have to agree on.
+/// A density that is found is known up to a factor, on which a transition would have to agree.
 #[test]
 fn densities_of_modes_that_are_not_plain_are_stated() {
     let slopes = "pub Slopes { coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -204,7 +204,7 @@ fn friction_is_told_from_impacts() {
 
 #[test]
 fn a_stated_density_that_impacts_do_not_keep_is_refuted() {
-    // 1/speed^2 is kept by the free motion and by elastic walls alone.
+    // Only the free motion and elastic walls preserve 1/speed^2.
     let claims = |law: &str| {
         let model = particle(&format!("wall: x >= 0 => {law};")).replace("d1 = 1/3;", "");
         let claims = "claims { density = 1/(dot(x)^2 + dot(y)^2); volume: kept; }";

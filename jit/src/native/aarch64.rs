@@ -1,15 +1,15 @@
-//! Instructions of aarch64, of functions that follow the procedure call standard.
+//! Code generation for aarch64. Functions follow the procedure call standard.
 //!
 //! | registers | |
 //! |---|---|
 //! | `x0` to `x3`, constants in `x4` | bases of a function that calls nothing |
-//! | `x19` to `x22`, constants in `x25` | those of a function that calls others |
-//! | `x19` to `x23`, constants in `x25` | those of a series: parameters, values known at first, the row of coefficients, kept rows, the newest of them |
+//! | `x19` to `x22`, constants in `x25` | bases of a function that calls others |
+//! | `x19` to `x23`, constants in `x25` | bases of a series: parameters, values at order 0, row of coefficients, kept rows, newest of them |
 //! | `x24` | the current order of a series |
-//! | `x9` to `x12` | rows of both factors, products left, and bytes of a row in a loop over sums |
-//! | `x16` | an address, or an integer, of a single instruction |
+//! | `x9` to `x12` | in a loop over sums: rows of both factors, number of products left, bytes of a row |
+//! | `x16` | scratch: an address or an integer for one instruction |
 
-// NOTE: the macro of the assembler converts numbers of registers and constants.
+// NOTE: the assembler's macro converts numbers of registers and constants.
 #![allow(clippy::useless_conversion)]
 
 use std::collections::BTreeMap;
@@ -29,17 +29,17 @@ macro_rules! convention {
 }
 pub(super) use convention;
 
-/// Numbers of a vector.
+/// Number of doubles in a vector.
 pub(super) const LANES: usize = 2;
 
-/// Vectors of sums that one loop takes.
+/// Number of vectors of sums in one loop.
 pub(super) const SIDE_BY_SIDE: usize = 16;
 
-/// Registers of a loop over sums: vectors of sums come first, then factors.
+/// Registers of a loop over sums: first the vectors of sums, then the factors.
 const FACTORS: Register = SIDE_BY_SIDE as Register;
 const END: Register = 24;
 
-/// The vector register with a number. Registers that a function has to preserve are left out.
+/// The hardware register of an allocated register. Registers that a function must preserve are left out.
 fn v(register: Register) -> u8 {
     match register {
         0..8 => register,
@@ -47,7 +47,7 @@ fn v(register: Register) -> u8 {
     }
 }
 
-/// General registers by their numbers.
+/// Numbers of general registers.
 const ADDRESS: u8 = 16;
 const POOL: u8 = 25;
 const POOL_OF_LEAF: u8 = 4;
@@ -57,24 +57,24 @@ const OF_LEAF: [u8; 4] = [0, 1, 2, 3];
 const OF_CALLER: [u8; 4] = [19, 20, 21, 22];
 const OF_SERIES: [u8; 5] = [19, 20, 21, 22, 23];
 
-/// An addition takes fewer bytes than these, or a multiple of them.
+/// The immediate operand of an addition is below `PAGE`, or a multiple of it.
 const PAGE: i32 = 4096;
 
 /// Machine code under construction.
 pub(super) struct Assembly {
     ops: Assembler,
-    /// The registers of the pointers that places are counted from.
+    /// The registers of the base pointers of places.
     bases: &'static [u8],
     /// The register of the pointer to constants.
     pool: u8,
     constants: DynamicLabel,
-    /// Constants by their bits, with their places.
+    /// Constants by their bits, with their indices.
     numbers: BTreeMap<u64, usize>,
-    /// Label of the end of the current function after a guard that does not hold.
+    /// Label of the exit of the current function after a failed guard.
     stopped: DynamicLabel,
 }
 
-/// Bytes of a frame. True if registers are saved in front of it.
+/// Bytes of a stack frame. `saves` is true if registers are saved above it.
 #[derive(Clone, Copy)]
 struct Frame {
     length: i32,
@@ -90,10 +90,10 @@ impl Frame {
     }
 }
 
-/// Vectors of sums, and the places of their factors.
+/// Vectors of sums, and the offsets of their factors.
 struct Products {
     vectors: Register,
-    /// Places of the first and the second factors, in a row.
+    /// Offsets of the first and of the second factors in a row.
     places: [i32; 2],
     /// Bytes from one row to the next.
     kept: i32,
@@ -106,7 +106,7 @@ impl Products {
 }
 
 impl Assembly {
-    /// `None` without memory.
+    /// `None` if there is no memory.
     pub(super) fn new() -> Option<Self> {
         let mut ops = Assembler::new().ok()?;
         let [constants, stopped] = core::array::from_fn(|_| ops.new_dynamic_label());
@@ -120,7 +120,8 @@ impl Assembly {
         })
     }
 
-    /// A function of four pointers and, between the first two, a number: 0 in the end, or 1 where a guard stops it.
+    /// Emits a function of four pointers and, after the first of them, a number. It returns 0, or 1 after a failed
+    /// guard.
     pub(super) fn function(&mut self, code: &Allocated) -> AssemblyOffset {
         self.stopped = self.ops.new_dynamic_label();
         let has_calls = code.has_calls();
@@ -145,7 +146,7 @@ impl Assembly {
         entry
     }
 
-    /// A function of parameters, values known at first, unit, last order, coefficients from order 1 on, and room.
+    /// Emits a function of parameters, values at order 0, unit, last order, coefficients from order 1 on, and room.
     pub(super) fn series(&mut self, expansion: &Expansion<'_>) -> AssemblyOffset {
         (self.bases, self.pool) = (&OF_SERIES, POOL);
         let frame = Frame::of(expansion.frame(), true);
@@ -184,7 +185,7 @@ impl Assembly {
         entry
     }
 
-    /// Begins a function.
+    /// Emits the prologue of a function.
     fn enter(&mut self, frame: Frame) -> AssemblyOffset {
         let distance = self.ops.new_dynamic_label();
         dynasm!(self.ops ; .arch aarch64 ; .align 8 ; =>distance ; .rel64 =>self.constants);
@@ -206,7 +207,7 @@ impl Assembly {
         entry
     }
 
-    /// Ends a function.
+    /// Emits the epilogue of a function.
     fn leave(&mut self, frame: Frame) {
         self.add(SP, SP, frame.length);
         if frame.saves {
@@ -220,7 +221,7 @@ impl Assembly {
         dynasm!(self.ops ; .arch aarch64 ; ret);
     }
 
-    /// Takes the sums of a group, in the order of additions of `jet::middles` and `jet::halves`.
+    /// Emits the sums of a group, with the order of additions of `jet::middles` and `jet::halves`.
     fn sums(&mut self, group: &Group, kept: i32) {
         let done = self.ops.new_dynamic_label();
         let vectors = group.sums.len().div_ceil(LANES) as Register;
@@ -285,7 +286,7 @@ impl Assembly {
         self.add_ends(products);
     }
 
-    /// Adds as many products as `x11` counts, from rows that move apart or towards each other.
+    /// Adds `x11` products. After each, the rows move by `step` in opposite directions.
     fn add_range(&mut self, products: &Products, step: i32) {
         let [head, end] = core::array::from_fn(|_| self.ops.new_dynamic_label());
         dynasm!(self.ops ; .arch aarch64 ; cmp x11, 0 ; b.le =>end ; =>head);
@@ -296,7 +297,7 @@ impl Assembly {
         dynasm!(self.ops ; .arch aarch64 ; subs x11, x11, 1 ; b.ne =>head ; =>end);
     }
 
-    /// Adds the products of order 1 and the newest; the rows are those of these orders afterwards.
+    /// Adds the products of order 1 and the newest order. Afterwards the rows are those of these orders.
     fn add_ends(&mut self, products: &Products) {
         let [a, b] = ROWS;
         self.add(a, 22, products.kept);
@@ -307,7 +308,7 @@ impl Assembly {
     /// Adds the products of the first factors of one row and the second factors of another.
     fn add_products(&mut self, products: &Products, rows: [u8; 2]) {
         for sum in 0..products.vectors {
-            // NOTE: few registers in turn, so that products of one pass do not wait for each other.
+            // NOTE: factors rotate through a few registers, so that products of one pass do not wait for each other.
             let [x, y] = [0, 1].map(|which| {
                 let factor = FACTORS + (2 * sum + which) % (END - FACTORS);
                 let which = usize::from(which);
@@ -338,7 +339,7 @@ impl Assembly {
         self.ops.finalize().ok()
     }
 
-    /// The register and the distance of a place.
+    /// Base register and offset of a place.
     fn address(&self, place: Place) -> (u8, i32) {
         match place.base {
             Base::Frame => (SP, place.offset),
@@ -346,13 +347,13 @@ impl Assembly {
         }
     }
 
-    /// The register and the distance of a constant.
+    /// Base register and offset of a constant.
     fn number(&mut self, bits: u64) -> (u8, i32) {
         let next = self.numbers.len();
         (self.pool, bytes(*self.numbers.entry(bits).or_insert(next)))
     }
 
-    /// The register and the distance for an instruction that reads or writes this count of bytes.
+    /// Base register and offset for an instruction that accesses `length` bytes.
     fn reach(&mut self, (base, offset): (u8, i32), length: i32) -> (u8, u32) {
         let is_near = offset % length == 0 && (0..length * PAGE).contains(&offset);
         if is_near {
@@ -382,7 +383,7 @@ impl Assembly {
         }
     }
 
-    /// `to = from + pages`.
+    /// `to = from + pages * PAGE`.
     fn add_pages(&mut self, to: u8, from: u8, pages: i32) {
         let count = pages.unsigned_abs();
         match pages {
@@ -463,7 +464,7 @@ impl Assembly {
             }
             Instruction::Guard(from, bound) => {
                 let bound = self.register(bound, SCRATCH);
-                // NOTE: a comparison with NaN is not "larger". The end may be out of reach of a condition.
+                // NOTE: a comparison with NaN is not "larger". A conditional branch may not reach the exit.
                 dynasm!(self.ops ; .arch aarch64
                     ; fcmp D(v(from)), D(v(bound))
                     ; b.gt >next
@@ -492,7 +493,7 @@ impl Assembly {
         dynasm!(self.ops ; .arch aarch64 ; ldr Q(v(to)), [XSP(base), offset]);
     }
 
-    /// The register of an operand, which is loaded into one for single instructions if it has none.
+    /// The register of an operand. An operand without one is loaded into `scratch`.
     fn register(&mut self, operand: Operand, scratch: Register) -> Register {
         match operand {
             Operand::Register(register) => register,
@@ -557,7 +558,7 @@ impl Assembly {
             ; =>behind);
     }
 
-    /// Makes a pointer to a place.
+    /// Loads the address of a place into `to`.
     fn point(&mut self, to: u8, place: Place) {
         let (base, offset) = self.address(place);
         self.add(to, base, offset);

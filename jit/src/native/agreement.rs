@@ -1,4 +1,4 @@
-//! Machine code of shipped models gives the numbers of the machines of `machine.rs` and `series.rs`, to the bit.
+//! Machine code of the shipped models agrees bit for bit with the machines of `machine.rs` and `series.rs`.
 
 use dalembert::kernels::At;
 use dalembert::numbers::LENGTH;
@@ -12,10 +12,10 @@ use crate::form::Functions;
 use crate::series::Series;
 use crate::source::{self, Refused};
 
-/// States that each function is evaluated at.
+/// Number of random states at which each function is evaluated.
 const ROUNDS: usize = 20;
 
-/// Numbers of a place, enough for every model.
+/// Length of argument vectors, large enough for every model.
 const ROOM: usize = 256;
 
 macro_rules! models {
@@ -40,7 +40,8 @@ models! {
     two_wheels_rod
 }
 
-/// A field whose series has features that no shipped model has: time, polynomials of it as factors, an absolute value, and gaps.
+/// A field whose series has features of no shipped model: time, polynomials of time as factors, an absolute value
+/// together with gaps.
 #[test]
 fn driven() {
     compare_text(
@@ -79,7 +80,7 @@ fn compare_text(text: &str) {
     }
 }
 
-/// Arguments of the functions.
+/// Arguments of a function.
 struct Point {
     parameters: Vec<f64>,
     t: f64,
@@ -88,7 +89,7 @@ struct Point {
 }
 
 impl Point {
-    /// A point around the declared parameters.
+    /// A random point near the declared parameters.
     fn draw(random: &mut Random, known: &FormOf<'_>) -> Self {
         let parameters = known.model.parameters.iter();
         Self {
@@ -131,7 +132,7 @@ fn compare(known: &FormOf<'_>) {
     }
 }
 
-/// Compares a function at a point. True if its guards hold there.
+/// Compares a function at a point. Returns true if its guards hold there.
 fn compare_at(native: &Native, point: &Point) -> bool {
     let [mut expected, mut found] = [(); 2].map(|()| vec![0.0; native.code.outputs.len()]);
     let holds = native.code.run(point.at(), &mut expected).is_ok();

@@ -9,13 +9,13 @@ use super::helpers::OfNumbers;
 use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value};
 use crate::machine::{self, Code, Condition, Constant, Instruction};
 
-/// Pointers of a function, in the order of its arguments.
+/// Pointer arguments of a function, in order.
 const PARAMETERS: Base = Base::Argument(0);
 const FIRST: Base = Base::Argument(1);
 const SECOND: Base = Base::Argument(2);
 const VALUES: Base = Base::Argument(3);
 
-/// The code of a function: the velocities first, where it needs them, then its values.
+/// The code of a function: first the velocities, if it needs them, then its values.
 pub(super) fn straight(code: &Code) -> Straight {
     let mut straight = Straight::default();
     let t = straight.push(Operation::Argument);
@@ -37,9 +37,9 @@ struct Body<'a> {
     t: Value,
     velocities: &'a [Value],
     registers: Vec<Option<Value>>,
-    /// Instructions of sines and cosines whose argument needs both.
+    /// Indices of the sines and cosines whose argument needs both.
     paired: BTreeSet<usize>,
-    /// Places of sine and cosine, by argument.
+    /// Places of computed sines and cosines, by argument.
     taken: BTreeMap<Value, Place>,
 }
 
@@ -70,7 +70,7 @@ impl<'a> Body<'a> {
 
     fn register(&mut self, register: usize) -> Value {
         let value = self.registers[register];
-        // NOTE: every register is written before it is read.
+        // NOTE: the NaN is never used, because every register is written before it is read.
         value.unwrap_or_else(|| self.straight.number(f64::NAN))
     }
 
@@ -99,7 +99,7 @@ impl<'a> Body<'a> {
         self.straight.unary(unary, a)
     }
 
-    /// The value of an instruction; `None` of a guard.
+    /// The value of an instruction; `None` for a guard.
     fn value(&mut self, index: usize, instruction: &Instruction) -> Option<Value> {
         Some(match *instruction {
             Instruction::Input(place) => self.input(place),
@@ -169,7 +169,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// A register, and the lower bound of its value: a multiple of another register, or 0.
+/// A register, and the lower bound of its value: a multiple of another register, or 0 if that is `None`.
 fn bound(condition: &Condition) -> (usize, Option<(f64, usize)>) {
     match *condition {
         Condition::Pivot(_, value) => (value, None),
@@ -183,9 +183,9 @@ fn bound(condition: &Condition) -> (usize, Option<(f64, usize)>) {
     }
 }
 
-/// Instructions of sines and cosines whose argument needs both.
+/// Indices of the sines and cosines whose argument needs both.
 fn paired(code: &Code) -> BTreeSet<usize> {
-    // The instruction that wrote each register last.
+    // Index of the last instruction that wrote each register.
     let mut written = vec![usize::MAX; code.registers];
     let mut of_argument: BTreeMap<usize, [Vec<usize>; 2]> = BTreeMap::new();
     for (index, (instruction, target)) in code.instructions.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Functions that machine code calls.
+//! Functions called from machine code.
 
 use dalembert::jet;
 use dalembert::numbers::LENGTH;
@@ -7,7 +7,7 @@ use dalembert_numbers::math;
 
 use super::assembly::convention;
 
-/// A function of one or two numbers.
+/// A function of one or two doubles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OfNumbers {
     Elementary(Elementary),
@@ -15,7 +15,7 @@ pub(super) enum OfNumbers {
     Power,
 }
 
-/// A sum over series of a large expansion.
+/// A sum over coefficients of series, for expansions that are too large for unrolled code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OfSeries {
     Half,
@@ -82,15 +82,15 @@ pub(super) fn address_of_sine_and_cosine() -> usize {
 }
 
 convention! {
-    /// Writes sine and cosine.
+    /// Writes sine and cosine of `x` to `both`.
     fn sine_and_cosine(x: f64, both: *mut [f64; 2]) {
-        // SAFETY: the code hands over room for two numbers in its own frame.
+        // SAFETY: the caller passes the address of room for two numbers in its own frame.
         unsafe { *both = [math::sin(x), math::cos(x)] }
     }
 }
 
 convention! {
-    /// Half of a sum over one series, which is given twice.
+    /// Half of a sum over one series. The caller passes the series twice.
     fn half(a: *const [f64; LENGTH], _: *const [f64; LENGTH], k: i64) -> f64 {
         // SAFETY: each series of a large expansion is contiguous and has `LENGTH` numbers.
         jet::half(unsafe { &*a }, usize::try_from(k).unwrap_or(0))

@@ -1,4 +1,4 @@
-//! The room of an expansion: the places of coefficients, and the groups of sums that are computed together.
+//! Memory layout of an expansion: places of the coefficients, and groups of sums that are computed together.
 
 use std::collections::BTreeMap;
 
@@ -10,35 +10,36 @@ use dalembert_codegen::program::jet::terms::Term;
 use super::assembly::{LANES, SIDE_BY_SIDE};
 use crate::series::{Series, Step};
 
-/// Number of the frame: the last order of the loop, as an integer.
+/// Frame slot of the last order of the loop, an integer.
 pub(super) const LAST: usize = 0;
-/// Number of the frame: the current order, as a double.
+/// Frame slot of the current order, a double.
 pub(super) const WEIGHT: usize = 1;
-/// Number of the frame: the unit of time.
+/// Frame slot of the unit of time.
 pub(super) const UNIT: usize = 2;
 const FIXED: usize = 3;
 
-/// Places of coefficients.
+/// Places of coefficients in the room.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// Place of order 0 of histories that are read one coefficient at a time; in a large expansion, of all histories.
+    /// Places of the histories that are read one coefficient at a time, at order 0. In a large expansion these are all
+    /// histories.
     pub(super) alone: BTreeMap<History, usize>,
     pub(super) groups: Vec<Group>,
-    /// The distance of two orders.
+    /// Distance between consecutive orders, in numbers.
     pub(super) stride: usize,
-    /// Numbers of the frame.
+    /// Length of the frame, in numbers.
     pub(super) frame: usize,
-    /// Numbers of the room.
+    /// Length of the room, in numbers.
     pub(super) room: usize,
 }
 
-/// Sums that are computed together.
+/// Sums that are computed together, in SIMD lanes.
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) sums: Vec<Sum>,
-    /// Places of order 0 of the first and of the second factors; both are the same for halves.
+    /// Places of the first and of the second factors, at order 0. For half sums both are the same.
     pub(super) places: [usize; 2],
-    /// Place of the sums in the frame.
+    /// First frame slot of the results.
     pub(super) results: usize,
 }
 
@@ -113,7 +114,7 @@ impl Layout {
         }
     }
 
-    /// Place of a sum in the frame.
+    /// Frame slot of a sum.
     pub(super) fn result(&self, sum: Sum) -> Option<usize> {
         self.groups.iter().find_map(|group| {
             let place = group.sums.iter().position(|known| *known == sum)?;
@@ -122,7 +123,7 @@ impl Layout {
     }
 }
 
-/// Adds the sums of a term, and the histories that it reads one coefficient at a time.
+/// Collects the sums of a term, and the histories that it reads one coefficient at a time.
 fn collect(term: &Term, sums: &mut Vec<Sum>, alone: &mut BTreeMap<History, usize>) {
     let mut keep = |history: History| {
         let place = alone.len();

@@ -5,17 +5,18 @@
 //! Series --series----> (the same, twice, and the sums of layout)
 //! ```
 //!
-//! The assembly is that of the processor: `x64.rs` of x86-64 with AVX, or `aarch64.rs`. It defines the length of a vector
-//! and the calling convention. `helpers.rs` holds the functions that machine code calls. Memory is written first and then
-//! made executable, never both; it is freed with the last function.
+//! The assembly depends on the processor: `x64.rs` is for x86-64 with AVX, `aarch64.rs` for aarch64. It defines the
+//! length of a vector and the calling convention. `helpers.rs` has the functions that machine code calls. Memory is
+//! first written, then made executable, never both at once. It is freed with the last function.
 //!
-//! The compiler cannot check two things in this file and `helpers.rs`: pointers to functions that the assembly wrote, and
-//! their calls with pointers to slices. The lengths of these slices were compared with the extents that the code reads and
-//! writes. The code of a function reads and writes at constant distances from the pointers. The code of a series goes over
-//! rows up to the given order; there is room for all of them. Both call nothing but `helpers.rs`.
+//! The compiler cannot check two things in this file and `helpers.rs`: pointers to functions that the assembly wrote,
+//! and their calls with pointers to slices. The lengths of these slices are compared with the extents that the code
+//! reads and writes. The code of a function reads and writes at constant distances from the pointers. The code of a
+//! series goes over rows up to the given order; there is room for all of them. Both call only functions of
+//! `helpers.rs`.
 //!
-//! Operations are those of the interpreter of `machine.rs`, in the same order, and nothing is contracted: the bits are the
-//! same. Where a guard does not hold, the interpreter finds out which.
+//! The code performs the operations of the interpreter of `machine.rs` in the same order, with no other contractions,
+//! so results are equal to the bit. If a guard fails, the interpreter runs again and finds out which.
 #![allow(unsafe_code)]
 
 #[cfg(test)]
@@ -48,11 +49,11 @@ use assembly::{Assembly, convention};
 use layout::Layout;
 use series::Expansion;
 
-/// True if products and sums are rounded once, as by `math::mul_add`, which is compiled with the same features. On aarch64
-/// that rounds twice.
+/// True if products and sums are rounded once, like `math::mul_add` with the same features. On aarch64 they are rounded
+/// twice.
 const IS_FUSED: bool = cfg!(all(target_feature = "fma", not(feature = "strict")));
 
-/// Parameters, time, first and second place, values; 0 if every guard holds.
+/// A function of parameters, time, first and second argument, values. It returns 0 if every guard holds.
 type Entry = convention!(unsafe fn(*const f64, f64, *const f64, *const f64, *mut f64) -> i32);
 
 /// A function as machine code.
@@ -61,11 +62,11 @@ pub(crate) struct Native {
     entry: Entry,
     code: Arc<Code>,
     extent: Extent,
-    /// The memory of the code.
+    /// Keeps the memory of the code alive.
     _memory: Arc<ExecutableBuffer>,
 }
 
-/// Extent of the numbers that a function reads from each place.
+/// Numbers that a function reads from the beginning of each argument.
 #[derive(Debug, Clone, Copy, Default)]
 struct Extent {
     parameters: usize,
@@ -74,13 +75,13 @@ struct Extent {
 }
 
 impl Native {
-    /// Writes the values.
+    /// Writes the values of the outputs.
     ///
     /// # Errors
     /// The guard that does not hold.
     ///
     /// # Panics
-    /// If a slice is shorter than the extent that is read or written.
+    /// If a slice is shorter than its extent.
     pub(crate) fn run(&self, at: At<'_, f64>, values: &mut [f64]) -> Result<(), Fault> {
         match self.holds(at, values) {
             true => Ok(()),
@@ -88,15 +89,15 @@ impl Native {
         }
     }
 
-    /// Writes the values if every guard holds.
+    /// Writes the values if every guard holds. False if one fails.
     fn holds(&self, at: At<'_, f64>, values: &mut [f64]) -> bool {
         let has_room = at.parameters.len() >= self.extent.parameters
             && at.first.len() >= self.extent.first
             && at.second.len() >= self.extent.second
             && values.len() >= self.code.outputs.len();
         assert!(has_room, "a kernel was given too few numbers");
-        // SAFETY: the code reads the first `extent` numbers of each place and writes as many values as there are outputs; all of them
-        // exist. It lives as long as this.
+        // SAFETY: the code reads the first `extent` numbers of each argument, and writes as many values as there are
+        // outputs. All of them exist. `self` keeps the memory of the code alive.
         let status = unsafe {
             (self.entry)(
                 at.parameters.as_ptr(),
@@ -139,7 +140,8 @@ impl Extent {
     }
 }
 
-/// Parameters, values known at first, unit of time, order; coefficients from order 1 on, room for kept coefficients.
+/// A function of parameters, values at order 0, unit of time, order, coefficients from order 1 on, and room for kept
+/// coefficients.
 type Advance = convention!(unsafe fn(*const f64, *const f64, f64, i64, *mut f64, *mut f64));
 
 /// A power series as machine code.
@@ -183,7 +185,7 @@ impl NativeSeries {
     /// Same as [`Series::advance`].
     ///
     /// # Panics
-    /// If a slice is shorter than the extent that is read.
+    /// If a slice is shorter than its extent.
     pub(crate) fn advance(
         &self,
         [parameters, state, firsts]: [&[f64]; 3],
@@ -203,12 +205,13 @@ impl NativeSeries {
         }
         ROOM.with_borrow_mut(|room| {
             let width = self.components + self.gaps;
-            // NOTE: the order after the last is written too.
+            // NOTE: the code also writes the order after the last.
             let length = (LENGTH + 1) * width;
             room.resize(length + self.room, 0.0);
             let (coefficients, kept) = room.split_at_mut(length);
-            // SAFETY: the code reads the first `parameters` and `known` numbers, writes rows from order 1 to `order + 1` of coefficients,
-            // and reads and writes rows up to `order` of the room, which has `LENGTH` of them. It lives as long as `begin`.
+            // SAFETY: the code reads the first `parameters` and `known` numbers, writes coefficients in rows from order
+            // 1 to `order + 1`, and accesses rows of the room up to `order`, out of `LENGTH`. `begin` keeps its memory
+            // alive.
             unsafe {
                 (self.advance)(
                     parameters.as_ptr(),

@@ -1,8 +1,9 @@
-//! Series as two pieces of straight-line code: the part before the loop over the orders, and the body of the loop.
+//! Series as two pieces of straight-line code: the code before the loop over the orders, and the body of the loop.
 //!
-//! Orders of kept coefficients lie at equal distances in the room. In an expansion that is not large, a row is one order
-//! of everything: first the coefficients that are read one at a time, then the factors of sums, which vectors combine side
-//! by side before the rest of an order. In a large expansion each series is contiguous, and sums are calls.
+//! Consecutive orders of the kept coefficients have a constant distance in the room. Unless the expansion is large, a
+//! row holds one order of all series: first the coefficients that are read one at a time, then the factors of sums,
+//! which are combined in SIMD lanes before the rest of the order. In a large expansion each series is contiguous, and
+//! sums are function calls.
 
 use std::collections::BTreeMap;
 
@@ -18,17 +19,17 @@ use super::straight::{self, Base, Binary, Operation, Straight, Unary, Value, byt
 use crate::machine::Constant;
 use crate::series::{First, Series, Step};
 
-/// Pointers of an expansion.
+/// Pointer arguments of an expansion.
 const PARAMETERS: Base = Base::Argument(0);
 const FIRSTS: Base = Base::Argument(1);
-/// The coefficients of results at the current order; those of order 1 before the loop.
+/// The results at the current order. Before the loop: those of order 1.
 const ROW: Base = Base::Argument(2);
-/// Order 0 of kept coefficients.
+/// The kept coefficients at order 0.
 const KEPT: Base = Base::Argument(3);
-/// The current order of kept coefficients.
+/// The kept coefficients at the current order.
 const NEWEST: Base = Base::Argument(4);
 
-/// An expansion with registers.
+/// An expansion after register allocation.
 pub(super) struct Expansion<'a> {
     pub(super) before: Allocated,
     pub(super) order: Allocated,
@@ -37,7 +38,7 @@ pub(super) struct Expansion<'a> {
     pub(super) row: i32,
     /// Bytes from one order of kept coefficients to the next.
     pub(super) kept: i32,
-    /// True if the last order is computed too, whose rate is not needed.
+    /// True if the loop includes the last order, which only outputs other than the components need.
     pub(super) takes_last: bool,
 }
 
@@ -58,7 +59,7 @@ impl<'a> Expansion<'a> {
         }
     }
 
-    /// Numbers of the frame.
+    /// Length of the frame, in numbers.
     pub(super) fn frame(&self) -> usize {
         self.before.frame.max(self.order.frame)
     }
@@ -68,9 +69,9 @@ struct Body<'a> {
     series: &'a Series,
     layout: &'a Layout,
     straight: Straight,
-    /// Numbers of the frame that both pieces know.
+    /// Number of frame slots that both pieces use.
     frame: usize,
-    /// Places of reciprocals.
+    /// Frame slots of reciprocals.
     inverses: BTreeMap<Place, straight::Place>,
     next: BTreeMap<Place, Value>,
     inverse_order: Option<Value>,
@@ -89,7 +90,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Keeps the unit, reciprocals and order 0, and writes order 1 of the components.
+    /// Keeps the unit, the reciprocals and order 0, and writes order 1 of the components.
     fn begin(&mut self) {
         let unit = self.straight.push(Operation::Argument);
         self.straight.store(unit, frame(UNIT));
@@ -117,7 +118,7 @@ impl<'a> Body<'a> {
             self.straight
                 .store(coefficient, straight::Place::of(ROW, i));
         }
-        // NOTE: numbers that both pieces need lie in front of those that one piece uses alone.
+        // NOTE: slots that both pieces use come before those that only one piece uses.
         self.straight.frame = self.frame;
     }
 
@@ -134,7 +135,7 @@ impl<'a> Body<'a> {
         self.inverses.insert(value, place);
     }
 
-    /// The current order of everything, and the next one of the components.
+    /// Computes the current order of all values, and the next order of the components.
     fn advance(&mut self) {
         let (series, layout) = (self.series, self.layout);
         let weight = self.weight();
@@ -217,7 +218,7 @@ impl<'a> Body<'a> {
         value
     }
 
-    /// Order 0 of a value.
+    /// The coefficient of order 0 of a value.
     fn first(&mut self, value: Place) -> Value {
         match self.series.firsts[value.index()] {
             First::Unknown => self.straight.number(0.0),
@@ -230,7 +231,7 @@ impl<'a> Body<'a> {
     fn next_of(&mut self, value: Place) -> Value {
         match self.next.get(&value) {
             Some(next) => *next,
-            // A value that does not vary.
+            // A constant value: its higher coefficients are 0.
             None => self.straight.number(0.0),
         }
     }
@@ -283,7 +284,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// `a b + c`, rounded as the runtime rounds it.
+    /// `a b + c`, with the rounding of the runtime: fused or not.
     fn mul_add(&mut self, [a, b, c]: [Value; 3]) -> Value {
         if super::IS_FUSED {
             return self.straight.push(Operation::MulAdd([a, b, c]));
@@ -320,7 +321,7 @@ impl<'a> Body<'a> {
         let [a, b] = [a, b].map(|place| self.straight.load(place));
         let mut sum = self.straight.mul(a, b);
         if self.series.is_large {
-            // As `jet::shared_short` begins.
+            // Same first addition as in `jet::shared_short`.
             let zero = self.straight.number(0.0);
             sum = self.straight.add(zero, sum);
         }
@@ -337,7 +338,7 @@ impl<'a> Body<'a> {
     }
 }
 
-/// A number of the frame.
+/// A frame slot.
 fn frame(index: usize) -> straight::Place {
     straight::Place::of(Base::Frame, index)
 }

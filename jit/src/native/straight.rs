@@ -1,10 +1,10 @@
-//! Straight-line code over doubles, each value written once.
+//! Straight-line code over doubles in static single assignment form.
 
 use std::collections::BTreeMap;
 
 use super::helpers::{OfNumbers, OfSeries};
 
-/// A value, by the position of the operation that gives it.
+/// A value: the index of its operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Value(u32);
 
@@ -14,16 +14,16 @@ impl Value {
     }
 }
 
-/// Base from which a place in memory is counted.
+/// Base of an address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Base {
     /// The frame of the function.
     Frame,
-    /// Pointer arguments of the function, in an order of its own.
+    /// A pointer argument, by its index. Functions and series have different arguments.
     Argument(u8),
 }
 
-/// A number in memory.
+/// Address of a number in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Place {
     pub(super) base: Base,
@@ -32,7 +32,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Number `index` behind a base.
+    /// The address of number `index` from a base.
     pub(super) fn of(base: Base, index: usize) -> Self {
         Self {
             base,
@@ -40,12 +40,12 @@ impl Place {
         }
     }
 
-    /// The place this count of numbers further on.
+    /// The address `count` numbers further.
     pub(super) fn behind(self, count: usize) -> Self {
         self.shifted(bytes(count))
     }
 
-    /// The place this count of bytes further on.
+    /// The address `bytes` bytes further.
     pub(super) fn shifted(self, bytes: i32) -> Self {
         Self {
             base: self.base,
@@ -54,7 +54,7 @@ impl Place {
     }
 }
 
-/// The length of a count of numbers, in bytes.
+/// The length of `count` numbers in bytes.
 pub(super) fn bytes(count: usize) -> i32 {
     i32::try_from(8 * count).unwrap_or(i32::MAX)
 }
@@ -76,41 +76,41 @@ pub(super) enum Unary {
 
 #[derive(Debug, Clone)]
 pub(super) enum Operation {
-    /// The argument that is a number.
+    /// The floating-point argument.
     Argument,
     /// A constant, by its bits.
     Number(u64),
-    /// A number in memory that does not change as long as the value is read.
+    /// A number in memory, which is constant while the value is read.
     Load(Place),
     Unary(Unary, Value),
     Binary(Binary, [Value; 2]),
     /// `a b + c`, rounded once.
     MulAdd([Value; 3]),
-    /// The first with its sign turned where the second is negative.
+    /// The first value, negated if the second is negative.
     Turned([Value; 2]),
-    /// The value at order 1 of a series, and 0 at others.
+    /// The value at order 1 of a series, 0 at other orders.
     AtFirst(Value),
-    /// `sum + a b` of numbers in memory from an order of a series on, and the sum below it.
+    /// `sum + a b` with factors in memory if the current order of a series is at least `order`, else `sum`.
     AddFrom {
         order: i32,
         sum: Value,
         factors: [Place; 2],
     },
-    /// A call with one or two numbers.
+    /// A call of a function of one or two numbers.
     Call(OfNumbers, Value, Option<Value>),
-    /// Writes sine and cosine of a number from a place of the frame on.
+    /// Writes sine and cosine of a number to a place of the frame.
     SineAndCosine(Value, Place),
-    /// A call with series and the order.
+    /// A call of a function of series and the current order.
     CallSeries(OfSeries, [Place; 2]),
     Store(Value, Place),
-    /// Writes values next to each other, and zeros to the rest of a vector.
+    /// Writes values to consecutive places, and zeros to the rest of a vector.
     StoreVector(Vec<Value>, Place),
-    /// Ends the function unless the first is larger than the second.
+    /// Leaves the function with status 1 unless the first value is larger than the second.
     Guard([Value; 2]),
 }
 
 impl Operation {
-    /// Shows the values that an operation reads.
+    /// Calls `see` with every value that the operation reads.
     pub(super) fn read(&self, mut see: impl FnMut(Value)) {
         match self {
             Self::Argument | Self::Number(_) | Self::Load(_) | Self::CallSeries(..) => {}
@@ -133,7 +133,7 @@ impl Operation {
         }
     }
 
-    /// True if it is done even where nothing reads its value.
+    /// True if the operation is needed even if no operation reads its value.
     pub(super) fn has_effect(&self) -> bool {
         matches!(
             self,
@@ -142,18 +142,18 @@ impl Operation {
     }
 }
 
-/// Operations in their order, and the numbers of the frame that they use.
+/// Operations in order, and the size of the frame that they use.
 #[derive(Debug, Default)]
 pub(super) struct Straight {
     pub(super) operations: Vec<Operation>,
-    /// Numbers of the frame.
+    /// Size of the frame, in numbers.
     pub(super) frame: usize,
     numbers: BTreeMap<u64, Value>,
     loads: BTreeMap<Place, Value>,
 }
 
 impl Straight {
-    /// Code behind other code that uses the first `frame` numbers of the same frame.
+    /// Code that follows other code and keeps the first `frame` numbers of the frame.
     pub(super) fn with_frame(frame: usize) -> Self {
         Self {
             frame,
@@ -161,7 +161,7 @@ impl Straight {
         }
     }
 
-    /// The values in their order, with their operations.
+    /// The values in order, with their operations.
     pub(super) fn values(&self) -> impl Iterator<Item = (Value, &Operation)> {
         (0..).map(Value).zip(&self.operations)
     }
@@ -172,7 +172,7 @@ impl Straight {
         value
     }
 
-    /// Room for numbers in the frame.
+    /// Reserves room for `count` numbers in the frame.
     pub(super) fn room(&mut self, count: usize) -> Place {
         let place = Place::of(Base::Frame, self.frame);
         self.frame += count;

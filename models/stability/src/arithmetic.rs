@@ -7,7 +7,7 @@ use super::course::{Course, Random, U, vector};
 use super::tables::elliptic_table;
 use super::text::{Text, shipped, value};
 
-/// A rotor with functions of its angle that lose digits.
+/// A rotor with outputs that lose digits by cancellation, and with accurate forms of them.
 static ROTOR: Text = Text::new(
     "Rotor {
         coordinates { theta; }
@@ -22,7 +22,7 @@ static ROTOR: Text = Text::new(
     }",
 );
 
-/// Indices of its outputs.
+/// Indices of the rotor's outputs.
 const COSINE: usize = 0;
 const CANCELS: usize = 1;
 const KEPT: usize = 3;

@@ -16,14 +16,14 @@ type State = SVector<f64, 4>;
 pub struct Gap {
     /// Gap and gradient at a point.
     pub at: fn([f64; 2]) -> (f64, [f64; 2]),
-    /// The gap along a stretch of motion.
+    /// The gap along a part of the motion.
     pub along: fn([TaylorModel; 2]) -> TaylorModel,
 }
 
 /// The velocity after an impact, as a function of the velocity before it.
 pub type Reset = fn([f64; 2]) -> [f64; 2];
 
-/// The point, under a constant acceleration, between surfaces with a reset each.
+/// The point, with a constant acceleration, between surfaces that have a reset each.
 #[derive(Clone)]
 pub struct Point<const S: usize> {
     /// The acceleration.
@@ -148,7 +148,7 @@ impl<const S: usize> Impacting for Point<S> {
         Ok(Self::Gaps::from_fn(rate))
     }
 
-    /// The impulse of the law is `-2 constrained_rate / constrained_compliance`; the contact makes its value 1.
+    /// The law's impulse is `-2 constrained_rate / constrained_compliance`. The values of `contact` make it 1.
     fn law(&self, _surface: usize) -> Law {
         Law::Elastic
     }

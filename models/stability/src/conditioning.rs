@@ -1,5 +1,5 @@
 //! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of very different
-//! size.
+//! magnitude.
 
 use dalembert::{StateError, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -277,7 +277,7 @@ fn light_bob(setting: Setting, report: &mut Report) {
         .tol(1e-13)
         .run(setting);
     report.class(&end.outcome, "done");
-    // After five and a quarter periods the pendulum passes its lowest point, at this rate.
+    // After five and a quarter periods, the pendulum passes its lowest point at this rate.
     let rate = 2.0 * (g / length).sqrt() * (0.5 * start).sin();
     report.error(
         "time of the passage over the period",

@@ -1,11 +1,11 @@
-//! Section D, first part: motions under constraints, compared with closed forms.
+//! Section D, first part: constrained motions, compared with solutions in closed form.
 
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
 use super::course::Course;
 use super::text::{Large, Model, Text, shipped, value};
 
-/// A skate on an incline that falls along x. The walls at x = -far and y = -low are out of reach by default.
+/// A skate on an incline, downhill along x. By default the walls at x = -far and y = -low are out of reach.
 pub static SKATE: Text = Text::new(
     "Skate {
         coordinates { x; y; theta: angle; }
@@ -25,7 +25,7 @@ static BEAD_ON_CIRCLE: Text = Text::new(
     }",
 );
 
-/// The cases.
+/// The cases of this part.
 pub const CASES: &[Case] = &[
     Case {
         id: "D01",
@@ -121,7 +121,7 @@ fn skate_on_incline(setting: Setting, report: &mut Report) {
 /// The radius of [`wide_disk`].
 pub const RADIUS: f64 = 0.5;
 
-/// A vertical disk on a table without an edge.
+/// A vertical disk on a table whose edge is out of reach.
 pub fn wide_disk() -> Model {
     shipped("rolling_disk").with([
         ("m", 1.0),
@@ -133,7 +133,8 @@ pub fn wide_disk() -> Model {
     ])
 }
 
-/// Position at time `t` and path length of a [`wide_disk`] that starts at the origin.
+/// Position and path length at time `t` of a [`wide_disk`] that starts at the origin. The first argument holds the
+/// rolling rate, the turning rate and the initial heading.
 pub fn disk_at([roll, turn, phi]: [f64; 3], t: f64) -> [f64; 3] {
     let radius = RADIUS * roll / turn;
     let after = phi + turn * t;
@@ -202,15 +203,15 @@ fn free_sleigh(setting: Setting, report: &mut Report) {
     report.near("angle", theta, turned, 1e-11);
 }
 
-/// Rates of Euler angles of a body with its axis at `theta` that turns about a horizontal axis at rate 1, chosen so
-/// that it will pass the vertical at the angle `least`.
+/// Euler angle rates of a body with its axis at `theta` that rotates about a horizontal axis at rate 1. The axis passes
+/// the vertical at the smallest angle `least`.
 fn towards_the_pole(theta: f64, least: f64) -> [f64; 3] {
     let phi = least.sin() / theta.sin().powi(2);
     let tilt = -(1.0 - (theta.sin() * phi).powi(2)).sqrt();
     [phi, tilt, -phi * theta.cos()]
 }
 
-/// Velocities of the rolling ball with these rates at `at = [theta, psi]`.
+/// Velocities of the rolling ball with the Euler angle rates `[phi, theta, psi]` at the angles `at = [theta, psi]`.
 fn rolling(ball: &Large, [phi, theta, psi]: [f64; 3], at: [f64; 2]) -> [f64; 5] {
     let (sin, cos) = at[1].sin_cos();
     let omega = [

@@ -131,7 +131,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn right_angle(setting: Setting, report: &mut Report) {
-    // The corner at the origin of `x >= 0`, `y >= 0`; its second surface is `x - cos(pi/2) y`.
+    // The surfaces are `y >= 0` and `x - cos(pi/2) y >= 0`, up to rounding the corner `x >= 0`, `y >= 0`.
     let system = CORNER.with([("angle", core::f64::consts::FRAC_PI_2)]);
     let end = Course::new(&system, &[1.0, 1.0], &[-1.0, -1.0], 2.0).run(setting);
     report.class(&end.outcome, "done");
@@ -157,7 +157,8 @@ fn right_angle_missed(setting: Setting, report: &mut Report) {
     }
 }
 
-/// A point sent to the vertex of a corner from distance 1, at the fraction `at` of its angle, for 2 units of time.
+/// Runs a point for 2 units of time, from distance 1 to the vertex of a corner, in the direction at the fraction `at`
+/// of the angle.
 fn sent(system: &Model, angle: f64, at: f64, setting: Setting) -> End {
     let (sin, cos) = (at * angle).sin_cos();
     Course::new(system, &[cos, sin], &[-cos, -sin], 2.0).run(setting)
@@ -216,7 +217,7 @@ fn digits_of_pi(setting: Setting, report: &mut Report, powers: core::ops::RangeI
     for power in powers {
         let mass = 100.0_f64.powi(power);
         let count = (core::f64::consts::PI / 10.0_f64.powi(-power).atan()).ceil() as u64 - 1;
-        // Well before this time the block is far out again, and the small mass is slower than the block.
+        // Well before this time the block has moved far away, and the small mass is slower than the block.
         let end = Course::new(
             &BLOCK_AND_WALL.with([("M", mass)]),
             &[1.0, 2.0],

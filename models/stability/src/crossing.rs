@@ -223,7 +223,7 @@ fn flat_crossing(setting: Setting, report: &mut Report) {
     let end = Course::new(&FLAT_CROSSING.model(), &[-1.0, 0.0], &[1.0, 0.0], 2.0).run(setting);
     report.class(&end.outcome, "tangential_crossing");
     report.equal("impacts", end.hits.len(), 0);
-    // Near the impact the cube of the distance is below the rounding error of the gap.
+    // Near the impact, the cube of the distance is below the rounding error of the gap.
     report.near("time", end.t, 1.0, 1e-4);
 }
 
@@ -281,7 +281,7 @@ fn corrugated(setting: Setting, report: &mut Report, depth: f64, w: f64, t: f64)
     report.class(&end.outcome, "impact_budget");
     let phase = w * t;
     let (rate, bend) = (-1.0 - depth * w * phase.cos(), depth * w * w * phase.sin());
-    // The phase is rounded to a unit in its last place; the slope of the gap in x carries this error on.
+    // The phase is rounded to a unit in its last place. The slope of the gap in x carries this error to the gap.
     let terms = 1.0 + depth + depth * w * t;
     for hit in &end.hits {
         report.near("time", hit.t, t, location(t, end.eta(terms), rate, bend));
@@ -289,7 +289,7 @@ fn corrugated(setting: Setting, report: &mut Report, depth: f64, w: f64, t: f64)
 }
 
 fn oscillator(setting: Setting, report: &mut Report) {
-    // Each period loses amplitude to truncation error, so that the oscillator soon does not reach the wall.
+    // Truncation errors reduce the amplitude in each period, so that the oscillator soon misses the wall.
     let count = if setting.integrator.order().is_some_and(|order| order < 8) {
         100
     } else {
@@ -306,7 +306,7 @@ fn oscillator(setting: Setting, report: &mut Report) {
         report.equal(format!("impacts, W = {rate:e}"), end.hits.len(), count);
         let late = |(k, hit): (usize, &Hit)| {
             let t = (2 * k + 1) as f64 * first;
-            // The amplitude has an error of 16 units per flight, and each flight delays the next by the errors
+            // Each flight changes the amplitude by an error of 16 units. Each flight delays the next by the errors
             // accumulated so far.
             let k = k as f64;
             let amplitude = 16.0 * U * (16.0 + 16.0 * k + 0.5 * k * k);
@@ -330,7 +330,7 @@ fn oscillator(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Counts events, and keeps the largest ratio of the error of their times to its bound.
+/// Counts events, and records the largest ratio of the error of an event time to its bound.
 struct Passages {
     count: usize,
     worst: f64,

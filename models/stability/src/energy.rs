@@ -13,10 +13,10 @@ use super::text::{Model, shipped, value};
 const WALK: &str = "rounding errors that add up like a random walk";
 const BOUND: &str = "root mean square below 16 u sqrt(n); exponent at most 0.6";
 
-/// Power series, whose steps are exact up to rounding.
+/// Power series, whose steps are exact up to rounding errors.
 const SERIES: &[Integrator] = &[Integrator::Taylor];
 
-/// Runge-Kutta methods of tables.
+/// Runge-Kutta methods with an embedded error estimate.
 const TABLES: &[Integrator] = &[Integrator::Dop853, Integrator::Dopri5];
 
 /// The cases.
@@ -145,7 +145,7 @@ impl Walk {
             .iter()
             .map(|[n, error]| error / (16.0 * U * n.sqrt()));
         report.error("worst drift over its bound", share.fold(0.0, f64::max), 1.0);
-        // Errors of exactly 0 have no logarithm, and no growth.
+        // An error of 0 has no logarithm, and shows no growth.
         let is_late = |[n, error]: &[f64; 2]| *n >= FIRST && *error != 0.0;
         let late: Vec<[f64; 2]> = points.iter().copied().filter(is_late).collect();
         let exponent = dalembert_cli::suite::exponent(&late).unwrap_or(0.0);

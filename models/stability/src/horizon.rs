@@ -1,4 +1,4 @@
-//! Section F: number of correct bounces of chaotic runs in more than double precision.
+//! Section F: number of correct bounces of chaotic runs in double-double and higher arithmetic.
 
 use core::ops::ControlFlow;
 
@@ -9,7 +9,7 @@ use dalembert_cli::suite::{Case, Report, Run};
 
 use super::tables::Sinai;
 
-/// The cases.
+/// The cases of this section.
 pub const CASES: &[Case] = &[Case {
     id: "F06",
     title: "F05 and 23 other starts with 53, 106 and 159 bits",
@@ -19,16 +19,16 @@ pub const CASES: &[Case] = &[Case {
     ..Case::QUICK
 }];
 
-/// Bounces of a run: more than 159 bits keep accurate.
+/// Number of bounces per run. Even 159 bits are lost before the last one.
 const BOUNCES: u64 = 220;
 
-/// Number of starts over which horizons are averaged.
+/// Number of starts whose horizons are averaged.
 const STARTS: u32 = 24;
 
-/// Position error of a bounce at which all its digits count as lost.
+/// Position error of a bounce from which no digit counts as correct.
 const GONE: f64 = 1e-2;
 
-/// A start beside the disk; number 0 is the start of F05.
+/// A start beside the disk: position and velocity. Number 0 is the start of F05.
 fn start(number: u32) -> [[f64; 2]; 2] {
     let angle = 0.8_f64.atan2(0.6) + 2.4 * f64::from(number);
     let y = 0.1 + 0.03 * f64::from(number);
@@ -38,7 +38,7 @@ fn start(number: u32) -> [[f64; 2]; 2] {
     }
 }
 
-/// Positions of the bounces of a run in numbers of this many doubles.
+/// Positions of the bounces of a run with `PARTS` doubles per number.
 fn bounces<const PARTS: usize>([q, v]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     let table = Sinai {};
     let mut places = Vec::new();
@@ -46,7 +46,7 @@ fn bounces<const PARTS: usize>([q, v]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
         return places;
     };
     let effects = Impacts::declared(&table).with_budget(BOUNCES);
-    // The number of bounces shows if a run ends early.
+    // If a run ends early, the number of bounces shows it.
     let _ = ExtendedSimulation::<_, _, PARTS>::new(&table, effects).run(
         At::of(0.0, &state),
         1e3,

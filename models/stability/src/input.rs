@@ -14,7 +14,7 @@ use super::ensembles;
 use super::location::FALL;
 use super::text::{Model, shipped};
 
-/// The cases.
+/// The cases of this section.
 pub const CASES: &[Case] = &[
     Case {
         id: "H01",
@@ -251,7 +251,7 @@ fn small_log(report: &mut Report) {
     );
 }
 
-/// Panics or stops at the second impact.
+/// Observer that panics or stops the run at the impact number `left`.
 struct Fails {
     left: u32,
     panics: bool,
@@ -264,7 +264,7 @@ impl<M: System> Observer<M> for Fails {
             return ControlFlow::Continue(());
         }
         if self.panics {
-            // A panic without a message on the terminal.
+            // A panic that prints no message.
             std::panic::resume_unwind(Box::new("an observer that fails"));
         }
         ControlFlow::Break(())
@@ -313,7 +313,7 @@ fn observers(report: &mut Report) {
     );
 }
 
-/// Stops after a number of steps, and keeps the last state.
+/// Observer that stops the run after a number of steps and keeps the last state.
 struct StopsAfter<S> {
     left: u32,
     last: Option<(f64, S)>,

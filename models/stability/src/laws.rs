@@ -175,7 +175,7 @@ fn every_law(report: &mut Report) {
     );
 }
 
-/// The disk at the wall with heading `phi`, rolling into it at rate 1 and turning at 1/4.
+/// The disk at the wall with heading `phi`, rolling into the wall at rate 1 and turning at rate 1/4.
 fn at_wall(system: &Model, phi: f64) -> <Model as VectorField>::State {
     let (roll, radius) = (-1.0, value(system, "R"));
     let qdot = [
@@ -189,7 +189,7 @@ fn at_wall(system: &Model, phi: f64) -> <Model as VectorField>::State {
         .expect("a state")
 }
 
-/// The inertia `m R^2` of the rolling motion, and its sum with `I`.
+/// The rolling inertia `m R^2`, and its sum with `I`.
 fn inertias(system: &Model) -> (f64, f64) {
     let [m, radius, axis] = ["m", "R", "I"].map(|name| value(system, name));
     let rolled = m * radius * radius;

@@ -1,17 +1,17 @@
 //! Hard cases for the runtime and for generated code: event location, accumulation, impact laws and corners, nearly
 //! dependent constraints, scaling, long runs, bad input.
 //!
-//! The binary of this package is the `dalembert` command with these cases behind `stability`.
+//! The binary of this package is the `dalembert` command with these cases as the subcommand `stability`.
 //!
-//! No case needs a compiler: its model is a [`text`], loaded on first use.
+//! No case needs a compiler: its model is a [`text`] that is loaded on first use.
 //!
-//! To add a case, copy a [`Case`] and its function in the file of its section. Its number is never used again. Its
-//! correct result is a closed form, an exact count, a class of outcome, or a number that anyone can compute again with
-//! more digits. `u` is half a unit in the last place of 1. **P-LOC** is the bound of [`course::location`] on the time
-//! of an impact, from the rounding errors of the gap and its rate; **P-STATE(k)** is a relative error of `k u`.
+//! To add a case, copy a [`Case`] and its function in the file of its section. Case numbers are never reused. The
+//! correct result is a closed form, an exact count, a class of outcome, or a number that can be computed again with
+//! more digits. `u` is half a unit in the last place of 1. **P-LOC** is the bound of [`course::location`] for the time
+//! of an impact, from the rounding errors of the gap and its rate. **P-STATE(k)** is a relative error of `k u`.
 //!
-//! A case that cannot hold yet gives the reason in [`Case::pending`]. It has its function nevertheless if its
-//! declaration can be written. Once it holds, the suite reports the reason as outdated.
+//! A case that cannot pass yet gives the reason in [`Case::pending`]. It has a function anyway if its declaration can
+//! be written. Once it passes, the suite reports the reason as outdated.
 
 mod accumulation;
 mod arithmetic;

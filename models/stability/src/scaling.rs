@@ -1,4 +1,4 @@
-//! Section E: scales, mirrors, extreme numbers, arithmetic of generated code.
+//! Section E: scaling, reflection, extreme numbers, arithmetic of generated code.
 
 use dalembert::System;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -9,7 +9,7 @@ use super::tables::elliptic_table;
 use super::text::{Text, shipped, value};
 use super::zeno::{INCLINE, SPHERE_TOP};
 
-/// A point on a stiffening spring above a floor.
+/// A point mass on a hardening spring above a floor.
 pub static HOPPER: Text = Text::new(
     "Hopper {
         coordinates { x; }
@@ -29,7 +29,7 @@ static HOPPER_MIRRORED: Text = Text::new(
     }",
 );
 
-/// The rolling disk with other names, in another order.
+/// The rolling disk with other names, declared in another order.
 static DISK_RENAMED: Text = Text::new(
     "DiskRenamed {
         coordinates { heading: angle; roll: angle; north; east; }
@@ -47,7 +47,7 @@ static DISK_RENAMED: Text = Text::new(
     }",
 );
 
-/// The cases.
+/// The cases of this section.
 pub const CASES: &[Case] = &[
     Case {
         id: "E01",
@@ -115,8 +115,8 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// The hopper with lengths scaled by `length` and times by `time`, from height 1 to t = 20. Absolute tolerances are
-/// negligible, because one number cannot scale both like a length and like a speed.
+/// A run of the hopper from height 1 to t = 20, with lengths scaled by `length` and times by `time`. The absolute
+/// tolerance is negligible, because a single number cannot scale like a length and like a speed.
 fn hopper(setting: Setting, length: f64, time: f64) -> End {
     let rate = length / time;
     let system = HOPPER.with([
@@ -158,7 +158,7 @@ fn scaled(setting: Setting, report: &mut Report, base: f64, bound: f64) {
             let name = format!("{name}, {base}^({k}, {j})");
             match bound {
                 0.0 => report.equal(name, found, right),
-                // Errors of the positions are proportional to the speed.
+                // The error of a position is proportional to the speed.
                 bound => report.near(name, found, right, bound * right.abs().max(1.0)),
             }
         }
@@ -229,7 +229,7 @@ fn overflow(setting: Setting, report: &mut Report) {
 }
 
 fn late_start(setting: Setting, report: &mut Report) {
-    // On a level incline `s` moves at rate 1, and so equals the time.
+    // On a level incline `s` moves at rate 1, so its value is the time.
     let system = INCLINE.with([("g", 1.0), ("slope", 0.0), ("e", 1.0)]);
     let end = Course::new(&system, &[0.0, 0.0], &[1.0, 5e-4], 1e9 + 0.1005)
         .at(1e9)
@@ -250,7 +250,7 @@ fn large_circle(setting: Setting, report: &mut Report) {
     let end = Course::new(&table, &[radius - gap, 0.0], &[1.0, 0.0], 1.0).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 1);
-    // The declared gap divided by R^2: terms 2, rate 2/R.
+    // The gap is declared divided by R^2: its terms add up to 2, its rate is 2/R.
     let t = radius - (radius - gap);
     for hit in &end.hits {
         report.near(

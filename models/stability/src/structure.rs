@@ -24,7 +24,7 @@ static STEERED_EDGE: Text = Text::new(
     }",
 );
 
-/// The nonholonomic particle in a potential that does not separate.
+/// The nonholonomic particle in a non-separable potential.
 static HELD_PARTICLE: Text = Text::new(
     "HeldParticle {
         coordinates { x; y; z; }
@@ -164,7 +164,7 @@ fn symplectic(report: &mut Report, steps: u64) {
     let mut long = Long { report, steps };
     let oscillator = shipped("harmonic_oscillator").model();
     let start: [&[f64]; 2] = [&[1.0], &[0.0]];
-    // A quadratic invariant: the only error is a random walk of rounding errors, 1e-16 each.
+    // Gauss's methods keep quadratic invariants. The only error is a random walk of rounding errors of 1e-16 each.
     let series = energy!(long, Gauss4, 0.1, oscillator, start);
     long.below(&series, 2e-14);
     let series = energy!(long, Gauss6, 0.1, oscillator, start);
@@ -176,8 +176,8 @@ fn symplectic(report: &mut Report, steps: u64) {
     let start: [&[f64]; 2] = [&[0.4, 0.3], &[0.0, 0.0]];
     let series = energy!(long, Gauss4, 0.02, pendulum, start);
     long.bounded(&series, 4e-8, 4e-12);
-    // All drift is rounding error: over eight starts 1.4e-14 root mean square, of either sign. The bound is four times
-    // that.
+    // The drift is all rounding error: over eight starts 1.4e-14 root mean square, of either sign. The bound is four
+    // times as large.
     let series = energy!(long, Gauss6, 0.02, pendulum, start);
     long.bounded(&series, 2e-11, 6e-14);
     // At a quarter of the step, the error of the method equals the rounding error.
@@ -225,8 +225,8 @@ fn growing(report: &mut Report) {
     long.grows(&second, 0.3);
     let fourth = energy!(long, Dla4, 0.05, wild, start);
     long.grows(&fourth, 0.2);
-    // In global form Gauss's method leaves D, and the energy drifts. The effect that projects on D is not symmetric.
-    // The form reduced to D needs no projection.
+    // In global form, Gauss's method leaves D, and the energy drifts. The effect that projects on D is not symmetric.
+    // The reduced form needs no projection.
     let reduced = STEERED_EDGE.model();
     let edge = reduced.global();
     let leaving = energy!(long, Gauss4, 0.05, edge, start);

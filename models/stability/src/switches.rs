@@ -130,8 +130,8 @@ fn crossing(setting: Setting, report: &mut Report) {
     report.near("y", end.q[1], 0.5 - 3.0, 1e3 * U);
 }
 
-/// The velocity and the end of a particle that enters a medium of mass `m2` from the left with momenta `p`; the
-/// potential there is `step`.
+/// Velocity after the surface, and end of the run, of a particle that enters a medium of mass `m2` from the left with
+/// momenta `p`. `step`: the potential in the medium.
 fn entering(setting: Setting, p: [f64; 2], m2: f64, step: f64) -> ([f64; 2], super::course::End) {
     let particle = shipped("refracted_particle").with([("m2", m2), ("V2", step)]);
     let end = Course::new(&particle, &[-1.0, 0.0], &p, 1.5 / p[0]).run(setting);
@@ -146,7 +146,7 @@ fn step(setting: Setting, report: &mut Report) {
     for (n, dv) in [0.3, -0.7, 0.01, 0.499_999].into_iter().enumerate() {
         let ([x, y], end) = entering(setting, [1.0, 0.75], 1.0, dv);
         report.class(&end.outcome, "done");
-        // The square root halves the number of digits that the difference loses.
+        // The square root halves the relative error that the difference has by cancellation.
         let right = (1.0 - 2.0 * dv).sqrt();
         report.near(format!("p_n, {n}"), x, right, 8.0 * U / right.min(1.0));
         report.near(format!("p_t, {n}"), y, 0.75, 8.0 * U);
@@ -169,7 +169,7 @@ fn no_step(setting: Setting, report: &mut Report) {
 }
 
 fn refraction(setting: Setting, report: &mut Report) {
-    // The metric n^2 |dx|^2 is that of the mass n^2; velocities are those of light rays up to a factor.
+    // The metric n^2 |dx|^2 belongs to the mass n^2. Velocities are those of light rays up to a factor.
     let ratio: f64 = 1.0 / 1.5;
     for angle in [0.1_f64, 0.5, 0.7, 0.72, 0.74, 1.2] {
         let (sine, cosine) = angle.sin_cos();

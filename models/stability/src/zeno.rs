@@ -1,4 +1,4 @@
-//! Section B, first part: accumulation of impacts on one surface, and the contact that follows.
+//! Section B, first part: accumulation of impacts on one surface (Zeno), and the contact that follows.
 
 use dalembert::Outcome;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -7,7 +7,7 @@ use super::course::{Course, End, U, location};
 use super::location::FALL;
 use super::text::{Model, Text, value};
 
-/// A ball on an incline, without friction: `s` downhill, `y` away from the plane.
+/// A ball on an incline without friction. `s` is the distance downhill, `y` the distance from the plane.
 pub static INCLINE: Text = Text::new(
     "Incline {
         coordinates { s; y; }
@@ -37,7 +37,7 @@ static TWO_BALLS: Text = Text::new(
     }",
 );
 
-/// The cases.
+/// The cases of this part.
 pub const CASES: &[Case] = &[
     Case {
         id: "B01",
@@ -53,7 +53,7 @@ pub const CASES: &[Case] = &[
         right: "x = 0 for ever",
         bound: "`done`, x = 0 at ten times the Zeno time",
         run: Run::Steps(|setting, report| {
-            // Forced steps would be two million there; see `B01c`.
+            // With forced steps, restitution 0.99 takes two million steps; see `B01c`.
             let is_forced = setting.max_step.is_some();
             let restitutions = if is_forced {
                 &[0.1, 0.5, 0.9][..]
@@ -122,7 +122,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Checks that a run ended with an accumulation near the time `t`.
+/// Checks that a run ended with an accumulation of impacts within `bound` of the time `t`.
 pub fn accumulates(report: &mut Report, name: &str, end: &End, t: f64, bound: f64) {
     report.class(&end.outcome, "zeno");
     if let Outcome::Zeno { t: found, .. } = end.outcome {
@@ -142,7 +142,7 @@ fn geometric(setting: Setting, report: &mut Report) {
         let late = |(n, hit): (usize, &super::course::Hit)| {
             let power = e.powi(n as i32 + 1);
             let t = limit * (1.0 - power);
-            // A relative error of every flight, and the rounding error of the gap at the height of the last one.
+            // Relative error of every flight, and rounding error of the gap at the height of the last flight.
             let spread = 16.0 * U * t * (n as f64 + 1.0);
             let height = 0.5 * (power / e).powi(2);
             (hit.t - t).abs()
@@ -187,19 +187,19 @@ fn slow_loss(setting: Setting, report: &mut Report) {
 }
 
 fn tiny_hops(setting: Setting, report: &mut Report) {
-    // Impact number 50 000 is at the horizon itself; the run ends 1e-5 of that time later, before the next impact.
+    // The end time is 1e-5 of its value after impact number 50 000, and before the next impact.
     let end = Course::new(&FALL.model(), &[0.0], &[1e-8], 1.00001e-3).run(setting);
     report.class(&end.outcome, "done");
     report.equal("impacts", end.hits.len(), 50_000);
 }
 
-/// Distance along the plane after time `t`, with initial speed `s1`.
+/// Distance along the plane after the time `t`, for the initial speed `s1`.
 fn slid(system: &Model, s1: f64, t: f64) -> f64 {
     let [g, slope] = ["g", "slope"].map(|name| value(system, name));
     s1 * t + 0.5 * g * slope.sin() * t * t
 }
 
-/// Time of accumulation of hops whose initial speed is 1.
+/// Time of accumulation for hops whose first speed is 1.
 fn accumulation(system: &Model) -> f64 {
     let [g, slope, e] = ["g", "slope", "e"].map(|name| value(system, name));
     2.0 / (g * slope.cos() * (1.0 - e))

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Condition that a declaration imposes on a parameter. Checked when a state is made.
+/// Condition that a declaration imposes on a parameter. It is checked when a state is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Assumption {
     /// Any finite number.

@@ -1,33 +1,34 @@
-//! Numbers along straight lines through a box: intervals of their values, of their rates and of the rates of those.
+//! Numbers along straight lines through a box: enclosures of values, first and second derivatives along the line.
 //!
-//! With every coordinate in its interval of the box, and its rate in an interval, `f(x)` encloses values, rates and bends
-//! of `f` along every such line. It therefore bounds first and second derivatives in all directions at once.
+//! Every coordinate has an interval of values (the box) and an interval of rates. For such arguments `f(x)` encloses
+//! the value, the rate and the second derivative (bend) of `f` along every line with these rates. It therefore bounds
+//! the first and second derivatives of `f` in all directions at once.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::interval::Interval;
 use crate::numbers::Numbers;
 
-/// Values, rates and bends along a line.
+/// Enclosures of a function and of its first two derivatives along lines through a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bent {
-    /// All values.
+    /// Encloses all values.
     pub value: Interval,
-    /// All rates.
+    /// Encloses all first derivatives along the lines.
     pub rate: Interval,
-    /// All rates of rates.
+    /// Encloses all second derivatives along the lines.
     pub bend: Interval,
 }
 
 impl Bent {
-    /// The bounds of a function that may have no value.
+    /// No information, for functions that may be undefined in the box.
     pub const ANYTHING: Self = Self {
         value: Interval::WHOLE,
         rate: Interval::WHOLE,
         bend: Interval::WHOLE,
     };
 
-    /// Along lines through an interval, with rates up to this size.
+    /// A coordinate along straight lines: its interval of values, and rates of absolute value up to `rate`.
     pub const fn line(value: Interval, rate: f64) -> Self {
         Self {
             value,
@@ -50,7 +51,7 @@ impl Bent {
         }
     }
 
-    /// The value of a function, with its first two derivatives.
+    /// Chain rule: a function with this value and these first two derivatives, applied to `self`.
     #[inline(always)]
     fn chain(self, value: Interval, first: Interval, second: impl FnOnce() -> Interval) -> Self {
         match self.is_steady() {
@@ -148,7 +149,7 @@ impl Numbers for Bent {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A number inside. It says nothing about the rest of the box.
+    /// One number inside the interval of values. It does not bound the others.
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
     }
@@ -190,7 +191,7 @@ impl Numbers for Bent {
         }
     }
 
-    /// A change of the sign makes a kink.
+    /// At a change of the sign the result has a kink: its derivatives are unbounded.
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
             (false, _) => self,
@@ -214,7 +215,7 @@ impl Numbers for Bent {
                 ..Self::ANYTHING
             };
         }
-        // The rate of an angle is a quotient; so is that of the rate.
+        // The rate of an angle is the quotient `across / squared`; the bend is the derivative of this quotient.
         let squared = self.value.square() + x.value.square();
         let across = x.value * self.rate - self.value * x.rate;
         let along = x.value * x.rate + self.value * self.rate;

@@ -1,13 +1,14 @@
-//! Rectangles of complex numbers about the real axis, which bound a function off the axis.
+//! Rectangles of complex numbers about the real axis. They bound analytic functions off the axis.
 //!
 //! A rectangle holds all `x + i y` with `x` in an interval and `|y| <= height`. For a function `f` over numbers that is
-//! analytic on the rectangles of its arguments, `f` of them holds all its values there; a function that may have a
-//! singularity inside is [`ComplexInterval::ANYTHING`].
+//! analytic on the rectangles of its arguments, `f` of these rectangles encloses all values of `f` on them. A function
+//! that may have a singularity there gives [`ComplexInterval::ANYTHING`].
 //!
-//! Such bounds serve for power series of functions along a step, whose arguments are polynomials `p(z)` that stay in
-//! their rectangles for all complex `|z| <= R`. If `|Im f| <= h` there, and `f` is real on the real axis, coefficient
-//! `k >= 1` of its series is at most `2 h / R^k` (Borel and Caratheodory). Heights and roundings of results are at
-//! most proportional to the heights of the arguments: with heights smaller by a factor, they are smaller by it too.
+//! Such bounds serve for power series of functions along a step. The arguments are polynomials `p(z)` that stay in
+//! their rectangles for all complex `|z| <= R`. If `|Im f| <= h` there and `f` is real on the real axis, coefficient
+//! `k >= 1` of its series is at most `2 h / R^k` (Borel and Caratheodory). Heights and rounding errors of results are
+//! at most proportional to the heights of the arguments: if all heights shrink by a factor, the bounds shrink by at
+//! least this factor.
 //!
 //! Reference: E. C. Titchmarsh, *The Theory of Functions* (1939), section 5.5.
 
@@ -25,16 +26,16 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// [`ComplexInterval::LEAST_RATIO`] times that on which they are summed.
 const SPREAD: f64 = 3.0;
 
-/// The same for the coefficients above the constant one, and the bound of the imaginary part.
+/// Ratio of the sum of the coefficients above the constant one to the bound of the imaginary part, on the same disk.
 const SWAY: f64 = 4.0;
 
 /// Outward rounding of a few operations.
 const UP: f64 = 1.0 + 32.0 * f64::EPSILON;
 
-/// Degree of a function that is no polynomial.
+/// Degree of a function that is not a polynomial.
 const NO_POLYNOMIAL: u32 = u32::MAX;
 
-/// A rectangle of complex numbers; see the module.
+/// A rectangle of complex numbers (see the module), with bounds of the rounding errors of the function's series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ComplexInterval {
     /// Real parts.
@@ -45,7 +46,7 @@ pub struct ComplexInterval {
     pub floor: f64,
     /// Bound of the sum of the rounding errors of its other coefficients.
     pub rounding: f64,
-    /// Degree of the function as a polynomial of the quantities that vary; at most this.
+    /// Upper bound of the degree of the function as a polynomial of the varying quantities.
     degree: u32,
 }
 
@@ -57,12 +58,12 @@ struct Analytic {
     slope: f64,
     /// Bound of its second derivative.
     bend: f64,
-    /// Factor by which errors of a coefficient reach later ones.
+    /// Factor by which the error of one coefficient is amplified in later coefficients.
     growth: f64,
 }
 
 impl ComplexInterval {
-    /// Bounds of a function that may be singular.
+    /// No information, for functions that may be singular.
     pub const ANYTHING: Self = Self {
         real: Interval::WHOLE,
         height: f64::INFINITY,
@@ -75,7 +76,7 @@ impl ComplexInterval {
     /// rounding errors.
     pub const LEAST_RATIO: f64 = 1.5;
 
-    /// A quantity that varies along the step: a polynomial of the time.
+    /// A quantity that is a polynomial of time along the step. Its degree counts as 1.
     #[inline(always)]
     pub fn varying(real: Interval, height: f64) -> Self {
         Self {
@@ -105,7 +106,7 @@ impl ComplexInterval {
         (self.real.magnitude() + self.height) * UP
     }
 
-    /// The degree as a polynomial of the varying quantities, if the function is one.
+    /// Upper bound of the degree as a polynomial of the varying quantities; `None` if the function is not a polynomial.
     #[inline(always)]
     pub fn degree(self) -> Option<u32> {
         (self.degree != NO_POLYNOMIAL).then_some(self.degree)
@@ -128,7 +129,7 @@ impl ComplexInterval {
         SWAY * self.height
     }
 
-    /// A function of one argument.
+    /// A function of one argument, from its bounds on the rectangle.
     #[inline(always)]
     fn analytic(self, function: Analytic) -> Self {
         let Analytic {
@@ -151,7 +152,8 @@ impl ComplexInterval {
         .or_anything()
     }
 
-    /// A function of one argument by its values on the real axis and bounds of its derivatives.
+    /// A function of one argument, from its values on the real axis and bounds of its first two derivatives on the
+    /// rectangle.
     #[inline(always)]
     fn carried(self, value: Interval, [slope, bend]: [f64; 2], growth: f64) -> Self {
         if self.is_steady() {
@@ -167,7 +169,7 @@ impl ComplexInterval {
         })
     }
 
-    /// A function of one argument by its values on the real axis and its derivative.
+    /// A function of one argument, from its values on the real axis and its derivative as a function of the rectangle.
     #[inline(always)]
     fn by_slope(self, value: Interval, slope: impl FnOnce(Self) -> Self) -> Self {
         if self.is_steady() {
@@ -175,7 +177,7 @@ impl ComplexInterval {
         }
         let derivative = slope(self);
         let slope = derivative.magnitude();
-        // The height of the derivative bounds what the rounding of the argument does.
+        // The height of the derivative bounds its variation, and with it the effect of the argument's rounding error.
         let bend = match self.height > 0.0 {
             true => derivative.height / self.height,
             false => 0.0,
@@ -183,10 +185,10 @@ impl ComplexInterval {
         self.carried(value, [slope, bend], slope)
     }
 
-    /// The rectangle, if everything about it is finite.
+    /// The rectangle if all its bounds are finite, otherwise [`ComplexInterval::ANYTHING`].
     #[inline(always)]
     fn or_anything(self) -> Self {
-        // Not a comparison that NaN passes.
+        // This form of the comparison is false for NaN.
         match self.rounding + self.floor < f64::INFINITY && self.magnitude() < f64::INFINITY {
             true => self,
             false => Self::ANYTHING,
@@ -340,12 +342,12 @@ impl Numbers for ComplexInterval {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A real number inside. It says nothing about the rest of the rectangle.
+    /// One real number inside the rectangle. It does not bound the others.
     fn lane(&self, lane: usize) -> f64 {
         self.real.lane(lane)
     }
 
-    /// The sign of a real number.
+    /// The sign, if the number is real.
     fn is_below_zero(&self) -> Option<bool> {
         match self.is_steady() {
             true => self.real.is_below_zero(),
@@ -386,7 +388,7 @@ impl Numbers for ComplexInterval {
         self.turned(self)
     }
 
-    /// No function across a kink.
+    /// The maximum is not analytic across a kink.
     fn max(self, other: Self) -> Self {
         let ahead = self.real - other.real;
         match (ahead.lo >= 0.0, ahead.hi <= 0.0) {
@@ -399,7 +401,7 @@ impl Numbers for ComplexInterval {
         }
     }
 
-    /// No function across a kink.
+    /// A change of sign is not analytic across the kink.
     fn turned(self, sign: Self) -> Self {
         match (sign.real.lo < 0.0, sign.real.hi < 0.0) {
             (false, _) => self,

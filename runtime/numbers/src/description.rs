@@ -4,14 +4,14 @@ pub use crate::assumption::Assumption;
 use crate::held::Held;
 use crate::kernel::Shape;
 
-/// The set a coordinate runs through.
+/// The set of values of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Topology {
     /// The real line.
     Line,
     /// A circle of period 2 pi, stored unwrapped.
     Circle,
-    /// An open interval; leaving it ends a run with `LeftChart`.
+    /// An open interval. A run ends with `LeftChart` when the coordinate leaves it.
     Interval {
         /// Lower end; may be minus infinity.
         low: f64,
@@ -23,7 +23,7 @@ pub enum Topology {
 /// One coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoordinateInfo {
-    /// Name as the command line writes it: `x`, `theta.3`.
+    /// Name on the command line: `x`, `theta.3`.
     pub name: &'static str,
     /// The set of its values.
     pub topology: Topology,
@@ -32,7 +32,7 @@ pub struct CoordinateInfo {
 /// One parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParameterInfo {
-    /// Name as the command line writes it: `m`, `m.3`.
+    /// Name on the command line: `m`, `m.3`.
     pub name: &'static str,
     /// Condition on its values.
     pub assumption: Assumption,
@@ -47,7 +47,7 @@ pub struct ConstraintInfo {
     pub name: &'static str,
     /// True if it has an affine part `eta_0`.
     pub affine: bool,
-    /// Index among the position-level values when the constraint is integrable with a known function.
+    /// Index among the position levels; `None` unless the constraint is integrable with a known level.
     pub level: Option<usize>,
 }
 
@@ -56,7 +56,7 @@ pub struct ConstraintInfo {
 pub struct ModeInfo {
     /// Declared name.
     pub name: &'static str,
-    /// Indices of its coordinates among those of the model, in its own order.
+    /// Indices of its coordinates among those of the model, in the order of the mode.
     pub coordinates: Held<[usize]>,
 }
 
@@ -65,16 +65,16 @@ pub struct ModeInfo {
 pub struct SurfaceInfo {
     /// Declared name.
     pub name: &'static str,
-    /// The declared law as written, `elastic` when none was.
+    /// Source text of the declared law; `elastic` if none is declared.
     pub law: Held<str>,
 }
 
-/// The declared `view`: the content of a picture of the model.
+/// The declared `view`: the content of plots of the model.
 #[derive(Debug, PartialEq)]
 pub struct ViewInfo {
-    /// The two expressions of `path`, as written.
+    /// Source texts of the two expressions of `path`.
     pub labels: [Held<str>; 2],
-    /// Indices of the coordinates that span the plane, when `path` is a pair of coordinates.
+    /// Indices of the coordinates that span the plane; `None` unless `path` is a pair of coordinates.
     pub plane: Option<[usize; 2]>,
     /// True if a `region` was declared.
     pub region: bool,
@@ -83,15 +83,16 @@ pub struct ViewInfo {
 /// Static description of a model. All lists are in the order of declaration.
 #[derive(Debug, PartialEq)]
 pub struct Description {
-    /// The type's name, `RollingDisk`.
+    /// Name of the type: `RollingDisk`.
     pub type_name: &'static str,
-    /// Snake case, as the command line writes it: `rolling_disk`.
+    /// Name on the command line, in snake case: `rolling_disk`.
     pub name: &'static str,
     /// The model's doc comment.
     pub documentation: Held<str>,
-    /// The declaration, as given to the macro.
+    /// Source text of the declaration.
     pub source: Held<str>,
-    /// True if a `field` was declared in place of a Lagrangian: the state is the position, and there are no momenta and no energy.
+    /// True if a `field` is declared in place of a Lagrangian. The state is then the position; there are no momenta and
+    /// no energy.
     pub is_first_order: bool,
     /// The coordinates.
     pub coordinates: Held<[CoordinateInfo]>,
@@ -101,17 +102,17 @@ pub struct Description {
     pub constraints: Held<[ConstraintInfo]>,
     /// The named forces.
     pub forces: Held<[&'static str]>,
-    /// The quasi-velocities of the form reduced to D. The velocity of a coordinate has the coordinate's name with `_dot`.
-    /// Empty where the equations are solved in the global form.
+    /// Names of the quasi-velocities of the form reduced to D. A quasi-velocity that is the velocity of a coordinate
+    /// has the coordinate's name with `_dot`. Empty if the equations are solved in the global form.
     pub quasi_velocities: Held<[&'static str]>,
     /// The impact surfaces.
     pub surfaces: Held<[SurfaceInfo]>,
     /// The declared outputs.
     pub outputs: Held<[&'static str]>,
-    /// The outputs that are integrals along a run, by index. At a state their function gives the integrand.
+    /// Indices of the outputs that are integrals along a run. At a state, their function returns the integrand.
     pub integrals: Held<[usize]>,
-    /// The scenes; `all`, the model itself, comes first. For a model with modes, each mode by itself is a scene of
-    /// `derive` and `check`; a visitor of scenes does not see it.
+    /// The scenes. The first one is `all`, the model itself. For a model with modes, each mode is a scene of `derive`
+    /// and `check`; a visitor of scenes does not see these.
     pub scenes: Held<[&'static str]>,
     /// The modes; empty for a model without modes.
     pub modes: Held<[ModeInfo]>,
@@ -119,7 +120,7 @@ pub struct Description {
     pub view: Option<ViewInfo>,
 }
 
-/// A quantity that [`Kernel::Geometry`](crate::Kernel::Geometry) gives: its name, and the arrangement of its numbers.
+/// A quantity of [`Kernel::Geometry`](crate::Kernel::Geometry): its name, and the shape of its values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     /// The name, as `eval` prints it.
@@ -131,9 +132,9 @@ pub struct Quantity {
 /// The self-description of a form.
 #[derive(Debug, PartialEq)]
 pub struct Documentation {
-    /// Names, docs, topology and the like.
+    /// Names, doc comments, topologies and other data.
     pub description: Description,
-    /// The inputs; their values are the parameters after those of the description.
+    /// The inputs. Their values follow the parameters of the description.
     pub inputs: Held<[&'static str]>,
     /// True for coordinates whose position was declared, in order.
     pub placed: Held<[bool]>,

@@ -1,21 +1,23 @@
-//! Numbers at all states at once: the interval of all values that they have, and whether they can be sharp there.
+//! Numbers at all states at once: the interval of all values, and a flag for sharp variation.
 //!
-//! A function of the state is sharp if it may change within a range of its arguments that is small beside the range in
-//! which they change. Polynomials of low degree, sines and cosines of the state are not sharp. A quotient is not sharp while its
-//! denominator stays within a small factor, as that of an inverted inertia does; nor is a power of such a number.
+//! A function of the state is sharp if it may vary strongly within a range of its arguments that is small beside the
+//! range in which the arguments vary. Polynomials of low degree, sines and cosines of the state are not sharp. A
+//! quotient is not sharp while its denominator varies by a small factor only, as in the inverse of a moderate inertia.
+//! The same holds for powers of such a number.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::interval::Interval;
 use crate::numbers::Numbers;
 
-/// Largest factor by which divisors and bases of powers may change. Those of a product multiply.
+/// Largest ratio of values that a divisor or the base of a power may have without being sharp. The ratios of the
+/// factors of a product multiply.
 const MOST_RATIO: f64 = 4.0;
 
-/// Largest number of factors of a product that changes as steadily as they do.
+/// Largest number of varying factors of a product that does not count as sharp.
 const MOST_FACTORS: u32 = 12;
 
-/// All values of a number.
+/// All values of a number, at all states.
 ///
 /// # Examples
 ///
@@ -37,7 +39,7 @@ pub struct Everywhere {
     is_sharp: bool,
     /// Largest number of varying factors of a product in it.
     factors: u32,
-    /// Largest factor by which divisors and bases of powers in such a product change together.
+    /// Product of the ratios (largest to smallest absolute value) of divisors and bases of powers in such a product.
     ratio: f64,
 }
 
@@ -63,12 +65,12 @@ impl Everywhere {
         }
     }
 
-    /// True if the number may change within a small range of the state.
+    /// True if the number may vary strongly within a small range of the state.
     pub fn is_sharp(&self) -> bool {
         self.is_sharp
     }
 
-    /// A function of this number with these values, which makes it sharp or not.
+    /// A function of this number with the given values. `makes_sharp`: the function is sharp if its argument varies.
     fn under(self, values: Interval, makes_sharp: bool) -> Self {
         Self {
             values,
@@ -77,9 +79,9 @@ impl Everywhere {
         }
     }
 
-    /// This power, with these values; the exponent is a whole number that is not negative.
+    /// The power with this exponent, a whole number that is not negative; `values` are its values.
     fn raised(self, values: Interval, exponent: f64) -> Self {
-        // NOTE: the conversion saturates.
+        // NOTE: the conversion to `u32` saturates.
         let factors = self.factors.saturating_mul(exponent as u32);
         Self {
             factors,
@@ -89,7 +91,7 @@ impl Everywhere {
         .judged()
     }
 
-    /// The product with these values. Its factors change together.
+    /// The product, with the given values. Numbers of factors add up, ratios multiply.
     fn multiplied(self, other: Self, values: Interval) -> Self {
         Self {
             factors: self.factors.saturating_add(other.factors),
@@ -99,7 +101,7 @@ impl Everywhere {
         .judged()
     }
 
-    /// The same number as a divisor, or as the base of a power with this exponent.
+    /// The same number as a divisor (exponent 1), or as the base of a power with this exponent.
     fn as_base(self, exponent: f64) -> Self {
         let (least, most) = (self.values.mignitude(), self.values.magnitude());
         let ratio = match self.values.excludes_zero() {
@@ -116,13 +118,13 @@ impl Everywhere {
         .judged()
     }
 
-    /// Sharp if it has many factors, or if they change much.
+    /// Marks the number as sharp if it has too many factors or too large a ratio.
     fn judged(self) -> Self {
         let is_steady = self.ratio <= MOST_RATIO && self.factors <= MOST_FACTORS;
         self.under(self.values, !is_steady)
     }
 
-    /// A function of two numbers with these values, which is as sharp as the sharper of the two.
+    /// A function of two numbers, with the given values. It is sharp if one of them is.
     fn joined(self, other: Self, values: Interval) -> Self {
         Self {
             values,
@@ -180,7 +182,7 @@ impl Numbers for Everywhere {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A number inside. It says nothing about the others.
+    /// One number of the interval. It does not bound the others.
     fn lane(&self, lane: usize) -> f64 {
         self.values.lane(lane)
     }
@@ -210,7 +212,7 @@ impl Numbers for Everywhere {
         larger.under(larger.values, true)
     }
 
-    /// Jumps where the sign may change.
+    /// The result jumps where the sign may change.
     fn turned(self, sign: Self) -> Self {
         let turned = self.joined(sign, self.values.turned(sign.values));
         turned.under(turned.values, sign.values.is_below_zero().is_none())
@@ -242,7 +244,8 @@ impl Numbers for Everywhere {
     crate::functions_of_one_number!(functions_at_all_states);
 }
 
-/// Sines and cosines change everywhere, so that every step sees it; other functions may be flat but for a place.
+/// Sines and cosines vary at every state, so every step samples the variation. Other functions may be flat except in a
+/// small region.
 const SEEN_EVERYWHERE: [&str; 2] = ["sin", "cos"];
 
 macro_rules! functions_at_all_states {

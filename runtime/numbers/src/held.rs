@@ -1,13 +1,13 @@
-//! Values that constants refer to, and that forms loaded at run time own.
+//! References to constants, or owned values of forms loaded at run time.
 //!
-//! This is the only file of the runtime that names an owner on the heap. It does so with the feature `std`; nothing in
-//! runtime and numbers makes one.
+//! This is the only file of the runtime that names an owner on the heap, with the feature `std` only. Nothing in
+//! runtime and numbers creates one.
 
 use core::fmt;
 use core::ops::Deref;
 
-/// A value that lives as long as the program, or one that is owned and freed with its owner.
-// NOTE: the pointer stands at the same place in both, so that a dereference is one load.
+/// A reference to a constant, or an owned value that is freed with its owner.
+// NOTE: the pointer is at the same offset in both variants, so that a dereference is one load.
 pub enum Held<T: ?Sized + 'static> {
     /// A constant.
     Static(&'static T),
@@ -27,13 +27,13 @@ impl<T: ?Sized> Held<T> {
         }
     }
 
-    /// The value of a constant once more.
+    /// Another reference to the value of a constant.
     pub const fn again(&'static self) -> Self {
         Self::Static(self.value())
     }
 }
 
-// NOTE: beside those of the slice, as constants may not dereference.
+// NOTE: these repeat methods of slices, because constants cannot use `Deref`.
 impl<T> Held<[T]> {
     /// Number of elements.
     pub const fn len(&self) -> usize {
@@ -95,7 +95,7 @@ impl<T: ?Sized + PartialEq> PartialEq for Held<T> {
     }
 }
 
-/// A value that lives as long as the program, or one that is freed with the last of its owners.
+/// A reference to a constant, or a value that is freed with the last of its owners.
 pub enum Shared<T: 'static> {
     /// A constant.
     Static(&'static T),

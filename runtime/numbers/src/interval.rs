@@ -1,9 +1,9 @@
 //! Closed intervals of doubles that contain every value of the quantity they enclose.
 //!
 //! Sums, products, quotients and square roots of doubles are correctly rounded, so that one unit in the last place
-//! outwards encloses them. Elementary functions are those of `libm` on every machine, whose error is below two units in
-//! the last place; they are widened by four units. Endpoints may be infinite, and are never NaN: a quantity that may have
-//! no value is [`Interval::WHOLE`].
+//! outwards encloses them. Elementary functions are those of `libm` on every machine. Their error is below two units in
+//! the last place, and they are widened by four units. Ends may be infinite, and are never NaN: a quantity that may
+//! have no value is [`Interval::WHOLE`].
 //!
 //! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapters 2 and 5.
 
@@ -13,13 +13,14 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use crate::math;
 use crate::numbers::Numbers;
 
-/// Unit in the last place of 1: at least the unit in the last place of any number, as a part of it.
+/// Unit in the last place of 1. For every normal number it bounds the ratio of its unit in the last place to the
+/// number.
 const ULP: f64 = f64::EPSILON;
 
 /// Relative widening of an elementary function's value: at least four units in the last place.
 const CALL: f64 = 4.0 * ULP;
 
-/// Arguments of sine and cosine beyond this size have the range `[-1, 1]`.
+/// Arguments of sine and cosine beyond this magnitude have the range `[-1, 1]`.
 const FAR: f64 = 1e9;
 
 /// All numbers from `lo` to `hi`.
@@ -49,7 +50,7 @@ impl Interval {
         hi: f64::INFINITY,
     };
 
-    /// From one number to another that is not less.
+    /// The interval from `lo` to `hi`. `lo` must not exceed `hi`.
     #[inline(always)]
     pub const fn new(lo: f64, hi: f64) -> Self {
         Self { lo, hi }
@@ -67,14 +68,14 @@ impl Interval {
         Self::new(a.min(b), a.max(b))
     }
 
-    /// The smallest interval that contains both.
+    /// The smallest interval that contains both intervals.
     #[must_use]
     #[inline(always)]
     pub fn hull(self, other: Self) -> Self {
         Self::new(self.lo.min(other.lo), self.hi.max(other.hi))
     }
 
-    /// Numbers that are in both intervals, if there are any.
+    /// The numbers that are in both intervals; `None` if there are none.
     #[must_use]
     #[inline(always)]
     pub fn intersection(self, other: Self) -> Option<Self> {
@@ -82,13 +83,13 @@ impl Interval {
         (lo <= hi).then_some(Self::new(lo, hi))
     }
 
-    /// True if 0 is outside.
+    /// True if 0 is not in the interval.
     #[inline(always)]
     pub fn excludes_zero(self) -> bool {
         self.lo > 0.0 || self.hi < 0.0
     }
 
-    /// True if the whole of another interval is inside.
+    /// True if all of `other` is in this interval.
     #[inline(always)]
     pub fn contains(self, other: Self) -> bool {
         self.lo <= other.lo && other.hi <= self.hi
@@ -114,7 +115,7 @@ impl Interval {
         self.hi - self.lo
     }
 
-    /// A number inside, in the middle up to rounding; 0 for an interval without ends.
+    /// A number in the interval, the middle up to rounding; 0 or the end nearest to it if an end is infinite.
     #[inline(always)]
     pub fn middle(self) -> f64 {
         let middle = 0.5 * self.lo + 0.5 * self.hi;
@@ -124,39 +125,39 @@ impl Interval {
         }
     }
 
-    /// Every number that is at most `radius` away from one of these.
+    /// All numbers with a distance of at most `radius` from the interval.
     #[must_use]
     #[inline(always)]
     pub fn widened(self, radius: f64) -> Self {
         outwards(self.lo - radius, self.hi + radius, ULP)
     }
 
-    /// Half the circumference of the unit circle.
+    /// An enclosure of pi.
     pub const fn pi() -> Self {
         Self::new(PI, PI.next_up())
     }
 
-    /// The range of a function that does not decrease, as `libm` computes it.
+    /// The range of a non-decreasing function that `libm` computes.
     #[must_use]
     #[inline(always)]
     pub fn increasing(self, function: impl Fn(f64) -> f64) -> Self {
         widest(function(self.lo), function(self.hi), CALL)
     }
 
-    /// The part from `lo` to `hi`, which it meets.
+    /// The intersection with `[lo, hi]`, which must not be empty.
     #[must_use]
     #[inline(always)]
     pub fn within(self, lo: f64, hi: f64) -> Self {
         Self::new(self.lo.clamp(lo, hi), self.hi.clamp(lo, hi))
     }
 
-    /// True for [`Interval::WHOLE`]: all real numbers, or perhaps no value.
+    /// True for [`Interval::WHOLE`]: all real numbers, or possibly no value.
     #[inline(always)]
     pub fn is_whole(self) -> bool {
         self.lo == f64::NEG_INFINITY && self.hi == f64::INFINITY
     }
 
-    /// `1 / a`; one-sided at an end that is 0, and [`Interval::WHOLE`] with 0 inside.
+    /// `1 / a`. With 0 as an end the result is infinite on one side; with 0 inside it is [`Interval::WHOLE`].
     #[must_use]
     #[inline(always)]
     pub fn inverse(self) -> Self {
@@ -173,9 +174,9 @@ impl Interval {
         }
     }
 
-    /// A sine with its greatest value at `crest`.
+    /// The range of a sine or cosine with a maximum at `crest`.
     fn wave(self, function: fn(f64) -> f64, crest: f64) -> Self {
-        // A little less than a whole turn: extreme values are counted also where they are near.
+        // The limit is a little less than a turn, because extreme values near the ends count as met.
         let is_short = self.magnitude() <= FAR && self.hi - self.lo <= 6.2;
         if !is_short {
             return Self::new(-1.0, 1.0);
@@ -199,20 +200,20 @@ impl Interval {
     }
 }
 
-/// The interval between two numbers, each moved outwards by `part` of itself.
+/// The interval between two numbers, each moved outwards by the fraction `part` of its magnitude.
 ///
-/// It is enough for sums: where a sum of doubles underflows it is exact.
+/// This suffices for sums, which are exact if they underflow.
 #[inline(always)]
 fn outwards(lo: f64, hi: f64, part: f64) -> Interval {
     let (lo, hi) = (lo - lo.abs() * part, hi + hi.abs() * part);
-    // Not a comparison that NaN passes.
+    // This comparison is false for NaN.
     match lo <= hi {
         true => Interval::new(lo, hi),
         false => Interval::WHOLE,
     }
 }
 
-/// Same as [`outwards`], and by the smallest normal number: more than the loss of a product that underflows.
+/// Same as [`outwards`], plus the smallest normal number, which exceeds the error of a product that underflows.
 #[inline(always)]
 fn widest(lo: f64, hi: f64, part: f64) -> Interval {
     let (lo, hi) = (
@@ -268,7 +269,7 @@ impl Mul for Interval {
         let is_finite = (ends[0] + ends[1] + ends[2] + ends[3]).abs() < f64::INFINITY;
         match is_finite {
             true => {
-                // Products of numbers that are not negative are not negative, in spite of rounding.
+                // Products of non-negative numbers stay non-negative in spite of rounding.
                 let product = widest(lo, hi, ULP);
                 match self.lo >= 0.0 && other.lo >= 0.0 {
                     true => Self::new(product.lo.max(0.0), product.hi),
@@ -280,8 +281,8 @@ impl Mul for Interval {
     }
 }
 
-/// A product with an end that is not finite. An infinite end stands for all large numbers, so that 0 times it is 0.
-/// Nothing is known of a product with a quantity that may have no value.
+/// A product with an infinite end. An infinite end stands for all large numbers, so that its product with 0 is 0. A
+/// product with a quantity that may have no value is the whole line.
 #[cold]
 fn far_product(a: Interval, b: Interval) -> Interval {
     if a.is_whole() || b.is_whole() {
@@ -309,7 +310,7 @@ fn far_product(a: Interval, b: Interval) -> Interval {
         },
     );
     match lo == f64::INFINITY || hi == f64::NEG_INFINITY {
-        // All ends are beyond the doubles.
+        // All end points overflow.
         true => Interval::new(lo.min(f64::MAX), hi.max(f64::MIN)),
         false => Interval::new(lo, hi),
     }
@@ -318,7 +319,7 @@ fn far_product(a: Interval, b: Interval) -> Interval {
 impl Div for Interval {
     type Output = Self;
 
-    // A quotient is the product with the inverse.
+    // The quotient is the product with the inverse.
     #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline(always)]
     fn div(self, other: Self) -> Self {
@@ -356,7 +357,7 @@ impl Numbers for Interval {
         Self::of(of_lane(0))
     }
 
-    /// A number inside. It says nothing about the rest of the interval.
+    /// A number in the interval. It tells nothing about the other numbers.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.middle()
@@ -418,7 +419,7 @@ impl Numbers for Interval {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
-    /// Anything where the sign changes: no series exists across a kink.
+    /// The whole line if `sign` may have either sign, because no series exists across a kink.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.lo < 0.0, sign.hi < 0.0) {
@@ -438,7 +439,7 @@ impl Numbers for Interval {
                 false => Self::new(-Self::pi().hi, Self::pi().hi),
             };
         }
-        // Monotone in each argument along each edge: the extremes are at corners.
+        // The angle is monotone in each argument along each edge, so that its extremes are at corners.
         let corners = [
             (self.lo, x.lo),
             (self.lo, x.hi),
@@ -550,10 +551,10 @@ impl Numbers for Interval {
 }
 
 impl Interval {
-    /// The power with an exponent that is less by 1, which the derivative of a power needs.
+    /// The power with the exponent `exponent - 1`, for derivatives of powers.
     #[inline]
     pub(crate) fn powf_below(self, exponent: f64) -> Self {
-        // The exponent is rounded: the power changes by at most its logarithm times that, less than `746 u`.
+        // Rounding of the exponent changes the power by the fraction `u` of its logarithm, less than `746 u`.
         const SLACK: f64 = 1e-12;
         let power = self.powf(exponent - 1.0);
         power * Self::new(1.0 - SLACK, 1.0 + SLACK)
@@ -588,14 +589,14 @@ pub(crate) mod tests {
         domain: [f64; 2],
     }
 
-    /// Two ends of a path.
+    /// Start and end of a path.
     pub(crate) struct Sample {
         pub(crate) from: f64,
         pub(crate) to: f64,
     }
 
     impl Enclosed {
-        /// Stretches of its domain, both ways, from points to all of it.
+        /// Paths in its domain in both directions, from single points to all of it.
         pub(crate) fn stretches(&self) -> impl Iterator<Item = Sample> + '_ {
             let [lo, hi] = self.domain;
             (0..=24).flat_map(move |start| {
@@ -628,7 +629,7 @@ pub(crate) mod tests {
         };
     }
 
-    /// A constant as a number of the same type as its neighbour.
+    /// A constant of the same type as the first argument.
     fn like<L: Numbers>(_: L, number: f64) -> L {
         L::of(number)
     }

@@ -1,7 +1,7 @@
 //! Impact laws: the size of the impulse along `pi_D^* dh`, or the reset of the state.
 //!
-//! Every law but `reset` is `p+ = p + eps pi_D^* dh`, a choice of `eps`. With `G` the gap rate
-//! `dh(qdot) + d_t h`, `rho = dh(pi_D grad h) / dh(grad h)`:
+//! Every law but `reset`, `stop` and transitions is `p+ = p + eps pi_D^* dh` with some `eps`. Let `G` be the gap rate
+//! `dh(qdot) + d_t h`, and `rho = dh(pi_D grad h) / dh(grad h)`:
 //!
 //! | law | eps |
 //! |---|---|
@@ -21,9 +21,9 @@ use crate::numbers::Numbers;
 /// An impact law of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
-    /// Keeps the energy at walls that stand still.
+    /// Keeps the energy at walls at rest.
     Elastic,
-    /// `1 + e` for the elastic law's 2; `e` in \[0, 1\].
+    /// The elastic law with `1 + e` in place of 2; `e` in \[0, 1\].
     Restitution(f64),
     /// Multiplies the gap rate by `-e`; `e` in \[0, 1\].
     Newton(f64),
@@ -33,12 +33,12 @@ pub enum Law {
     ImpactPlastic,
     /// The gap rate is multiplied by `1 - rho`.
     TotallyPlastic,
-    /// The declared map of positions and velocities. No side of the surface is forbidden: where the map leaves the gap
-    /// falling, the surface is crossed.
+    /// The declared map of positions and velocities. No side of the surface is forbidden: the motion crosses the
+    /// surface where the gap still decreases after the map.
     Reset,
-    /// Ends the run as the motion reaches the surface.
+    /// Ends the run when the motion reaches the surface.
     Stop,
-    /// The surface leads to another mode: the state becomes a state of that mode. Cannot be chosen.
+    /// The surface leads to another mode: the state becomes a state of that mode. Users cannot select this law.
     Transition,
 }
 
@@ -53,7 +53,7 @@ impl Law {
         !self.is_map() && !matches!(self, Self::Stop)
     }
 
-    /// The laws by their names in the language and on the command line; true for those with a coefficient.
+    /// The names of the laws in the language and on the command line. True for laws with a coefficient.
     pub const NAMES: [(&'static str, bool); 8] = [
         ("elastic", false),
         ("restitution", true),
@@ -80,8 +80,8 @@ impl Law {
         }
     }
 
-    /// Change of the gap rate by the law, with `e` for its coefficient and the numbers of a contact in their order; NaN for laws without an
-    /// impulse.
+    /// Amount that the law subtracts from the gap rate; NaN for laws without an impulse. `e`: the coefficient of the
+    /// law. `scalars`: the first five numbers of a contact, in order.
     #[inline(always)]
     pub fn taken<L: Numbers>(self, e: L, scalars: &[L; 5]) -> L {
         let [gap_rate, constrained_rate, surface_rate, constrained, free] = *scalars;
@@ -98,8 +98,8 @@ impl Law {
         }
     }
 
-    /// Adds the impulse of the law to the numbers that hold the motion, with `e` for its coefficient; `collision` holds the
-    /// numbers of a contact in its order and the direction of the impulse behind them.
+    /// Adds the impulse of the law to `motion`, the momenta or quasi-velocities. `e`: the coefficient of the law.
+    /// `collision`: the five numbers of a contact in order, followed by the direction of the impulse.
     pub fn strike<L: Numbers>(self, e: L, collision: &[L], motion: &mut [L]) {
         let (scalars, direction) = collision.split_at(5);
         let scalars = core::array::from_fn(|i| scalars[i]);
@@ -125,7 +125,7 @@ impl Law {
         }
     }
 
-    /// The law of this name; `coefficient` is used by those that take one. `None` for an unknown name.
+    /// The law with this name; `None` for an unknown name. `coefficient` is ignored by laws without one.
     pub fn from_name(name: &str, coefficient: f64) -> Option<Self> {
         Some(match name {
             "elastic" => Self::Elastic,
@@ -154,7 +154,7 @@ impl fmt::Display for Law {
 mod tests {
     use super::*;
 
-    /// Every law in order. A new law does not compile here without its place.
+    /// The next law in order. The match is exhaustive, so a new law needs a place here.
     fn following(law: Law) -> Option<Law> {
         match law {
             Law::Elastic => Some(Law::Restitution(0.25)),

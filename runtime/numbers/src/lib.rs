@@ -1,23 +1,23 @@
-//! Numbers, names and tables that generator and runtime share: the numbers of generated kernels, the names of kernels, and
-//! the tables of a model.
+//! Definitions shared by generator and runtime: the numbers of generated kernels, the names of kernels, and the tables
+//! of a model.
 //!
 //! | file | job |
 //! |---|---|
-//! | `numbers.rs` | the contract: one number, or one of each of several lanes |
+//! | `numbers.rs` | the contract: one number, or one number in each of several lanes |
 //! | `math.rs` | elementary functions of doubles, from the configured source |
 //! | `lanes.rs` | vectors of eight doubles, with the feature `lanes` |
 //! | `interval.rs` | intervals that contain every value, rounded outwards |
 //! | `smooth.rs` | functions with their derivatives, for numbers that carry derivatives |
-//! | `rated.rs` | intervals of values and of rates along a stretch of motion |
-//! | `everywhere.rs` | all values of a number, and whether it can be sharp |
-//! | `bent.rs` | intervals of values, rates and bends along lines through a box |
+//! | `rated.rs` | intervals of values and of rates along a part of the motion |
+//! | `everywhere.rs` | intervals of values at all states, with a flag for sharp variation |
+//! | `bent.rs` | intervals of values, first and second derivatives along lines through a box |
 //! | `complex_interval.rs` | rectangles of complex numbers about the real axis, which bound power series |
-//! | `taylor_model.rs` | cubics along a stretch of motion, with bounds of the distance of values and rates from them |
+//! | `taylor_model.rs` | cubics along a part of the motion, with bounds of the error of values and rates |
 //! | `tables.rs` | data of a form of a model besides its functions |
 //! | `description.rs` | self-description of a model |
 //! | `law.rs`, `assumption.rs` | laws of impacts, conditions on parameters |
-//! | `held.rs` | values that are constants, or owned |
-//! | `kernel.rs` | the functions of a model by name, on which generator and runtime agree |
+//! | `held.rs` | constants, or owned values |
+//! | `kernel.rs` | the names of a model's functions, shared by generator and runtime |
 //! | `extended/` | sums of a few doubles: arithmetic, elementary functions, decimal text |
 
 #![cfg_attr(not(feature = "std"), no_std)]

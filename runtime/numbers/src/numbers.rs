@@ -1,7 +1,8 @@
-//! Numbers in which Taylor series are computed: one number, or several side by side.
+//! The numbers of kernels and Taylor series: one number, or several in SIMD lanes.
 //!
-//! Generated series are written once, over [`Numbers`]. With `f64` they are the series of one motion. With several lanes
-//! they are the series of as many motions at once; every lane has the bits that `f64` has, independent of the others.
+//! Generated series are written once, over [`Numbers`]. With `f64` they are the series of one motion. With several
+//! lanes they are the series of one motion in each lane. Every lane has the same bits as `f64`, independent of the
+//! others.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -15,7 +16,7 @@ pub use crate::interval::Interval;
 pub use crate::rated::Rated;
 pub use crate::taylor_model::TaylorModel;
 
-/// The circle constant, as [`Numbers::constant`] takes it.
+/// Pi in four parts, for [`Numbers::constant`].
 pub const PI: [f64; 4] = [
     core::f64::consts::PI,
     1.2246467991473532e-16,
@@ -23,10 +24,10 @@ pub const PI: [f64; 4] = [
     1.1124542208633653e-49,
 ];
 
-/// Coefficients that a series may have: orders 0 to 32.
+/// Number of coefficients of a series: orders 0 to 32.
 pub const LENGTH: usize = 33;
 
-/// `1 / k`; 0 at 0.
+/// `1 / k` for each `k`; 0 for `k = 0`.
 pub const INVERSES: [f64; LENGTH] = {
     let mut inverses = [0.0; LENGTH];
     let mut k = 1;
@@ -37,7 +38,7 @@ pub const INVERSES: [f64; LENGTH] = {
     inverses
 };
 
-/// One number, or one of each of several lanes.
+/// One number, or one number in each of several lanes.
 ///
 /// # Examples
 ///
@@ -75,8 +76,8 @@ pub trait Numbers:
     /// The same number in every lane.
     fn of(number: f64) -> Self;
 
-    /// The constant that is the sum of these numbers, each the nearest to the remainder after those before it. Numbers of
-    /// double precision use the first alone.
+    /// The sum of `parts` as a constant. Each part must be the double nearest to the sum of itself and all later parts.
+    /// Kinds of double precision use the first part only.
     #[inline(always)]
     fn constant(parts: [f64; 4]) -> Self {
         Self::of(parts[0])
@@ -88,13 +89,13 @@ pub trait Numbers:
         Self::of(INVERSES[k])
     }
 
-    /// The number that `of_lane` gives for each lane.
+    /// The number with the value `of_lane(lane)` in each lane.
     fn gathered(of_lane: impl FnMut(usize) -> f64) -> Self;
 
-    /// The number of a lane.
+    /// The value in a lane.
     fn lane(&self, lane: usize) -> f64;
 
-    /// True if the number is below 0, false if it is not; `None` unless that is the same in all lanes and certain.
+    /// True if the number is below 0, false if it is not; `None` if lanes differ, or if the sign is uncertain.
     fn is_below_zero(&self) -> Option<bool>;
 
     /// `self b + c`, rounded as [`math::mul_add`] does.
@@ -109,7 +110,7 @@ pub trait Numbers:
     #[must_use]
     fn abs(self) -> Self;
 
-    /// The larger of two.
+    /// The larger of two numbers.
     #[must_use]
     fn max(self, other: Self) -> Self;
 
@@ -126,11 +127,11 @@ pub trait Numbers:
         self * self
     }
 
-    /// `x` with its sign turned where `sign` is negative.
+    /// `self`, negated where `sign` is negative.
     #[must_use]
     fn turned(self, sign: Self) -> Self;
 
-    /// The angle of `(x, y)`, with `self` for `y`.
+    /// The polar angle of the point `(x, self)`.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
 
@@ -138,7 +139,7 @@ pub trait Numbers:
     #[must_use]
     fn powf(self, exponent: f64) -> Self;
 
-    /// The power with a constant exponent that is no double.
+    /// The power with a constant exponent that is not a double.
     #[must_use]
     fn power(self, exponent: Self) -> Self;
 
@@ -191,8 +192,8 @@ pub trait Numbers:
     fn asinh(self) -> Self;
 }
 
-/// Hands the functions of one number to a macro, by their names in [`Numbers`]. Kinds of numbers that define all of them
-/// by one rule use this macro.
+/// Passes the names of the functions of one number to a macro, as in [`Numbers`]. Kinds of numbers that define all of
+/// them by one rule use this macro.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! functions_of_one_number {
@@ -201,8 +202,9 @@ macro_rules! functions_of_one_number {
     };
 }
 
-/// The functions of [`Numbers`] applied to every lane by itself, for numbers whose lanes are doubles.
-// NOTE: these are no defaults of the trait: a kind of number without one of them would silently compute it in the doubles of its lanes.
+/// The functions of [`Numbers`] applied lane by lane, for numbers whose lanes are doubles.
+// NOTE: these are no defaults of the trait. A kind of number without one of them would silently compute it in double
+// precision.
 macro_rules! functions_of_lanes {
     () => {
         #[inline(always)]
@@ -239,7 +241,7 @@ macro_rules! functions_of_lanes {
 }
 pub(crate) use functions_of_lanes;
 
-/// Functions of [`Numbers`] for kinds whose constants are intervals that do not change: `steady(interval)`.
+/// Functions of [`Numbers`] for kinds whose constants are intervals. `steady(interval)` makes a constant.
 macro_rules! constants_of_intervals {
     () => {
         #[inline(always)]
@@ -318,7 +320,7 @@ impl Numbers for f64 {
     functions_of_lanes!();
 }
 
-/// [`Numbers`] in a row on the stack. Implemented by arrays, whose number of entries is part of their type.
+/// A fixed or variable number of [`Numbers`] on the stack. Arrays implement it; their length is part of the type.
 ///
 /// # Examples
 ///
@@ -329,23 +331,23 @@ impl Numbers for f64 {
 /// assert_eq!(Row::<f64>::as_slice(&row), [0.0; 3]);
 /// ```
 pub trait Row<L>: Copy + Debug + Send + Sync + 'static {
-    /// The largest number of entries; of a row of fixed length, their number.
+    /// Largest number of entries. For a row of fixed length, the number of entries.
     const CAPACITY: usize;
 
-    /// A row of `count` zeros. Where the type fixes the number of entries, `count` is ignored.
+    /// A row of `count` zeros. If the type fixes the length, `count` is ignored.
     fn zeros(count: usize) -> Self;
 
-    /// The row of as many zeros.
+    /// A row of zeros with the same length.
     #[must_use]
     #[inline(always)]
     fn zeroed(&self) -> Self {
         Self::zeros(self.as_slice().len())
     }
 
-    /// All of them, in order.
+    /// All entries, in order.
     fn as_slice(&self) -> &[L];
 
-    /// All of them, in order, to be written.
+    /// All entries, in order, for writing.
     fn as_mut_slice(&mut self) -> &mut [L];
 }
 

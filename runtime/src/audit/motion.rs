@@ -10,8 +10,8 @@ use crate::numbers::{Interval, Rated};
 use crate::record::Segment;
 use crate::state::StateVector;
 
-/// Rounding of a state from the dense output, relative to the sum of the absolute values of its terms: the integrator
-/// evaluates the polynomial in nested form, the enclosure uses its coefficients in powers.
+/// Rounding error of a state from the dense output, relative to the sum of the absolute values of its terms. The
+/// integrator evaluates the polynomial in nested form; the enclosure uses its coefficients in powers.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The dense output of a step.
@@ -21,7 +21,7 @@ pub(super) struct Motion<S> {
     length: f64,
     coefficients: [S; LENGTH],
     order: usize,
-    /// Rounding of each component, and of its rate.
+    /// Rounding errors of each component, and of its rate.
     doubts: [S; 2],
 }
 
@@ -37,7 +37,7 @@ impl<S: StateVector> Motion<S> {
         }
     }
 
-    /// Sets the step from which a stretch of motion is cut.
+    /// Sets the step.
     ///
     /// # Errors
     /// The [`Fault`] of the dense output.
@@ -54,7 +54,7 @@ impl<S: StateVector> Motion<S> {
         Ok(())
     }
 
-    /// Rounding of component `i`.
+    /// Rounding error of component `i`.
     pub(super) fn doubt(&self, i: usize) -> f64 {
         self.doubts[0].as_slice()[i]
     }
@@ -93,8 +93,8 @@ impl<S: StateVector> Motion<S> {
         value.widened(self.doubts[0].as_slice()[i])
     }
 
-    /// Enclosure of component `i` on a part of the step, and of its derivative by the fraction; at a single point,
-    /// without derivatives.
+    /// Enclosure of component `i` on a part of the step, and of its derivative by the fraction of the step. On a single
+    /// point the derivative is 0.
     pub(super) fn component(&self, i: usize, [from, to]: [f64; 2]) -> Rated {
         if from == to {
             return Rated::steady(self.component_at(i, from));

@@ -10,10 +10,10 @@ const DEPTH: u32 = 44;
 /// Maximum number of pieces of a step.
 const PIECES: u32 = 1 << 14;
 
-/// Relative amount by which rounding may move the arguments of conditions.
+/// Relative rounding error assumed for the arguments of conditions.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// Fractions of a piece at which conditions without enclosure are sampled.
+/// Fractions of a piece at which conditions without an enclosure are sampled.
 const SAMPLES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// One gap along a step.
@@ -21,13 +21,13 @@ pub(super) struct Scan<'a, Sys: Impacting> {
     pub(super) system: &'a Sys,
     pub(super) motion: &'a Motion<Sys::State>,
     pub(super) surface: usize,
-    /// True if the gap may be negative: only crossings from positive to negative count then.
+    /// True if the gap may be negative: then only crossings from positive to negative count.
     pub(super) is_passable: bool,
-    /// Size of negative gaps that rounding errors of the earlier motion allow.
+    /// Largest negative gap that the rounding errors of the earlier motion can cause.
     pub(super) slack: f64,
 }
 
-/// The sign of a gap on a piece, beyond its rounding.
+/// The sign of a gap on a piece, outside of the band of its rounding error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Sign {
     Positive,
@@ -36,7 +36,8 @@ enum Sign {
     Unclear,
 }
 
-/// Rounding of a gap with these values at one state: twice the effect of the rounding of the state.
+/// Rounding error of a gap, from its enclosure at one state: twice the width, which is the effect of the rounding of
+/// the state.
 pub(super) fn floor(gap: Interval) -> f64 {
     2.0 * gap.width()
 }
@@ -64,10 +65,10 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         self.along([part, part]).value
     }
 
-    /// Shows that the surface is not met from the start of the step up to the fraction `part` of it.
+    /// Proves that the gap does not fall through 0 between the start of the step and the fraction `part` of it.
     ///
     /// # Errors
-    /// The first fraction at which it may be met.
+    /// The smallest fraction at which the gap may fall.
     pub(super) fn exclude_falls(&self, part: f64) -> Result<(), f64> {
         let start = self.at(0.0);
         let mut is_above = start.lo > self.slack.max(floor(start));
@@ -105,10 +106,11 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         Err(piece(part, index, depth)[0])
     }
 
-    /// The sign on a piece, from all values there and from the values at both ends with all rates between.
+    /// The sign on a piece, from the enclosure on the piece and from those at both ends, extended by the enclosure of
+    /// the rate.
     fn sign(&self, [from, to]: [f64; 2]) -> Sign {
         let Rated { value, rate } = self.along([from, to]);
-        // The distance from a wall does not matter while it is positive.
+        // For an impassable surface a positive gap suffices, however small it is.
         if value.lo > 0.0 && !self.is_passable {
             return Sign::NotNegative;
         }
@@ -126,8 +128,8 @@ impl<Sys: Impacting> Scan<'_, Sys> {
         }
     }
 
-    /// True if the surface counts on a piece by more than rounding; `None` if that is not certain. Conditions without
-    /// enclosure are sampled.
+    /// True if the surface counts somewhere on a piece in spite of rounding errors; `None` if that is not certain.
+    /// Conditions without an enclosure are sampled.
     fn counts_on(&self, piece: [f64; 2]) -> Option<bool> {
         if !self.system.has_conditions(self.surface) {
             return Some(self.counts_at_samples(piece));

@@ -1,6 +1,6 @@
 //! Gaps of all surfaces along a step of certified motion.
 //!
-//! A step is passed in parts. On each part the states and their rates are enclosed, and with them the values and
+//! A step is divided into parts. On each part the states and their rates are enclosed, and with them the values and
 //! rates of every gap. A surface is certainly not met in a part in which its gap is positive, in which it does not
 //! count, or in which its gap rises from a surface just left. A passable surface is met from above only.
 
@@ -41,7 +41,7 @@ pub(super) struct Part<S> {
     pub(super) times: Interval,
     pub(super) states: Bounds<S>,
     pub(super) rates: Bounds<S>,
-    /// Time and states in the middle, and the range of times relative to it.
+    /// Time and states in the middle of the part, and the range of times relative to the middle.
     middle: (Interval, Bounds<S>, Interval),
 }
 
@@ -55,7 +55,8 @@ pub(super) struct Course<'f, 'a, Sys: Variational> {
 }
 
 impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
-    /// Motions from a box at these times, in a tube that contains them for `units` of time, at most 1.
+    /// Motions from the box `from` at the times `start`. The tube must contain them for `unit`. The series has degree
+    /// `order`.
     pub(super) fn new(
         field: &'f Field<'a, Sys>,
         from: &Bounds<Sys::State>,
@@ -75,12 +76,12 @@ impl<'f, 'a, Sys: Variational> Course<'f, 'a, Sys> {
         })
     }
 
-    /// Enclosure of the times after these units of time.
+    /// Enclosure of the times after `units` units of time.
     pub(super) fn times(&self, units: Interval) -> Interval {
         self.start + self.unit * units
     }
 
-    /// Enclosure of the states after these units of time.
+    /// Enclosure of the states after `units` units of time.
     pub(super) fn at(&self, units: Interval) -> Bounds<Sys::State> {
         bounds(self.arc.at(units).as_slice())
     }

@@ -7,8 +7,8 @@
 //! y(t + h) is in  sum_(k<p) h^k c_k(y)  +  h^p c_p(B)  +  J(Y) (Y - y)
 //! ```
 //!
-//! with the Taylor coefficients `c_k` of the motion over intervals, and `J` the derivative of the sum by the start,
-//! over all of `Y`.
+//! with the Taylor coefficients `c_k` of the motion over intervals. `J(Y)` encloses, over all of `Y`, the derivative of
+//! the sum with respect to the initial state.
 
 use super::frame::{BLOCKS, Bounds, Frame, Matrix, Turned};
 use super::lost::{Lost, Reason};
@@ -21,26 +21,26 @@ use crate::math;
 use crate::numbers::{Interval, Numbers, Row};
 use crate::state::StateVector;
 
-/// Order of the series: remainders decrease with its powers, work grows with its square.
+/// Order of the series. The remainder falls with `h^ORDER`, the work grows with `ORDER^2`.
 pub(super) const ORDER: usize = 18;
 
 const _: () = assert!(ORDER < LENGTH);
 
-/// Default size of a step's remainder, relative to the state.
+/// Default size of the remainder of a step, relative to the state.
 const REMAINDER: f64 = f64::EPSILON;
 
 /// Allowed size of the remainder relative to the width of the box.
 const SHARE: f64 = 1.0 / 1024.0;
 
-/// Factors between a step and the next.
+/// Limits of the factor between the lengths of consecutive steps, and the safety factor of the step-size control.
 const GROW: f64 = 2.0;
 const SHRINK: f64 = 0.5;
 const SAFETY: f64 = 0.9;
 
-/// The centre at the end of a step.
+/// The image of the frame's centre at the end of a step.
 struct Moved<S> {
     bounds: Bounds<S>,
-    /// The largest remainder divided by the allowed one.
+    /// Largest ratio of a component's remainder to the allowed remainder.
     excess: f64,
 }
 
@@ -56,13 +56,13 @@ pub(super) struct Step<Sys: Variational> {
     next: f64,
 }
 
-/// A box of states that is propagated through time: encloses the states of all its motions.
+/// Certified integration of a box of initial states: encloses the states of all motions that start in the box.
 pub struct CertifiedFlow<'a, Sys: Variational> {
     pub(super) field: Field<'a, Sys>,
     pub(super) t: f64,
     pub(super) frame: Frame<Sys>,
     remainder: f64,
-    /// Length of the next trial; `None` before the first step.
+    /// Length of the next trial step; `None` before the first step.
     next: Option<f64>,
     steps: u64,
 }
@@ -93,7 +93,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         }
     }
 
-    /// Sets the remainder of a step to about this positive fraction of the state: larger values give longer steps and
+    /// Sets the allowed remainder of a step, as a positive fraction of the state. Larger values give longer steps and
     /// wider enclosures.
     #[must_use]
     pub fn with_remainder(mut self, part: f64) -> Self {
@@ -129,7 +129,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         self.frame.hull().width()
     }
 
-    /// Enclosures of the present positions and velocities: coordinate `i` with its rate.
+    /// Enclosures of the positions and velocities at the present time; entry `i` belongs to coordinate `i`.
     ///
     /// # Errors
     /// A [`Fault`] where a velocity may not exist.
@@ -145,7 +145,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
     /// Propagates the box to the time `t_end`.
     ///
     /// # Errors
-    /// [`Lost`] if no box is found that contains the motion; the state is then that at the time of the loss.
+    /// [`Lost`] if no box is found that contains the motion. The flow then keeps the state at the time of the loss.
     pub fn run(&mut self, t_end: f64) -> Result<(), Lost> {
         while self.t < t_end {
             let step = self.prepare(t_end)?;
@@ -194,7 +194,7 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
                         length,
                         tube,
                         frame,
-                        // A step that was cut gives no information on longer ones.
+                        // A step shortened to end at `t_end` does not limit the next one.
                         next: if is_cut { wished.max(longest) } else { longest },
                     });
                 }
@@ -203,18 +203,18 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         }
     }
 
-    /// Makes a step prepared from the present state.
+    /// Applies a step that was prepared from the present state.
     pub(super) fn make(&mut self, step: &Step<Sys>) {
         (self.frame, self.t, self.next) = (step.frame, step.later, Some(step.next));
         self.steps += 1;
     }
 
-    /// Replaces time and states; the time is later.
+    /// Replaces time and set of states, for example after an impact. `t` is not before the present time.
     pub(super) fn jump(&mut self, t: f64, frame: Frame<Sys>) {
         (self.frame, self.t) = (frame, t);
     }
 
-    /// The length at which the remainder is small, from the coefficients at the centre.
+    /// The step length at which the remainder has the allowed size, from the last two coefficients at the centre.
     fn reach(&self) -> Option<f64> {
         let point = Bounds::point(&self.frame.centre);
         let (now, unit) = (Interval::point(self.t), Interval::point(1.0));
@@ -232,15 +232,15 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         (reach > 0.0).then_some(reach)
     }
 
-    /// A box that contains every motion from the hull until the end of a step.
+    /// A box that contains every motion that starts in the hull, until the end of a step.
     fn tube(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Bounds<Sys::State>> {
         let during = Interval::new(0.0, length.hi);
         let times = Interval::point(self.t) + during;
         self.field.tube(hull, times, during)
     }
 
-    /// The centre at the end of a step, with the remainder. The allowed remainder is the rounding of the state, or a
-    /// small fraction of the width of the box.
+    /// The image of the centre at the end of a step, with the remainder. The allowed remainder is the rounding of the
+    /// state plus a small fraction of the width of the box.
     fn moved(&self, tube: &Bounds<Sys::State>, length: Interval) -> Option<Moved<Sys::State>> {
         let now = Interval::point(self.t);
         let point = Bounds::point(&self.frame.centre);
@@ -262,7 +262,8 @@ impl<'a, Sys: Variational> CertifiedFlow<'a, Sys> {
         bounds.is_finite().then_some(Moved { bounds, excess })
     }
 
-    /// Enclosures of the derivatives of a step's sum by its start, over the hull, along the axes of the frame.
+    /// Enclosures, over the hull, of the derivatives of a step's Taylor sum with respect to the initial state, along the axes of the
+    /// frame.
     fn turned(&self, hull: &Bounds<Sys::State>, length: Interval) -> Option<Turned<Sys>> {
         let now = Interval::point(self.t);
         let n = hull.count();

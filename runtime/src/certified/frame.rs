@@ -1,16 +1,16 @@
-//! A set of states `centre + C r_0 + Q r`: a box `r_0` whose axes `C` are propagated with the motion, and a box `r`
-//! in a frame `Q` that is orthonormal up to rounding.
+//! A set of states `centre + C r_0 + Q r`. The axes `C` of the box `r_0` are propagated with the motion. The frame `Q`
+//! of the box `r` is orthonormal up to rounding.
 //!
-//! The first box is the set at an earlier time, mapped without loss. The second one contains the errors that steps
-//! add, and is rotated (QR) against the wrapping effect. When it becomes as large as the first, both are joined into
-//! one.
+//! The first box is the image of an earlier set and takes up no errors. The second one takes up the errors of the
+//! steps; its frame is rotated by QR against the wrapping effect. When the second box becomes as large as the first,
+//! both are joined into one.
 
 use crate::contract::{Variational, VectorField};
 use crate::math;
 use crate::numbers::{Interval, Numbers};
 use crate::state::{StateVector, scaled};
 
-/// A box given by its bounds.
+/// A box, given by its lower and upper bounds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds<S> {
     pub(super) lo: S,
@@ -49,7 +49,7 @@ impl<S: StateVector> Bounds<S> {
         self.hi.as_mut_slice()[i] = range.hi;
     }
 
-    /// The midpoint.
+    /// The midpoint of the box.
     pub(super) fn middle(&self) -> S {
         let mut middle = self.lo.zeroed();
         for (i, entry) in middle.as_mut_slice().iter_mut().enumerate() {
@@ -166,7 +166,7 @@ impl<Sys: Variational> Matrix<Sys> {
     }
 }
 
-/// A box along axes, which are columns.
+/// A box along given axes, the columns of `axes`.
 struct Block<Sys: Variational> {
     axes: Sys::Columns,
     rest: Bounds<Sys::State>,
@@ -194,7 +194,7 @@ impl<Sys: Variational> Block<Sys> {
         self.axes.as_ref()[..self.rest.count()].iter().enumerate()
     }
 
-    /// Square of half its diagonal, if its edges are orthogonal.
+    /// Square of half the diagonal, if the edges are orthogonal.
     fn size(&self) -> f64 {
         self.axes().fold(0.0, |sum, (k, axis)| {
             let reach = self.rest.at(k).magnitude();
@@ -206,13 +206,13 @@ impl<Sys: Variational> Block<Sys> {
 /// Number of blocks of a frame.
 pub(super) const BLOCKS: usize = 2;
 
-/// Derivatives along all axes of a frame, block by block. Those along axes of extent 0 may be unknown.
+/// Derivatives along all axes of a frame, one matrix per block. Derivatives along axes of extent 0 may be unset.
 pub(super) type Turned<Sys> = [Matrix<Sys>; BLOCKS];
 
-/// One number for each axis of a frame.
+/// One interval for each axis of a frame, for example the derivatives of a scalar function.
 pub(super) type Slopes<Sys> = [Bounds<<Sys as VectorField>::State>; BLOCKS];
 
-/// `centre + C r_0 + Q r`
+/// The set `centre + C r_0 + Q r`; see the module.
 pub(super) struct Frame<Sys: Variational> {
     pub(super) centre: Sys::State,
     blocks: [Block<Sys>; BLOCKS],
@@ -227,7 +227,7 @@ impl<Sys: Variational> Clone for Frame<Sys> {
 impl<Sys: Variational> Copy for Frame<Sys> {}
 
 impl<Sys: Variational> Frame<Sys> {
-    /// A box, in the axes of the state.
+    /// A box along the axes of the state.
     pub(super) fn of(bounds: &Bounds<Sys::State>) -> Self {
         let centre = bounds.middle();
         let n = bounds.count();
@@ -239,7 +239,7 @@ impl<Sys: Variational> Frame<Sys> {
         }
     }
 
-    /// The smallest box found that contains the set.
+    /// A box that contains the set.
     pub(super) fn hull(&self) -> Bounds<Sys::State> {
         Bounds::of(self.centre.count(), |i| {
             let along = |block: usize, k: usize| {
@@ -250,7 +250,7 @@ impl<Sys: Variational> Frame<Sys> {
         })
     }
 
-    /// The axes along which the set has an extent: block, index and axis.
+    /// Block, index and direction of every axis along which the set has an extent.
     pub(super) fn axes(&self) -> impl Iterator<Item = (usize, usize, Bounds<Sys::State>)> + '_ {
         let blocks = self.blocks.iter().enumerate();
         blocks.flat_map(|(b, block)| {
@@ -261,15 +261,16 @@ impl<Sys: Variational> Frame<Sys> {
         })
     }
 
-    /// Enclosure of the difference between a function on the set and its value at the centre, from its derivatives
-    /// along the axes.
+    /// Enclosure of `f(x) - f(centre)` for all `x` in the set. `slopes(block, k)` encloses the derivative of `f` along
+    /// axis `k` of a block.
     pub(super) fn along(&self, slopes: impl Fn(usize, usize) -> Interval) -> Interval {
         self.axes().fold(Interval::ZERO, |sum, (block, k, _)| {
             sum + slopes(block, k) * self.blocks[block].rest.at(k)
         })
     }
 
-    /// Image of the set under the map `centre -> moved`, whose derivatives over the hull lie in `turned`.
+    /// Image of the set under a map that takes the centre into `moved` and whose derivatives over the hull lie in
+    /// `turned`.
     pub(super) fn moved(&self, moved: &Bounds<Sys::State>, turned: &Turned<Sys>) -> Self {
         let (centre, n) = (moved.middle(), moved.count());
         let [first, second] = &self.blocks;
@@ -327,8 +328,8 @@ pub(super) fn product<Sys: Variational>(a: &Matrix<Sys>, b: &Matrix<Sys>) -> Mat
     product
 }
 
-/// Orthonormal axes along the edges of boxes: each along the edge that extends furthest beyond the axes before it
-/// (modified Gram-Schmidt, applied twice).
+/// Orthonormal axes along the edges of boxes. Each axis follows the edge with the largest component orthogonal to the
+/// axes before it (modified Gram-Schmidt, applied twice).
 fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Columns {
     let mut axes = columns::<Sys>(n);
     for j in 0..n {
@@ -342,8 +343,7 @@ fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Colum
                     before.iter().for_each(|axis| remove(axis, &mut edge));
                 }
                 let left = length(&edge);
-                // The remainder of an edge after projection on the other axes may be rounding in an arbitrary
-                // direction.
+                // After projection the remainder of an edge may consist of rounding errors, in an arbitrary direction.
                 if left > longest.0 && left > 1e-12 * whole {
                     longest = (left, edge);
                 }
@@ -358,7 +358,7 @@ fn orthonormal<Sys: Variational>(n: usize, blocks: &[&Block<Sys>]) -> Sys::Colum
     axes
 }
 
-/// An axis orthogonal to the first `count`: the axis of the state with the largest remainder.
+/// A unit vector orthogonal to the first `count` axes, from the axis of the state with the largest remainder.
 fn another<Sys: Variational>(n: usize, axes: &Sys::Columns, count: usize) -> Sys::State {
     let mut best = (0.0, Sys::State::zeros(n));
     for i in 0..n {
@@ -395,11 +395,11 @@ fn remove<S: StateVector>(axis: &S, from: &mut S) {
     }
 }
 
-/// A box that contains `Q^-1 (A_1 r_1 + .. + s)` for axes `Q` that are orthonormal up to rounding; unbounded if they
-/// are not.
+/// A box that contains `Q^-1 (A_1 r_1 + .. + s)` for axes `Q` that are orthonormal up to rounding. The box is unbounded
+/// if they are not.
 ///
-/// With `E = I - Q^T Q`, `w = Q^-1 v` is the fixed point of `w -> Q^T v + E w`. If the norm of `E` is less than 1, it
-/// lies in every box that this function maps into itself.
+/// With `E = I - Q^T Q`, `w = Q^-1 v` is the fixed point of `w -> Q^T v + E w`. If the norm of `E` is less than 1, `w`
+/// lies in every box that this map takes into itself.
 fn components<Sys: Variational>(
     axes: &Sys::Columns,
     parts: &[(&Matrix<Sys>, &Bounds<Sys::State>)],

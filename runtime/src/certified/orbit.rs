@@ -1,16 +1,16 @@
-//! Proofs of periodic orbits: fixed points of the map from one impact to a later one.
+//! Proofs of periodic orbits, by fixed points of the Poincare map of a surface.
 //!
-//! `F` maps the state after an impact on a surface to the state after a later one. For a box `Z` about a point `z`,
-//! with `Y` near `(DF(z) - I)^-1`,
+//! `F` maps the state after an impact on a surface to the state after a later impact on it. `Z` is a box about a point
+//! `z`, and `Y` approximates `(DF(z) - I)^-1`. With
 //!
 //! ```text
 //! K = z - Y (F(z) - z) + (I - Y (DF(Z) - I)) (Z - z)
 //! ```
 //!
-//! If `K` lies inside `Z`, there is exactly one fixed point in `Z`, and it lies in `K` (Krawczyk). `DF` is the
-//! derivative in all directions of the state: along the motion it is 0, as all states of one motion have the same
-//! image. The method fails for an eigenvalue 1, which a conserved quantity or a coordinate that nothing depends on
-//! causes.
+//! there is exactly one fixed point in `Z` if `K` lies inside `Z`, and it lies in `K` (Krawczyk). `DF` is the
+//! derivative in all directions of the state. It vanishes along the motion, as all states of one motion have the same
+//! image. The method fails if `DF` has the eigenvalue 1: for example if a quantity is conserved, or if the system does
+//! not depend on a coordinate.
 //!
 //! Reference: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4 (1969); R. E. Moore,
 //! R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
@@ -26,10 +26,10 @@ use crate::numbers::{Interval, Numbers, Rated, Row};
 use crate::state::StateVector;
 use crate::variations::transition::Strike;
 
-/// Number of squarings of the derivative, for a bound of its eigenvalues.
+/// Number of squarings of the derivative for the bound of its spectral radius.
 const SQUARINGS: u32 = 8;
 
-/// Maximum number of trial boxes, each about the image of the last.
+/// Maximum number of trial boxes, each about the image of the one before.
 const TRIALS: u32 = 4;
 
 /// Maximum number of refinements of a proved orbit.
@@ -71,24 +71,24 @@ pub struct CertifiedOrbit<Sys: Variational> {
     derivative: Matrix<Sys>,
     /// Enclosure of the period.
     pub period: Interval,
-    /// Bound of the absolute values of all Floquet multipliers. If it is less than 1, the orbit attracts all motions
-    /// that begin near it.
+    /// Upper bound of the absolute values of all Floquet multipliers. If it is less than 1, the orbit attracts all
+    /// motions that start near it.
     pub largest_multiplier: f64,
 }
 
-/// Reason why no orbit is proved.
+/// Reason for the failure of a proof.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NotProved {
-    /// The motion from the box is not certified up to the section.
+    /// The motion from the box could not be enclosed up to the section.
     Lost(Lost),
-    /// The section is not met again within the allowed time.
+    /// The section is not met again within the horizon.
     NotMet,
-    /// The motion, the surfaces or the laws may depend on time, so the end of a return is not the start of the next.
+    /// The motion, the surfaces or the laws may depend on time. Then a fixed point is not a periodic orbit.
     DependsOnTime,
     /// The map of the section may have an eigenvalue 1.
     Singular,
-    /// No trial box is mapped into itself: the boxes are too wide, or contain no orbit.
+    /// No trial box is mapped into itself: the boxes are too wide, or they contain no orbit.
     NotContained,
 }
 
@@ -113,20 +113,21 @@ impl From<Lost> for NotProved {
 }
 
 impl<Sys: Variational> CertifiedOrbit<Sys> {
-    /// Enclosure of component `i` of the orbit's state just after the impact on the section.
+    /// Enclosure of component `i` of the state just after the impact on the section.
     pub fn point(&self, i: usize) -> Interval {
         self.point.at(i)
     }
 
-    /// Enclosure of the derivative of component `i` of the image by component `j` of the state, from one impact to
-    /// the next.
+    /// Enclosure of entry `(i, j)` of the derivative of the map: component `i` of the image with respect to component `j` of the
+    /// state.
     pub fn derivative(&self, i: usize, j: usize) -> Interval {
         self.derivative.at(i, j)
     }
 }
 
 impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
-    /// The section at a surface. A return may take at most the time `horizon`.
+    /// The section at the surface with this index. One application of the map, all its returns together, may take at
+    /// most the time `horizon`.
     pub fn new(system: &'a Sys, surface: usize, horizon: f64) -> Self {
         Self {
             field: Field::new(system),
@@ -143,16 +144,16 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         self
     }
 
-    /// Sets a parameter to a range, as [`CertifiedFlow::with_parameter`](super::CertifiedFlow::with_parameter): there
-    /// is an orbit for each value in it.
+    /// Sets a parameter to a range, as [`CertifiedFlow::with_parameter`](super::CertifiedFlow::with_parameter) does.
+    /// The proof then holds for every value in the range.
     #[must_use]
     pub fn with_parameter(mut self, index: usize, range: Interval) -> Self {
         self.field.set_parameter(index, range);
         self
     }
 
-    /// Proves that a periodic orbit leaves the section within `radius` of a state, in each component. The state is
-    /// one just after an impact, for example that of an [`Orbit`](crate::variations::Orbit).
+    /// Proves that there is a periodic orbit whose state just after the impact on the section differs from `near` by at
+    /// most `radius` in each component. `near` may be the point of an [`Orbit`](crate::variations::Orbit), for example.
     ///
     /// # Errors
     /// [`NotProved`] with the condition that could not be proved.
@@ -176,7 +177,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
             if (0..n).all(is_inside) {
                 return Ok(self.refined(orbit));
             }
-            // A box of another shape about the image.
+            // The next trial box is a widened copy of the image.
             let wider = |i: usize| {
                 let range = image.at(i);
                 let range = range.widened(0.25 * range.width() + f64::MIN_POSITIVE);
@@ -190,7 +191,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         Err(NotProved::NotContained)
     }
 
-    /// The orbit with narrower enclosures: its point lies in the image of every box that contains it.
+    /// The same orbit with narrower enclosures. The fixed point lies in the image of every box that contains it.
     fn refined(&self, mut orbit: CertifiedOrbit<Sys>) -> CertifiedOrbit<Sys> {
         for _ in 0..REFINEMENTS {
             match self.contraction(&orbit.point) {
@@ -204,7 +205,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         orbit
     }
 
-    /// Krawczyk's image of a box, and the orbit, which exists if the box contains its image.
+    /// The image of a box by Krawczyk's operator, and the orbit, which exists if the box contains this image.
     fn contraction(
         &self,
         region: &Bounds<Sys::State>,
@@ -243,7 +244,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         Ok((image, orbit))
     }
 
-    /// The impact on the section at the return of all motions from a box.
+    /// The impact at the last return to the section, for all motions from a box.
     fn returned(&self, from: &Bounds<Sys::State>) -> Result<CertifiedImpact<Sys>, NotProved> {
         let mut run = CertifiedRun::new(self.field.system, 0.0, |i| from.at(i)).with_derivative();
         run.set_field(&self.field);
@@ -262,8 +263,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
         }
     }
 
-    /// False if neither rates nor gaps nor the law depend on time. Every function of time is evaluated over all
-    /// times, with all its rates.
+    /// True if rates, gaps or the law of the impact may depend on time. Functions of time are evaluated for all times,
+    /// with unbounded rates.
     fn depends_on_time(&self, impact: &CertifiedImpact<Sys>) -> bool {
         let surface = impact.surface;
         let times = Rated {
@@ -297,7 +298,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedSection<'a, Sys> {
     }
 }
 
-/// Bound of the absolute values of the eigenvalues of every matrix in the enclosure: the root of the norm of a power.
+/// Bound of the spectral radius of every matrix in the enclosure: `|M^k|^(1/k)` for powers of two `k`, the smallest of
+/// them.
 fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
     let mut power = *matrix;
     let mut bound = norm(&power);
@@ -307,7 +309,7 @@ fn spectral_bound<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
         exponent *= 2.0;
         let norm = Interval::point(norm(&power));
         let root = Numbers::powf(norm, 1.0 / exponent).hi;
-        // Written so that NaN fails the comparison.
+        // This form of the comparison is false for NaN.
         if root < bound {
             bound = root;
         }
@@ -324,7 +326,7 @@ fn norm<Sys: Variational>(matrix: &Matrix<Sys>) -> f64 {
     })
 }
 
-/// Approximate inverse of a matrix, stored by columns (Gauss-Jordan elimination with column pivots).
+/// Approximate inverse of a matrix stored by columns, by Gauss-Jordan elimination with column pivoting.
 fn inverted<Sys: Variational>(n: usize, mut columns: Sys::Columns) -> Option<Sys::Columns> {
     let mut inverse = identity::<Sys>(n);
     // Columns are combined until the matrix is the identity; the same operations turn the identity into the inverse.

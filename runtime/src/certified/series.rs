@@ -1,4 +1,4 @@
-//! Taylor series with remainder of all motions of a box, and of their derivatives.
+//! Taylor series with remainder for all motions that start in a box, and for their derivatives.
 //!
 //! A motion `y` that stays in a tube `B` for the time `h` satisfies, with the Taylor coefficients `c_k`,
 //!
@@ -6,8 +6,8 @@
 //! y(t + s) is in  sum_(k<p) s^k c_k(y(t))  +  s^p c_p(B),   0 <= s <= h
 //! ```
 //!
-//! Over [`Rated`] numbers the same holds for the derivative along a direction; its tube is found in the same way,
-//! from the variational equation.
+//! Over [`Rated`] numbers the same holds for the derivative along a direction. Its tube follows in the same way from
+//! the variational equation.
 
 use super::frame::Bounds;
 use super::lost::Reason;
@@ -21,7 +21,7 @@ use crate::state::StateVector;
 /// Maximum number of trials for a tube.
 const TRIALS: u32 = 6;
 
-/// Relative enlargement of a tube beyond its last trial.
+/// Relative enlargement of a trial tube over the last one.
 const ROOM: f64 = 0.1;
 
 /// A system with boxes of parameters.
@@ -60,7 +60,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         &self.parameters
     }
 
-    /// The parameters, with derivative 0 along every direction.
+    /// The parameters as numbers with derivative 0 along every direction.
     pub(super) fn steady_parameters(&self) -> Sys::Parameters<Rated> {
         let values = self.parameters.as_slice();
         let mut parameters = Sys::Parameters::<Rated>::zeros(values.len());
@@ -84,7 +84,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         rates.is_finite().then_some(rates)
     }
 
-    /// Reason why a box has no rates: they may not exist, or are not available over intervals.
+    /// Reason why a box has no rates: they may not exist, or they are not available over intervals.
     pub(super) fn no_rates(&self, times: Interval, states: &Bounds<Sys::State>) -> Reason {
         let row = row::<Sys>(states);
         let mut firsts = Sys::Firsts::<Interval>::zeros(self.system.firsts_len());
@@ -118,7 +118,8 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         changes.is_finite().then_some(changes)
     }
 
-    /// A box that contains every motion from a box until the end of a step; `times` are those of the whole step.
+    /// A box that contains every motion from `start` over the time `during`; `None` if none is found. `times`: the
+    /// whole step.
     pub(super) fn tube(
         &self,
         start: &Bounds<Sys::State>,
@@ -128,8 +129,8 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         held(start, during, |tube| self.rates(times, tube))
     }
 
-    /// A box that contains the derivatives of all motions in a tube until the end of a step, from a box of
-    /// directions.
+    /// A box that contains the derivatives of all motions in `tube` over the time `during`, from the box of directions
+    /// `along`.
     pub(super) fn tube_along(
         &self,
         tube: &Bounds<Sys::State>,
@@ -140,7 +141,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         held(along, during, |along| self.changes(times, tube, along))
     }
 
-    /// The series of all motions from a box at a time, in units of `unit`, up to an order.
+    /// The Taylor series of all motions from a box, in units of `unit`, of degree `order`.
     pub(super) fn series(
         &self,
         from: &Bounds<Sys::State>,
@@ -198,8 +199,8 @@ fn expanded<Sys: Variational, L: Numbers>(
     Some(series)
 }
 
-/// A box that solutions with rates in `rates(box)` do not leave for the time `during`, which begins with 0
-/// (Picard-Lindelof).
+/// A box that solutions from `start` with rates in `rates(box)` do not leave during `during`, an interval that begins
+/// at 0 (Picard-Lindelof); `None` if none is found.
 fn held<S: StateVector>(
     start: &Bounds<S>,
     during: Interval,
@@ -244,7 +245,7 @@ impl<Sys: Variational, L: Numbers> Arc<Sys, L> {
         Self { rows, order }
     }
 
-    /// Enclosure of the values after these units of time (Horner scheme).
+    /// Enclosure of the values after `units` units of time (Horner scheme).
     pub(super) fn at(&self, units: L) -> Sys::Row<L> {
         let mut sums = self.rows[self.order];
         for row in self.rows[..self.order].iter().rev() {

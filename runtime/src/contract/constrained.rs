@@ -20,12 +20,12 @@ use crate::state::StateVector;
 ///     }
 /// }
 ///
-/// // Along x at speed 2, turning at rate 3: the edge pushes across with the force m v omega.
+/// // The skate moves along x at speed 2 and turns at rate 3. The force across the edge is m v omega.
 /// let skate = Skate::default();
 /// let state = skate.state(0.0, &[0.0, 0.0, 0.0].into(), &[2.0, 0.0, 3.0].into())?;
 /// assert!((skate.multipliers(0.0, &state)?[0] - 6.0).abs() < 1e-15);
 ///
-/// // A velocity across the edge is no motion of the skate.
+/// // A velocity across the edge violates the constraint.
 /// let (residuals, _) = skate.residuals(0.0, &[0.0; 3].into(), &[0.0, 1.0, 0.0].into());
 /// assert_eq!(residuals[0], 1.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,45 +34,46 @@ use crate::state::StateVector;
     message = "`{Self}` has no constraints: declare `constraints {{ .. }}` in its `model!`"
 )]
 pub trait Constrained: System {
-    /// M numbers, one per constraint, in the order of declaration.
+    /// Vector of M numbers, one per constraint, in the order of declaration.
     type Multipliers: StateVector;
 
-    /// One number per constraint that is integrable with a known function (see
+    /// Vector of levels: one value `f^k(t, q)` per integrable constraint with a known integral (see
     /// [`ConstraintInfo::level`](crate::describe::ConstraintInfo::level)).
     type Levels: StateVector;
 
-    /// M, the number of constraints. The default is correct for multipliers of fixed number.
+    /// M, the number of constraints. The default is correct if the type of the multipliers has a fixed length.
     #[inline(always)]
     fn constraint_count(&self) -> usize {
         Self::Multipliers::CAPACITY
     }
 
-    /// The number of levels. The default is correct for a fixed number.
+    /// The number of levels. The default is correct if the type of the levels has a fixed length.
     #[inline(always)]
     fn level_count(&self) -> usize {
         Self::Levels::CAPACITY
     }
 
-    /// Multipliers with M zeros.
+    /// A vector of M zeros.
     #[inline(always)]
     fn zero_multipliers(&self) -> Self::Multipliers {
         StateVector::zeros(self.constraint_count())
     }
 
-    /// Levels, all zero.
+    /// A vector of levels that are all 0.
     #[inline(always)]
     fn zero_levels(&self) -> Self::Levels {
         StateVector::zeros(self.level_count())
     }
 
-    /// The multipliers `lambda_a`, M numbers in order of declaration; the constraint force is `lambda_a eta^a`.
+    /// The Lagrange multipliers `lambda_a`, M numbers in the order of declaration. The constraint force is
+    /// `lambda_a eta^a`.
     ///
     /// # Errors
-    /// A [`Fault`] where they do not exist, for example for dependent constraints.
+    /// A [`Fault`] where the multipliers do not exist, for example for dependent constraints.
     fn multipliers(&self, t: f64, state: &Self::State) -> Result<Self::Multipliers, Fault>;
 
-    /// The residuals `eta^a(qdot) + eta^a_0`, and their natural scales: the sums of the absolute values of their
-    /// terms, with sines and cosines counted as 1.
+    /// The residuals `eta^a(qdot) + eta^a_0`, and their scales: the sums of the absolute values of their terms, with
+    /// sines and cosines counted as 1.
     fn residuals(
         &self,
         t: f64,
@@ -80,8 +81,8 @@ pub trait Constrained: System {
         qdot: &Self::Vector,
     ) -> (Self::Multipliers, Self::Multipliers);
 
-    /// The forms `eta^a` (M rows of N, row after row) and their affine parts `eta^a_0` (M) at a position; for
-    /// nonlinear constraints, those at rest.
+    /// Writes the forms `eta^a` (M rows of N, row-major) and their affine parts `eta^a_0` (M) at a position. For
+    /// nonlinear constraints they are those at zero velocity.
     fn constraint_forms(
         &self,
         t: f64,
@@ -96,9 +97,9 @@ pub trait Constrained: System {
         true
     }
 
-    /// The constraints linearised at a velocity: forms and affine parts in the layout of
-    /// [`Constrained::constraint_forms`], with `eta^a(qdot) + eta^a_0` the residual at this velocity. For linear
-    /// constraints they do not depend on the velocity.
+    /// Writes the constraints linearised at the velocity `qdot`, in the layout of [`Constrained::constraint_forms`]. At
+    /// this velocity `eta^a(qdot) + eta^a_0` is the residual. For linear constraints the result does not depend on the
+    /// velocity.
     fn linearised_forms(
         &self,
         t: f64,
@@ -111,35 +112,35 @@ pub trait Constrained: System {
         self.constraint_forms(t, q, forms, affine);
     }
 
-    /// True if every state satisfies the constraints by its construction: the form reduced to D.
+    /// True in the form reduced to D, where every state satisfies the constraints by construction.
     fn is_reduced(&self) -> bool;
 
-    /// Brings the velocity back to the constraints after a step. Unlike [`System::state_nearest`] it need not make
-    /// the smallest change: where some velocities follow from the others at every state, it recomputes those and
-    /// keeps the others to the last digit. Does nothing where [`Constrained::is_reduced`].
+    /// Corrects the velocity to the constraints after a step. The correction need not be the smallest, unlike that of
+    /// [`System::state_nearest`]. Where some velocities are functions of the others at every state, only these are
+    /// recomputed, and the others keep all their digits. Does nothing where [`Constrained::is_reduced`].
     ///
     /// # Errors
-    /// A [`Fault`] where the velocity cannot be corrected; the state is unchanged then.
+    /// A [`Fault`] where the velocity cannot be corrected; the state is then unchanged.
     fn restore(&self, t: f64, state: &mut Self::State) -> Result<(), Fault>;
 
-    /// The constraint of each level, with a flag for levels declared to be 0. Empty if none is declared: then every
-    /// motion keeps the levels that it starts with.
+    /// The constraint of each level, with a flag for levels that are declared to be 0. Empty if no level is declared to
+    /// be 0: then every motion keeps its initial levels.
     #[inline(always)]
     fn declared_levels(&self) -> &[Level] {
         &[]
     }
 
-    /// Natural scales of the levels declared to be 0: the sums of the absolute values of their terms, with sines and
-    /// cosines counted as 1. 0 for the others.
+    /// Scales of the levels declared to be 0: the sums of the absolute values of their terms, with sines and cosines
+    /// counted as 1. The entries of the other levels are 0.
     fn level_scales(&self, t: f64, q: &Self::Vector) -> Self::Levels {
         let _ = (t, q);
         self.zero_levels()
     }
 
-    /// The position-level values `f^k(t, q)` of the integrable constraints. They are constant along the motion.
+    /// The levels: values `f^k(t, q)` of the integrals of integrable constraints. They are constant along the motion.
     fn levels(&self, t: f64, q: &Self::Vector) -> Self::Levels;
 
-    /// One Newton step on position level, orthogonal in the metric: the change of q that changes the levels by
+    /// One Newton step for the positions, orthogonal in the metric: the change of `q` that changes the levels by
     /// `-excess` to first order.
     ///
     /// # Errors

@@ -59,8 +59,8 @@ pub trait VectorField {
     /// A [`Fault`] where the derivative does not exist; `rate` is unspecified then.
     fn rate(&self, t: f64, state: &Self::State, rate: &mut Self::State) -> Result<(), Fault>;
 
-    /// Natural unit of each component. Absolute tolerances are multiplied by it, so that a tolerance means the same
-    /// for a momentum as for its velocity. Ones by default.
+    /// Natural unit of each component, a vector of the same length as the state. Absolute tolerances are multiplied by
+    /// it, so that a tolerance means the same for a momentum as for its velocity. Ones by default.
     fn scale(&self, t: f64, state: &Self::State) -> Self::State {
         let _ = (t, state);
         let mut ones = state.zeroed();
@@ -75,14 +75,14 @@ pub trait VectorField {
         false
     }
 
-    /// True unless rates change about as steadily as sines, at the values of the parameters. Costs as much as a few
-    /// rates, so that a run asks once.
+    /// True unless rates vary about as smoothly as sines, at the values of the parameters. The cost is that of a few
+    /// rates. A run asks once.
     fn has_narrow_rates(&self) -> bool {
         self.can_be_narrow()
     }
 
-    /// Encloses all rates along a stretch of motion. `component(i)` gives an enclosure of component `i` of the state;
-    /// `rate(i, ..)` receives an enclosure of its rate. Does nothing where [`VectorField::can_be_narrow`] is false.
+    /// Encloses all rates along a part of the motion. `component(i)` returns an enclosure of component `i` of the
+    /// state; `rate(i, ..)` receives an enclosure of its rate. Does nothing if [`VectorField::can_be_narrow`] is false.
     ///
     /// # Errors
     /// A [`Fault`] where the rates do not exist.
@@ -147,8 +147,8 @@ pub trait TaylorField: VectorField {
     /// One number per surface. Empty if a gap is not analytic, like `|x|`, or if there are no surfaces.
     type Gaps<L: Numbers>: Row<L>;
 
-    /// Quantities at one moment: the rate, then the gaps, then the other values that coefficients above order 0
-    /// depend on.
+    /// Quantities at one moment: the rates, then the gaps, then the other values that coefficients above order 0 depend
+    /// on.
     type Firsts<L: Numbers>: Row<L>;
 
     /// Storage for the coefficients of intermediate values.
@@ -175,7 +175,7 @@ pub trait TaylorField: VectorField {
     /// The parameters.
     fn parameters(&self) -> Self::Parameters<f64>;
 
-    /// Writes the quantities at `(t, state)` for these parameters, which need not be the system's own.
+    /// Writes the quantities at `(t, state)`. `parameters` may differ from the system's own.
     ///
     /// # Errors
     /// A [`Fault`] where the derivative does not exist in any of the lanes; `firsts` is unspecified then.
@@ -187,8 +187,8 @@ pub trait TaylorField: VectorField {
         firsts: &mut Self::Firsts<L>,
     ) -> Result<(), Fault>;
 
-    /// Writes the power series of the motion through `coefficients[0]`, where the quantities `firsts` are known, and
-    /// of the gaps along it, with these parameters:
+    /// Writes the power series of the motion through `coefficients[0]`, and of the gaps along it. `firsts` are the
+    /// quantities that [`TaylorField::begin`] wrote for this state and these parameters.
     ///
     /// ```text
     /// state(t + unit s) = coefficients[0] + coefficients[1] s + .. + coefficients[order] s^order + ..

@@ -8,7 +8,7 @@ use crate::numbers::{Bent, ComplexInterval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Time and the components of a state along a stretch of motion, as [`Impacting::gap_along`] takes them.
+/// Time and components of a state along a part of the motion, as in [`Impacting::gap_along`].
 pub type Along<'a> = (TaylorModel, &'a dyn Fn(usize) -> TaylorModel);
 
 /// A system with impact surfaces `h_s >= 0`.
@@ -44,7 +44,7 @@ pub trait Impacting: System {
     /// S numbers, one per surface, in the order of declaration.
     type Gaps: StateVector;
 
-    /// S, the number of surfaces. The default is correct for gaps of fixed number.
+    /// S, the number of surfaces. The default is correct for gaps of fixed length.
     #[inline(always)]
     fn surface_count(&self) -> usize {
         Self::Gaps::CAPACITY
@@ -56,11 +56,11 @@ pub trait Impacting: System {
         StateVector::zeros(self.surface_count())
     }
 
-    /// The gaps `h_s`. Motion is allowed where they are not negative; at a surface with a reset it is allowed
-    /// everywhere.
+    /// The gaps `h_s`, S numbers. Motion is allowed where they are not negative. At a surface with a reset it is
+    /// allowed everywhere.
     fn gaps(&self, t: f64, state: &Self::State) -> Self::Gaps;
 
-    /// The gap of one surface along a stretch of motion. `component(i)` gives component `i` of the state along it; a
+    /// The gap of one surface along a part of the motion. `component(i)` returns component `i` of the state along it; a
     /// gap depends on positions only.
     fn gap_along(
         &self,
@@ -69,16 +69,16 @@ pub trait Impacting: System {
         component: &dyn Fn(usize) -> TaylorModel,
     ) -> TaylorModel;
 
-    /// The gap of one surface along straight lines through a box, with the arguments of [`Impacting::gap_along`]. It
-    /// spares most steps a closer enclosure, and an [`Audit`](crate::audit::Audit) requires it. Without it nothing is
-    /// known of the gap, and no run is confirmed.
+    /// The gap of one surface along straight lines through a box, with the arguments of [`Impacting::gap_along`]. For
+    /// most steps its bounds make a tighter enclosure unnecessary. An [`Audit`](crate::audit::Audit) requires it: with
+    /// the default, no run is confirmed.
     fn gap_about(&self, surface: usize, t: Bent, component: &dyn Fn(usize) -> Bent) -> Bent {
         let _ = (surface, t, component);
         Bent::ANYTHING
     }
 
     /// The gap of one surface on a box of complex positions and times, with the arguments of [`Impacting::gap_along`].
-    /// It spares most steps that are power series a closer enclosure.
+    /// For most steps of power series its bounds make a tighter enclosure unnecessary.
     fn gap_complex(
         &self,
         surface: usize,
@@ -96,7 +96,7 @@ pub trait Impacting: System {
     fn gap_rates(&self, t: f64, state: &Self::State) -> Result<Self::Gaps, Fault>;
 
     /// The second rates `d^2h_s/dt^2` if the momenta or quasi-velocities change at the rates `motion`. `None` for a
-    /// system that does not provide them: it cannot go on along a surface.
+    /// system that does not provide them. Such a system cannot move along a surface.
     ///
     /// # Errors
     /// A [`Fault`] where they do not exist.
@@ -124,35 +124,35 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// True if the surface counts here: all its `when` conditions hold. The last of several transitions of one gap
-    /// also counts where the conditions of none hold; see [`Impacting::takes`].
+    /// True if the surface counts here: all its `when` conditions hold. The last of several transitions with one gap
+    /// also counts where no transition's conditions hold; see [`Impacting::takes`].
     fn surface_active(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);
         true
     }
 
-    /// True if a surface has conditions that are enclosed along a motion. False by default: of a system that encloses none a run looks at
-    /// the ends of its steps for where a surface begins to count behind the motion.
+    /// True if a surface has conditions that [`Impacting::counts_along`] encloses. False by default: a run then checks
+    /// only at the ends of its steps if a surface begins to count on the forbidden side.
     fn has_conditions(&self, surface: usize) -> bool {
         let _ = surface;
         false
     }
 
-    /// True if the surface counts all along a stretch of motion, or nowhere on it; `None` where that is not certain. Margins of
-    /// conditions that change by no more than they do in `rounding` are none.
+    /// True if the surface counts all along a part of the motion, false if it counts nowhere on it; `None` if neither
+    /// is certain. A condition holds where its margin exceeds the width of the range of its margin along `rounding`.
     fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
         let _ = (surface, along, rounding);
         None
     }
 
-    /// True if a surface that counts has a law here; where it has none, the run ends as
+    /// True if a surface that counts has a law here. If it has none, the run ends as
     /// [`Outcome::Untaken`](crate::Outcome::Untaken).
     fn takes(&self, surface: usize, t: f64, state: &Self::State) -> bool {
         let _ = (surface, t, state);
         true
     }
 
-    /// The declared law of a surface, at this system's parameters.
+    /// The declared law of a surface, at the values of the parameters.
     fn law(&self, surface: usize) -> Law;
 
     /// Positions and velocities after the declared reset of a surface; `None` if its law is not a reset.
@@ -169,9 +169,9 @@ pub trait Impacting: System {
         Ok(None)
     }
 
-    /// The impulse after which the instantaneous constraints of a surface hold, the smallest in the metric; `None` if
-    /// it has none. It acts before the law, and the law then acts within those constraints: [`Impacting::blow`] and
-    /// [`Impacting::contact`] of the surface include them among the constraints.
+    /// The smallest impulse in the metric after which the instantaneous constraints of a surface hold; `None` if the
+    /// surface has no such constraints. It acts before the law. The law then acts within those constraints:
+    /// [`Impacting::blow`] and [`Impacting::contact`] of the surface include them among the constraints.
     ///
     /// # Errors
     /// [`Fault::SingularSurface`] where they depend on each other or on the constraints; another [`Fault`] where the
@@ -187,7 +187,7 @@ pub trait Impacting: System {
     }
 
     /// Correction of the rates `motion` of momenta or quasi-velocities that keeps the instantaneous constraints of a
-    /// surface while the motion goes on along it; `None` if it has none.
+    /// surface while the motion stays in contact with it; `None` if the surface has no such constraints.
     ///
     /// # Errors
     /// The errors of [`Impacting::focus`].
@@ -208,8 +208,8 @@ pub trait Impacting: System {
         self.law(surface) == Law::Reset
     }
 
-    /// The transition that leads back at once from the mode that a transition leads to, where first-order modes meet
-    /// at one surface and the state stays the same. Sliding motion may exist there.
+    /// The transition that leads back from the mode that a transition enters, if both modes are first-order, meet at
+    /// one surface and have the same state there; `None` otherwise. A sliding mode may exist at such a surface.
     fn opposite(&self, surface: usize) -> Option<usize> {
         let _ = surface;
         None
@@ -229,7 +229,7 @@ pub trait Impacting: System {
         after_reset(self, surface, t, state).map(Landing::from)
     }
 
-    /// The impulse of the declared law of a surface, if the law is an impulse.
+    /// The impulse of the declared law of a surface. The law must be an impulse.
     ///
     /// # Errors
     /// The errors of [`Impacting::contact`].

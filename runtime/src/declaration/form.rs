@@ -11,7 +11,7 @@ use crate::kernels::{ConstantTable, KernelSet, KernelTable};
 use crate::numbers::{Bent, ComplexInterval, Everywhere, Numbers, Rated, Row, TaylorModel};
 use crate::variations::Dual;
 
-/// The form of a type, if its sizes fit into an erased system.
+/// The form of a type; `None` if it is too large for an erased system.
 pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     match Of::<S>::FORM.capacity() {
         Some(_) => Some(Of::<S>::FORM),
@@ -19,13 +19,13 @@ pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     }
 }
 
-/// The form of the type of a mode, with the kernels of transitions. With `NARROW`, rates of some mode may be narrow,
-/// and the form includes rates over intervals.
+/// The form of a mode's type, with the kernels of transitions. With `NARROW`, rates of some mode may be narrow, and the
+/// form includes rates over intervals.
 pub const fn of_mode<S: Emitted, const NARROW: bool>() -> &'static Form {
     OfMode::<S, NARROW>::FORM
 }
 
-/// The form of the type of a mode.
+/// The form of a mode's type.
 struct OfMode<S, const NARROW: bool>(PhantomData<S>);
 
 impl<S: Emitted, const NARROW: bool> OfMode<S, NARROW> {
@@ -97,8 +97,8 @@ impl<S: Emitted> Of<S> {
                 false => None,
                 true => Some(Held::Static(of_variations)),
             },
-            // NOTE: certified motion needs kernels over intervals, which take more compile time than all others;
-            // forms that are loaded at run time have them.
+            // NOTE: certified motion needs kernels over intervals, which take more time to compile than all others.
+            // Only forms that are loaded at run time have them.
             None,
             match is_narrow {
                 false => None,
@@ -115,8 +115,8 @@ impl<S: Emitted> Of<S> {
         false => KernelSet::OF_SURFACES,
     };
 
-    /// True if a series begins with more than an erased system has room for: it keeps the results and the time, and begins again
-    /// where it goes on.
+    /// True if the quantities at the start of a series do not fit into an erased system. The series then keeps the
+    /// results and the time only, and computes the quantities again in `advance`.
     const BEGINS_AGAIN: bool = <S::Firsts<f64> as Row<f64>>::CAPACITY > MOST_FIRSTS;
 
     /// Number of rates and gaps.

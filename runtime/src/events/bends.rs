@@ -1,5 +1,5 @@
-//! Bounds of the second derivatives of gaps in a box. They show for most steps in it, from the gaps at their ends,
-//! that the step meets no surface.
+//! Bounds of the second derivatives of gaps in a box. With the gaps at both ends of a step in the box, they show for
+//! most steps that the step meets no surface.
 //!
 //! Consider a path in the box with `|x_i'| <= v w_i` and `|x_i''| <= a w_i`, with derivatives by the fraction `s` of
 //! the step. The gap has `|g''| <= C = v^2 B + a S`, where `S` and `B` bound its first and second derivatives along
@@ -126,7 +126,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         }
     }
 
-    /// Leaves a step out: nothing is told of it.
+    /// Leaves out a step: the bounds do not apply to it.
     #[inline]
     pub(crate) fn skip(&mut self) {
         self.is_inside = false;
@@ -168,7 +168,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         self.is_inside && is_far
     }
 
-    /// Records if the bounds decided a step that passes no surface; `has_told` is true if they did.
+    /// Records a step that passes no surface. `has_told` is true if the bounds decided it.
     #[inline]
     pub(crate) fn learn(&mut self, has_told: bool) {
         match has_told {

@@ -1,16 +1,18 @@
-//! Polynomials in the fraction of a step, with bounds of their errors, and Taylor models of them on parts of the step.
+//! Polynomials in the fraction of a step, with error bounds, and Taylor models of them on parts of the step.
 //!
 //! On `[a, b]`, with middle `m` and half length `r`, `p(m + r s) = sum_k q_k s^k` for `s` in `[-1, 1]`. The model
-//! contains the first four terms; all others form its remainder.
+//! contains the first four terms; the other terms are bounded by its remainder.
 
 use crate::jet::LENGTH;
 use crate::numbers::TaylorModel;
 use crate::state::StateVector;
 
-/// Number of terms that are centred on a part of the step at first; of the others the absolute values are added.
+/// Number of terms that are first expanded about the middle of a part. For the other terms the absolute values are
+/// added.
 pub(crate) const FEW: usize = 8;
 
-/// Share of the change above which the terms beyond these are centred as well.
+/// Largest sum of these other terms relative to the linear term of the model. Above it, all terms are expanded about
+/// the middle.
 const SMALL: f64 = 1.0 / (1 << 10) as f64;
 
 /// Rounding of a coefficient, and of the sums that shift it, relative to the sum of the absolute values of all terms.
@@ -19,17 +21,17 @@ pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// One polynomial per component.
 #[derive(Debug, Clone)]
 pub(crate) struct Polynomials<S> {
-    /// Coefficients by power; those above the order mean nothing.
+    /// Coefficients by power. Entries above the order are unset.
     pub(crate) coefficients: [S; LENGTH],
     pub(crate) order: usize,
-    /// Error bounds of each polynomial, and of its derivative.
+    /// Error bounds of each polynomial and of its derivative.
     pub(crate) doubts: [S; 2],
-    /// Sums of the absolute values of the terms that are not centred on long parts, and of their derivatives.
+    /// Sums of the absolute values of the terms from degree [`FEW`] on, and of their derivatives.
     pub(crate) tails: [S; 2],
 }
 
 impl<S: StateVector> Polynomials<S> {
-    /// Zero, for as many components as `like`.
+    /// Zero polynomials, for as many components as `like`.
     pub(crate) fn zero(like: &S) -> Self {
         let zeros = like.zeroed();
         Self {
@@ -46,8 +48,8 @@ impl<S: StateVector> Polynomials<S> {
         &self.coefficients[..=self.order]
     }
 
-    /// Sums the terms that are not centred. Returns the sums of the absolute values of all terms, and of their
-    /// derivatives.
+    /// Computes the sums of the terms from degree [`FEW`] on. Returns the sums of the absolute values of all terms, and
+    /// of their derivatives.
     #[inline(always)]
     pub(crate) fn sum(&mut self) -> [S; 2] {
         let zeros = self.coefficients[0].zeroed();
@@ -96,7 +98,7 @@ impl<S: StateVector> Polynomials<S> {
         }
     }
 
-    /// The model with the first `COUNT` terms centred, and the contribution of the others to its error.
+    /// The model with the first `COUNT` terms expanded about the middle, and the share of the other terms in its error.
     #[inline]
     fn centred<const COUNT: usize>(&self, i: usize, part: [f64; 2]) -> (TaylorModel, f64) {
         let [middle, radius] = [0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])];
@@ -125,7 +127,7 @@ impl<S: StateVector> Polynomials<S> {
         }
         let mut tail = 0.0;
         if terms <= self.order {
-            // On `[0, b]` the terms from degree `k` on are at most `b^k` times their values on the whole step.
+            // On `[0, b]` the sum of the terms from degree `k` on is at most `b^k` times that on the whole step.
             let [b, square] = [part[1], part[1] * part[1]];
             let power = square * square * square * b;
             tail = power * b * self.tails[0].as_slice()[i];
@@ -141,7 +143,8 @@ impl<S: StateVector> Polynomials<S> {
     }
 }
 
-/// Moves the centre of a polynomial: `p(middle + y)` in powers of `y`, by Horner's scheme.
+/// Moves the centre of expansion: replaces `p` by the coefficients of `p(middle + y)` in powers of `y` (Horner's
+/// scheme).
 #[inline(always)]
 fn move_to(powers: &mut [f64], middle: f64) {
     let count = powers.len();

@@ -1,21 +1,24 @@
-//! Resolution of gaps: a gap counts as zero below `32 u` times the sum of the absolute values of its terms.
+//! Resolution of gaps: a gap counts as zero below `32 u` times the sum of the absolute values of its terms, with the
+//! unit roundoff `u`.
 //!
-//! The terms are not known here. The estimate `sum_i |dh/dx_i| |x_i|` uses the change of the gap when each component
-//! changes by a small fraction of itself; at a zero of `h` it agrees with the sum of the terms up to their degree.
-//! The conditions of surfaces get the same tolerance: on their boundary rounding decides.
+//! The runtime does not know the terms. It estimates their sum by `sum_i |dh/dx_i| |x_i|`, from difference quotients:
+//! each component is changed by a small fraction of itself. At a zero of `h` the estimate agrees with the sum of the
+//! terms up to a factor of their degree. Conditions of surfaces have the same tolerance, because rounding decides on
+//! their boundary.
 
 use crate::contract::Impacting;
 use crate::integrate::Tolerance;
 use crate::state::StateVector;
 
-/// Fraction by which a component is changed: half the digits, where difference quotients are most accurate.
+/// Relative change of a component in a difference quotient. It is the square root of the roundoff, where one-sided
+/// quotients are most accurate.
 const PART: f64 = 1.0 / (1 << 26) as f64;
 
-/// Rounding errors in units of the sum of terms.
+/// Rounding error of a gap, in units of the sum of its terms.
 const UNITS: f64 = 16.0 * f64::EPSILON;
 
-/// Size of the rounding errors of a surface's gap at a state whose components were computed from values of these
-/// sizes. Takes one evaluation of the gaps per component, one for time, and one more.
+/// Rounding error of a surface's gap at a state whose components were computed from values of these sizes. Evaluates
+/// the gaps once per component, once for time, and once more.
 pub(crate) fn resolution<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -50,8 +53,9 @@ fn sum_of_terms<Sys: Impacting>(
     sum / PART
 }
 
-/// Change of a surface's gap if every component of the state errs by the tolerance: `unit` holds the sizes of the
-/// components, their scale, and the tolerance. Takes as many evaluations as [`resolution`].
+/// Change of a surface's gap if every component of the state has an error of the size of the tolerance. `sizes` are the
+/// absolute values of the components, `scale` their units for the absolute part of the tolerance. Evaluates the gaps
+/// once per component and once more.
 pub(crate) fn error_within<Sys: Impacting>(
     system: &Sys,
     surface: usize,
@@ -68,8 +72,8 @@ pub(crate) fn error_within<Sys: Impacting>(
     tolerance.relative() * sum_of_terms(system, surface, (t, state), here, &units, evaluations)
 }
 
-/// True if a surface counts at this state, and also after changing one component, or time, either way by a bound of
-/// the total rounding error; `sizes` are the sizes of the components.
+/// True if a surface counts at this state, and still counts after any one component, or time, is changed in either
+/// direction by a bound of the total rounding error. `sizes` are the sizes of the components.
 pub(crate) fn counts_beyond_rounding<Sys: Impacting>(
     system: &Sys,
     surface: usize,

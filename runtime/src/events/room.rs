@@ -1,4 +1,4 @@
-//! A box of times and positions about a step, which may contain later steps as well.
+//! A box of times and positions around a step. It may contain later steps as well.
 
 use super::path::Path;
 use crate::numbers::Interval;
@@ -10,21 +10,21 @@ pub(crate) struct Room<S> {
     lowest: S,
     highest: S,
     times: Interval,
-    /// Number of components that are positions; gaps depend on no others.
+    /// Number of components that are positions. Gaps depend on no other components.
     positions: usize,
-    /// Positions that are bounded, as a bit mask.
+    /// Bounded positions, as a bit mask.
     kept: u64,
     is_known: bool,
 }
 
-/// Bit of a component in a mask; all components from the last bit on share it.
+/// Bit of a component in a mask. All components from 63 on share the last bit.
 #[inline]
 pub(crate) fn place(i: usize) -> u64 {
     1 << i.min(63)
 }
 
 impl<S: StateVector> Room<S> {
-    /// No box, for systems with this number of positions, and as many components as `like`.
+    /// No box yet, for systems with `positions` positions, and states with as many components as `like`.
     pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
             lowest: like.zeroed(),
@@ -58,7 +58,7 @@ impl<S: StateVector> Room<S> {
         if !(self.is_known && self.times.contains(times)) {
             return false;
         }
-        // NOTE: a loop, which is inlined, where an iterator may not be.
+        // NOTE: a loop is inlined here; an iterator may not be.
         for i in 0..self.positions {
             if self.keeps(i) && !self.range(i).contains(range(i)) {
                 return false;
@@ -85,7 +85,7 @@ impl<S: StateVector> Room<S> {
         self.positions
     }
 
-    /// Bounds only these components from now on, given by their [`place`]s: gaps depend on no others.
+    /// Restricts the box to these components, given by their [`place`]s. Gaps depend on no others.
     pub(crate) fn keep(&mut self, components: u64) {
         self.kept = components;
     }
@@ -96,8 +96,7 @@ impl<S: StateVector> Room<S> {
         self.kept & place(i) != 0
     }
 
-    /// Sets the box to that of a step, with a margin on every side of this multiple of the distance covered in the
-    /// step.
+    /// Sets the box to that of a step. The margin on every side is `margin` times the width covered in the step.
     pub(crate) fn surround(&mut self, path: &Path<S>, margin: f64) {
         let widened = |range: Interval| range.widened(margin * range.width());
         self.surround_box(
@@ -115,12 +114,13 @@ impl<S: StateVector> Room<S> {
         self.is_known = true;
     }
 
-    /// Extends the box to contain a step as well; on a side that the step leaves, by half as much again.
+    /// Extends the box to contain a step. On a side where the step leaves the box, the new bound is that of the step
+    /// plus half the former width of the box.
     pub(crate) fn extend(&mut self, path: &Path<S>) {
         self.extend_box(|i| path.range(i), path.time([0.0, 1.0]).value);
     }
 
-    /// The same for these ranges and times.
+    /// Extends the box to contain these ranges and times, in the same way.
     pub(crate) fn extend_box(&mut self, range: impl Fn(usize) -> Interval, times: Interval) {
         for i in 0..self.positions {
             self.set(i, extended(self.range(i), range(i)));

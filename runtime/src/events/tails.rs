@@ -1,13 +1,15 @@
-//! Bounds of the terms that a truncated power series of a gap lacks.
+//! Bounds of the terms that are missing in a truncated power series of a gap.
 //!
-//! Along a step the positions are polynomials `p_i` in its fraction. On the disk `|z| <= R` of complex fractions
-//! `p_i(z)` is at most `r_i = sum_k |p_ik| R^k`, `k >= 1`, away from `p_i(0)`. If a gap is analytic on a box of complex
-//! positions that contains these disks, with imaginary parts up to `h`, coefficient `k` of its series along the step is
-//! at most `2 h / R^k` ([`ComplexInterval`]). All coefficients above order `n` then add up to at most
-//! `2 h R^-n / (R - 1)`. In a step whose radii are smaller than the box by a factor, `h` is smaller by that factor too.
+//! Along a step the positions are polynomials `p_i` of its fraction `z`. On the disk `|z| <= R` in the complex plane,
+//! the distance `|p_i(z) - p_i(0)|` is at most `r_i = sum_(k>=1) |p_ik| R^k`. Let a gap be analytic on a box of complex
+//! positions that contains these disks, with imaginary part at most `h`. Then coefficient `k` of its series along the
+//! step is at most `2 h / R^k` ([`ComplexInterval`]), and the sum of all coefficients above order `n` is at most
+//! `2 h R^-n / (R - 1)`. In a step whose radii are smaller than those of the box by a factor, `h` is smaller by this
+//! factor too.
 //!
-//! The box serves many steps, and grows with the motion. A step that does not fit has a box of its own, unless that
-//! happens often; so has one for which the box of all is useless.
+//! The box serves many steps, and grows with the motion. A step whose radii exceed the imaginary parts of the box has a
+//! box of its own, unless this happens often. If the shared box gives a useless bound, it is set anew for the present
+//! step.
 
 use core::cell::Cell;
 
@@ -18,13 +20,13 @@ use crate::numbers::{ComplexInterval, Interval};
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Radii of the disks, in lengths of the step, for series of low and of high order.
+/// Radii of the disks, in step lengths, for series of low and of high order.
 const RATIOS: [f64; 2] = [3.0, 4.0];
 
-/// The lowest high order.
+/// Smallest order that counts as high.
 const HIGH: usize = 10;
 
-/// `R^k` for these radii.
+/// `POWERS[i][k]` is `RATIOS[i]^k`.
 const POWERS: [[f64; LENGTH]; 2] = {
     let mut powers = [[1.0; LENGTH]; 2];
     let mut k = 1;
@@ -36,56 +38,58 @@ const POWERS: [[f64; LENGTH]; 2] = {
     powers
 };
 
-/// Part of the imaginary parts of the box in which the rounding of the coefficients is bounded: on a disk that is
-/// smaller by a factor, polynomials without constant term are smaller by it too.
+/// Fraction of the box's imaginary parts used to bound the rounding of the coefficients. On a disk that is smaller by a
+/// factor, polynomials without constant term are smaller by this factor too.
 const PARTS: [f64; 2] = [
     ComplexInterval::LEAST_RATIO / RATIOS[0],
     ComplexInterval::LEAST_RATIO / RATIOS[1],
 ];
 
-/// Factors of the imaginary parts for which the gaps are bounded: bounds of functions grow faster than these.
+/// Factors of the imaginary parts for which the gaps are bounded. Bounds of functions grow faster than these factors,
+/// so that small boxes give better bounds.
 const LEVELS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// Growth of the imaginary parts of the box beyond those of a step that does not fit.
+/// Factor by which the imaginary parts of the box exceed those of a step that made it grow.
 const GROWTH: f64 = 1.25;
 
-/// Steps that fit for each one that does not, in a box that is large enough, and the largest excess of the others.
+/// A step whose radii exceed the imaginary parts of the box raises the strain by `SHARE`, any other step lowers it by one.
+/// Above `MOST_STRAIN` the imaginary parts are extended.
 const SHARE: u32 = 32;
 const MOST_STRAIN: u32 = 64;
 
-/// Largest bound of the missing terms that is useful, relative to the terms of the series, and the largest that is not
-/// worth a better box.
+/// Largest useful bound of the missing terms, relative to the terms of the series, and largest bound for which no
+/// better box is tried.
 const USEFUL: f64 = 1.0 / (1 << 6) as f64;
 const GOOD: f64 = 1.0 / (1 << 10) as f64;
 
-/// Maximum number of steps to wait after bounds that were useless.
+/// Maximum number of steps to wait after a useless bound.
 const MOST_PATIENCE: u32 = 256;
 
 /// Relative rounding errors of the estimate.
 const UP: f64 = 1.0 + 64.0 * f64::EPSILON;
 
-/// The gap of a surface on a box of complex times and components.
+/// The gap of a surface as a function of complex time and complex components.
 pub(crate) type Gap<'a> =
     &'a dyn Fn(ComplexInterval, &dyn Fn(usize) -> ComplexInterval) -> ComplexInterval;
 
-/// Bounds of the distance between a gap and its truncated series.
+/// Bounds of the difference between a gap and its truncated series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tail {
-    /// Bound of the distance of the values, if the constant coefficient is right.
+    /// Bound of the difference of the values, for an exact constant coefficient.
     pub(crate) value: f64,
-    /// Bound of the distance of the derivatives by the fraction of the step.
+    /// Bound of the difference of the derivatives with respect to the fraction of the step.
     pub(crate) slope: f64,
-    /// Rounding of the constant coefficient.
+    /// Rounding error of the constant coefficient.
     pub(crate) floor: f64,
 }
 
-/// The gap on the box.
+/// Bounds of a gap on the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bound {
     height: f64,
     rounding: f64,
     floor: f64,
-    /// Degree as a polynomial of positions and time, if it is one.
+    /// Upper bound of the degree as a polynomial of positions and time; `None` if the gap is not a polynomial.
     degree: Option<u32>,
     takes: Takes,
 }
@@ -93,7 +97,7 @@ struct Bound {
 /// Quantities that a gap depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Takes {
-    /// Positions, as a bit mask.
+    /// The positions, as a bit mask.
     positions: u64,
     time: bool,
 }
@@ -105,52 +109,53 @@ impl Takes {
     };
 }
 
-/// Knowledge of one surface.
+/// Results for one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Surface {
     /// The bounds, for each of [`LEVELS`].
     bounds: [Option<Bound>; LEVELS.len()],
     takes: Option<Takes>,
-    /// Number of the step from which bounds are tried again, and the number of steps that the last failure added.
+    /// Number of the step from which bounds are tried again, and the wait after the last failure in steps.
     resumes: u32,
     patience: u32,
 }
 
-/// The box, and the bounds of the gaps in it.
+/// The shared box, with the bounds of the gaps on it.
 #[derive(Debug, Clone)]
 pub(crate) struct Tails<S, G: StateVector> {
     /// Real parts of the box.
     room: Room<S>,
-    /// Largest imaginary parts, of positions and of the time.
+    /// Largest imaginary parts of the positions, and of the time.
     heights: S,
     time_height: f64,
     surfaces: PerSurface<Surface, G>,
-    /// Number of the last step.
+    /// Number of the present step.
     number: u32,
-    /// Quantities that some gap depends on; the box bounds these.
+    /// Quantities that at least one gap depends on. The box bounds these.
     kept: Takes,
-    /// The radii in use: 0 for low orders, 1 for high ones.
+    /// Index into [`RATIOS`]: 0 for low orders, 1 for high ones.
     ratio: usize,
-    /// Radii of the disks of the last step, of positions and of times.
+    /// Radii of the disks of the last step, for positions and for time.
     radii: S,
     time_radius: f64,
-    /// Degree of the components of that step.
+    /// Degree of the components of the last step.
     degree: u32,
-    /// The lowest level in which it lies.
+    /// Index into [`LEVELS`] of the smallest level that contains the last step.
     level: usize,
-    /// True if it lies in the box.
+    /// True if the imaginary parts of the box suffice for the last step.
     fits: bool,
-    /// True if the box was made for it.
+    /// True if the box was made for the last step.
     is_new: bool,
-    /// Excess of steps that do not fit.
+    /// Measure of the steps that recently left the box; see [`SHARE`].
     strain: u32,
-    /// Number of steps to wait before a better box, and the number that the last one added.
+    /// Number of steps to wait before a better box is tried, and the length of the last such wait.
     wait: u32,
     patience: u32,
 }
 
 impl<S: StateVector, G: StateVector> Tails<S, G> {
-    /// No box, for systems with this number of positions, and as many components and gaps as these vectors.
+    /// No box yet. `positions` is the number of positions; `state` and `gaps` give the numbers of components and
+    /// surfaces.
     pub(crate) fn new(positions: usize, state: &S, gaps: &G) -> Self {
         let unknown = Surface {
             bounds: [None; LEVELS.len()],
@@ -194,11 +199,11 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         self.number = self.number.wrapping_add(1);
     }
 
-    /// True if bounds for a surface were useless, and are not tried in this step.
+    /// True if the last bounds of a surface were useless, so that this step does not try again.
     #[inline]
     pub(crate) fn skips(&self, surface: usize) -> bool {
         let left = self.surfaces[surface].resumes.wrapping_sub(self.number);
-        // Behind that step the difference wraps.
+        // Once that step has passed, the difference wraps around.
         left != 0 && left <= MOST_PATIENCE
     }
 
@@ -208,7 +213,8 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         (0..self.surfaces.count()).all(|surface| !self.skips(surface))
     }
 
-    /// Sets the step, and extends the box to contain it.
+    /// Records a step and extends the box to contain it. The imaginary parts are extended only if steps exceed them
+    /// often.
     pub(crate) fn follow(&mut self, path: &Path<S>) {
         self.wait = self.wait.saturating_sub(1);
         self.is_new = false;
@@ -236,7 +242,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         }
     }
 
-    /// Computes the radii of the disks of a step.
+    /// Computes the radii of the disks of a step, and the degree of its components.
     #[inline]
     fn measure(&mut self, path: &Path<S>) {
         let terms = path.coefficients();
@@ -263,8 +269,8 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         self.time_radius = RATIOS[ratio] * path.length() * UP;
     }
 
-    /// Bounds for the series of a surface's gap with these terms: its order, and the sum of their absolute values.
-    /// `None` if there is no useful bound.
+    /// Bounds for the truncated series of a surface's gap. `order` is the order of the series, `size` the sum of the
+    /// absolute values of its terms. `None` if there is no useful bound.
     pub(crate) fn of(
         &mut self,
         surface: usize,
@@ -276,7 +282,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
             true => self.estimate(surface, order, at, evaluations),
             false => self.estimate_alone(order, at, evaluations),
         };
-        // Written so that NaN fails the comparison.
+        // This form of the comparison is false for NaN.
         let is_good = tail.value <= GOOD * size;
         if !is_good && self.fits && !self.is_new && self.wait == 0 {
             self.surround(path);
@@ -299,7 +305,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         known.resumes = self.number.wrapping_add(known.patience);
     }
 
-    /// The estimate with the box as it is.
+    /// The estimate with the present box.
     fn estimate(
         &mut self,
         surface: usize,
@@ -317,7 +323,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         self.tail(&bound, self.scale(bound.takes) / LEVELS[self.level], order)
     }
 
-    /// The estimate with a box for this step alone.
+    /// The estimate with a box made for this step alone.
     #[cold]
     fn estimate_alone(
         &self,
@@ -350,7 +356,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         self.tail(&bound, 1.0, order)
     }
 
-    /// Bounds from those of the gap in a box, with radii that are smaller by a factor.
+    /// Bounds for a step whose radii are `scale` times those of the box of `bound`.
     #[inline]
     fn tail(&self, bound: &Bound, scale: f64, order: usize) -> Tail {
         let is_whole = bound
@@ -370,7 +376,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         }
     }
 
-    /// The bound of a gap in the box. The box begins anew if the gap depends on positions that it did not bound.
+    /// Bounds of a gap on the box. If the gap depends on positions that the box did not bound, the box is set anew.
     #[cold]
     fn bound(&mut self, surface: usize, (gap, path): (Gap<'_>, &Path<S>)) -> Bound {
         let takes = match self.surfaces[surface].takes {
@@ -413,7 +419,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         bound
     }
 
-    /// Largest ratio of a radius of the step to the imaginary part of the box, for some quantities.
+    /// Largest ratio of a radius of the step to the imaginary part of the box, over the quantities in `takes`.
     #[inline]
     fn scale(&self, takes: Takes) -> f64 {
         let mut scale = match takes.time {
@@ -429,7 +435,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         scale * UP
     }
 
-    /// Finds the level of the step.
+    /// Finds the smallest level that contains the step.
     #[inline]
     fn choose_level(&mut self) {
         let scale = self.scale(self.kept);
@@ -437,7 +443,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
         (self.level, self.fits) = (level.unwrap_or(0), level.is_some());
     }
 
-    /// Extends the imaginary parts of the box to contain those of the step.
+    /// Extends the imaginary parts of the box to contain the step.
     fn rise(&mut self) {
         let heights = self.heights.as_mut_slice().iter_mut();
         for (height, radius) in heights.zip(self.radii.as_slice()) {
@@ -469,7 +475,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
     }
 }
 
-/// The quantities that a gap depends on.
+/// The quantities that a gap depends on, found by one evaluation.
 fn taken<S: StateVector>(gap: Gap<'_>, path: &Path<S>) -> Takes {
     let positions = Cell::new(0_u64);
     let component = |i: usize| {
@@ -483,13 +489,13 @@ fn taken<S: StateVector>(gap: Gap<'_>, path: &Path<S>) -> Takes {
     }
 }
 
-/// Real parts of component `i` on the disk.
+/// Interval of the real parts of component `i` on the disk.
 #[inline]
 fn disk<S: StateVector>(path: &Path<S>, radii: &S, i: usize) -> Interval {
     path.value(i).widened(radii.as_slice()[i])
 }
 
-/// Real parts of the times on the disk.
+/// Interval of the real parts of time on the disk.
 #[inline]
 fn times<S: StateVector>(path: &Path<S>, radius: f64) -> Interval {
     path.time([0.0, 0.0]).value.widened(radius)

@@ -18,8 +18,8 @@ use crate::variations::graze::Seen;
 use crate::variations::transition::{arrival, check_near, struck};
 use dalembert_numbers::Extended;
 
-/// Allowed difference between the rate at the end of a step and the slope of the series, in rounding errors of the
-/// state.
+/// Allowed difference between the rate at the end of a step and the slope of the series there, in rounding errors of
+/// the state.
 const DEFECT: f64 = 4096.0;
 
 /// Allowed size of the last two terms of a series, in rounding errors of the first ones.
@@ -41,7 +41,7 @@ pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
     pub(super) next_unit: f64,
     /// Length of the last step in this unit.
     pub(super) theta: f64,
-    /// Place at which the motion is cut, if it is cut, in this unit.
+    /// Cut of the motion, in this unit; `None` if it is not cut.
     pub(super) cut: Option<f64>,
     /// Ends of the last step.
     pub(super) ends: [At<Sys, PARTS>; 2],
@@ -90,8 +90,8 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         Ok(())
     }
 
-    /// Expands the motion from the end of the last step. Returns the part of `length` that the series reach, in units
-    /// of time.
+    /// Expands the motion from the end of the last step. Returns the reach of the series, at most `length`, in units of
+    /// time.
     pub(super) fn expand(&mut self, length: f64) -> Result<f64, StepFailure> {
         self.ends[0] = self.ends[1];
         (self.unit, self.theta, self.cut) = (self.next_unit, 0.0, None);
@@ -111,7 +111,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         }
     }
 
-    /// The part of `wished` units of time that the series reach.
+    /// Reach of the series, at most `wished`, in units of the coefficients; `None` if a coefficient is not finite.
     fn reach(&self, wished: f64) -> Option<f64> {
         let scale = self.scale();
         let mut sizes = [[0.0]; LENGTH];
@@ -149,7 +149,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         (at, slope)
     }
 
-    /// Makes a step of this length from the expansion. Returns true if the motion at its end is that of the series.
+    /// Makes a step of this length from the expansion. True if the motion at its end agrees with the series.
     pub(super) fn make(&mut self, length: Extended<PARTS>) -> Result<bool, StepFailure> {
         let theta = length / Extended::from(self.unit);
         let (end, slope) = self.after(theta);
@@ -177,8 +177,8 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         })
     }
 
-    /// Takes the cut of the last step for its end if no transition happened there; `is_start` if the cut is its
-    /// start.
+    /// Ends the last step at its cut if no transition happened there. `is_start` is true if the cut is the start of the
+    /// step.
     pub(super) fn settle(&mut self, is_start: bool) -> Result<(), StepFailure> {
         if !self.is_expanded {
             // After a transition.
@@ -194,7 +194,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         }
     }
 
-    /// Makes the remaining step to a time that the rounded time has reached.
+    /// Makes the remaining step to `t_end` after the rounded time has reached it.
     pub(super) fn land(&mut self, t_end: f64) -> Result<(), StepFailure> {
         let rest = Extended::from(t_end) - self.ends[1].t;
         if rest.nearest() == 0.0 {
@@ -224,7 +224,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         seen.look_for_grazes(t, self.cut.unwrap_or(self.theta))
     }
 
-    /// Discards the last step, for which no decision was possible.
+    /// Discards the last step, which could not be decided.
     pub(super) fn forget(&mut self) {
         self.ends[1] = self.ends[0];
     }
@@ -261,7 +261,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         })
     }
 
-    /// The root of a gap near an event with this gap rate.
+    /// The root of a gap near an event. `rate`: the gap rate there.
     fn met(&mut self, event: &Event<Sys::State>, rate: f64) -> Result<At<Sys, PARTS>, Undefined> {
         let (t, surface) = (event.t, event.surface);
         if !self.is_expanded {
@@ -285,7 +285,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
                 break;
             }
         }
-        // The rest is rounding, unless there is no root.
+        // The last step is rounding error, unless there is no root.
         let digits = crate::math::sqrt(Extended::<PARTS>::ROUNDING);
         let size = theta.nearest().abs().max(self.theta.abs());
         match last <= digits * size {
@@ -295,7 +295,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
     }
 }
 
-/// Conversion of a step failure at a transition.
+/// Converts a step failure at a transition.
 fn undefined(failure: StepFailure, t: f64) -> Undefined {
     match failure {
         StepFailure::Fault(fault) => fault.into(),

@@ -1,4 +1,4 @@
-//! A run in extended numbers: the driver of ordinary runs, over the rounded steps of a flight.
+//! A run in extended precision: the ordinary driver, applied to the steps of a flight rounded to doubles.
 
 use core::cell::RefCell;
 use core::ops::ControlFlow;
@@ -17,7 +17,7 @@ use crate::state::StateVector;
 use crate::variations::Undefined;
 use dalembert_numbers::Extended;
 
-/// A state at a time.
+/// A time and the state at it.
 #[derive(Debug)]
 pub struct At<Sys: TaylorField, const PARTS: usize> {
     /// The time.
@@ -26,7 +26,7 @@ pub struct At<Sys: TaylorField, const PARTS: usize> {
     pub state: Sys::Row<Extended<PARTS>>,
 }
 
-/// A transition at a surface.
+/// An impact or transition at a surface.
 #[derive(Debug)]
 pub struct Impact<Sys: TaylorField, const PARTS: usize> {
     /// Time.
@@ -35,7 +35,7 @@ pub struct Impact<Sys: TaylorField, const PARTS: usize> {
     pub surface: usize,
     /// The law that was applied.
     pub law: Law,
-    /// The state just before, at which the gap vanishes to rounding.
+    /// State just before. Its gap vanishes up to rounding.
     pub before: Sys::Row<Extended<PARTS>>,
     /// The state just after.
     pub after: Sys::Row<Extended<PARTS>>,
@@ -44,10 +44,10 @@ pub struct Impact<Sys: TaylorField, const PARTS: usize> {
 /// A finished run in extended numbers.
 #[derive(Debug)]
 pub struct ExtendedRun<Sys: TaylorField, const PARTS: usize> {
-    /// Reason for the end: an ordinary [`Outcome`], or the reason why no digits beyond those of doubles exist.
+    /// Reason for the end: an ordinary [`Outcome`], or the reason why the extended digits are undefined from here on.
     pub outcome: Result<Outcome, Undefined>,
-    /// Time and state of the end: at the requested end, after the last impact, or at the end of the last whole step.
-    /// A run can go on from here.
+    /// Final time and state: at the requested end, after the last impact, or at the end of the last whole step. A new
+    /// run can start from it.
     pub end: At<Sys, PARTS>,
     /// Work done.
     pub counters: Counters,
@@ -82,7 +82,7 @@ impl<Sys: TaylorField, const PARTS: usize> At<Sys, PARTS> {
     }
 }
 
-/// A system with effects, for runs in numbers of `PARTS` doubles: see the [module](super).
+/// A simulation in extended precision with `PARTS` doubles per number; see the [module](super).
 #[derive(Debug, Clone)]
 pub struct ExtendedSimulation<'a, Sys, Effects, const PARTS: usize> {
     system: &'a Sys,
@@ -93,7 +93,8 @@ pub struct ExtendedSimulation<'a, Sys, Effects, const PARTS: usize> {
 impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
     ExtendedSimulation<'a, Sys, Effects, PARTS>
 {
-    /// Combines the two. [`Scene::effects`](crate::Scene::effects) are the effects that a system declares.
+    /// Combines a system with effects. [`Scene::effects`](crate::Scene::effects) returns the effects that a system
+    /// declares.
     pub fn new(system: &'a Sys, effects: Effects) -> Self {
         Self {
             system,
@@ -109,7 +110,8 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
         self
     }
 
-    /// Runs from a state to `t_end`. Calls `see` with every impact; it may ask to stop.
+    /// Runs from `start` to the time `t_end`. Calls `see` after every impact; it may stop the run by
+    /// `ControlFlow::Break`.
     ///
     /// # Errors
     /// [`StartError`] in the cases of [`Simulation::run`].
@@ -132,7 +134,7 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
         let undefined = witness.undefined;
         let mut flight = flight.into_inner();
         let mut outcome = undefined.map_or(Ok(run.outcome), Err);
-        // A step that was cut counts as not made.
+        // A step that was cut is not part of the flight.
         if flight.cut.is_some() || run.t < flight.ends[1].t.nearest() {
             flight.forget();
         }
@@ -149,7 +151,7 @@ impl<'a, Sys: Variational, Effects: Effect<Sys>, const PARTS: usize>
     }
 }
 
-/// Carries out in a flight the transitions of its rounded steps.
+/// Carries out the transitions of the rounded steps in the flight.
 struct Witness<'r, 'a, Sys: Variational, See, const PARTS: usize> {
     flight: &'r RefCell<Flight<'a, Sys, PARTS>>,
     see: See,

@@ -1,4 +1,5 @@
-//! Adapter of a flight in extended numbers to the interface of an integrator in doubles, for the effects of a run.
+//! Adapter: gives a flight in extended precision the interface of an integrator in doubles, for the driver and its
+//! effects.
 
 use core::cell::RefCell;
 
@@ -14,7 +15,7 @@ use crate::numbers::Row;
 use crate::state::StateVector;
 use dalembert_numbers::Extended;
 
-/// Largest factor between a step that was limited from outside and the next.
+/// Largest growth of the step after one that was limited from outside.
 const GROW: f64 = 8.0;
 
 /// The steps of a flight, rounded to doubles.
@@ -23,12 +24,12 @@ pub(super) struct Rounded<'r, 'a, Sys: Variational, const PARTS: usize> {
     order: usize,
     unit: f64,
     theta: f64,
-    /// Temporary limit of the step, after a jump.
+    /// Temporary limit of the step length after a jump.
     limit: f64,
     t: [Instant; 2],
     states: [Sys::State; 2],
     rates: [Sys::State; 2],
-    /// Rounding error of the state at the start.
+    /// Difference between the extended state at the start and its rounded value.
     rest: Sys::State,
     coefficients: [Sys::State; LENGTH],
     gaps: [Sys::Gaps<f64>; LENGTH],
@@ -54,7 +55,7 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
         }
     }
 
-    /// Reads the present time and state of the flight: the end of a step, or the state after a transition.
+    /// Reads the present time and state of the flight, at the end of a step or after a transition.
     fn place(&mut self) -> Result<(), StepFailure> {
         self.flight.borrow_mut().begin()?;
         self.take_end();
@@ -88,7 +89,7 @@ impl<'r, 'a, Sys: Variational, const PARTS: usize> Rounded<'r, 'a, Sys, PARTS> {
     }
 }
 
-/// A time in two parts.
+/// A time as a double and a remainder.
 fn instant<const PARTS: usize>(t: Extended<PARTS>) -> Instant {
     let first = t.nearest();
     Instant {
@@ -124,7 +125,7 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         self.place()
     }
 
-    /// NOTE: the start is the present state of the flight; the driver holds a rounded copy of it.
+    /// NOTE: the present state of the flight is the start. The driver passes a rounded copy of it, which is ignored.
     fn restart(
         &mut self,
         _: &Sys,
@@ -176,13 +177,13 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         drop(flight);
         self.take_series();
         self.take_end();
-        // The next series are computed in a unit near this step.
+        // The next series are computed in a unit of time near the length of this step.
         self.flight.borrow_mut().next_unit = power_of_two(length);
         Ok(())
     }
 
-    /// NOTE: a projection corrects doubles to the constraints. The flight satisfies them to all its digits, and goes
-    /// on from its own state.
+    /// NOTE: does nothing. A projection corrects the rounded state; the flight satisfies the constraints to all its
+    /// digits and continues from its own state.
     fn replace_end(
         &mut self,
         _: &Sys,

@@ -1,4 +1,4 @@
-//! The first fall of one gap along a step: on its polynomial if there is one whose error is bounded, otherwise by
+//! Location of the first fall of one gap along a step: on its polynomial if that has a bounded error, otherwise by
 //! enclosures.
 
 use super::root::Polynomial;
@@ -24,8 +24,8 @@ pub(super) struct Known<'a, G: StateVector> {
     pub(super) whole: Option<TaylorModel>,
 }
 
-/// The first fall of a gap, with its time to the last bits. What the polynomial of a gap does not show to be a single
-/// fall, or none, is left to enclosures of the gap itself.
+/// The first fall of a gap, with its time to the last bits. Enclosures of the gap itself decide if its polynomial shows
+/// neither a single fall nor none.
 pub(super) fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &mut StepView<'_, Sys, Step>,
@@ -94,7 +94,7 @@ enum Plain {
     Unknown,
 }
 
-/// The fall of a polynomial that has one root in the whole step, or in its beginning, corrected with the gap.
+/// The fall of a polynomial with one root in the whole step, or in its beginning. The gap itself corrects the root.
 fn plain_fall<G: StateVector>(
     surface: usize,
     series: &GapSeries<G>,

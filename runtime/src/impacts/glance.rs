@@ -1,5 +1,5 @@
-//! Data of a step for the first test: gaps and rates at its end, and the polynomials of the gaps if the step is a
-//! power series.
+//! Data for the first test of a step for impacts: gaps and gap rates at its end, and the polynomials of the gaps if the
+//! step is a power series.
 
 use super::series::GapSeries;
 use crate::contract::Impacting;
@@ -8,30 +8,30 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Difference of times, relative to them, below which they count as the same.
+/// Relative difference below which two times count as equal.
 pub(super) const SAME_TIME: f64 = 4.0 * f64::EPSILON;
 
-/// Gaps at the end of the step, and data that most steps do not need.
+/// Gaps at the end of a step, with data that is computed only for some steps.
 pub(super) struct Glance<G: StateVector> {
     pub(super) gaps: G,
-    /// Rates at the end, once computed.
+    /// Gap rates at the end, once computed.
     rates: Option<G>,
     /// Polynomials of the gaps, once computed.
     series: Option<GapSeries<G>>,
     /// True if the step is a power series.
     has_series: bool,
-    /// Length of the step, and the larger of the absolute values of its times.
+    /// Length of the step, and the larger of the absolute values of its end times.
     pub(super) length: f64,
     pub(super) latest: f64,
 }
 
 impl<G: StateVector> Glance<G> {
-    /// True if both ends of the step are the same moment within the rounding of times.
+    /// True if both ends of the step are at the same time up to rounding.
     pub(super) fn is_moment(&self) -> bool {
         self.length <= SAME_TIME * self.latest
     }
 
-    /// Computes the rates at the end, unless that is done.
+    /// Returns the gap rates at the end of the step. They are computed in the first call.
     #[inline(always)]
     pub(super) fn look_closer<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
@@ -52,7 +52,8 @@ impl<G: StateVector> Glance<G> {
         Ok(rates)
     }
 
-    /// Computes the polynomials of the gaps, unless that is done. `None` if the step is no series.
+    /// Returns the polynomials of the gaps, which are computed in the first call; `None` if the step is not a power
+    /// series.
     #[inline(always)]
     pub(super) fn expand<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
@@ -70,7 +71,7 @@ impl<G: StateVector> Glance<G> {
         self.has_series
     }
 
-    /// True if the polynomial of a gap is known, and its error bounded.
+    /// True if the polynomial of the gap is known and has an error bound.
     #[inline(always)]
     pub(super) fn is_certain(&self, surface: usize) -> bool {
         self.series()
@@ -95,7 +96,7 @@ impl<G: StateVector> Glance<G> {
         self.series.as_ref()
     }
 
-    /// True if the gap vanishes at the end of the step within the rounding of times.
+    /// True if the surface is approached and its gap reaches 0 at the end of the step, within the rounding of times.
     #[inline(always)]
     pub(super) fn is_due(&self, surface: usize) -> bool {
         let gap = self.gaps.as_slice()[surface];
@@ -104,7 +105,7 @@ impl<G: StateVector> Glance<G> {
     }
 }
 
-/// Returns the gaps if all are finite.
+/// Returns the gaps if all are finite. The error gives the first other gap the index `state_len + surface`.
 #[inline(always)]
 pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
     match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {
@@ -115,7 +116,7 @@ pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sy
     }
 }
 
-/// Computes the gaps at the end of the step.
+/// Computes the gaps at the end of the step. The integrator's gaps are used if it has them.
 #[inline(always)]
 pub(super) fn glance<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,

@@ -1,14 +1,14 @@
-//! Surfaces at hand at one moment: approached surfaces, and the order in which they are struck. A surface is at hand
-//! where its gap is 0 within rounding.
+//! Surfaces at hand at one time, and the order of their impacts. A surface is at hand if its gap is 0 within rounding;
+//! it is approached if its gap rate is negative beyond a threshold.
 //!
-//! Surfaces are struck in rounds: first those approached on arrival, then those that the impacts of a round leave
-//! approached, and so on. A wave of impacts therefore passes through bodies that touch in the same way as through
-//! small gaps, if all of them take equally long.
+//! Impacts are carried out in rounds: first on the surfaces approached on arrival, then on those approached after the
+//! impacts of the first round, and so on. A wave of impacts therefore passes through touching bodies as it passes
+//! through small gaps, if all gaps take equally long to close.
 
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// The order in which the surfaces of one round are struck.
+/// Order of the impacts in one round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Order {
     /// Ascending index.
@@ -17,14 +17,14 @@ pub(super) enum Order {
     Descending,
 }
 
-/// Threshold of the gap rate from which a surface at hand counts as approached.
+/// Threshold of the gap rate for a surface at hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Still {
-    /// Approached if the gap falls faster than this.
+    /// Approached if the gap rate is below minus this number.
     UpTo(f64),
-    /// Approached at any rate: the gap was seen to fall through 0.
+    /// Approached at any rate: the gap has passed through 0.
     Fallen,
-    /// Not approached any more: its impact is settled.
+    /// No longer approached: its impact is settled.
     Done,
 }
 
@@ -35,14 +35,14 @@ pub(super) struct Hits<G: StateVector> {
     at_hand: PerSurface<bool, G>,
     /// Thresholds of the gap rates.
     still: PerSurface<Still, G>,
-    /// True for surfaces that were approached when this round began and have not had their turn.
+    /// True for surfaces approached at the beginning of this round whose turn is still to come.
     due: PerSurface<bool, G>,
-    /// True for surfaces that were struck at this moment.
+    /// True for surfaces that had an impact at this time.
     struck: PerSurface<bool, G>,
 }
 
 impl<G: StateVector> Hits<G> {
-    /// No surface at hand, for as many surfaces as `like` has components.
+    /// No surface at hand. `like` has one component per surface.
     pub(super) fn none(like: &G) -> Self {
         let none = PerSurface::all(like, false);
         Self {
@@ -53,7 +53,7 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
-    /// These surfaces at hand, for as many surfaces as `like` has components.
+    /// The given surfaces at hand. `like` has one component per surface.
     pub(super) fn all_of(surfaces: impl Iterator<Item = usize>, like: &G) -> Self {
         let mut hits = Self::none(like);
         surfaces.for_each(|surface| hits.add(surface));
@@ -85,14 +85,14 @@ impl<G: StateVector> Hits<G> {
             }
     }
 
-    /// Number of surfaces at hand that are approached.
+    /// Number of surfaces that are at hand and approached.
     pub(super) fn approached(&self, rates: &G) -> usize {
         (0..rates.count())
             .filter(|&surface| self.is_approached(surface, rates))
             .count()
     }
 
-    /// The first and the last surface at hand that is approached.
+    /// The first and the last index of the surfaces that are at hand and approached.
     pub(super) fn ends(&self, rates: &G) -> Option<[usize; 2]> {
         let mut approached =
             (0..rates.count()).filter(|&surface| self.is_approached(surface, rates));
@@ -100,7 +100,8 @@ impl<G: StateVector> Hits<G> {
         Some([first, approached.next_back().unwrap_or(first)])
     }
 
-    /// Begins a round if the last one is over. Returns its number of surfaces; 0 within a round.
+    /// Begins a round if the last one has ended. Returns the number of surfaces in the round, or 0 if the last one has
+    /// not ended.
     pub(super) fn begin_round(&mut self, rates: &G) -> usize {
         if self.due(rates).next().is_some() {
             return 0;
@@ -111,7 +112,7 @@ impl<G: StateVector> Hits<G> {
         self.due(rates).count()
     }
 
-    /// The next surface of this round; `None` at its end.
+    /// The next surface of this round, in the given order; `None` at the end of the round.
     pub(super) fn turn(&mut self, rates: &G, order: Order) -> Option<usize> {
         let surface = match order {
             Order::Ascending => self.due(rates).next(),
@@ -121,18 +122,18 @@ impl<G: StateVector> Hits<G> {
         Some(surface)
     }
 
-    /// Surfaces of this round that have not had their turn and are still approached.
+    /// Surfaces of this round whose turn is still to come and that are still approached.
     fn due<'a>(&'a self, rates: &'a G) -> impl DoubleEndedIterator<Item = usize> + 'a {
         (0..rates.count())
             .filter(|&surface| self.due[surface] && self.is_approached(surface, rates))
     }
 
-    /// Records an impact on a surface. Returns true if it was struck at this moment before.
+    /// Records an impact on a surface. Returns true if it had an impact at this time before.
     pub(super) fn note_struck(&mut self, surface: usize) -> bool {
         core::mem::replace(&mut self.struck[surface], true)
     }
 
-    /// Marks a surface whose gap was seen to fall through 0 as approached, whatever its rate.
+    /// Marks a surface as approached at any rate, because its gap has passed through 0.
     pub(super) fn set_fallen(&mut self, surface: usize) {
         self.still[surface] = Still::Fallen;
     }
@@ -152,8 +153,8 @@ impl<G: StateVector> Hits<G> {
         }
     }
 
-    /// Raises the threshold: gap rates above `-rate` count as not approaching. Returns the largest such `rate` so
-    /// far; `None` for a settled surface.
+    /// Raises the threshold of a surface: gap rates above `-rate` no longer count as approaching. Returns the new
+    /// threshold; `None` for a settled surface.
     pub(super) fn set_still(&mut self, surface: usize, rate: f64) -> Option<f64> {
         let rate = match self.still[surface] {
             Still::UpTo(before) => before.max(rate),

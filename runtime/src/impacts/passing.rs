@@ -1,18 +1,18 @@
-//! Impacts after which the motion goes on through the surface: detection of their accumulation.
+//! Impacts after which the motion passes through the surface: detection of their accumulation.
 
 use super::hops::{SHRUNK, is_shorter};
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Relative difference of times below which they cannot be told apart.
+/// Relative difference below which times cannot be distinguished.
 const INSTANT: f64 = 4.0 * f64::EPSILON;
 
-/// The impacts that the motion passed through.
+/// The impacts at which the motion passed through a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passing<G: StateVector> {
     /// Time of the last impact on any surface; `None` before the first.
     last: Option<f64>,
-    /// Time between the last two.
+    /// Time between the last two impacts.
     stretch: Option<f64>,
     /// Number of times in a row that `stretch` became shorter.
     shortened: u32,
@@ -47,8 +47,8 @@ impl<G: StateVector> Passing<G> {
         self.stretch = stretch;
     }
 
-    /// True if impacts, one on this surface among them, followed each other faster and faster until this time, at
-    /// which two of them cannot be told apart.
+    /// True if impacts followed each other faster and faster until `t`, where two of them cannot be distinguished, and
+    /// one of the last was on this surface.
     pub(super) fn has_accumulated(&self, surface: usize, t: f64) -> bool {
         let instant = INSTANT * t.abs();
         let is_instant = |stretch: f64| stretch <= instant;

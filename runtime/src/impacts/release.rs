@@ -1,8 +1,7 @@
-//! Release of a motion from a surface that holds it: the contact force can only push, and the motion leaves where it
-//! would have to pull.
+//! Release of a motion from a surface in contact. The contact force can only push; the motion leaves the surface where
+//! the force would have to pull.
 //!
-//! The force is a function of time along a step, and its fall through zero is located in the same way as that of a
-//! gap.
+//! The force is a function of time along a step. Its fall through zero is located in the same way as that of a gap.
 
 use core::cell::{Cell, RefCell};
 
@@ -19,7 +18,7 @@ use crate::state::StateVector;
 /// Rounding of a force, relative to its largest value in the step.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A fraction of a step, and the surface that is left there; `None` where the search stopped.
+/// A fraction of a step, and the surface that the motion leaves there; `None` if the search stopped there.
 pub(super) type Release = (f64, Option<usize>);
 
 /// The first release in a step.
@@ -69,7 +68,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         .fold(0.0_f64, |most, size| most.max(size.abs()));
     let above = whole[0] >= -ROUNDING * largest;
     if !above && whole.iter().all(|&size| size < 0.0) {
-        // The gap presses, the force pulls: both beyond rounding.
+        // The gap presses and the force pulls, both by more than rounding errors.
         return Err(Outcome::Contact { surface });
     }
     let fault = Cell::new(None);

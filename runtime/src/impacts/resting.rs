@@ -1,7 +1,7 @@
 //! Resting on surfaces and sliding along them: begin and end of contact.
 //!
-//! Every change happens where a step is cut: at its start where the motion presses into a surface at hand, inside
-//! where a contact force would have to pull, or at an impact on another surface.
+//! Every change happens where a step is cut: at its start if the motion presses into a touched surface, inside where a
+//! contact force would have to pull, or at an impact on another surface.
 
 use core::ops::ControlFlow;
 
@@ -19,10 +19,10 @@ use crate::per_surface::PerSurface;
 use crate::record::{Hold, Observer};
 use crate::state::StateVector;
 
-/// Maximum number of changes at one time per surface; beyond it no choice of surfaces continues the motion.
+/// Maximum number of changes at one time per surface. Beyond it, no choice of surfaces continues the motion.
 const CHANGES: u32 = 4;
 
-/// Share of the kinetic energy below which a gap rate counts as 0: the square of `2^-36`, as for impacts.
+/// Ratio to the kinetic energy below which the square of a gap rate counts as 0: the square of `2^-36`, as for impacts.
 const STILL: f64 = 1.0 / (1_u128 << 72) as f64;
 
 /// Reason for a cut of the step.
@@ -81,7 +81,7 @@ impl<G: StateVector> Resting<G> {
         Ok(Some(0.0))
     }
 
-    /// Counts a change of surfaces. Ends the run where changes repeat at one time.
+    /// Counts a change of surfaces. Ends the run if changes repeat too often at one time.
     fn count(&mut self, surface: usize, t: f64) -> Result<(), Outcome> {
         if self.changes.add(t) > CHANGES * (self.accumulated.count() as u32 + 1) {
             return Err(Outcome::Contact { surface });
@@ -89,7 +89,7 @@ impl<G: StateVector> Resting<G> {
         Ok(())
     }
 
-    /// The earlier one of a hit and of the first release in a step.
+    /// The earlier of a hit and the first release in a step.
     pub(super) fn look<Sys: Impacting<Gaps = G>, Step: Stepper<Sys>>(
         &mut self,
         hit: Option<f64>,
@@ -107,7 +107,7 @@ impl<G: StateVector> Resting<G> {
         }
     }
 
-    /// Carries out the change for which the step was cut, if there is one.
+    /// Carries out the change for which the step was cut. True if there is one.
     pub(super) fn turn<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         now: &mut Moment<'_, Sys>,
@@ -180,7 +180,7 @@ impl<G: StateVector> Resting<G> {
         self.drop_pulling(None, now, observer)
     }
 
-    /// Leaves the surfaces that are not at hand any more after a reset of positions.
+    /// Leaves the surfaces that a reset of positions has moved away from.
     pub(super) fn keep<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         hits: &Hits<G>,
@@ -224,7 +224,8 @@ impl<G: StateVector> Resting<G> {
         )
     }
 
-    /// Ends sliding where the mode of this transition leads away from the surface: the motion goes on there.
+    /// Ends sliding where the mode of the transition `surface` leads away from the surface. The motion continues in
+    /// this mode.
     fn end_slide<Sys: Impacting<Gaps = G>, O: Observer<Sys>>(
         &mut self,
         slide: Slide,

@@ -1,5 +1,5 @@
-//! Event location along a step that the first tests did not settle: falls of gaps through zero, the impacts among
-//! them, and the motion from rest on a surface.
+//! Event location along a step that the first tests left undecided: falls of gaps through zero, impacts among them, and
+//! motion from rest on a surface.
 
 use super::fall::{Known, first_fall};
 use super::glance::Glance;
@@ -18,8 +18,8 @@ use crate::numbers::TaylorModel;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Maximum number of falls examined in one step on one surface before the step is cut. Falls that are no impacts are
-/// passed over.
+/// Maximum number of falls on one surface that are examined in a step before it is cut. Falls that are no impacts are
+/// skipped.
 const FALLS: u32 = 1024;
 
 /// Ratio of a gap rate to those at the ends of the step below which a grazing impact is possible.
@@ -67,7 +67,7 @@ impl<Sys: Impacting> Watch<Sys> {
             let last_rate = last_rates.as_slice()[surface];
             let (part, rate) = match self.first_hit(surface, step, glance, whole)? {
                 Found::Hit(part, rate) => (part, Some(rate)),
-                // Gaps that no shortening of the step decides: the step would be cut again and again at its start.
+                // No shortening of the step decides such a gap. The step would be cut again and again at its start.
                 Found::Unfinished(part) if part * self.length < least_trial(step.t_start()) => {
                     return Err(Outcome::StepUnderflow { t: step.t_start() });
                 }
@@ -133,7 +133,7 @@ impl<Sys: Impacting> Watch<Sys> {
         let gap = self.gaps.as_slice()[surface];
         let slope = (gap == 0.0).then_some(self.rates.as_slice()[surface] * self.length);
         let until = self.proposed.unwrap_or(1.0);
-        // A passable surface at hand has acted already: the motion leaves it upwards, or crosses it.
+        // A touched passable surface has acted already: the motion leaves it upwards, or crosses it.
         let crosses = self.is_passable(surface) && slope.is_some_and(|slope| slope <= 0.0);
         let mut start = Start {
             from: 0.0,
@@ -159,8 +159,8 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
-                // Between times that are the same the motion leaves a surface at hand, whatever the rounding of its
-                // gap.
+                // Between indistinguishable times the motion leaves a touched surface, whatever the rounding error of
+                // its gap.
                 Search::Pole(_) if slope >= Some(0.0) && glance.is_moment() => {
                     return Ok(Found::Nothing);
                 }
@@ -204,10 +204,10 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(Found::Unfinished(start.from))
     }
 
-    /// True if a fall of a surface at hand is that with which the step begins: at its start, or where the gap has not
-    /// risen beyond its rounding since then.
+    /// True if a fall of a touched surface belongs to the start of the step: it is there, or the gap has not risen
+    /// beyond its rounding error since then.
     ///
-    /// NOTE: hops that rounding invents on a surface that presses would never end: each falls a little later.
+    /// NOTE: rounding would otherwise produce an endless series of hops on a pressed surface, each a little later.
     fn falls_at_start<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -285,8 +285,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Marks a grazing impact: a hit so slow that the gap's lowest value would be within its rounding, or within the
-    /// error of the integrator. `rate` is the gap rate there, `last` that at the end of the step.
+    /// Marks a grazing impact: a hit so slow that the gap's lowest value would be within its rounding error, or within
+    /// the error of the integrator. `rate` is the gap rate there, `last` that at the end of the step.
     fn note_graze<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -330,8 +330,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// True if the motion goes into a surface at hand, false if it goes along it within rounding. Rounding
-    /// accumulates along a wall, so the sum of it over the steps decides nothing.
+    /// True if the motion goes into a touched surface, false if it goes along it within rounding errors. Rounding
+    /// errors accumulate along a wall, so their sum over the steps decides nothing.
     pub(super) fn is_pressed<Step: Stepper<Sys>>(
         &self,
         surface: usize,
@@ -345,8 +345,8 @@ impl<Sys: Impacting> Watch<Sys> {
         glance.rate(surface).is_some_and(is_falling)
     }
 
-    /// True if the gap is negative at the end of the step by more than rounding: a motion along a wall crosses it
-    /// back and forth by less.
+    /// True if the gap is negative at the end of the step by more than its rounding error. A motion along a wall
+    /// crosses it back and forth by less.
     pub(super) fn is_sunk<Step: Stepper<Sys>>(
         &self,
         surface: usize,
@@ -364,9 +364,10 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 }
 
-/// The size of a gap's rounding errors at a part of a step, from components that have had these sizes.
+/// Rounding error of a gap at a fraction of a step. `sizes`: the largest magnitudes that the components have had.
 ///
-/// NOTE: that of a gap which is steep elsewhere in the step says nothing about where it vanishes.
+/// NOTE: the error is evaluated at that fraction. A gap that is steep elsewhere in the step has larger errors there,
+/// which do not matter where it vanishes.
 pub(super) fn rounding_along<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
@@ -387,7 +388,7 @@ pub(super) fn is_active<Sys: Impacting, Step: Stepper<Sys>>(
         .surface_active(surface, step.time(part), &step.state(part))
 }
 
-/// The quantities at a fraction of a step, if the motion exists there.
+/// The quantities at a fraction of a step; `None` if the motion does not exist there.
 fn regular_place<Sys: Impacting, Step: Stepper<Sys>>(
     step: &mut StepView<'_, Sys, Step>,
     part: f64,

@@ -1,8 +1,8 @@
-//! Gaps along a step that is a power series: they are polynomials, and their signs follow from their coefficients.
+//! Gaps along a step that is a power series. They are polynomials, and their signs follow from their coefficients.
 //!
-//! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull), and show where a
-//! root may lie. A bound of the terms that the series lacks makes them certain ([`Tails`](crate::events::tails::Tails));
-//! without one the signs are unclear.
+//! The Bernstein coefficients of a polynomial on the step bound it from both sides (convex hull), and show where a root
+//! may lie. A bound of the truncation error makes the signs certain ([`Tails`](crate::events::tails::Tails)); without
+//! one they are unclear.
 //!
 //! Reference: G. Farin, *Curves and Surfaces for CAGD* (2002), chapter 5.
 
@@ -17,28 +17,29 @@ use crate::numbers::TaylorModel;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Relative error of a polynomial, beside the sum of the absolute values of its terms, up to which its slope is that of
-/// the gap. Its first terms must also make up most of the sum: otherwise the step is longer than the reach of the series.
+/// Largest error of a polynomial, relative to the sum of the absolute values of its terms, with which its slope counts
+/// as that of the gap. In addition, the first terms must make up most of the sum: otherwise the step exceeds the reach
+/// of the series.
 const USEFUL: f64 = 1.0 / (1 << 20) as f64;
 
-/// Largest error of a polynomial, as a share of its change on a part of a step, beside which that change is seen.
+/// Largest ratio of the error of a polynomial to its change on a part of a step with which the change counts as known.
 const HIDDEN: f64 = 1.0 / 8.0;
 
-/// Rounding of coefficients and of sums over them, relative to the sum of the absolute values of the terms.
+/// Rounding error of coefficients and of sums over them, relative to the sum of the absolute values of the terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The gaps of a step as polynomials in the fraction of the step.
 #[derive(Debug)]
 pub(super) struct GapSeries<G: StateVector> {
-    /// The polynomials. Their error bounds are those of deviations at the end of the step, of rounding, and of the
-    /// missing terms.
+    /// The polynomials. Their error bounds cover deviations at the end of the step, rounding errors, and truncation
+    /// errors.
     pub(super) polynomials: Polynomials<G>,
     /// Error bounds of the constant terms.
     pub(super) floors: G,
     /// Sums of the absolute values of all terms, and of those above the fourth.
     pub(super) sizes: G,
     pub(super) tails: G,
-    /// True if the error bounds include the missing terms, false if no bound of those is known; `None` before
+    /// True if the error bounds include the truncation error, false if it has no known bound; `None` before
     /// [`GapSeries::certify`].
     pub(super) certain: PerSurface<Option<bool>, G>,
     /// The gaps at the end of the step, and their slopes by the fraction of the step.
@@ -99,8 +100,8 @@ impl<G: StateVector> GapSeries<G> {
         })
     }
 
-    /// Includes a bound of the missing terms in the error bounds of a surface's polynomial, if there is one. Returns
-    /// true if there is. `tail` gets the order and the sum of the absolute values of the terms.
+    /// Adds a bound of the truncation error to the error bounds of a surface's polynomial. True if there is a bound.
+    /// `tail` receives the order, and the sum of the absolute values of the terms.
     #[inline(always)]
     pub(super) fn certify(
         &mut self,
@@ -128,7 +129,7 @@ impl<G: StateVector> GapSeries<G> {
         true
     }
 
-    /// True if the error bounds of a surface's polynomial include the missing terms.
+    /// True if the error bounds of a surface's polynomial include the truncation error.
     #[inline(always)]
     pub(super) fn is_certain(&self, surface: usize) -> bool {
         self.certain[surface] == Some(true)
@@ -140,7 +141,8 @@ impl<G: StateVector> GapSeries<G> {
         self.certain.iter().any(|known| known.is_some())
     }
 
-    /// Taylor model of the gap of a surface on a part of the step; `None` where the errors of its polynomial hide it.
+    /// Taylor model of the gap of a surface on a part of the step; `None` if the errors of its polynomial hide both its
+    /// sign and its change.
     #[inline]
     pub(super) fn on(&self, surface: usize, part: [f64; 2]) -> Option<TaylorModel> {
         let mut model = self.polynomials.on(surface, part);
@@ -153,13 +155,13 @@ impl<G: StateVector> GapSeries<G> {
         (is_off || error <= HIDDEN * change).then_some(model)
     }
 
-    /// True if the gap of a surface is positive at a fraction of the step, beyond its error.
+    /// True if the gap of a surface is positive at a fraction of the step by more than its error.
     pub(super) fn is_positive(&self, surface: usize, part: f64) -> bool {
         self.polynomials.at(surface, part) > self.doubt(surface, false)
     }
 
-    /// Error bound of the polynomial of a surface; with a surface `at_hand`, whose root at the start is divided out,
-    /// without that of the constant term.
+    /// Error bound of the polynomial of a surface. For a surface `at_hand`, whose root at the start is divided out, it
+    /// excludes the constant term.
     #[inline(always)]
     pub(super) fn doubt(&self, surface: usize, at_hand: bool) -> f64 {
         let doubt = self.polynomials.doubts[0].as_slice()[surface];
@@ -175,7 +177,7 @@ impl<G: StateVector> GapSeries<G> {
         self.polynomials.doubts[1].as_slice()[surface]
     }
 
-    /// The gap rates at the end of a step of this length, if they are accurate.
+    /// The gap rates at the end of a step of this length; `None` if they are not accurate.
     #[inline(always)]
     pub(super) fn last_rates(&self, length: f64) -> Option<G> {
         let mut rates = self.slopes;
@@ -188,8 +190,8 @@ impl<G: StateVector> GapSeries<G> {
 
     /// Signs of the polynomial of a surface over the step, after division by a root at the start.
     ///
-    /// A step is a small part of the radius of convergence, so a cubic is almost the whole gap: its Bernstein
-    /// coefficients must exceed the sum of all other terms, or those of more terms the sum of the rest.
+    /// A step is a small part of the radius of convergence, so a cubic is almost the whole gap. Its Bernstein
+    /// coefficients must exceed the sum of all other terms. If they do not, those of more terms must exceed the rest.
     #[inline(always)]
     pub(super) fn signs(&self, surface: usize, at_hand: bool) -> Signs {
         let first = usize::from(at_hand);

@@ -6,8 +6,8 @@
 //! f = f_b + s (f_a - f_b),   s = r_b/(r_a + r_b),
 //! ```
 //!
-//! with `r_a`, `r_b` the gap rates of the two transitions, each in the mode that it leaves; both are negative. It
-//! ends where one of them is 0: the motion goes on in that mode.
+//! with the gap rates `r_a`, `r_b` of the two transitions, each in the mode that it leaves. Both are negative. The
+//! sliding mode ends where one of them is 0: the motion continues in that mode.
 //!
 //! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
 
@@ -25,7 +25,7 @@ pub(super) struct Slide {
     pub(super) across: usize,
 }
 
-/// Both fields at a state, and the gap rates at which they lead into the surface.
+/// Both fields at a state, and the gap rates with which they lead into the surface.
 struct Sides<Sys: Impacting> {
     here: Sys::State,
     other: Sys::State,
@@ -65,7 +65,7 @@ impl Slide {
         })
     }
 
-    /// Speeds at which both modes lead into the surface, at the indices of their transitions; 0 elsewhere.
+    /// Speeds with which both modes lead into the surface, at the indices of their transitions; 0 elsewhere.
     pub(super) fn pressures<Sys: Impacting>(
         self,
         system: &Sys,

@@ -1,4 +1,4 @@
-//! Integrators behind a pointer: one of several, chosen at run time.
+//! Dynamic dispatch: an integrator behind a pointer, chosen at run time.
 
 use super::instant::Instant;
 use super::stats::Counters;
@@ -10,9 +10,9 @@ use crate::jet::LENGTH;
 
 /// An integrator that is chosen at run time.
 ///
-/// Driver and effects are compiled once for all integrators used in this way: a program with forty systems and eight
-/// integrators builds in a third less time. A step costs a few more calls through a pointer. The results are bitwise
-/// the same.
+/// Driver and effects are compiled once for all integrators used in this way. A program with forty systems and eight
+/// integrators builds in a third less time. A step costs a few more calls through a pointer; the results are bitwise
+/// equal.
 // NOTE: every method is forwarded, including those with a default in `Stepper`.
 pub struct Chosen<'a, F: VectorField> {
     stepper: &'a mut dyn Stepper<F>,

@@ -7,9 +7,9 @@ use crate::state::StateVector;
 /// The state inside a step: with `s = 1 - theta`,
 /// `y(theta) = base + theta (c_0 + theta (c_1 + s (c_2 + s (c_3 + theta (c_4 + s (c_5 + ..))))))`.
 ///
-/// The form of Hairer's codes with the first two terms in powers of `theta`. It keeps its relative accuracy for
-/// `theta` near 0, where roots just after an impact lie, also if the step is many times as long as the part in use.
-/// In such a step its ends differ by far more than the motion has changed.
+/// This is the form of Hairer's codes, with the first two terms in powers of `theta`. It keeps its relative accuracy
+/// for `theta` near 0, where roots just after an impact lie, even if only a small part of the step is used. The ends of
+/// such a step differ by far more than the change of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<S, const K: usize> {
     /// The state at `theta = 0`.
@@ -27,8 +27,8 @@ pub(super) struct Cubic {
     pub(super) bend: f64,
     /// Change of `h` times the rate over the step.
     pub(super) gained: f64,
-    /// Bound of the rounding errors of `bend`. Where the cubic differs from a parabola by less than these, the
-    /// parabola is taken: its bend is half of `gained`, and has far smaller errors than a sum with large weights.
+    /// Bound of the rounding errors of `bend`. If the cubic differs from a parabola by less than these, the parabola is
+    /// used: its bend is half of `gained`, and has far smaller errors than a sum with large weights.
     pub(super) rounding: f64,
 }
 
@@ -57,8 +57,8 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
         }
     }
 
-    /// Change of `h` times the rate between the start and the stage at a node, component `i`, minus the change of the
-    /// cubic.
+    /// Change of `h` times the rate of component `i` between the start and the stage at `node`, minus the change of the
+    /// cubic. `gained`: the former change.
     ///
     /// The weights of the higher coefficients annihilate the rates of a cubic up to the weights' rounding errors.
     /// These are the same in every step and would add up over a run, so the cubic's part is subtracted first.
@@ -120,7 +120,7 @@ fn is_along(k: usize) -> bool {
     matches!(k, 0 | 1) || (k > 3 && k.is_multiple_of(2))
 }
 
-/// Place of the slopes prescribed by [`Polynomial::set_inner`], here and at `1 - INNER`: the outer nodes of the
+/// Fraction at which [`Polynomial::set_inner`] prescribes slopes, besides `1 - INNER`: the outer nodes of the
 /// three-point Gauss rule. The Lobatto nodes, where `a (1 - a) = 1/5`, would not determine the quintic.
 pub(super) const INNER: f64 = 0.112_701_665_379_258_31;
 

@@ -45,9 +45,9 @@ const A5: [Term; 5] = [
     (4, -5103.0 / 18656.0),
 ];
 
-/// Weights of the fifth-order solution: 500/1113, 125/192, -2187/6784 and 11/84, each within a few units in its last
-/// place, chosen so that `sum b_i c_i` is 1/2 to 1/400 of a rounding error. Its deviation would shift every step
-/// under constant forces alike.
+/// Weights of the fifth-order solution: 500/1113, 125/192, -2187/6784 and 11/84, each changed by a few units in its
+/// last place, so that `sum b_i c_i` is 1/2 to 1/400 of a rounding error. The deviation of this sum would shift every
+/// step under constant forces in the same way.
 const B: [Term; 5] = [
     (0, 35.0 / 384.0),
     (2, 0.449_236_298_292_902_57),
@@ -69,7 +69,7 @@ const E: [Term; 6] = [
 /// Entry of [`E`] for the rate at the end.
 const E_LAST: f64 = -1.0 / 40.0;
 
-/// The fourth coefficient of dense output; the others follow from the ends.
+/// The fourth coefficient of dense output. The other coefficients follow from the ends.
 const D: [Term; 6] = [
     (0, -12715105075.0 / 11282082432.0),
     (2, 87487479700.0 / 32700410799.0),
@@ -122,7 +122,7 @@ impl Scheme for DormandPrince5Scheme {
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
         let mut largest = 0.0;
         for i in 0..stages[0].count() {
-            // The last stage is a rate, not a difference; the entries add up to 0.
+            // The last stage is a rate, not a difference. The entries of `E` add up to 0.
             let ending = stages[Self::LAST].as_slice()[i] - stages[0].as_slice()[i];
             let error = sum(stages, &E[..5], i) + E_LAST * ending;
             let ratio = h * error / allowed(i);

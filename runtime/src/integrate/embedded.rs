@@ -1,7 +1,7 @@
-//! Step of an embedded Runge-Kutta pair: trial, error estimate, acceptance or another trial.
+//! Step of an embedded Runge-Kutta pair: trial, error estimate, then acceptance or a shorter trial.
 //!
-//! First-same-as-last: the rate at the end of an accepted step is the first stage of the next one. If the error
-//! estimate does not use it, it is evaluated only after the error has passed.
+//! First same as last (FSAL): the rate at the end of an accepted step is the first stage of the next one. If the error
+//! estimate does not use this rate, it is evaluated only after acceptance.
 
 use super::controller::{
     Control, MaxStepError, Memory, Weights, check_max_step, first_step, landing_within, least_step,
@@ -39,7 +39,7 @@ impl<F: VectorField> Counted<'_, F> {
     }
 }
 
-/// One step of a scheme: its start and its length.
+/// One step: its start, length and end.
 #[derive(Debug, Clone, Copy)]
 pub struct Span<'a, S> {
     pub(super) t: f64,
@@ -50,8 +50,8 @@ pub struct Span<'a, S> {
 
 impl<S: StateVector> Span<'_, S> {
     /// Difference between the end of the step and an Euler step from its start, component `i`. `weights` are those of
-    /// the end. It is computed from the stages, far more accurately than from the ends; a later displacement of the
-    /// end is added.
+    /// the solution at the end. The difference is computed from the stages, which is far more accurate than from the
+    /// two states. A later displacement of the end is added.
     #[inline(always)]
     pub(super) fn bend(&self, stages: &[S], weights: &[Term], i: usize) -> f64 {
         let differences = sum(stages, weights, i);
@@ -61,14 +61,14 @@ impl<S: StateVector> Span<'_, S> {
     }
 }
 
-/// The coefficients of an embedded pair and the functions computed from them. Implemented by the schemes of this
-/// crate.
+/// Coefficients of an embedded pair, and the functions computed from them. Implemented by the schemes of this crate
+/// only.
 pub trait Scheme {
     /// See [`Stepper::name`].
     const NAME: &'static str;
-    /// Order of the solution at the ends of steps.
+    /// Order of the solution at the end of a step.
     const ORDER: usize;
-    /// Order of the dense output between them.
+    /// Order of the dense output inside a step.
     const DENSE_ORDER: usize;
     /// Index of the stage that is the rate at the end of the step.
     const LAST: usize;
@@ -97,8 +97,8 @@ pub trait Scheme {
     #[doc(hidden)]
     const NODES: &'static [f64];
 
-    /// Computes all stages after the first except [`Scheme::LAST`]; takes storage for a state. The first and the last
-    /// stage hold rates, the others hold the differences of their rates from that of the first.
+    /// Computes all stages after the first except [`Scheme::LAST`]. The first and the last stage hold rates; the others
+    /// hold the differences between their rates and that of the first. `inside` is storage for one state.
     #[doc(hidden)]
     fn advance<F: VectorField>(
         field: &mut Counted<'_, F>,
@@ -109,11 +109,11 @@ pub trait Scheme {
         inside: &mut F::State,
     ) -> Result<(), Fault>;
 
-    /// Error of the step divided by the allowed error. `allowed(i)` is the error allowed in component `i`.
+    /// Error of the step divided by the allowed error; `allowed(i)` is the allowed error of component `i`.
     #[doc(hidden)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64;
 
-    /// Builds the dense output, after evaluating the extra stages that it needs.
+    /// Builds the dense output of a step. Evaluates the extra stages that it needs.
     #[doc(hidden)]
     fn build_dense<F: VectorField>(
         field: &mut Counted<'_, F>,
@@ -122,7 +122,7 @@ pub trait Scheme {
         dense: &mut Self::Dense<F::State>,
     ) -> Result<(), Fault>;
 
-    /// Writes the coefficients of the dense output in powers of `theta`, as specified in [`Stepper::powers`].
+    /// Writes the coefficients of the dense output in powers of `theta`; see [`Stepper::powers`]. Returns the degree.
     #[doc(hidden)]
     fn dense_powers<S: StateVector>(dense: &Self::Dense<S>, powers: &mut [S; LENGTH]) -> usize;
 
@@ -139,7 +139,7 @@ pub struct Embedded<S: StateVector, M: Scheme> {
     first_step: Option<f64>,
     weights: Weights<S>,
     memory: Memory,
-    /// The step size for the next trial.
+    /// Length of the next trial step.
     next: f64,
     /// Error of the last step divided by the allowed error.
     error: f64,
@@ -168,8 +168,8 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// Limits steps to `max_step`, in units of time; infinity is no limit. A short force, for example a blow between
-    /// two steps, is detected if it lasts longer than this.
+    /// Limits the length of steps to `max_step`, in units of time; infinity means no limit. A short force, for example
+    /// a pulse that begins and ends between two steps, is detected if it lasts longer than `max_step`.
     ///
     /// # Errors
     /// [`MaxStepError`] if `max_step` is not positive.
@@ -178,14 +178,15 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         Ok(self)
     }
 
-    /// Sets the size of the first trial step instead of the automatic one. Anything but a positive number is ignored.
+    /// Sets the length of the first trial step, which is otherwise chosen automatically. Values that are not positive
+    /// and finite are ignored.
     #[must_use]
     pub fn with_first_step(mut self, first_step: f64) -> Self {
         self.first_step = (first_step > 0.0 && first_step.is_finite()).then_some(first_step);
         self
     }
 
-    /// Sets `(now, state)` as the end of a step, for a start.
+    /// Sets `(now, state)` as the end of a step, at the start of a run or after a jump.
     fn place<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
@@ -205,7 +206,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// The end of the last step becomes the start of the next.
+    /// Makes the end of the last step the start of the next.
     #[inline(always)]
     fn move_on(&mut self) {
         self.ends.move_on();
@@ -214,7 +215,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         self.dense_ready = false;
     }
 
-    /// One trial of `h`. Returns the error divided by the allowed error; the step is good if and only if this is at
+    /// One trial step of length `h`. Returns the error divided by the allowed error; the step is accepted if this is at
     /// most 1.
     #[inline(always)]
     fn attempt<F: VectorField<State = S>>(
@@ -256,7 +257,7 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// Restores the last good state after a failure.
+    /// Restores the last accepted state after a failure.
     fn retract(&mut self) {
         self.ends.retract();
         let stages = self.stages.as_mut();

@@ -14,9 +14,9 @@
 //! constraint, so that the `q` are those of Cortes and Martinez. Compositions of the step are maps of D, and
 //! self-adjoint where they are symmetric.
 //!
-//! The first line is solved for `v` by iterating the velocity that the constraints at the midpoint allow:
-//! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`; at the solution
-//! `nu` is 0.
+//! The iteration that solves the first line for `v` takes the velocity that the constraints at the midpoint allow:
+//! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`. At the solution `nu`
+//! is 0.
 
 use super::controller::not_finite;
 use super::embedded::Counted;
@@ -32,22 +32,27 @@ use crate::state::{StateVector, scaled};
 ///
 /// - Constraints, including affine and time-dependent ones, hold to rounding at the ends of all steps without
 ///   projection. The first step brings a start off the constraints to them.
-/// - Symmetric: reversible systems retrace their path to rounding, and where their motion is regular the energy error
-///   of size `h^2` does not grow. The method is not symplectic, since there is no symplectic structure to keep: where
-///   the motion is chaotic and not reversible the energy makes a random walk, growing like `t^(1/2)`.
+/// - Symmetric: reversible systems retrace their path to rounding. If their motion is regular, the energy error
+///   of size `h^2` does not grow. The method is not symplectic, since there is no symplectic structure to preserve: if
+///   the motion is chaotic and not reversible, the energy performs a random walk and grows like `t^(1/2)`.
 /// - Without constraints and forces it is the variational midpoint rule, symplectic in `(q, p)`, with the
 ///   consequences listed in [`Gauss4`](super::Gauss4).
 /// - Holonomic constraints (`d(f) = 0`) hold on velocities. Their levels `f` are kept to order 2, to rounding where
 ///   `f` is quadratic, and the effect `Projection` returns to them.
 ///
-/// Measured over a million steps of 0.05 (`models/src/stability/structure.rs`), largest error of the energy and its drift: a
-/// knife edge in a quadratic potential, steered by a pendulum (`H = 0.5`) 3.8e-4 and 1e-8, with [`Dla4`] 2.2e-8 and
-/// 1e-12; the nonholonomic particle (`H = 0.8`) 4.7e-4 and 2e-7, with [`Dla4`] 1.5e-8 and 1e-12. The knife edge in a
-/// magnetic field, with the steering coupled to the place (`H = 0.4`): 3e-3 to 7e-3, growing like `t^0.5`; with [`Dla4`]
-/// 2.7e-7, like `t^0.3` to `t^0.5` (chaos makes these numbers depend on rounding). The free rolling disk: rounding, 3e-12 of `H`.
+/// Largest energy error and energy drift over a million steps of 0.05 (`models/stability/src/structure.rs`):
 ///
-/// Each of 5 to 15 iterations of a step takes one force and one constrained velocity. Use it for long runs of systems
-/// with constraints, where the shape of the motion matters more than the digits of one orbit.
+/// | system | `H` | [`Dla2`] | [`Dla4`] |
+/// |---|---|---|---|
+/// | knife edge in a quadratic potential, steered by a pendulum | 0.5 | 3.8e-4, 1e-8 | 2.2e-8, 1e-12 |
+/// | nonholonomic particle | 0.8 | 4.7e-4, 2e-7 | 1.5e-8, 1e-12 |
+///
+/// The energy error of the knife edge in a magnetic field, with the steering coupled to the position (`H = 0.4`), is
+/// 3e-3 to 7e-3 and grows like `t^0.5`. With [`Dla4`] it is 2.7e-7 and grows like `t^0.3` to `t^0.5`. The motion is
+/// chaotic, so these numbers depend on rounding. The error of the free rolling disk is rounding error, 3e-12 of `H`.
+///
+/// A step takes 5 to 15 iterations, each with one force and one constrained velocity. Use the method for long runs of
+/// systems with constraints, where the shape of the motion matters more than the digits of one orbit.
 ///
 /// # References
 /// J. Cortes, S. Martinez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter, *Integrators
@@ -73,7 +78,7 @@ pub struct MidpointPrinciple;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ComposedPrinciple;
 
-/// Suzuki's `1/(4 - 4^(1/3))`: four steps of this fraction go forward, and one of `1 - 4 FORWARD` goes back.
+/// Suzuki's `1/(4 - 4^(1/3))`: four substeps of this fraction go forward, and one of `1 - 4 FORWARD` goes back.
 const FORWARD: f64 = 0.414_490_771_794_375_74;
 const BACK: f64 = 1.0 - 4.0 * FORWARD;
 
@@ -120,8 +125,8 @@ principle!(
 /// A point on the path, with the predictions for the next step.
 struct Point<F: Lagrangian> {
     t: f64,
-    /// NOTE: compensated, since unwrapped angles grow. If their increments are rounded alike in every step, the
-    /// midpoint lies always on the same side of the middle, and the energy drifts.
+    /// NOTE: compensated, because unwrapped angles grow. If their increments were rounded alike in every step, the
+    /// midpoint would always lie on the same side of the middle, and the energy would drift.
     q: Precise<F::Vector>,
     p: F::Vector,
     qdot: F::Vector,

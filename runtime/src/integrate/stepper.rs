@@ -1,4 +1,4 @@
-//! The step interface: everything that the driver knows of an integrator.
+//! The step interface: the only view that the driver has of an integrator.
 
 use core::fmt;
 
@@ -49,13 +49,13 @@ use crate::outcome::Outcome;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Stepper<F: VectorField> {
-    /// Name, as written by the command line.
+    /// Name on the command line.
     fn name(&self) -> &'static str;
 
-    /// The tolerance it was made with.
+    /// The tolerance of the integrator.
     fn tolerance(&self) -> Tolerance;
 
-    /// The longest step it may choose; infinite without a limit, and for a fixed step.
+    /// The longest step that step-size control may choose; infinite without a limit, and for a fixed step.
     fn max_step(&self) -> f64 {
         f64::INFINITY
     }
@@ -74,8 +74,8 @@ pub trait Stepper<F: VectorField> {
     ) -> Result<(), StepFailure>;
 
     /// Restarts after a jump, with the last step size but at most `limit`. An integrator with a fixed step returns to
-    /// it within a few steps. Components of the state that equal those at the last cut keep their rounding errors
-    /// from there.
+    /// it within a few steps. Components of the state that equal those at the last cut keep the rounding errors
+    /// recorded there.
     ///
     /// # Errors
     /// [`StepFailure`] where the vector field does not exist at the new state.
@@ -134,7 +134,7 @@ pub trait Stepper<F: VectorField> {
         self.end_time().t
     }
 
-    /// Length of the last step, also of one that is shorter than a unit in the last place of its times.
+    /// Length of the last step, correct even if it is shorter than a unit in the last place of its times.
     #[inline(always)]
     fn length(&self) -> f64 {
         self.end_time().since(self.start_time())
@@ -149,18 +149,18 @@ pub trait Stepper<F: VectorField> {
     /// Rates at the start and at the end of the last step.
     fn end_rates(&self) -> [&F::State; 2];
 
-    /// The power series of the last step, if the step is one.
+    /// The power series of the last step; `None` if the step is no power series.
     fn series(&self) -> Option<Series> {
         None
     }
 
-    /// Coefficient `k` of the power series of all gaps along the last step; empty if there are none.
+    /// Coefficient `k` of the power series of all gaps along the last step; empty without such series.
     fn gap_coefficient(&self, k: usize) -> &[f64] {
         let _ = k;
         &[]
     }
 
-    /// The gaps at the end of the last step, if they have power series.
+    /// The gaps at the end of the last step; empty if they have no power series.
     fn end_gaps(&self) -> &[f64] {
         &[]
     }
@@ -168,7 +168,7 @@ pub trait Stepper<F: VectorField> {
     /// True if the last step's dense output is ready.
     fn dense_ready(&self) -> bool;
 
-    /// Prepares the last step's dense output, with its extra stages; does nothing if it is ready.
+    /// Prepares the last step's dense output, with its extra stages. Does nothing if it is ready.
     ///
     /// # Errors
     /// The [`Fault`] of an extra stage.
@@ -191,8 +191,8 @@ pub trait Stepper<F: VectorField> {
         None
     }
 
-    /// Repeats the last step with the length at which the gap at its end is 0, near this fraction of it. `gap` gives
-    /// a gap and its rate. Returns true on success; otherwise the step is unchanged. Only methods that solve for
+    /// Repeats the last step with the length, near the fraction `theta` of it, at which the gap at its end is 0. `gap`
+    /// returns a gap and its rate. True on success; otherwise the step is unchanged. Only methods that solve for
     /// impacts succeed.
     fn meet(
         &mut self,
@@ -218,9 +218,9 @@ pub trait Stepper<F: VectorField> {
         let _ = (field, rebound, state, counters);
     }
 
-    /// Time and state at the fraction of the step where the motion is cut; call [`Stepper::prepare_dense`] first
-    /// unless it is the end. [`Stepper::restart`] follows. Integrators with compensated sums keep the rounding error
-    /// of the state until then.
+    /// Time and state at the fraction of the step where the motion is cut. Call [`Stepper::prepare_dense`] first,
+    /// unless it is the end. [`Stepper::restart`] follows. Integrators with compensated sums keep the rounding error of
+    /// the state until then.
     fn cut(&mut self, theta: f64) -> (Instant, F::State) {
         match theta >= 1.0 {
             true => (self.end_time(), *self.end_state()),
@@ -240,7 +240,7 @@ pub type EnergyAt<'a, S> = dyn Fn(f64, &S) -> Result<f64, Fault> + 'a;
 
 /// An elastic impact in a step of fixed size, and the conserved energy.
 pub struct Rebound<'a, S> {
-    /// The longest step to go on with.
+    /// The longest step with which to continue.
     pub limit: f64,
     /// Number of components of the state before those of its velocities, momenta or quasi-velocities.
     pub motion_start: usize,
@@ -248,7 +248,7 @@ pub struct Rebound<'a, S> {
     pub energy: &'a EnergyAt<'a, S>,
 }
 
-/// Property of a step that is a power series in `s`, at time `t_start + unit s`.
+/// A step as a power series in `s`, at time `t_start + unit s`.
 #[derive(Debug, Clone, Copy)]
 pub struct Series {
     /// Unit of time.

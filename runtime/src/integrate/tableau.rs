@@ -1,15 +1,15 @@
-//! Linear combinations of stages, written so that a table known at compile time becomes straight-line code.
+//! Linear combinations of Runge-Kutta stages. A tableau known at compile time becomes straight-line code.
 
 use crate::state::StateVector;
 
-/// A non-zero entry of a row of a tableau: the index of its stage, and its value.
+/// A non-zero entry of a row of a tableau: index of the stage, and coefficient.
 pub(super) type Term = (usize, f64);
 
 /// `sum over terms of coefficient * stage`, component `i`, without the first stage.
 ///
-/// Stages hold the differences of their rates from that of the first stage. The coefficient of the first stage is the
-/// node minus the sum of the row. Coefficients are rounded, and large relative to their sum: with the rates
-/// themselves, a motion with almost constant rates would err in every step, in the same direction.
+/// Stages hold the differences between their rates and that of the first stage. The coefficient of the first stage is
+/// the node minus the sum of the row. Coefficients are rounded, and large relative to their sum. If the sum used
+/// the rates themselves, a motion with almost constant rates would have an error of the same sign in every step.
 #[inline(always)]
 pub(super) fn sum<S: StateVector>(stages: &[S], terms: &[Term], i: usize) -> f64 {
     let mut sum = 0.0;
@@ -30,7 +30,7 @@ pub(super) fn rounding(size: f64, terms: &[Term]) -> f64 {
     0.5 * f64::EPSILON * size * weights
 }
 
-/// `sum over terms of coefficient * value`, or 0 if it is within the bound of [`rounding`].
+/// `sum over terms of coefficient * value`, or 0 if its absolute value is at most the bound of [`rounding`].
 #[inline(always)]
 pub(super) fn weigh_beyond_rounding(values: &[f64], terms: &[Term], size: f64) -> f64 {
     let mut sum = 0.0;
@@ -59,20 +59,20 @@ pub(super) fn combine<S: StateVector>(
     }
 }
 
-/// Replaces the rate of a stage by its difference from that of the first.
+/// Replaces the rate of a stage by its difference from that of the first stage.
 #[inline(always)]
 pub(super) fn subtract_first<S: StateVector>(stages: &mut [S], stage: usize) {
     let first = stages[0];
-    // NOTE: without an iterator over both, which each step of an erased system would call.
+    // NOTE: a loop. An iterator over both vectors would not be inlined in the steps of an erased system.
     for i in 0..first.padded().len() {
         stages[stage].padded_mut()[i] -= first.padded()[i];
     }
 }
 
-/// The larger of two sizes; NaN once either is.
+/// The larger of two numbers; NaN if either is NaN.
 ///
-/// Errors are measured by their largest component, not by their mean: components without error, for example angles
-/// that turn uniformly, must not hide the others.
+/// The norm of the error is its largest component, not a mean: components without error, for example angles that
+/// increase uniformly, must not hide the others.
 #[inline(always)]
 pub(super) fn larger(largest: f64, value: f64) -> f64 {
     if value > largest || value.is_nan() {
@@ -82,7 +82,7 @@ pub(super) fn larger(largest: f64, value: f64) -> f64 {
     }
 }
 
-/// Computes stages one after the other, each from its row of the tableau; `inside` is storage for a state.
+/// Computes stages one after the other, each from its row of the tableau. `inside` is storage for one state.
 macro_rules! make_stages {
     ($field:ident, ($t:expr, $h:expr, $start:expr), $stages:ident, $inside:expr, $nodes:ident: $($index:literal $row:ident)*) => {$(
         combine($start, $h, $stages, ($nodes[$index], &$row), $inside);
@@ -92,7 +92,7 @@ macro_rules! make_stages {
 }
 pub(super) use make_stages;
 
-/// Checks of tables, for the tests of the schemes.
+/// Checks of the coefficients, for the tests of the schemes.
 #[cfg(test)]
 pub(super) mod check {
     use super::Term;
@@ -101,7 +101,7 @@ pub(super) mod check {
         row.iter().map(|&(_, coefficient)| coefficient).sum()
     }
 
-    /// Every row sums to its node: stages are exact for constant rates.
+    /// Every row sums to its node, so that stages are exact for constant rates.
     pub(crate) fn rows_sum_to_nodes(rows: &[&[Term]], nodes: &[f64]) {
         for (row, node) in rows.iter().zip(nodes) {
             assert!(
@@ -112,8 +112,8 @@ pub(super) mod check {
         }
     }
 
-    /// The order conditions of bushy trees, `sum b_i c_i^(k-1) = 1/k`, and of those with one more edge at the
-    /// root, `sum b_i a_ij c_j^(k-1) = 1/(k (k+1))`. `rows[i]` belongs to stage `i`.
+    /// The order conditions of bushy trees, `sum b_i c_i^(k-1) = 1/k`, and of the trees with one more edge at the root,
+    /// `sum b_i a_ij c_j^(k-1) = 1/(k (k+1))`. `rows[i]` belongs to stage `i`.
     pub(crate) fn weights_have_order(
         order: i32,
         weights: &[Term],
@@ -142,8 +142,8 @@ pub(super) mod check {
         }
     }
 
-    /// `sum b_i c_i` is 1/2 to a hundredth of a rounding error, computed exactly from products and sums with their
-    /// rounding errors.
+    /// `sum b_i c_i` equals 1/2 to a hundredth of a rounding error. The sum is computed with the exact rounding errors
+    /// of all products and sums.
     pub(crate) fn constant_forces_shift_no_step(weights: &[Term], nodes: &[f64]) {
         let (mut sum, mut lost) = (-0.5, 0.0);
         for &(i, b) in weights {
@@ -157,7 +157,8 @@ pub(super) mod check {
         assert!(error.abs() < 0.01 * f64::EPSILON, "{error:e}");
     }
 
-    /// An error estimate vanishes on polynomial motion up to the order of the embedded solution, not beyond.
+    /// An error estimate vanishes for polynomial motion up to the order of the embedded solution, and not for the next
+    /// order.
     pub(crate) fn estimate_has_order(order: i32, estimate: &[Term], nodes: &[f64]) {
         let moment = |k: i32| {
             estimate

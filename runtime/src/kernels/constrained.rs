@@ -1,4 +1,4 @@
-//! `Constrained` for every declared model with constraints; for one with modes, of the mode in which states are made.
+//! `Constrained` for every declared model with constraints. For a model with modes it refers to the mode of new states.
 
 use super::{At, Declared, Form, HasConstraints, Kernels, Part};
 use crate::contract::{Constrained, Level, System};

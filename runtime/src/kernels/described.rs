@@ -11,7 +11,7 @@ use crate::generated::inspect_globally;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// A declared form with its documentation: [`Instance`] is implemented for it.
+/// A declared form with its documentation. [`Instance`] is implemented for every such form.
 pub trait Documented: Declared {
     /// Storage for all quantities of the geometry.
     type Geometry: Row<f64>;

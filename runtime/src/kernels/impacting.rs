@@ -13,7 +13,7 @@ use crate::numbers::{Bent, ComplexInterval, Interval, Numbers, Row, TaylorModel}
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Bit of a coordinate in a mask; all coordinates from the last bit on share it.
+/// Bit of a coordinate in a mask. All coordinates from the last bit on share that bit.
 #[inline(always)]
 fn place(coordinate: usize) -> u64 {
     1 << coordinate.min(63)
@@ -25,8 +25,8 @@ impl<S: Declared + HasSurfaces> OverNumbers for S {
     }
 }
 
-/// A gap over any kind of number, from the coordinates that it depends on. A surface that the mode does not have is
-/// never met.
+/// A gap over any kind of number, from the coordinates that it depends on. The gap of a surface that the mode does not
+/// have is 1.
 fn gap_over<S: Declared, L: Numbers>(
     system: &S,
     surface: usize,
@@ -63,7 +63,7 @@ fn gap_over<S: Declared, L: Numbers>(
     gap[0]
 }
 
-/// True if all conditions of a list hold; their margins come first in `margins`. Also returns the remaining margins.
+/// True if all conditions of a list hold. Their margins are the first of `margins`; the remaining margins are returned.
 #[inline(always)]
 fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
     let (listed, rest) = margins.split_at(conditions.len());
@@ -74,7 +74,7 @@ fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
     (all, rest)
 }
 
-/// True if the conditions of a surface of a part hold; true if those of one of its other lists hold.
+/// True if the conditions of a surface of a part hold, and true if those of one of its other lists hold.
 fn conditions<S: Declared>(
     part: &Part<'_, S>,
     (local, surface): (usize, &Surface),
@@ -106,7 +106,8 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
-/// True if a surface counts along a motion, by more than rounding.
+/// True if a surface counts all along a motion, false if it counts nowhere on it; `None` if neither is certain. Margins
+/// within rounding errors count as 0.
 fn counts_along<S: Declared>(
     system: &S,
     surface: usize,
@@ -161,13 +162,13 @@ fn counts_along<S: Declared>(
     }
 }
 
-/// The lists of conditions that decide whether a surface counts, its own first.
+/// The lists of conditions that determine if a surface counts, its own list first.
 fn lists(surface: &Surface) -> impl Iterator<Item = &[Condition]> {
     let others = surface.others.iter().map(|list| &**list);
     core::iter::once(&*surface.conditions).chain(others)
 }
 
-/// True if each of the lists holds; `holds` tells of the condition at a place among all of them.
+/// True for each list that holds. `holds` evaluates a condition, given its index among all of them.
 fn lists_hold<'a>(
     surface: &'a Surface,
     holds: impl Fn(usize, &Condition) -> Option<bool> + 'a,
@@ -184,7 +185,7 @@ fn lists_hold<'a>(
     })
 }
 
-/// True if a surface counts; none counts that the mode does not have.
+/// True if a surface counts. A surface that the mode does not have never counts.
 #[inline]
 pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S::State) -> bool {
     let part = Part::of(system, state.as_slice());
@@ -202,7 +203,7 @@ pub(super) fn counts<S: Declared>(system: &S, surface: usize, t: f64, state: &S:
     }
 }
 
-/// True if a surface counts at all times and states of a box, false if at none; `None` if neither is certain.
+/// True if a surface counts at all times and states of a box, false if it counts at none; `None` if neither is certain.
 pub(super) fn counts_throughout<S: Declared>(
     system: &S,
     parameters: &[Interval],
@@ -547,14 +548,14 @@ impl<S: Declared + HasSurfaces> Impacting for S {
     }
 }
 
-/// A vector with these components at its beginning.
+/// A vector with these components at its beginning, and those of `vector` after them.
 #[inline(always)]
 fn filled<V: StateVector>(mut vector: V, components: &[f64]) -> V {
     vector.as_mut_slice()[..components.len()].copy_from_slice(components);
     vector
 }
 
-/// `None` for a kernel that a surface does not have.
+/// The result, with `None` for a kernel that a surface does not have.
 fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
     match found {
         Err(Fault::NotDerived) => Ok(None),
@@ -562,7 +563,7 @@ fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
     }
 }
 
-/// Fault of a surface without an impulse.
+/// Fault of a surface that has no impulse.
 #[cold]
 pub(super) fn no_impulse(tables: &Tables, fault: Fault, surface: usize) -> Fault {
     match fault {

@@ -1,8 +1,8 @@
 //! The part of a declared model that is evaluated: the model itself, or one of its modes.
 //!
-//! A state of a model with modes consists of the state of the present mode, zeros up to the length of the longest,
-//! and the number of the mode. A kernel of the mode reads this state unchanged. Its values per coordinate and surface
-//! are moved to their places in the model.
+//! A state of a model with modes consists of the state of the present mode, zeros up to the length of the longest mode,
+//! and the number of the mode. A kernel of the mode reads this state unchanged. Results per coordinate or surface are
+//! moved from the numbering of the mode to that of the model.
 
 use super::{At, Declared, Dimensions, Mode, Tables, Transition};
 use crate::contract::{RankDrop, System, VectorField};
@@ -11,13 +11,13 @@ use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// A part of a declared model. All kernels are evaluated through it.
+/// A part of a declared model. All kernels are called through it.
 #[derive(Debug)]
 pub struct Part<'s, S: Declared> {
     system: &'s S,
     /// The kernels.
     pub(crate) kernels: S::Kernels,
-    /// Facts about the part besides its kernels.
+    /// Tables of the part: dimensions, names and other facts about it.
     pub(crate) tables: &'s Tables,
     mode: Option<(usize, &'s Mode)>,
 }
@@ -25,7 +25,8 @@ pub struct Part<'s, S: Declared> {
 /// Number of the mode of a state, stored in its last component.
 #[inline(always)]
 pub(crate) fn number_of<L: Numbers>(last: Option<&L>) -> usize {
-    // NOTE: the conversion saturates. A step that estimates derivatives may change every component a little.
+    // NOTE: the conversion saturates. Rounding to the nearest number tolerates the small changes made by difference
+    // quotients.
     (last.map_or(0.0, |number| number.lane(0)) + 0.5) as usize
 }
 
@@ -36,7 +37,7 @@ pub(crate) fn has_modes<S: Declared>(system: &S) -> bool {
 }
 
 impl<'s, S: Declared> Part<'s, S> {
-    /// The mode of this number, or the last mode for a number past the end; the model itself without modes.
+    /// The mode with this number, or the last mode if the number is too large. Without modes, the model itself.
     #[inline(always)]
     pub(crate) fn numbered(system: &'s S, number: usize) -> Self {
         if const { S::HAS_MODES } {
@@ -68,7 +69,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// The mode in which states are made.
+    /// The mode in which new states are made.
     #[inline(always)]
     pub(crate) fn start(system: &'s S) -> Self {
         match const { S::HAS_MODES } {
@@ -77,7 +78,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// All modes, or the model itself without modes.
+    /// All modes. Without modes, the model itself.
     pub(crate) fn all(system: &'s S) -> impl Iterator<Item = Self> {
         let count = match has_modes(system) {
             true => system.tables().modes.len(),
@@ -86,7 +87,7 @@ impl<'s, S: Declared> Part<'s, S> {
         (0..count).map(|number| Self::numbered(system, number))
     }
 
-    /// The first part that has a surface of the model, and the place of the surface in it.
+    /// The first part that has this surface of the model, and the index of the surface in the part.
     pub(crate) fn of_surface(system: &'s S, surface: usize) -> Option<(Self, usize)> {
         if !has_modes(system) {
             return Some((Self::numbered(system, 0), surface));
@@ -111,7 +112,7 @@ impl<'s, S: Declared> Part<'s, S> {
         self.mode.map_or(0, |(number, _)| number)
     }
 
-    /// The same system, with this mode as the one in which states are made.
+    /// The same system, set to make new states in this mode.
     pub(crate) fn starting_here(&self) -> S {
         match self.mode {
             Some((number, _)) => self.system.starting_in(number),
@@ -148,7 +149,7 @@ impl<'s, S: Declared> Part<'s, S> {
         [dimensions.coordinates, dimensions.motion]
     }
 
-    /// The place of a surface of the model.
+    /// Index in the part of a surface of the model; `None` if the part does not have it.
     #[inline(always)]
     pub(crate) fn surface(&self, surface: usize) -> Option<usize> {
         match self.mode() {
@@ -157,14 +158,15 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Place of a surface of the model, or a fault if the part does not have it.
+    /// Index in the part of a surface of the model. Fails if the part does not have it.
     #[inline(always)]
     pub(crate) fn known(&self, surface: usize) -> Result<usize, Fault> {
         self.surface(surface)
             .ok_or(Fault::SingularSurface { surface })
     }
 
-    /// Target mode and transition of a surface of the model, if it leads to another mode.
+    /// Index in the part of a surface of the model, and its transition; `None` if the surface does not lead to another
+    /// mode.
     pub(crate) fn transition(&self, surface: usize) -> Option<(usize, Transition)> {
         let local = self.surface(surface)?;
         let transition = self.mode()?.transitions.get(local).copied().flatten()?;
@@ -177,8 +179,8 @@ impl<'s, S: Declared> Part<'s, S> {
         self.mode().map_or(local, |mode| mode.coordinates[local])
     }
 
-    /// Moves values, one per coordinate of the part, from the beginning of a vector to the places of these
-    /// coordinates in the model; 0 elsewhere.
+    /// Moves values per coordinate of the part, at the beginning of a vector, to the indices of these coordinates in
+    /// the model. All other entries are 0.
     #[inline(always)]
     pub(crate) fn spread<V: StateVector>(&self, values: V) -> V {
         match self.mode() {
@@ -187,7 +189,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Moves the values of the part's coordinates to the beginning of a vector.
+    /// Inverse of [`Part::spread`]: moves the values of the part's coordinates to the beginning of a vector.
     #[inline(always)]
     pub(crate) fn gathered<V: StateVector>(&self, values: &V) -> V {
         match self.mode() {
@@ -203,7 +205,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Values of the model's coordinates, with `elsewhere` for those that the part does not have.
+    /// Keeps the values of the part's coordinates. All other entries are `elsewhere`.
     pub(crate) fn alone<V: StateVector>(&self, values: &V, elsewhere: f64) -> V {
         match self.mode() {
             None => *values,
@@ -211,8 +213,8 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Moves values, one per surface of the part, from the beginning of a vector to their places; `elsewhere` for
-    /// other surfaces.
+    /// Moves values per surface of the part, at the beginning of a vector, to the indices of these surfaces in the
+    /// model. All other entries are `elsewhere`.
     #[inline(always)]
     pub(crate) fn of_surfaces<V: StateVector>(&self, values: V, elsewhere: f64) -> V {
         match self.mode() {
@@ -221,7 +223,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Same as [`Part::spread`], over any kind of number.
+    /// Same as [`Part::spread`], over any [`Numbers`].
     pub(crate) fn spread_row<L: Numbers, R: Row<L>>(&self, row: R) -> R {
         match self.mode() {
             None => row,
@@ -229,7 +231,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Same as [`Part::gathered`], over any kind of number.
+    /// Same as [`Part::gathered`], over any [`Numbers`].
     pub(crate) fn gathered_row<L: Numbers, R: Row<L>>(&self, row: &R) -> R {
         let Some(mode) = self.mode() else {
             return *row;
@@ -242,7 +244,7 @@ impl<'s, S: Declared> Part<'s, S> {
         gathered
     }
 
-    /// Same as [`Part::of_surfaces`], over any kind of number.
+    /// Same as [`Part::of_surfaces`], over any [`Numbers`].
     pub(crate) fn row_of_surfaces<L: Numbers, R: Row<L>>(&self, row: R, elsewhere: L) -> R {
         match self.mode() {
             None => row,
@@ -258,7 +260,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Renumbers surface and constraint of a fault from the part to the model.
+    /// Replaces indices of the part (surface, constraint) in a fault by those of the model.
     #[inline(always)]
     pub(crate) fn fault(&self, fault: Fault) -> Fault {
         let Some(mode) = self.mode() else {
@@ -282,7 +284,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Renumbers the constraint of a drop of the rank from the part to the model.
+    /// Replaces the constraint's index in a loss of rank by that of the model.
     pub(crate) fn rank_drop(&self, drop: RankDrop) -> RankDrop {
         RankDrop {
             constraint: self.constraint(drop.constraint),
@@ -296,7 +298,7 @@ impl<'s, S: Declared> Part<'s, S> {
         places.get(local).copied().unwrap_or(local)
     }
 
-    /// Renumbers the constraint of a refusal from the part to the model.
+    /// Replaces the constraint's index in a state error by that of the model.
     pub(crate) fn refusal(&self, mut error: StateError) -> StateError {
         if let StateError::OffConstraint { constraint, .. }
         | StateError::OffPosition { constraint, .. } = &mut error
@@ -306,7 +308,7 @@ impl<'s, S: Declared> Part<'s, S> {
         error
     }
 
-    /// Renumbers the constraint of an outcome from the part to the model.
+    /// Replaces the constraint's index in an outcome by that of the model.
     pub(crate) fn outcome(&self, mut outcome: Outcome) -> Outcome {
         if let Outcome::ProjectionFailed { constraint } = &mut outcome {
             *constraint = self.constraint(*constraint);
@@ -315,7 +317,7 @@ impl<'s, S: Declared> Part<'s, S> {
     }
 }
 
-/// Moves values to these places; `elsewhere` fills the others.
+/// Moves value `i` to the index `places[i]`. All other entries are `elsewhere`.
 #[inline(always)]
 fn placed<V: StateVector>(values: &V, places: &[usize], elsewhere: f64) -> V {
     let mut all = values.zeroed();
@@ -326,7 +328,7 @@ fn placed<V: StateVector>(values: &V, places: &[usize], elsewhere: f64) -> V {
     all
 }
 
-/// Same as [`placed`], over any kind of number.
+/// Same as [`placed`], over any [`Numbers`].
 #[inline(always)]
 fn placed_row<L: Numbers, R: Row<L>>(row: &R, places: &[usize], elsewhere: L) -> R {
     let mut all = R::zeros(row.as_slice().len());
@@ -337,9 +339,9 @@ fn placed_row<L: Numbers, R: Row<L>>(row: &R, places: &[usize], elsewhere: L) ->
     all
 }
 
-/// Values of kernels over `f64`, at the parameters of the system.
+/// Calls of kernels over `f64`, with the parameters of the system.
 impl<S: Declared> Part<'_, S> {
-    /// Writes the values of a kernel.
+    /// Evaluates a kernel into `values`.
     #[inline(always)]
     pub(crate) fn write(
         &self,
@@ -362,7 +364,7 @@ impl<S: Declared> Part<'_, S> {
         }
     }
 
-    /// The first values of a kernel, in a given number, at the beginning of a vector of this length.
+    /// Evaluates a kernel of `count` values into the beginning of a vector of `length` entries.
     #[inline(always)]
     pub(super) fn vector<V: StateVector>(
         &self,
@@ -379,7 +381,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(values)
     }
 
-    /// The values of a kernel, one per coordinate.
+    /// Evaluates a kernel with one value per coordinate.
     #[inline(always)]
     pub(super) fn coordinates(
         &self,
@@ -392,7 +394,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(self.spread(values))
     }
 
-    /// The only value of a kernel.
+    /// Evaluates a kernel with a single value.
     #[inline(always)]
     pub(super) fn number_by(
         &self,
@@ -405,7 +407,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(value[0])
     }
 
-    /// The values of a kernel that gives several quantities at once.
+    /// Evaluates a kernel whose `count` values make up several quantities.
     #[inline(always)]
     pub(super) fn several(
         &self,
@@ -421,7 +423,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(room)
     }
 
-    /// Two vectors from one kernel: positions and velocities.
+    /// Evaluates a kernel that gives two vectors, for example positions and velocities.
     pub(super) fn pair(
         &self,
         kernel: impl Fn(&S::Kernels, At<'_, f64>, &mut [f64]) -> Result<(), Fault>,
@@ -438,8 +440,8 @@ impl<S: Declared> Part<'_, S> {
         }))
     }
 
-    /// A state whose momenta or quasi-velocities come from a kernel of positions and a second vector, both at the
-    /// beginning of vectors.
+    /// A state with the given positions, whose momenta or quasi-velocities are computed by a kernel from the positions
+    /// and a second vector. Both vectors are in the order of the part, at the beginning.
     #[inline(always)]
     pub(super) fn state_by(
         &self,
@@ -458,7 +460,7 @@ impl<S: Declared> Part<'_, S> {
         Ok(state)
     }
 
-    /// Joins positions and momenta or quasi-velocities, at the beginning of vectors, to one state.
+    /// Concatenates positions and momenta or quasi-velocities, at the beginning of vectors, to a state of the mode.
     #[inline(always)]
     pub(super) fn joined(&self, q: &[f64], motion: &[f64]) -> S::State {
         let [n, k] = self.lengths();

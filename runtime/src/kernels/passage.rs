@@ -1,12 +1,13 @@
-//! State at the entry of a mode: as declared, or by the transition principle.
+//! State at the entry into a mode: the declared one, or that of the transition principle.
 //!
-//! **Constraints change** (Cortes and Vinogradov, Definition 4.12). The Lagrangian is the same on both sides. The
-//! entry state is the focusing point `P(p) + Q(Upsilon)`: its velocity is the nearest in the metric that satisfies
-//! the mode's constraints. The gap rates of the entered mode show on which side the motion goes on. A transition that
-//! leads back is due at once, and the sequence of both is the admissible sequence at this point.
+//! **Constraints change** (Cortes and Vinogradov, Definition 4.12). The Lagrangian is the same in both modes. The entry
+//! state is the focusing point `P(p) + Q(Upsilon)`: its velocity is the nearest in the metric that satisfies the
+//! constraints of the entered mode. The gap rates of the entered mode decide on which side the motion continues. A
+//! transition that leads back is due at once. The sequence of both transitions is the admissible sequence at this
+//! point.
 //!
-//! **The Lagrangian changes** (Definition 4.14). Along the constrained characteristic `p + c pi_D^* dh` through the
-//! momentum, with the metric and the constraints of the mode that is left, the energy of the mode that is entered is
+//! **The Lagrangian changes** (Definition 4.14). The constrained characteristic `p + c pi_D^* dh` through the momentum
+//! belongs to the metric and the constraints of the mode that is left. Along it, the energy of the entered mode is
 //! quadratic in `c`:
 //!
 //! ```text
@@ -14,10 +15,10 @@
 //! k = d(g_+^{-1} d),   b = d(v_+(p)) + d_t h,   E = H_+(p) - H_-(p)
 //! ```
 //!
-//! The root is the one that goes on in the direction of the motion, `b + k c = -sqrt(b^2 - 2 k E)`: refraction,
-//! followed by the focusing point in the constraints of the entered mode. Without a real root the motion is reflected
-//! by the elastic law and stays in its mode. Where both are possible both are decisive points, and refraction comes
-//! first.
+//! The root is the one for which the motion keeps its direction, `b + k c = -sqrt(b^2 - 2 k E)` (refraction). The
+//! focusing point in the constraints of the entered mode follows. Without a real root the motion is reflected by the
+//! elastic law and stays in its mode. If both are possible, both points are decisive points, and refraction takes
+//! precedence.
 //!
 //! Reference: J. Cortes and A. M. Vinogradov, *Hamiltonian theory of constrained impulsive motion* (2006).
 
@@ -30,11 +31,10 @@ use crate::numbers::{Numbers, Row};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Relative size of a discriminant, beside its terms, up to which it may be rounding: the motion then grazes the
-/// surface.
+/// Largest discriminant that may be rounding error, relative to its terms. Below it the motion grazes the surface.
 const GRAZE: f64 = 64.0 * f64::EPSILON;
 
-/// The state in the mode that a surface leads to; `own` is the index of the surface in the mode that is left.
+/// The state in the mode that a surface leads to. `local` is the index of the surface in the mode that is left.
 ///
 /// # Errors
 /// The [`Outcome`] that ends the run: a fault, or a state that is not finite, outside the chart of the entered mode
@@ -63,13 +63,12 @@ pub(super) fn passage<S: Declared + HasSurfaces>(
     })
 }
 
-/// True if states can violate the constraints of the mode in which they are made.
+/// True if states of the part can violate its constraints.
 fn can_leave_constraints<S: Declared>(part: &Part<'_, S>) -> bool {
     part.tables.form == Form::Global && part.tables.dimensions.constraints > 0
 }
 
-/// Returns the state if it is finite, inside the chart, and satisfies the equations of positions among the
-/// constraints.
+/// Returns the state if it is finite, inside the chart, and satisfies the position-level constraints.
 fn checked<S: Declared>(
     entered: &S,
     surface: usize,
@@ -90,7 +89,7 @@ fn checked<S: Declared>(
     Ok(after)
 }
 
-/// The declared entry state; its velocities satisfy the constraints of the mode.
+/// The declared entry state, with velocities that satisfy the constraints of the mode.
 fn declared<S: Declared>(
     (left, local): (&Part<'_, S>, usize),
     entered: &S,
@@ -120,7 +119,7 @@ fn declared<S: Declared>(
     }
 }
 
-/// Outcome of a run whose state is refused by the entered mode.
+/// The outcome of a run whose entry state is rejected.
 fn off(error: StateError, surface: usize) -> Outcome {
     match error {
         StateError::OffConstraint { constraint, .. }
@@ -129,12 +128,13 @@ fn off(error: StateError, surface: usize) -> Outcome {
             constraint,
         },
         StateError::Fault(fault) => fault.into(),
-        // Constraints give no other error.
+        // No other error can come from the constraints.
         _ => Outcome::NonFinite { component: 0 },
     }
 }
 
-/// The focusing point `P(p) + Q(Upsilon)` in the constraints of the entered mode.
+/// The focusing point `P(p) + Q(Upsilon)`: the state nearest in the metric that satisfies the constraints of the
+/// entered mode.
 fn focused<S: Declared>(
     left: &S,
     entered: &S,
@@ -144,12 +144,12 @@ fn focused<S: Declared>(
     let q = left.position(state);
     match can_leave_constraints(&Part::start(entered)) {
         true => entered.state_nearest(t, &q, &left.velocity(t, state)?),
-        // NOTE: without constraints momenta are kept to the last digit.
+        // NOTE: without constraints the momenta keep all their digits.
         false => entered.state_from_momenta(t, &q, &left.momentum(t, state)?),
     }
 }
 
-/// Refraction, or reflection where no refraction exists.
+/// Refraction, or reflection if there is no refraction.
 fn refracted<S: Declared + HasSurfaces>(
     system: &S,
     left: &Part<'_, S>,
@@ -194,7 +194,7 @@ fn refracted<S: Declared + HasSurfaces>(
     })
 }
 
-/// `c^2 k/2 + c b + E`, the change of energy along a characteristic.
+/// The change of energy along a characteristic, `c^2 k/2 + c b + E`.
 pub(super) struct Quadratic<L> {
     /// `b`
     pub rate: L,
@@ -209,8 +209,8 @@ impl<L: Numbers> Quadratic<L> {
         self.rate * self.rate - L::of(2.0) * self.compliance * self.excess
     }
 
-    /// The root with the rate `-sqrt(b^2 - 2 k E)` after it, computed without cancellation. `Some(None)` if no real
-    /// root exists, `None` if its existence is not certain.
+    /// The root after which the gap rate is `-sqrt(b^2 - 2 k E)`, computed without cancellation. `Some(None)` if there
+    /// is no real root, `None` if its existence is undecided.
     pub fn root(&self) -> Option<Option<L>> {
         let discriminant = self.discriminant();
         if !(-discriminant).is_below_zero()? {
@@ -225,14 +225,14 @@ impl<L: Numbers> Quadratic<L> {
 }
 
 impl Quadratic<f64> {
-    /// True if the sign of the discriminant may be decided by rounding.
+    /// True if the sign of the discriminant may be a rounding error.
     fn is_graze(&self) -> bool {
         let terms = self.rate * self.rate + 2.0 * (self.compliance * self.excess).abs();
         self.discriminant().abs() <= GRAZE * terms
     }
 }
 
-/// `pi_D^* dh` as a covector, from the effect of an impulse on the momenta at rest.
+/// The covector `pi_D^* dh`: change of the momenta by a unit impulse at rest.
 fn covector<S: Declared>(
     system: &S,
     left: &Part<'_, S>,
@@ -252,7 +252,7 @@ fn covector<S: Declared>(
     Ok(covector)
 }
 
-/// The energy of a mode along `p + c d`, also off its constraints.
+/// Data of the energy of a mode along `p + c d`, in the mode's global form, which admits momenta off its constraints.
 struct Along<V> {
     p: V,
     direction: V,
@@ -302,7 +302,7 @@ impl<V: StateVector> Along<V> {
     }
 }
 
-/// The first `n` positions, followed by the first `n` momenta.
+/// A vector of `n` positions followed by `n` momenta.
 fn pair<S: Declared>(n: usize, q: &S::Vector, p: &S::Vector) -> S::Room<f64> {
     let mut both = S::Room::<f64>::zeros(2 * n);
     let (positions, momenta) = both.as_mut_slice()[..2 * n].split_at_mut(n);

@@ -1,4 +1,4 @@
-//! `VectorField`, `System`, `Lagrangian` and `Divergence` for every declared model.
+//! Implementations of `VectorField`, `System`, `Lagrangian` and `Divergence` for every declared model.
 
 use super::independence::keeps_rank;
 use super::part::has_modes;
@@ -41,7 +41,7 @@ impl<S: Declared> VectorField for S {
             .as_mut_slice()
             .split_at_mut(part.tables.dimensions.state);
         others.fill(1.0);
-        // The kernel of the units has no guards, so it does not fail.
+        // The kernel of the scales has no guards, so it cannot fail.
         let _ = part.write(S::Kernels::scale, t, places, entries);
         scale
     }
@@ -52,7 +52,7 @@ impl<S: Declared> VectorField for S {
     }
 
     fn has_narrow_rates(&self) -> bool {
-        // NOTE: a constant, so that kernels over these numbers are compiled only where they are needed.
+        // NOTE: a constant, so that kernels over [`Everywhere`] are compiled only where they are needed.
         if const { !S::MAY_BE_NARROW } {
             return false;
         }
@@ -91,7 +91,7 @@ impl<S: Declared> VectorField for S {
     }
 }
 
-/// True if some rate of a part may be sharp at some state, or is not known at all states.
+/// True if a rate of the part may be sharp at some state, or cannot be bounded for all states.
 fn has_sharp_rates<S: Declared>(system: &S, part: &Part<'_, S>) -> bool {
     let mut state = S::Components::<Everywhere>::zeros(system.state_len());
     state.as_mut_slice().fill(Everywhere::ANY);
@@ -107,7 +107,7 @@ fn has_sharp_rates<S: Declared>(system: &S, part: &Part<'_, S>) -> bool {
     part.kernels.rate(at, entries).is_err() || entries.iter().any(Everywhere::is_sharp)
 }
 
-/// The parameters as numbers of any kind.
+/// The parameters as [`Numbers`].
 #[inline(always)]
 pub(super) fn over_numbers<S: Declared, L: Numbers>(system: &S) -> S::Arguments<L> {
     let values = system.arguments();
@@ -119,7 +119,7 @@ pub(super) fn over_numbers<S: Declared, L: Numbers>(system: &S) -> S::Arguments<
     numbers
 }
 
-/// Implementation of [`System::state_nearest`] by Newton steps, for constraints that are nonlinear in the velocities.
+/// Implements [`System::state_nearest`] by Newton steps, for constraints that are nonlinear in the velocities.
 ///
 /// # Errors
 /// The errors of [`nearest_by_steps`].
@@ -434,7 +434,7 @@ impl<S: Declared + HasDivergence> Divergence for S {
 /// Implementation of [`InvariantVolume::log_density`](crate::InvariantVolume::log_density).
 ///
 /// # Errors
-/// The [`Fault`] of a kernel; [`Fault::SingularConstraint`] where an integral does not converge.
+/// The [`Fault`] of a kernel; [`Fault::SingularConstraint`] where a line integral does not converge.
 pub fn log_density<S: Declared>(system: &S, t: f64, q: &S::Vector) -> Result<f64, Fault> {
     let density = number(system, S::Kernels::log_density, t, [q.as_slice(), &[]])?;
     let Some(reference) = &system.tables().density_reference else {

@@ -1,16 +1,16 @@
 //! Orthogonalisation of the rows of a wide matrix, and least-norm solutions.
 //!
-//! For `A x = b` with M rows of length N, modified Gram-Schmidt on the rows, applied twice (the second pass
-//! suffices), gives `a_i = sum_j r_ij q_j`. Then `x = sum_j z_j q_j` with `R z = b` has the least norm of all
-//! solutions.
+//! Let `A x = b` with M rows of length N. Modified Gram-Schmidt on the rows, applied twice (the second pass suffices),
+//! gives `a_i = sum_j r_ij q_j`. Then `x = sum_j z_j q_j` with `R z = b` is the solution of least norm.
 
 use crate::math;
 
-/// Share of a row that must remain after orthogonalisation; below it the row counts as dependent on the earlier ones.
+/// Fraction of a row's norm that must remain after orthogonalisation. Below it the row counts as dependent on earlier
+/// ones.
 const DEPENDENT: f64 = 1e-12;
 
-/// Overwrites `rows` (row after row, each of `width`) by orthonormal rows, zero where a row depends on earlier ones,
-/// and writes the least-norm solution of `rows x = values` to `solution`.
+/// Overwrites `rows` (row by row, each of length `width`) by orthonormal rows, zero where a row depends on earlier
+/// ones, and writes the least-norm solution of `rows x = values` to `solution`.
 ///
 /// Equations whose rows depend on earlier ones are skipped; the caller checks them.
 pub(crate) fn least_norm(rows: &mut [f64], width: usize, values: &[f64], solution: &mut [f64]) {
@@ -24,7 +24,7 @@ pub(crate) fn least_norm(rows: &mut [f64], width: usize, values: &[f64], solutio
             return;
         };
         let before = math::sqrt(dot(row, row));
-        // Value of this equation at the solution so far: exact on the earlier rows, zero across them.
+        // Left side of this equation at the solution so far, which is a combination of the earlier rows.
         let reached = dot(row, solution);
         for _ in 0..2 {
             for direction in earlier.chunks_exact(width) {

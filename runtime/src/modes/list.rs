@@ -9,8 +9,8 @@ use crate::kernels::{Declared, Documented, Mode, Part};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. Functions of a mode as a system of its
-/// own are called here by its number.
+/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. Methods take the number of a mode, and
+/// call the function of that mode as a system of its own.
 pub trait ModeList<W> {
     /// Storage for the coefficients of intermediate values of all modes.
     type Jets<L: Numbers>: Jets;
@@ -175,8 +175,8 @@ fn own_state<M: Declared>(mode: &M, state: &[f64]) -> <M as Declared>::State {
     <M as Declared>::State::of(&state[..mode.tables().dimensions.state])
 }
 
-// NOTE: the series of a mode are not inlined into those of the model: with many modes one function would hold all of
-// them, and compilers take minutes for it.
+// NOTE: the series of a mode are not inlined into those of the model. With many modes, one function would contain all
+// of them and take minutes to compile.
 #[inline(never)]
 fn begin<
     W: Copy,

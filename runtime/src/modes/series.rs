@@ -1,7 +1,7 @@
 //! Power series of a model with modes, from those of its modes.
 //!
-//! Motions in neighbouring lanes may be in different modes. Each mode of any lane expands the lanes that are in it.
-//! The other lanes are filled with the numbers of one of these lanes, and their results are dropped.
+//! Motions in neighbouring lanes may be in different modes. Each mode of any lane expands the lanes in it. The other
+//! lanes repeat the numbers of one of these lanes, and their results are discarded.
 
 use crate::error::Fault;
 use crate::jet::LENGTH;
@@ -28,7 +28,7 @@ pub struct Expansion<'a, L> {
     pub unit: L,
     /// The highest order.
     pub order: usize,
-    /// Initial values: rates, gaps, then the other values of the mode.
+    /// Quantities at order 0: rates, gaps, then the other values of the mode.
     pub firsts: &'a [L],
 }
 
@@ -43,7 +43,7 @@ struct Lanes {
 }
 
 impl Lanes {
-    /// The lanes in this mode; `None` if there are none.
+    /// The lanes in the mode; `None` if there are none. `number` holds the number of the mode of each lane.
     #[inline(always)]
     fn of<L: Numbers>(mode: usize, number: &L) -> Option<Self> {
         let first = (0..L::LANES).find(|&lane| is_in(mode, number, lane))?;
@@ -51,7 +51,7 @@ impl Lanes {
         Some(Self { mode, first, all })
     }
 
-    /// The numbers of the lanes in the mode; the other lanes repeat the first of them.
+    /// The numbers of the lanes in the mode. The other lanes repeat the first of them.
     #[inline(always)]
     fn picked<L: Numbers>(&self, value: L, number: &L) -> L {
         match self.all {
@@ -79,12 +79,12 @@ impl Lanes {
 /// True if a lane is in a mode; `number` holds the numbers of the modes.
 #[inline(always)]
 fn is_in<L: Numbers>(mode: usize, number: &L, lane: usize) -> bool {
-    // NOTE: the conversion saturates.
+    // NOTE: the conversion to an integer saturates.
     (number.lane(lane) + 0.5) as usize == mode
 }
 
-/// Calls [`TaylorField::begin`](crate::TaylorField::begin) for the lanes in this mode; `expand` computes the `known`
-/// initial values of its series.
+/// Calls [`TaylorField::begin`](crate::TaylorField::begin) for the lanes in this mode. `expand` computes the `known`
+/// quantities at order 0 of its series.
 ///
 /// # Errors
 /// The [`Fault`] of the mode.
@@ -141,8 +141,7 @@ fn own_gaps(mode: &Mode, lengths: Lengths) -> usize {
     }
 }
 
-/// Calls [`TaylorField::advance`](crate::TaylorField::advance) for the lanes in this mode; `expand` writes the
-/// series.
+/// Calls [`TaylorField::advance`](crate::TaylorField::advance) for the lanes in this mode. `expand` writes the series.
 #[inline(always)]
 pub(crate) fn advance<
     L: Numbers,

@@ -7,24 +7,23 @@ use crate::kernels::{Declared, Part};
 use crate::outcome::Outcome;
 use crate::record::Observer;
 
-/// An effect that sees a model with modes as the present mode. It begins anew each time a mode is entered.
+/// An effect that sees a model with modes as its present mode. It begins anew whenever a mode is entered.
 ///
-/// Only the actions of an effect after smooth motion are carried over ([`Effect::begin`] and [`Effect::settle`]):
-/// event location belongs to the model as a whole.
+/// Only [`Effect::begin`] and [`Effect::settle`] are carried over: event location belongs to the model as a whole.
 #[derive(Debug, Clone)]
 pub struct InMode<E> {
     effect: E,
-    /// The mode in which the effect has begun, if it acts there.
+    /// The mode in which the effect has begun; `None` if it does not act in the present mode.
     mode: Option<usize>,
 }
 
 impl<E> InMode<E> {
-    /// Applies the effect in each mode.
+    /// Makes the effect act in each mode.
     pub fn new(effect: E) -> Self {
         Self { effect, mode: None }
     }
 
-    /// Lets the effect act in a mode.
+    /// Calls `act` with the present mode as the system.
     fn inside<S: Declared, T>(
         &mut self,
         now: &mut Moment<'_, S>,
@@ -41,7 +40,7 @@ impl<E> InMode<E> {
         act(&mut self.effect, &mut inside).map_err(|outcome| part.outcome(outcome))
     }
 
-    /// Begins the effect where a mode has been entered.
+    /// Begins the effect if a new mode has been entered.
     fn enter<S: Declared>(&mut self, now: &mut Moment<'_, S>) -> Result<(), Outcome>
     where
         E: Effect<S>,

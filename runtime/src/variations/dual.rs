@@ -44,7 +44,7 @@ fn all(factor: f64) -> f64x4 {
     f64x4::new([factor, factor, factor, factor])
 }
 
-/// `a*b + c` along each direction, fused where [`math::mul_add`] is.
+/// `a*b + c` along each direction, fused if [`math::mul_add`] is.
 #[inline(always)]
 fn fused(a: f64x4, b: f64, c: f64x4) -> f64x4 {
     #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]
@@ -81,11 +81,11 @@ impl Dual {
         self.slopes.to_array()
     }
 
-    /// Chain rule, from a function's value and derivative here.
+    /// Chain rule. `value` and `derivative` are those of the outer function.
     #[inline(always)]
     fn chain(self, value: f64, derivative: f64) -> Self {
-        // NOTE: a number that does not depend on a direction keeps derivative 0 along it, however steep the function
-        // is.
+        // NOTE: a number that does not depend on a direction keeps derivative 0 along it, even if the function has
+        // infinite slope.
         let moves = self.slopes.simd_ne(f64x4::ZERO);
         Self {
             value,
@@ -134,7 +134,7 @@ impl Mul for Dual {
 impl Div for Dual {
     type Output = Self;
 
-    // The derivative of a quotient needs other operations too.
+    // The derivative of a quotient needs other operations besides division.
     #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline(always)]
     fn div(self, other: Self) -> Self {

@@ -8,10 +8,10 @@ use crate::state::StateVector;
 /// Maximum number of steps per eigenvalue.
 const STEPS: usize = 60;
 
-/// Number of steps without an eigenvalue after which exceptional shifts are used.
+/// Number of steps without convergence after which an exceptional shift is used.
 const PATIENCE: usize = 10;
 
-/// Eigenvalues of a square matrix, with multiplicity.
+/// Eigenvalues of a square matrix, with multiplicity, in order of decreasing modulus.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Multipliers<S> {
     real: S,
@@ -44,7 +44,7 @@ impl<S: StateVector> Multipliers<S> {
         }
     }
 
-    /// Inserts an eigenvalue by modulus, after those of the same modulus.
+    /// Inserts an eigenvalue in order of modulus, after those of equal modulus.
     fn add(&mut self, [re, im]: [f64; 2]) {
         let modulus = |re: f64, im: f64| re * re + im * im;
         let (real, imaginary) = (self.real.as_mut_slice(), self.imaginary.as_mut_slice());
@@ -59,7 +59,7 @@ impl<S: StateVector> Multipliers<S> {
     }
 }
 
-/// A square matrix, stored by columns, that is overwritten.
+/// A square matrix, stored by columns and overwritten by the algorithm.
 struct Square<'a, S> {
     columns: &'a mut [S],
     size: usize,
@@ -74,7 +74,8 @@ impl<S: StateVector> Square<'_, S> {
         &mut self.columns[column].as_mut_slice()[row]
     }
 
-    /// Computes `H A H` with the reflection `H` that takes `x`, in the rows from `first` on, to its first entry.
+    /// Replaces `A` by `H A H`, with the Householder reflection `H` of the rows from `first` on that maps `x` to a
+    /// multiple of the first unit vector.
     fn reflect(&mut self, first: usize, x: &[f64]) {
         let norm = math::sqrt(x.iter().map(|component| component * component).sum());
         if norm == 0.0 {
@@ -100,7 +101,7 @@ impl<S: StateVector> Square<'_, S> {
         }
     }
 
-    /// Brings the matrix to Hessenberg form.
+    /// Reduces the matrix to upper Hessenberg form.
     fn reduce(&mut self) {
         for column in 0..self.size.saturating_sub(2) {
             let x = self.columns[column];
@@ -111,7 +112,8 @@ impl<S: StateVector> Square<'_, S> {
         }
     }
 
-    /// First row of the unreduced block that ends before `end`.
+    /// First row of the unreduced block that ends before row `end`. Sets the negligible subdiagonal entry before it to
+    /// 0.
     fn start_of_block(&mut self, end: usize) -> usize {
         let mut start = end - 1;
         while start > 0 {
@@ -125,7 +127,7 @@ impl<S: StateVector> Square<'_, S> {
         start
     }
 
-    /// One double step on a block of three rows or more.
+    /// One double-shift step on a block of at least three rows.
     fn step(&mut self, start: usize, end: usize, is_exceptional: bool) {
         let (m, n) = (end - 2, end - 1);
         let (mut trace, mut determinant) = (
@@ -155,7 +157,7 @@ impl<S: StateVector> Square<'_, S> {
         }
     }
 
-    /// Eigenvalues of the block of the two rows from `m` on.
+    /// Eigenvalues of the 2 by 2 block at the rows `m` and `m + 1`.
     fn pair(&self, m: usize) -> [[f64; 2]; 2] {
         let (a, d) = (self.at(m, m), self.at(m + 1, m + 1));
         let product = self.at(m, m + 1) * self.at(m + 1, m);
@@ -171,8 +173,8 @@ impl<S: StateVector> Square<'_, S> {
     }
 }
 
-/// The eigenvalues of the leading square of this size of a matrix, by its columns, which are overwritten; `None` if they
-/// are not found, for example for an entry that is not finite.
+/// Eigenvalues of the leading `size` by `size` block of a matrix, given by its columns, which are overwritten. `None`
+/// if the iteration does not converge, for example for entries that are not finite.
 pub fn eigenvalues<S: StateVector>(columns: &mut [S], size: usize) -> Option<Multipliers<S>> {
     let mut found = Multipliers::<S>::none();
     let mut matrix = Square { columns, size };
@@ -239,7 +241,8 @@ mod tests {
             [[-5.0, 0.0], [3.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.5, 0.0]],
             1e-13,
         );
-        // A cyclic permutation: its eigenvalues are roots of unity, which plain shifts do not find.
+        // A cyclic permutation matrix. Its eigenvalues are roots of unity; without exceptional shifts the iteration
+        // does not find them.
         let (half, side) = (0.5, 0.75_f64.sqrt());
         let columns = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let mut columns = columns.map(SVector::<f64, 3>::from);

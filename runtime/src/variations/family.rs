@@ -1,4 +1,5 @@
-//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives in state and parameter.
+//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives with respect to the state and to
+//! the parameter.
 
 use super::OrbitError;
 use super::chart::{Fixed, columns};
@@ -12,40 +13,42 @@ use crate::describe::Instance;
 use crate::effects::Effect;
 use crate::integrate::Stepper;
 
-/// The section of one member of a family: what the constraints conserve is the same for all members.
+/// A fixed section, shared by all members of a family. Values of conserved quantities of the constraints are the same
+/// for all members.
 pub struct Anchor<Sys: Variational>(Fixed<Sys>);
 
-/// A point of a section and its image. Vectors along the section have their components in the first `dimension` entries.
+/// A point of a section and its image under the Poincare map. Vectors along the section have their components in the
+/// first `dimension` entries.
 pub struct Image<Sys: Variational> {
-    /// The point of the section near the given one.
+    /// The point of the section next to the given one.
     pub point: Sys::State,
-    /// The image, with the states before and after the transition there; the time is the duration of the way to it.
+    /// The image: the states before and after the transition there. Its time is the duration of the motion to it.
     pub image: Arrival<Sys::State>,
-    /// Time before the first arrival. It is 0 up to rounding, unless the point leaves the surface.
+    /// Time before the first arrival; 0 up to rounding, unless the point leaves the surface.
     pub delay: f64,
-    /// Number of directions of the section.
+    /// Dimension of the section.
     pub dimension: usize,
-    /// The first `dimension` columns are directions along the section, orthonormal in units of the components.
+    /// The first `dimension` columns are an orthonormal basis of the section, in units of the components.
     pub directions: Sys::Columns,
-    /// The units of the components.
+    /// Units of the components of the state.
     pub scale: Sys::State,
-    /// Image minus point, along the directions.
+    /// Difference between the image and the point, along the directions.
     pub miss: Sys::State,
-    /// Distance of the point from its image, in units of the components.
+    /// Distance between the point and its image, in units of the components.
     pub residual: f64,
     /// True if that distance is 0 up to rounding.
     pub is_closed: bool,
-    /// Derivative of the map in the directions.
+    /// Derivative of the map along the directions: a `dimension` by `dimension` matrix, by columns.
     pub derivative: Sys::Columns,
-    /// Eigenvalues of that derivative; `None` if they are not finite.
+    /// Eigenvalues of this derivative (Floquet multipliers); `None` if they are not finite.
     pub multipliers: Option<Multipliers<Sys::State>>,
-    /// Least change of the point per unit of the parameter that keeps it on the section.
+    /// Smallest change of the point per unit of the parameter that keeps it on the section.
     pub shift: Sys::State,
-    /// Derivative of the miss in the parameter, while the point moves with the shift.
+    /// Derivative of `miss` with respect to the parameter, while the point changes by `shift`.
     pub slope: Sys::State,
-    /// The element of the group up to which the image is compared.
+    /// The symmetry up to which the image is compared with the point.
     pub element: Element,
-    /// The surfaces on the way.
+    /// The sequence of surfaces between the point and its image.
     pub itinerary: Itinerary<Sys>,
 }
 
@@ -55,7 +58,7 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The section through a point, for all values of the parameters.
+    /// The section through a point, fixed for all values of the parameters.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where the equations of the section have no derivative.
@@ -63,11 +66,12 @@ where
         Ok(Anchor(Fixed::of(self.system, self.surface, 0.0, point)?))
     }
 
-    /// The image of the point of the section near a given one, with the derivatives of the map in the state and in the
-    /// parameter of this index. Derivatives are those of [`Variations`](super::Variations), exact to rounding.
+    /// Maps the point of the section next to `point`, and computes the derivatives of the map with respect to the state and to the
+    /// parameter with index `parameter`. The derivatives are those of [`Variations`](super::Variations), exact to
+    /// rounding.
     ///
     /// # Errors
-    /// [`OrbitError::Section`] where the point is not mapped or the map has no derivative,
+    /// [`OrbitError::Section`] if the point has no image or the map has no derivative there,
     /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time.
     pub fn image(
         &mut self,

@@ -1,10 +1,11 @@
-//! Groups of symmetries that act on the states of a system: relative periodic orbits close up to one of their elements.
+//! Symmetry groups on the states of a system. Relative periodic orbits close up to an element of the group.
 //!
 //! ```text
 //! g = exp(a_1 xi_1 + a_2 xi_2 + ..),   P(z) = g z,   multipliers: eigenvalues of d(g^-1 P) modulo the directions xi_k
 //! ```
 //!
-//! `g^-1 P` maps the directions of the group among themselves, so that its derivative acts on the directions across them.
+//! `g^-1 P` maps the directions of the group to each other. Its derivative therefore acts on the directions transverse
+//! to them.
 
 use super::chart::{Chart, add, columns, least_squares};
 use super::flow::{dual_parameters, dual_state, take_slopes};
@@ -13,22 +14,22 @@ use crate::contract::Variational;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// Largest number of generators of a group: one dual number differentiates by the coordinates of an element.
+/// Largest number of generators of a group: one dual number carries the derivatives by all coordinates of an element.
 pub const GENERATORS: usize = DIRECTIONS;
 
-/// Coordinates of an element of a group: the factors of its generators, 0 for those that it has not.
+/// Coordinates of an element of a group: the factors of its generators, 0 beyond their number.
 pub type Element = [f64; GENERATORS];
 
-/// Maximum number of Newton steps to the element that brings two points together.
+/// Maximum number of Newton steps in the search for the element that maps two points to each other.
 const STEPS: usize = 30;
 
-/// Longest step of a coordinate of an element whose action is not linear in it.
+/// Longest step of a coordinate of an element, unless the action is linear in it.
 const LONGEST: f64 = 1.0;
 
-/// First guesses of a coordinate of an element. Angles have several solutions, of which the nearest counts.
+/// Initial guesses for a coordinate of an element. Angles have several solutions; the best one is taken.
 const GUESSES: [f64; 6] = [1.0, -1.0, 2.0, -2.0, 3.0, -3.0];
 
-/// Distances that differ by less than this share, or by less than this many units, are the same.
+/// Distances count as equal if their difference is below this fraction, or below this many units.
 const SAME: f64 = 1e-3;
 const TOUCHING: f64 = 1e-9;
 
@@ -69,12 +70,13 @@ pub trait Group {
     /// Number of generators, at most [`GENERATORS`].
     fn dimension(&self) -> usize;
 
-    /// Moves a position and a velocity by the element with these coordinates. Missing coordinates of the configuration
-    /// stay as they are.
+    /// Moves a position and a velocity by the element with these coordinates. `q` and `qdot` have one entry per
+    /// coordinate of the model. In a model with modes, entries that the present mode does not have are 0, and their
+    /// results are ignored.
     fn act(&self, element: &[Dual; GENERATORS], q: &mut [Dual], qdot: &mut [Dual]);
 }
 
-/// Rates of a state along the generators of a group; the others are 0.
+/// Rates of a state along the generators of a group, followed by zeros.
 pub(super) fn generators<Sys: Variational>(
     system: &Sys,
     group: &dyn Group,
@@ -114,8 +116,8 @@ pub(super) fn pull<Sys: Variational>(
     Ok(())
 }
 
-/// The element whose inverse brings an image nearest to a point along the directions of the group, sought from the
-/// element before, if there is one.
+/// The element whose inverse brings the image nearest to the point along the directions of the group. `near`: an
+/// element from which to start the search.
 pub(super) fn align<Sys: Variational>(
     system: &Sys,
     group: &dyn Group,
@@ -147,14 +149,14 @@ pub(super) fn align<Sys: Variational>(
     Ok(best.0)
 }
 
-/// True if an element brings two points nearer together than another one, or as near with smaller coordinates.
+/// True if `found` brings two points nearer together than `best`, or as near with smaller coordinates.
 fn is_better(found: (Element, f64), best: (Element, f64)) -> bool {
     let margin = f64::max(SAME * best.1, TOUCHING);
     let size = |element: Element| element.iter().map(|entry| entry * entry).sum::<f64>();
     found.1 < best.1 - margin || (found.1 <= best.1 + margin && size(found.0) < size(best.0))
 }
 
-/// A point and an image.
+/// A point and its image.
 struct Pair<'a, Sys: Variational> {
     system: &'a Sys,
     group: &'a dyn Group,
@@ -195,7 +197,8 @@ impl<Sys: Variational> Pair<'_, Sys> {
         Ok((element, if is_finite { distance } else { f64::INFINITY }))
     }
 
-    /// True if the second derivative of the action in its coordinates vanishes here: the state moves along a line.
+    /// True if the second derivative of the action by its coordinates vanishes here, so that the state moves along a
+    /// line.
     fn is_linear(&self) -> bool {
         let rates = |element: Element| -> Option<[Sys::State; GENERATORS]> {
             let mut image = *self.image;
@@ -233,7 +236,7 @@ impl<Sys: Variational> Pair<'_, Sys> {
     }
 }
 
-/// The coordinates of an element, each with this slope along a direction of its own.
+/// The coordinates of an element. Coordinate `k` has the derivative `slope` along direction `k`.
 fn varied(element: Element, slope: f64) -> [Dual; GENERATORS] {
     core::array::from_fn(|k| {
         let mut slopes = [0.0; DIRECTIONS];

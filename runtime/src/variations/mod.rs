@@ -1,22 +1,23 @@
 //! First variations: derivatives of a run with respect to its initial state and its parameters.
 //!
-//! Between transitions the power series of the motion are computed once more, over [`Dual`] numbers (forward mode):
-//! their slopes are the derivatives of the motion, exact to rounding, with any integrator of the run. At a transition
-//! on a surface `h(t, z; k) = 0`, with `f` the rate before and after it and the map `z+ = D(t, z; k)`,
+//! Between transitions the power series of the motion are recomputed over [`Dual`] numbers (forward-mode derivatives).
+//! Their dual parts are the derivatives of the motion, exact to rounding, whichever integrator made the run. At a
+//! transition on a surface `h(t, z; k) = 0`, with the rates `f-` before and `f+` after it, and the map
+//! `z+ = D(t, z; k)`, the differential
 //!
 //! ```text
 //! dT  = -(h_z . dz- + h_k dk) / (h_z . f- + h_t)
 //! dz+ = D_z (dz- + f- dT) + D_t dT + D_k dk - f+ dT
 //! ```
 //!
-//! is the differential of the transition by the saltation matrix. [`Variations`] is an observer that propagates both
-//! along a run.
+//! follows from the saltation matrix. [`Variations`] is an observer that propagates these derivatives along a run.
 //!
-//! [`Section`] is the map from one arrival at a surface to a later one (Poincare map), with its derivative.
-//! [`Section::periodic`] finds its fixed points, periodic orbits, and their Floquet multipliers; [`Section::exponent`] is
-//! its largest Lyapunov exponent. [`Section::modulo`] lets them close up to a symmetry of a [`Group`]. [`Section::image`] has the derivative in a parameter too, for families of orbits.
+//! [`Section`] is the Poincare map of a surface: the map from an arrival at it to a later one, with its derivative.
+//! [`Section::periodic`] finds its fixed points, which are periodic orbits, and their Floquet multipliers.
+//! [`Section::exponent`] computes its largest Lyapunov exponent. [`Section::modulo`] closes orbits up to a symmetry in
+//! a [`Group`]. [`Section::image`] also gives the derivative with respect to a parameter, for families of orbits.
 //!
-//! The result is [`Undefined`] if the flow of a system with impacts has no derivative.
+//! Where the flow of a system with impacts has no derivative, the result is [`Undefined`].
 
 mod along;
 mod chart;
@@ -50,60 +51,61 @@ pub use section::{Arrival, Itinerary, Section, SectionError};
 
 use crate::error::Fault;
 
-/// Reason why a run has no derivative, or no more digits than doubles have, with its place.
+/// Reason why a run has no derivative, or no digits beyond those of doubles, with time and surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Undefined {
-    /// A grazing impact: rounding decides if the surface was hit. Derivatives are infinite there, or differ on both
-    /// sides.
+    /// A grazing impact: rounding decides whether the surface is hit. The derivatives are infinite there, or differ on
+    /// the two sides.
     Graze {
         /// Time.
         t: f64,
         /// The surface.
         surface: usize,
     },
-    /// Several surfaces were hit at one time: a neighbouring run meets them one after the other, or in another order.
+    /// Several surfaces were hit at the same time. Neighbouring runs hit them one after the other, possibly in another
+    /// order.
     Corner {
         /// Time.
         t: f64,
-        /// The surface hit last.
+        /// The surface of the last impact.
         surface: usize,
     },
-    /// From here on the motion is held in a way whose derivatives are not available: by several surfaces, after
-    /// impacts that accumulate, or where a neighbouring run is not held.
+    /// From this time on the motion is held by surfaces in a way for which derivatives are not available: by several
+    /// surfaces, after an accumulation of impacts, or where neighbouring runs are not held.
     Held {
         /// Time.
         t: f64,
         /// The surface.
         surface: usize,
     },
-    /// The state after an impact is not the result of the law in force alone, for example because a policy repeats
-    /// it.
+    /// The state after an impact is not the result of the law in force alone, for example because an impact policy
+    /// repeats the law.
     Unlawful {
         /// Time.
         t: f64,
         /// The surface.
         surface: usize,
     },
-    /// The Lagrangian changes at a transition where the state of one of the modes, reduced to its constraints, holds
-    /// no momenta: the derivatives of the refraction are not available.
+    /// The Lagrangian changes at a transition, and the reduced state of one of the modes does not contain momenta.
+    /// Derivatives of the refraction are not available then.
     Refracted {
         /// Time.
         t: f64,
         /// The transition.
         surface: usize,
     },
-    /// The motion, its derivatives or its further digits could not be computed from here on.
+    /// The motion, its derivatives or its extended digits are not finite from this time on.
     NotFinite {
         /// Time.
         t: f64,
     },
-    /// A fault while derivatives or further digits were computed.
+    /// A fault during the computation of derivatives or extended digits.
     Fault(Fault),
 }
 
 impl Undefined {
-    /// The class in snake case, as documents write it.
+    /// The class of the reason in snake case, as in documents.
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Graze { .. } => "graze",

@@ -1,4 +1,4 @@
-//! Poincare sections: the states that arrive at a surface, and the map from one arrival to a later one.
+//! Poincare sections: states that arrive at a surface, and the map from one arrival to a later one.
 
 use core::fmt;
 use core::ops::ControlFlow;
@@ -50,7 +50,7 @@ pub struct Section<'a, Sys: Variational, Step, Effects> {
     pub(super) surface: usize,
     pub(super) returns: u32,
     horizon: f64,
-    /// The group up to whose elements orbits close.
+    /// The group of symmetries, if orbits need to close only up to one of its elements.
     pub(super) group: Option<&'a dyn Group>,
     /// Relative error of one step.
     pub(super) tolerance: f64,
@@ -77,15 +77,15 @@ impl<S: Copy> Arrival<S> {
     }
 }
 
-/// Reason why a section is not met.
+/// Reason why a section is not reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum SectionError {
     /// The run was not begun.
     Start(StartError),
-    /// The run ended before the section; with [`Outcome::Done`], the allowed time was over.
+    /// The run ended before the section; [`Outcome::Done`] means that the allowed time was over.
     Ended(Outcome),
-    /// The section is met, but the way to it has no derivative.
+    /// The run reaches the section, but has no derivative.
     Undefined(Undefined),
 }
 
@@ -118,7 +118,8 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The section at a surface. A return may take at most the time `horizon`.
+    /// The section at the surface with index `surface`. Runs use `stepper` and `effects`. A return may take at most the
+    /// time `horizon`.
     pub fn new(
         system: &'a Sys,
         stepper: Step,
@@ -138,14 +139,14 @@ where
         }
     }
 
-    /// Counts this many returns, 1 or more, as one application of the map.
+    /// Sets the number of returns, 1 or more, in one application of the map.
     #[must_use]
     pub fn with_returns(mut self, returns: u32) -> Self {
         self.returns = returns.max(1);
         self
     }
 
-    /// Lets orbits close up to an element of a group of symmetries: of the motion, of all surfaces and of their laws.
+    /// Lets orbits close up to an element of a group of symmetries of the motion, of all surfaces and of their laws.
     #[must_use]
     pub fn modulo(mut self, group: &'a dyn Group) -> Self {
         self.group = Some(group);
@@ -169,8 +170,8 @@ where
     /// The image of a point of the section under the Poincare map. `tangents`, directions along the section, become
     /// their images.
     ///
-    /// The images are derivatives of the map: they are directions along the section too. Along parameters they are
-    /// derivatives of the image of a fixed starting point.
+    /// The images are derivatives of the map, and also lie along the section. Along parameters they are derivatives of
+    /// the image of a fixed starting point.
     ///
     /// # Errors
     /// [`SectionError`] where the run is not begun, ends before the section, or has no derivative.
@@ -183,7 +184,7 @@ where
         Ok(Arrival::of(passed.time, &passed.event))
     }
 
-    /// Runs until the surface has been met `returns` times and once more.
+    /// Runs until arrival number `returns + 1` at the surface.
     pub(super) fn pass(
         &mut self,
         state: &Sys::State,
@@ -199,7 +200,7 @@ where
             last: None,
             itinerary: Itinerary::new(),
         };
-        // NOTE: through a pointer, so that the driver is compiled once for every such observer.
+        // NOTE: a pointer, so that the driver is compiled once for every such observer.
         let mut observer: &mut dyn Observer<Sys> = &mut passage;
         let run = self
             .simulation
@@ -221,7 +222,7 @@ where
 
 /// A run from one arrival to another.
 pub(super) struct Passed<Sys: Variational> {
-    /// Time of the first arrival at the surface, 0 for a run without one before the last.
+    /// Time of the first arrival at the surface; 0 for a run without one before the last.
     pub(super) delay: f64,
     /// Duration since the first arrival, or since the start if there is none.
     pub(super) time: f64,
@@ -230,11 +231,11 @@ pub(super) struct Passed<Sys: Variational> {
     pub(super) itinerary: Itinerary<Sys>,
 }
 
-/// The surfaces that a run meets, by their index.
+/// Arrivals of a run at each surface, by its index.
 pub struct Itinerary<Sys: Variational> {
     /// Number of arrivals at each surface.
     pub arrivals: Sys::Clearances<f64>,
-    /// Least rate at which the gap of each surface falls at an arrival; infinite without one.
+    /// Least speed with which the gap of each surface falls at an arrival; infinite without an arrival.
     pub speeds: Sys::Clearances<f64>,
 }
 

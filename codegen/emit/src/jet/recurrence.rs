@@ -1,4 +1,4 @@
-//! Coefficient `k` of one value from those it follows from, written down.
+//! Expression of Taylor coefficient `k` of one value, from the coefficients that it depends on.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
@@ -17,7 +17,7 @@ impl Writer<'_> {
         self.written(&term).0
     }
 
-    /// A term with its precedence.
+    /// The tokens of a term, with the binding strength of their outermost operator.
     fn written(&mut self, term: &Term) -> (TokenStream, Binding) {
         let tokens = match term {
             Term::Zero => quote!(L::ZERO),
@@ -117,7 +117,7 @@ impl Writer<'_> {
                 let [slope, last] = layout.product_with_steady(a, b);
                 quote!(#slope * #last)
             }
-            // NOTE: no term of a large expansion is one.
+            // NOTE: large expansions contain no such term.
             Room::Histories(_) => TokenStream::new(),
         }
     }

@@ -1,4 +1,4 @@
-//! Statements of an expansion: order 0, and order `k` of all values that vary.
+//! Statements of a Taylor expansion: order 0, and order `k` of all values that vary.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,20 +16,20 @@ pub(super) struct Writer<'a> {
     pub(super) jet: &'a Jet,
     /// Number of components of the state.
     components: usize,
-    /// Reads of coefficient `k`, by value.
+    /// Number of reads of coefficient `k`, by value.
     uses: Vec<usize>,
     pub(super) room: Room,
-    /// Values whose order 0 is read, and those whose reciprocal is.
+    /// Values whose order 0 is read, and values whose reciprocal of order 0 is read.
     read: BTreeSet<Value>,
     inverses: BTreeSet<Value>,
 }
 
-/// The room for coefficients.
+/// Storage of the coefficients.
 #[derive(Debug, Clone)]
 pub(super) enum Room {
-    /// One order after the other.
+    /// Row-major: all values of one order, then those of the next.
     Rows(Layout),
-    /// One history after the other, in these places: that of an expansion that is large.
+    /// One contiguous history per value, with its index. Used for large expansions.
     Histories(BTreeMap<History, usize>),
 }
 
@@ -45,7 +45,7 @@ impl Room {
         Self::Histories(places.map(|(place, history)| (history, place)).collect())
     }
 
-    /// The type of the room.
+    /// The type of the storage.
     pub(super) fn type_tokens(&self) -> TokenStream {
         match self {
             Self::Rows(layout) => {
@@ -77,7 +77,8 @@ impl<'a> Writer<'a> {
         matches!(self.room, Room::Histories(_))
     }
 
-    /// Order `k` of every value that varies, and of the results; then the statements that keep coefficients for later orders.
+    /// Statements for order `k` of every value that varies; expressions of the results; statements that store
+    /// coefficients for later orders.
     pub(super) fn orders(&mut self) -> (TokenStream, Vec<TokenStream>, TokenStream) {
         let varying: Vec<Value> = self.jet.varying().collect();
         let components = self.bind_components(&varying);
@@ -119,7 +120,7 @@ impl<'a> Writer<'a> {
         quote!(let [#(#locals),*] = coefficients[k];)
     }
 
-    /// The values of order 0 that are known, the results first, and statements that read those that are read.
+    /// The values whose order 0 is passed on, the results first, and statements that bind those that are read.
     pub(super) fn read_firsts(&self) -> (Vec<Value>, TokenStream) {
         let mut known = self.jet.function.outputs.clone();
         let mut statements = TokenStream::new();
@@ -142,7 +143,7 @@ impl<'a> Writer<'a> {
         (known, statements)
     }
 
-    /// Statements that compute reciprocals of order 0.
+    /// Statements that compute the reciprocals of order 0.
     pub(super) fn begin_inverses(&mut self) -> TokenStream {
         let inverses = self.inverses.clone().into_iter().map(|value| {
             let (inverse, value) = (local("inverse", value), self.first(value));
@@ -151,7 +152,7 @@ impl<'a> Writer<'a> {
         inverses.collect()
     }
 
-    /// Statements that keep order 0 where that has not been done.
+    /// Statements that store order 0 of histories for which this is still to be done.
     pub(super) fn begin_histories(&mut self) -> TokenStream {
         let histories: Vec<(History, TokenStream)> = match &self.room {
             Room::Rows(layout) => {
@@ -182,7 +183,7 @@ impl<'a> Writer<'a> {
         joined([entries, locals])
     }
 
-    /// Order 0 of a value.
+    /// Expression for order 0 of a value.
     pub(super) fn first(&mut self, value: Value) -> TokenStream {
         match &self.jet.function.ops[value.index()] {
             Op::Number(number) => rational(number),
@@ -199,14 +200,14 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The reciprocal of a value's order 0.
+    /// Local variable for the reciprocal of order 0 of a value.
     pub(super) fn inverse(&mut self, value: Value) -> Ident {
         self.first(value);
         self.inverses.insert(value);
         local("inverse", value)
     }
 
-    /// Coefficient `k` of a value.
+    /// Expression for coefficient `k` of a value.
     pub(super) fn next(&mut self, value: Value) -> TokenStream {
         let recurrence = &self.jet.recurrences[value.index()];
         if self.is_bound(value) || matches!(recurrence, Recurrence::Component(_)) {
@@ -221,7 +222,7 @@ impl<'a> Writer<'a> {
         self.uses[value.index()] > 1 || self.jet.is_kept(value)
     }
 
-    /// The place of a coefficient that goes through memory.
+    /// The storage of a coefficient that is passed through memory; `None` if it is a local variable.
     fn memory(&self, value: Value, order: &TokenStream) -> Option<TokenStream> {
         let Room::Histories(places) = &self.room else {
             return None;
@@ -230,7 +231,7 @@ impl<'a> Writer<'a> {
         Some(quote!(jets[#place][#order]))
     }
 
-    /// Order `k` of a value, and where it is kept.
+    /// Statements that compute order `k` of a value and store it.
     fn advance(&mut self, value: Value) -> TokenStream {
         let recurrence = &self.jet.recurrences[value.index()];
         let is_component = matches!(recurrence, Recurrence::Component(_));
@@ -270,7 +271,7 @@ impl<'a> Writer<'a> {
         statements
     }
 
-    /// True if order 0 of a value is kept with those above it.
+    /// True if order 0 of a value is stored with its higher orders.
     fn keeps_first(&self, value: Value) -> bool {
         let history = History::plain(value);
         match &self.room {
@@ -282,7 +283,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Place of order `k` of a history, unless it was put there at once or is kept with others.
+    /// Storage of order `k` of a history; `None` if the coefficient was computed in place or is stored with others.
     fn place(&self, history: History) -> Option<TokenStream> {
         match &self.room {
             Room::Rows(layout) => layout.coefficient(history, &quote!(k)),

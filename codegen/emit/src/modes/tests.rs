@@ -1,4 +1,4 @@
-//! Families of modes and transitions, and their members.
+//! Tests of families of modes and transitions against their members written out.
 
 use dalembert_codegen::compile_modes;
 use dalembert_codegen::spec::{Declaration, Modes};
@@ -10,7 +10,7 @@ fn read(source: &str) -> Modes {
     }
 }
 
-/// The emitted items, without the source.
+/// The emitted items. The source text is removed first.
 fn emitted(source: &str) -> String {
     let mut declared = read(source);
     for mode in &mut declared.modes {
@@ -19,7 +19,7 @@ fn emitted(source: &str) -> String {
     super::tokens(&compile_modes(&declared).unwrap()).to_string()
 }
 
-/// A hopper on three legs, with these modes and transitions.
+/// A hopper on three legs, with the given modes and transitions.
 fn hopper(rest: &str) -> String {
     format!(
         "Hopper {{
@@ -81,7 +81,8 @@ fn a_family_is_its_members_written_out() {
     same(family, WRITTEN_OUT);
 }
 
-/// Entries may name single members, ranges that overlap, and stand anywhere; the order is that in which modes are met.
+/// Entries may name single members and overlapping ranges, in any position. Modes are numbered in order of first
+/// appearance.
 #[test]
 fn entries_of_one_member_add_up() {
     let family = "
@@ -118,7 +119,7 @@ fn entries_of_one_member_add_up() {
     same(family, WRITTEN_OUT);
 }
 
-/// Inside of a mode other indices and arguments of the name of the index hide it, from where they are known on.
+/// Inside a mode, other indices and arguments with the name of the family's index shadow it from their declaration on.
 #[test]
 fn inner_names_hide_the_index() {
     let shell = |modes: &str, from: &str, to: &str| {

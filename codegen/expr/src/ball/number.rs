@@ -9,11 +9,11 @@ use super::bound;
 use super::wide::{BITS, Wide};
 use crate::rational::Rational;
 
-/// Numbers beyond `2^LARGEST` are not told from infinity, those below `2^-LARGEST` not from 0.
+/// Numbers above `2^LARGEST` become the whole real line, those below `2^-LARGEST` a ball around 0.
 const LARGEST: i32 = 1100;
 /// Newton steps from the 50 bits of doubles to 256.
 pub(super) const NEWTON_STEPS: usize = 3;
-/// Integer exponents beyond are not evaluated.
+/// Largest absolute value of an integer exponent that is evaluated.
 const HIGHEST_POWER: u64 = 1 << 16;
 
 /// All numbers whose distance from the middle is at most the radius, which may be infinite.
@@ -36,7 +36,7 @@ impl Ball {
         radius: f64::INFINITY,
     };
 
-    /// The circle's half circumference.
+    /// The number pi.
     pub fn pi() -> Self {
         let words = [
             0xC90F_DAA2_2168_C234,
@@ -44,7 +44,7 @@ impl Ball {
             0x2902_4E08_8A67_CC74,
             0x020B_BEA6_3B13_9B22,
         ];
-        // The digits are those of pi, cut off.
+        // The digits of pi, truncated.
         Self {
             middle: Wide::of_words(words, 2 - BITS),
             radius: bound::power_of_two(2 - BITS),
@@ -56,18 +56,18 @@ impl Ball {
         Self::exact(Wide::integer(value))
     }
 
-    /// A double, which is finite.
+    /// A finite double, exactly.
     pub fn double(value: f64) -> Self {
         Self::exact(Wide::double(value))
     }
 
-    /// An exact number.
+    /// A rational number.
     pub fn rational(value: &Rational) -> Self {
         if let Some(integer) = value.to_i64() {
             return Self::integer(integer);
         }
         let (numer, denom) = (value.numer(), value.denom());
-        // A quotient of at least 256 bits.
+        // The quotient has at least 256 bits.
         let shift = (BITS + 1 + denom.bits() as i32 - numer.bits() as i32).max(0);
         let shifted = numer << shift;
         let quotient = &shifted / &denom;
@@ -79,7 +79,7 @@ impl Ball {
         Self::of(middle, error)
     }
 
-    /// The same with a larger radius.
+    /// The same ball with `radius` added to its radius.
     pub fn widened(self, radius: f64) -> Self {
         Self::of(self.middle, bound::sum(self.radius, radius))
     }
@@ -94,12 +94,12 @@ impl Ball {
         self.middle.nearest()
     }
 
-    /// A bound of the distance from the middle.
+    /// Upper bound of the distance between the numbers in the ball and the middle.
     pub fn radius(self) -> f64 {
         self.radius
     }
 
-    /// True if it has bounds.
+    /// True if the radius is finite.
     pub fn is_bounded(self) -> bool {
         self.radius.is_finite()
     }
@@ -109,7 +109,7 @@ impl Ball {
         self == Self::ZERO
     }
 
-    /// The side of 0 on which all numbers are; `None` if 0 or numbers on both sides are inside.
+    /// Common sign of all numbers in the ball; `None` if it contains 0 or numbers of both signs.
     pub fn sign(self) -> Option<Ordering> {
         match (self.mignitude() > 0.0, self.middle.is_negative) {
             (false, _) => None,
@@ -167,7 +167,7 @@ impl Ball {
     pub fn inverse(self) -> Option<Self> {
         self.sign()?;
         let order = self.middle.order();
-        // In [1/2, 1).
+        // `scaled` is in [1/2, 1).
         let scaled = Self::exact(self.middle.shifted(-order));
         let one = Self::integer(1);
         let mut inverse = Self::double(1.0 / scaled.nearest());
@@ -183,7 +183,7 @@ impl Ball {
         ))
     }
 
-    /// `sqrt(self)`; `None` where there may be none.
+    /// `sqrt(self)`; `None` if the ball may contain negative numbers, or 0 beside others.
     ///
     /// For every `x` inside and any `y > 0`: `|sqrt(x) - y| = |x - y^2|/(sqrt(x) + y) <= |x - y^2|/y`.
     pub fn sqrt(self) -> Option<Self> {
@@ -194,7 +194,7 @@ impl Ball {
             return None;
         }
         let half = self.middle.order().div_euclid(2);
-        // In [1/2, 2).
+        // `scaled` is in [1/2, 2).
         let scaled = Self::exact(self.middle.shifted(-2 * half));
         let one = Self::integer(1);
         let mut inverse = Self::double(1.0 / scaled.nearest().sqrt());
@@ -213,8 +213,8 @@ impl Ball {
         ))
     }
 
-    /// `self^exponent`: by multiplications for integers, by square roots for halves, else by a logarithm; `None` where there may be no
-    /// value.
+    /// `self^exponent`: by multiplications for integers, by square roots for halves, else by the logarithm. `None` if a
+    /// number in the ball may have no power.
     pub fn power(self, exponent: &Rational) -> Option<Self> {
         match exponent.to_small() {
             Some((n, 1)) => self.integer_power(n),
@@ -308,7 +308,7 @@ impl Mul for Ball {
 mod tests {
     use super::*;
 
-    /// Asserts that the ball contains a fraction, which `value` holds with radius 0.
+    /// Asserts that a number in `value` is at most one radius away from the middle of the ball.
     fn contains(ball: Ball, value: Ball, what: &str) {
         let distance = ball.midpoint().sub(value);
         assert!(
@@ -328,7 +328,7 @@ mod tests {
             let root = ball.sqrt().unwrap();
             contains(root.mul(root), ball, "a root");
             for found in [inverse, root] {
-                // Radii are doubles: those of the least numbers are the least doubles.
+                // Radii are doubles, so radii of tiny numbers stop at the smallest doubles.
                 let bound = (1e-74 * found.nearest()).max(1e-300);
                 assert!(found.radius() <= bound, "{value}: {:e}", found.radius());
             }

@@ -1,4 +1,4 @@
-//! Numbers of 256 bits. Operations cut off what does not fit, and state a bound of the error.
+//! Numbers of 256 bits. Operations truncate, and return a bound of the error.
 
 use std::cmp::Ordering;
 
@@ -11,9 +11,9 @@ const WORDS: usize = 4;
 /// Bits of a mantissa.
 pub(super) const BITS: i32 = 64 * WORDS as i32;
 
-/// `mantissa * 2^exponent`, with the other sign if it is negative. The lowest word of the mantissa comes first.
+/// `mantissa * 2^exponent`, negated if `is_negative`. The lowest word of the mantissa comes first.
 ///
-/// NOTE: the highest bit of the mantissa is 1 unless the number is 0, whose exponent is 0 and which is not negative.
+/// NOTE: the highest bit of the mantissa is 1 unless the number is 0. The number 0 has exponent 0 and is not negative.
 #[derive(Copy, Clone, PartialEq, Eq, Debug, Default)]
 pub(super) struct Wide {
     pub(super) is_negative: bool,
@@ -112,7 +112,8 @@ impl Wide {
         self.leading(0, power_of_two(1023), 0.0)
     }
 
-    /// The first 53 bits, with an integer added in the last place; `above` and `below` beyond the range of doubles.
+    /// The first 53 bits plus `added` in the last place, as a double. Beyond the range of doubles it is `above` or
+    /// `below`.
     fn leading(&self, added: u64, above: f64, below: f64) -> f64 {
         if self.is_zero() {
             return 0.0;
@@ -120,7 +121,7 @@ impl Wide {
         let bits = (self.mantissa[WORDS - 1] >> 11) + added;
         match self.exponent + BITS - 53 {
             971.. => above,
-            // A product of integer and power that is exact.
+            // The product of integer and power of two is exact.
             exponent @ -1022..=970 => bits as f64 * power_of_two(exponent),
             _ => below,
         }
@@ -131,7 +132,7 @@ impl Wide {
         if self.is_zero() {
             return 0.0;
         }
-        // Rounded once: bits that are left out of 64 count by one of them.
+        // A sticky bit stands for all bits below the highest 64, so the conversion rounds once.
         let rest = self.mantissa[..WORDS - 1].iter().any(|word| *word != 0);
         let bits = self.mantissa[WORDS - 1] | u64::from(rest);
         let exponent = self.exponent + BITS - 64;
@@ -180,7 +181,8 @@ impl Wide {
                 ),
             }
         };
-        // Less than one unit of the larger operand is cut off by its shift, and one by a carry.
+        // The shift of the smaller operand cuts off less than one unit in the last place of the larger, a carry at most
+        // one.
         let error = match is_cut {
             true => power_of_two(large.exponent + 1),
             false => 0.0,
@@ -252,7 +254,7 @@ impl Wide {
     }
 }
 
-/// The number of a mantissa whose highest bits may be 0.
+/// The number of a mantissa whose highest bits may be 0, normalised.
 fn normalised(is_negative: bool, mut mantissa: [u64; WORDS], mut exponent: i32) -> Wide {
     if mantissa == [0; WORDS] {
         return Wide::ZERO;
@@ -283,7 +285,7 @@ fn normalised(is_negative: bool, mut mantissa: [u64; WORDS], mut exponent: i32) 
     }
 }
 
-/// A mantissa without its lowest bits. True if one of these bits was 1.
+/// The mantissa shifted to the right. True if a bit that was 1 is lost.
 fn shifted_right(mantissa: &[u64; WORDS], shift: i32) -> ([u64; WORDS], bool) {
     if shift >= BITS {
         return ([0; WORDS], *mantissa != [0; WORDS]);
@@ -311,7 +313,7 @@ fn shifted_right(mantissa: &[u64; WORDS], shift: i32) -> ([u64; WORDS], bool) {
     (result, is_cut)
 }
 
-/// The sum. True if a bit beyond the highest is missing.
+/// The sum modulo `2^256`. True if there is a carry.
 fn added(a: &[u64; WORDS], b: &[u64; WORDS]) -> ([u64; WORDS], bool) {
     let mut sum = [0; WORDS];
     let mut carry = false;

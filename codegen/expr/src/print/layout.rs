@@ -1,4 +1,4 @@
-//! Arrangement of an expression: quotients, signs, common factors, order.
+//! Layout of an expression for printing: quotients, signs, common factors, order of terms.
 
 use std::collections::VecDeque;
 
@@ -8,19 +8,19 @@ use crate::pool::Pool;
 use crate::rational::Rational;
 use crate::sign::is_even;
 
-/// Nesting beyond which parts are omitted.
+/// Largest depth of nesting. Deeper parts are omitted.
 const MAX_DEPTH: usize = 120;
-/// Number of parts beyond which parts are omitted.
+/// Largest number of parts. Further parts are omitted.
 const MAX_PARTS: usize = 20_000;
 
-/// An arranged expression; numbers in it are not negative.
+/// A layout. Its numbers are not negative.
 pub(super) enum Layout {
     Integer(String),
     Pi,
     Symbol(SymbolId),
-    /// Summands; true for those that are subtracted.
+    /// Summands, each with a flag for subtraction.
     Sum(Vec<(bool, Layout)>),
-    /// A product over a product; an empty numerator is 1.
+    /// Numerator and denominator, each a list of factors. An empty list is 1.
     Quotient(Vec<Layout>, Vec<Layout>),
     /// A positive power other than 1 and 1/2.
     Power(Box<Layout>, Rational),
@@ -31,16 +31,16 @@ pub(super) enum Layout {
     Omitted,
 }
 
-/// `coefficient * product of base^exponent`
+/// Coefficient and powers of `coefficient * product of base^exponent`.
 type Term = (Rational, Vec<(ExprId, Rational)>);
 
-/// A factor of a product: an expression, or the rest of a sum without its common factors.
+/// Base of a factor: an expression, or what remains of a sum after its common factors are taken out.
 enum Base {
     Expression(ExprId),
     Sum(Vec<Term>),
 }
 
-/// Arranges an expression.
+/// Layout of an expression.
 pub(super) fn layout(pool: &Pool, id: ExprId) -> Layout {
     Builder {
         pool,
@@ -79,14 +79,14 @@ impl Builder<'_> {
         layout
     }
 
-    /// A product; its sums are split into common factors and the rest, and signs are settled.
+    /// Layout of a product. Common factors are taken out of its sums, and the overall sign is determined.
     fn term(&mut self, (coefficient, factors): Term) -> Layout {
         let mut bases = self.split_sums(factors);
         let mut negative = coefficient.is_negative();
         if negative {
             negative = !flip_one_sum(&mut bases, coefficient == Rational::MINUS_ONE);
         }
-        // Numbers and symbols before functions before sums; else as they came.
+        // Numbers and symbols come first, then functions, then sums; within each class the order is kept.
         bases.sort_by_key(|(base, _)| self.rank(base));
         let layout = self.quotient(&coefficient.abs(), &bases);
         if negative {
@@ -96,7 +96,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Powers with the common factors of sums taken out, those of integer powers; a common factor may be a sum again.
+    /// Takes common factors with integer powers out of sums. A common factor may itself be a sum.
     fn split_sums(&self, factors: Vec<(ExprId, Rational)>) -> Vec<(Base, Rational)> {
         let mut bases: Vec<(Base, Rational)> = Vec::new();
         let mut pending = VecDeque::from(factors);
@@ -166,7 +166,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Summands in order; the first positive one leads.
+    /// Layout of a sum. The first positive summand is moved to the front.
     fn sum(&mut self, terms: &[Term]) -> Layout {
         let lead = terms
             .iter()
@@ -194,7 +194,7 @@ impl Builder<'_> {
     }
 }
 
-/// Multiplies by `base^exponent`, merging with a power of the same direction.
+/// Multiplies by `base^exponent`, which is merged with a power of the same base and sign.
 fn multiply(bases: &mut Vec<(Base, Rational)>, base: ExprId, exponent: Rational) {
     for (known, power) in bases.iter_mut() {
         let same = matches!(known, Base::Expression(id) if *id == base);
@@ -207,7 +207,8 @@ fn multiply(bases: &mut Vec<(Base, Rational)>, base: ExprId, exponent: Rational)
     bases.push((Base::Expression(base), exponent));
 }
 
-/// Changes the sign of a sum that has a negative summand and an odd power, or of any sum if `always`. True if it found one.
+/// Changes the sign of the first sum with an odd power that has a negative summand; with `always` also that of a sum
+/// that is the only factor. Returns true if a sign was changed.
 fn flip_one_sum(bases: &mut [(Base, Rational)], always: bool) -> bool {
     let alone = always && bases.len() == 1;
     for (base, exponent) in bases {
@@ -231,7 +232,7 @@ fn flip_one_sum(bases: &mut [(Base, Rational)], always: bool) -> bool {
     false
 }
 
-/// Divides all terms by the powers they share and returns these.
+/// Divides all terms by their common powers and returns these.
 fn take_common_factors(terms: &mut [Term]) -> Vec<(ExprId, Rational)> {
     let Some((first, others)) = terms.split_first() else {
         return Vec::new();
@@ -261,7 +262,7 @@ fn take_common_factors(terms: &mut [Term]) -> Vec<(ExprId, Rational)> {
     common
 }
 
-/// The common part of two powers of one base: the smaller one, if both have the same direction.
+/// The common part of two powers of one base: the one of smaller size, if both have the same sign.
 fn shared_power(same_base: bool, a: &Rational, b: &Rational) -> Option<Rational> {
     let alike = same_base && a.is_negative() == b.is_negative();
     let whole = a == b || (a.is_integer() && b.is_integer());
@@ -275,7 +276,7 @@ fn shared_power(same_base: bool, a: &Rational, b: &Rational) -> Option<Rational>
 }
 
 impl Pool {
-    /// An expression as a coefficient and powers.
+    /// An expression as a coefficient times powers.
     fn term(&self, id: ExprId) -> Term {
         if let Some(value) = self.as_number(id) {
             return (value.clone(), Vec::new());
@@ -287,7 +288,7 @@ impl Pool {
         }
     }
 
-    /// The terms of a sum, the constant last.
+    /// The terms of a sum. The constant is the last one.
     fn sum_terms(&self, sum: ExprId) -> Vec<Term> {
         let Node::Sum { constant, terms } = self.node(sum) else {
             return vec![self.term(sum)];

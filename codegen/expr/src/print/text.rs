@@ -28,7 +28,7 @@ fn binding(layout: &Layout) -> Binding {
     }
 }
 
-/// Writes a part, in parentheses unless it binds at least as tightly as asked.
+/// Writes a part, in parentheses if it binds less tightly than `least`.
 fn write_bound(pool: &Pool, layout: &Layout, least: Binding, out: &mut String) {
     if binding(layout) >= least {
         write(pool, layout, out);

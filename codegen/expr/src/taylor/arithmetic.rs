@@ -1,4 +1,4 @@
-//! The numbers of a series.
+//! The coefficients of a series, and their arithmetic.
 
 use std::fmt::Debug;
 
@@ -13,12 +13,12 @@ use crate::rational::Rational;
 pub trait Arithmetic: Copy {
     /// An element.
     type Scalar: Copy + PartialEq + Debug;
-    /// A sum of products that is not reduced yet.
+    /// A sum of products before reduction.
     type Sum: Copy;
 
-    /// The element that an integer stands for.
+    /// The element of an integer.
     fn integer(self, value: i64) -> Self::Scalar;
-    /// The element that a rational number stands for; `None` if there is none.
+    /// The element of a rational number; `None` if the field has none.
     fn rational(self, value: &Rational) -> Option<Self::Scalar>;
     /// `a + b`
     fn add(self, a: Self::Scalar, b: Self::Scalar) -> Self::Scalar;
@@ -28,13 +28,13 @@ pub trait Arithmetic: Copy {
     fn mul(self, a: Self::Scalar, b: Self::Scalar) -> Self::Scalar;
     /// `1 / a`; `None` for 0.
     fn inv(self, a: Self::Scalar) -> Option<Self::Scalar>;
-    /// A number that is 0 for 0 alone and largest for the best pivot.
+    /// Pivot quality: 0 for a number that must not be a pivot, largest for the best pivot.
     fn size(self, a: Self::Scalar) -> f64;
-    /// A sum of no products.
+    /// The empty sum.
     fn empty(self) -> Self::Sum;
     /// The value of a sum.
     fn settle(self, sum: Self::Sum) -> Self::Scalar;
-    /// `sums[row[j]] += factor * b` for every `(j, b)` of `terms` up to the first `j` beyond the end of `row`.
+    /// `sums[row[j]] += factor * b` for every `(j, b)` of `terms`, up to the first `j` with no entry in `row`.
     fn scatter(
         self,
         sums: &mut [Self::Sum],

@@ -1,4 +1,4 @@
-//! Points whose coordinates are balls: expressions and series with 76 digits, and bounds of their errors.
+//! Points with ball coordinates: expressions and series in ball arithmetic of 76 digits, with error bounds.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// Numbers of 256 bits with bounds of their errors.
+/// Ball arithmetic: 256-bit midpoints with error bounds.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct Balls;
 
@@ -47,7 +47,7 @@ impl Arithmetic for Balls {
         a.is_zero()
     }
 
-    /// 0 also for a ball that contains 0: it is no pivot.
+    /// The smallest absolute value in the ball. It is 0 for a ball that contains 0, which therefore is never a pivot.
     fn size(self, a: Ball) -> f64 {
         a.mignitude()
     }
@@ -71,7 +71,7 @@ impl Arithmetic for Balls {
     }
 }
 
-/// A point with balls for coordinates. Symbols without one are 0, as at a [`RealPoint`].
+/// A point with ball coordinates. Symbols without a coordinate are 0, as at a [`RealPoint`].
 #[derive(Clone, Debug, Default)]
 pub struct BallPoint {
     values: Vec<Ball>,
@@ -216,7 +216,7 @@ fn apply(function: Function, x: Ball) -> Option<Ball> {
     }
 }
 
-/// `ln(x + sqrt(x^2 + 1))`, which loses digits to the left of 0.
+/// `arsinh(x) = ln(x + sqrt(x^2 + 1))`. For `x < 0` the sum cancels and digits are lost.
 fn inverse_of_sinh(x: Ball) -> Option<Ball> {
     (x + (x * x + Ball::integer(1)).sqrt()?).ln()
 }
@@ -227,7 +227,7 @@ mod tests {
     use crate::fixture::Fixture;
     use crate::interval::Interval;
 
-    /// The value of a text at `x = 0.3`, `y = -0.7`.
+    /// The value of an expression, given as text, at `x = 0.3`, `y = -0.7`.
     fn value(text: &str) -> Ball {
         let mut fixture = Fixture::new();
         let id = fixture.read(text);
@@ -240,7 +240,7 @@ mod tests {
         point.values(&fixture.pool, &order).unwrap()[id.index()]
     }
 
-    /// Every function of the table at numbers of many sizes, each in the range that its enclosure gives it.
+    /// Values of every function at numbers of many sizes lie in its interval enclosure.
     #[test]
     fn ranges_of_single_numbers_hold_the_values() {
         let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
@@ -262,7 +262,7 @@ mod tests {
                 let (Some(range), Some(value)) = (range, apply(function, Ball::double(x))) else {
                     continue;
                 };
-                // Angles out of reach have any sine.
+                // The ball of such an angle is too wide: its sine is unknown.
                 if value.radius() > 0.5 {
                     continue;
                 }

@@ -1,4 +1,4 @@
-//! Boxes in place of points: series whose coefficients are intervals that contain those at every point of the box.
+//! Series over boxes: the coefficients are intervals that contain the coefficients at every point of the box.
 
 use std::cmp::Ordering;
 
@@ -13,35 +13,35 @@ use crate::rational::Rational;
 
 /// A point whose numbers are ranges. Each range contains the exact number.
 pub trait RangePoint: ExpansionPoint + Clone {
-    /// A part of a number that is a few times its uncertainty after some operations.
+    /// Relative accuracy of a number after some operations, with a margin.
     const CLOSE: f64;
 
     /// The point whose coordinates are the shortest decimal numbers that round to those of `point`. Printed coordinates
     /// are therefore exact.
     fn of(point: &RealPoint) -> Self;
 
-    /// The side of 0 on which the whole range is; `None` if 0 or numbers on both sides are inside.
+    /// Common sign of all numbers in the range; `None` if it contains 0 or numbers of both signs.
     fn sign(range: Range<Self>) -> Option<Ordering>;
 
-    /// A range of one number, near the middle.
+    /// A range around one number near the middle.
     fn midpoint(range: Range<Self>) -> Range<Self>;
 
     /// A double near the middle.
     fn nearest(range: Range<Self>) -> f64;
 
-    /// A bound of the distance of numbers in the range from the middle.
+    /// Upper bound of the distance between numbers in the range and [`RangePoint::midpoint`].
     fn radius(range: Range<Self>) -> f64;
 
-    /// Ranges of the least and the largest number.
+    /// The least and the largest number, each as a range.
     fn ends(range: Range<Self>) -> [Range<Self>; 2];
 
-    /// The range with everything that is no further away than a distance.
+    /// The range extended by `distance` at both ends.
     fn widened(range: Range<Self>, distance: f64) -> Range<Self>;
 }
 
 type Range<P> = <<P as ExpansionPoint>::Field as Arithmetic>::Scalar;
 
-/// The shortest decimal number that rounds to a double, which is the one that is printed; `None` if it is not finite.
+/// The shortest decimal number that rounds to `value`, as printed; `None` if `value` is not finite.
 pub(super) fn decimal(value: f64) -> Option<Rational> {
     let size = Rational::from_decimal(&value.abs().to_string())?;
     Some(if value < 0.0 { -size } else { size })
@@ -79,7 +79,7 @@ impl Arithmetic for Enclosures {
         a.inverse()
     }
 
-    /// 0 also for an interval that contains 0: it is no pivot.
+    /// NOTE: an interval that contains 0 has size 0, because it is no pivot.
     fn size(self, a: Interval) -> f64 {
         a.mignitude()
     }
@@ -109,7 +109,7 @@ impl Arithmetic for Enclosures {
     }
 }
 
-/// A box: a range for each symbol. Symbols without one are any real numbers.
+/// A box: a range for each symbol. A symbol without a range may have any real value.
 #[derive(Clone, Debug, Default)]
 pub struct EnclosedPoint {
     ranges: Domain,

@@ -1,4 +1,4 @@
-//! Expressions at a point become series in some of their symbols.
+//! Taylor series of expressions at a point, in some of their symbols.
 
 use super::arithmetic::{Arithmetic, Reals};
 use super::jet::{self, Jets, Pair};
@@ -11,10 +11,10 @@ use crate::rational::Rational;
 
 /// A point at which expressions are expanded: the values of symbols, and with them of all expressions.
 pub trait ExpansionPoint {
-    /// The coefficients of series.
+    /// The field of the coefficients.
     type Field: Arithmetic;
 
-    /// The coefficients' field.
+    /// Arithmetic of the coefficients.
     fn field(&self) -> Self::Field;
 
     /// The value of a symbol.
@@ -23,10 +23,11 @@ pub trait ExpansionPoint {
     /// Gives a symbol a value.
     fn set_symbol(&mut self, symbol: SymbolId, value: Scalar<Self>);
 
-    /// The values of the expressions in `order`, by id; `None` if one has no value here.
+    /// The values of the expressions in `order`, indexed by id; `None` if one has no value at the point.
     fn values(&mut self, pool: &Pool, order: &[ExprId]) -> Option<Vec<Scalar<Self>>>;
 
-    /// `(sin, cos)` or `(sinh, cosh)` of an argument.
+    /// `(sin, cos)` or `(sinh, cosh)` of an argument, as `function` is circular or hyperbolic. `values` are indexed by
+    /// id.
     fn pair(
         &mut self,
         pool: &Pool,
@@ -87,7 +88,7 @@ pub struct RealPoint {
 }
 
 impl RealPoint {
-    /// The point of these values, by symbol in order of creation.
+    /// The point with these values, one for each symbol in order of creation.
     pub fn new(values: Vec<f64>) -> Self {
         Self { values }
     }
@@ -152,10 +153,9 @@ impl ExpansionPoint for RealPoint {
 }
 
 impl Pool {
-    /// The series of `roots` in `variables` at a point, in order; `None` if one has none there.
+    /// The Taylor series of `roots` in `variables` at a point, in the order of `roots`. `None` if one has none there.
     ///
-    /// Beyond their values, series exist where the functions are smooth: not at the end of a domain, as
-    /// `sqrt(x)` at 0.
+    /// A series needs smoothness besides a value: there is none at the end of a domain, such as `sqrt(x)` at 0.
     pub fn taylor<P: ExpansionPoint>(
         &self,
         roots: &[ExprId],
@@ -189,7 +189,7 @@ struct Expansion<'e, 's, P: ExpansionPoint> {
     jets: &'e Jets<'s, P::Field>,
     point: &'e mut P,
     values: &'e [Scalar<P>],
-    /// Series known so far, by id.
+    /// Series known so far, indexed by id.
     series: Vec<Series<P>>,
 }
 
@@ -240,7 +240,7 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
         match whole {
             Some((1, _)) => Some(base.to_vec()),
             Some((2, _)) => Some(self.jets.mul(base, base)),
-            // The recurrence divides by the base, which a natural power need not.
+            // The recurrence divides by the base. A natural power of a base that vanishes is multiplied out.
             Some((n @ 3.., _)) if self.jets.field.size(self.jets.value(base)) == 0.0 => {
                 let mut power = base.to_vec();
                 for _ in 1..n {
@@ -333,7 +333,7 @@ mod tests {
         "atan2(y, x) + x^(-3)",
     ];
 
-    /// The coefficient of `x^a y^b` is the derivative by the rule book, over `a! b!`.
+    /// Asserts that the coefficient of `x^a y^b` is the derivative by differentiation rules, divided by `a! b!`.
     fn agree<P: ExpansionPoint>(
         make: impl Fn(&Fixture) -> P,
         near: impl Fn(Scalar<P>, Scalar<P>) -> bool,
@@ -375,7 +375,7 @@ mod tests {
 
     #[test]
     fn coefficients_are_derivatives_modulo_a_prime() {
-        // A point at which every root in the table exists.
+        // A seed of a point at which every root in the table exists.
         let exists = |seed: &u64| {
             TEXTS.iter().all(|text| {
                 let mut fixture = Fixture::new();

@@ -6,16 +6,17 @@
 //! x+ = Delta(t, x),  p+ . Delta_* = p + eps dh         H*+ - p+ . d_t Delta + eps d_t h = H*-   at h = 0
 //! ```
 //!
-//! `p` is the differential of the least cost, so that a minimum belongs to `l` with the sign that it has in `J`. `f` is affine
-//! in the inputs and `l` quadratic, so `u*` is one expression. Where inputs do not act along the gap, `H*` is linear in `eps`.
+//! `p` is the gradient of the least cost, so `l` enters with the sign that it has in `J`, and `H` is minimised. `f` is
+//! affine in the inputs and `l` is quadratic, so `u*` is a single expression. If the inputs do not act along the gap,
+//! `H*` is linear in `eps`.
 //!
 //! | file | job |
 //! |---|---|
 //! | `system.rs` | a model as a first-order system: `x`, `f`, `Delta` |
 //! | `principle.rs` | `H*`, `u*`, the field of the costate |
 //! | `jump.rs` | the costate after an impact |
-//! | `model.rs` | all of it as a first-order model, for the ordinary stages |
-//! | `held.rs` | a first-order model with inputs that stay, for dynamic programming |
+//! | `model.rs` | the extremals as a first-order model, for the later stages |
+//! | `held.rs` | a first-order model with constant inputs, for dynamic programming |
 
 mod held;
 mod jump;
@@ -34,59 +35,59 @@ pub use model::{ENERGY, TERMINAL, extremal_model};
 /// A component of the state with its costate.
 #[derive(Debug, Clone)]
 pub struct Component {
-    /// Name on the command line: `x`, `x_dot`.
+    /// Name on the command line, for example `x` or `x_dot`.
     pub name: String,
     /// Symbol of the state.
     pub state: SymbolId,
     /// Symbol of the costate.
     pub costate: SymbolId,
-    /// Rate of the state with the optimal input.
+    /// Rate of the state under the optimal input.
     pub rate: ExprId,
-    /// Rate of the costate with the optimal input.
+    /// Rate of the costate under the optimal input.
     pub costate_rate: ExprId,
 }
 
 /// State and costate after an impact.
 #[derive(Debug, Clone)]
 pub struct Jump {
-    /// State after the impact.
+    /// State after the impact, as a function of the state before.
     pub state: Vec<ExprId>,
     /// Symbol of the multiplier of `dh`.
     pub multiplier: SymbolId,
     /// Value of the multiplier.
     pub epsilon: ExprId,
-    /// Costate after the impact, with the symbol of the multiplier.
+    /// Costate after the impact. It contains the symbol of the multiplier.
     pub costate: Vec<ExprId>,
 }
 
-/// The maximum principle of a model: functions of time, state and costate.
+/// Maximum principle of a model. All expressions are functions of time, state and costate.
 #[derive(Debug, Clone)]
 pub struct Extremals {
-    /// State and costate.
+    /// Components of the state, each with its costate.
     pub components: Vec<Component>,
     /// Optimal inputs, in the order of the inputs.
     pub optimal: Vec<ExprId>,
     /// `H*`
     pub hamiltonian: ExprId,
-    /// Leading minors of the second derivative of the running cost by the inputs: all of them are positive where the optimal input
-    /// is one.
+    /// Leading principal minors of the Hessian of the running cost with respect to the inputs. The optimal input is a
+    /// minimum where all of them are positive.
     pub minors: Vec<ExprId>,
-    /// The running cost with the optimal inputs.
+    /// Running cost under the optimal inputs.
     pub running: ExprId,
     /// The terminal cost.
     pub terminal: ExprId,
-    /// One for each surface.
+    /// One jump for each surface.
     pub jumps: Vec<Jump>,
 }
 
-/// Reason for which no maximum principle is derived.
+/// Reason why no maximum principle is derived.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Uncontrolled {
-    /// Place of the declaration that is in the way; the model itself if there is none.
+    /// The declaration that prevents it; `None` for the model as a whole.
     pub item: Option<ItemId>,
-    /// Text.
+    /// The message.
     pub text: String,
-    /// Advice.
+    /// The help line.
     pub help: String,
 }
 
@@ -108,10 +109,10 @@ impl Uncontrolled {
     }
 }
 
-/// Derives the maximum principle of a checked model; new expressions are added to its pool.
+/// Derives the maximum principle of a checked model. New expressions are added to its pool.
 ///
 /// # Errors
-/// The first declaration that is in the way.
+/// The first declaration that prevents it.
 pub fn derive_extremals(model: &mut Model) -> Result<Extremals, Uncontrolled> {
     let Some(cost) = model.cost else {
         return Err(Uncontrolled::without_cost(model));

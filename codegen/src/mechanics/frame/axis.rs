@@ -1,7 +1,8 @@
-//! Rows or columns of a block that are orthogonal to each other.
+//! Orthogonal rows or columns of a block.
 //!
-//! With `c = f d` for each column, `f` the common factor of its entries, `c . r / (c . c)` is `d . r / (f d . d)`: the
-//! block is singular where a factor is 0, and nowhere else, and nothing is divided by the square of a factor.
+//! Write each column as `c = f d`, with `f` the common factor of its entries. Then `c . r / (c . c)` is
+//! `d . r / (f d . d)`. The block is singular exactly where a factor is 0, and no division is by the square of a
+//! factor.
 
 use dalembert_expr::{ExprId, Pool, Verdict};
 
@@ -18,11 +19,11 @@ pub struct Axis {
     pub entries: Vec<ExprId>,
     /// Squared norm of the axis, never zero.
     pub squared: ExprId,
-    /// Bound of `|factor|` where the factor may vanish, with sines and cosines counted as 1.
+    /// Upper bound of `|factor|`, with sines and cosines counted as 1; `None` if the factor never vanishes.
     pub bound: Option<ExprId>,
 }
 
-/// The vectors, if they are orthogonal to each other and vanish with their common factors at most.
+/// The vectors as axes; `None` unless they are proved orthogonal, and vanish only with their common factors.
 pub(super) fn orthogonal(pool: &mut Pool, vectors: &[Vec<ExprId>]) -> Option<Vec<Axis>> {
     let axes: Option<Vec<Axis>> = vectors.iter().map(|vector| axis(pool, vector)).collect();
     let axes = axes?;
@@ -39,7 +40,7 @@ pub(super) fn orthogonal(pool: &mut Pool, vectors: &[Vec<ExprId>]) -> Option<Vec
     Some(axes)
 }
 
-/// A vector as a multiple of one that is known to vanish nowhere.
+/// A vector as a multiple of one that vanishes nowhere; `None` if this is not shown.
 fn axis(pool: &mut Pool, vector: &[ExprId]) -> Option<Axis> {
     let (factor, entries) = without_common_factor(pool, vector);
     let squared = squared_norm(pool, &entries);

@@ -1,10 +1,10 @@
 //! Expressions of the frame that do not depend on the configuration.
 //!
 //! On groups and similar spaces, the velocities along some coordinates, the metric on D and the inertial forces depend
-//! on quasi-velocities and parameters alone. Balls and disks that roll on a plane are examples; on a rotating plane
-//! they also depend on the position. Their expressions in the frame are sums that cancel only up to rounding, and lose
-//! digits near the poles of Euler angles. If a zero test proves that an expression does not change when some
-//! coordinates are fixed at one value, the expression at that value is emitted.
+//! only on quasi-velocities and parameters. Examples are balls and disks that roll on a plane; on a rotating plane they
+//! also depend on the position. Computed in the frame, such quantities are sums that cancel only up to rounding, and
+//! that lose digits near the poles of Euler angles. If a zero test proves that an expression is independent of some
+//! coordinates, the expression at fixed values of these coordinates is emitted.
 
 use dalembert_expr::{Assumption, ExprId, Pool, Rational, Sign, SymbolId, Verdict};
 
@@ -13,43 +13,43 @@ use crate::mechanics::common_factor::factored;
 use crate::mechanics::{ConstraintForm, Coordinates, FieldTerms};
 use crate::model::{Model, Topology};
 
-/// Expressions without the coordinates on which they do not depend. `None` where an expression depends on all coordinates
-/// that occur in it, or was not shown to be independent of one.
+/// Expressions with the coordinates removed on which they do not depend. `None` if an expression depends on all
+/// coordinates in it, or was not proved to be independent of one.
 #[derive(Debug)]
 pub struct Invariant {
-    /// The symbols of the quasi-velocities.
+    /// Symbols of the quasi-velocities.
     pub u: Vec<SymbolId>,
     /// `X_i`, N - M rows of N.
     pub fields: Vec<Vec<Option<ExprId>>>,
-    /// `X_i` written out, where no guard is needed to.
+    /// `X_i` as expressions, where these need no guard.
     pub written: Vec<Vec<Option<ExprId>>>,
     /// `qdot`, N entries.
     pub velocity: Vec<Option<ExprId>>,
-    /// The same written out, where no guard is needed to.
+    /// `qdot` as expressions, where these need no guard.
     pub written_velocity: Vec<Option<ExprId>>,
-    /// `G_D`, the lower triangle.
+    /// `G_D`, lower triangle.
     pub metric: Vec<Vec<Option<ExprId>>>,
     /// `X^T (f - gdot qdot - Adot - g a)`
     pub right: Vec<Option<ExprId>>,
-    /// `udot`, where `G_D` has nothing in a row but a positive entry on the diagonal.
+    /// `udot_i`, if row `i` of `G_D` is 0 except for a positive diagonal entry.
     pub rate: Vec<Option<ExprId>>,
     /// `g(qdot, qdot)`
     pub doubled_kinetic: Option<ExprId>,
 }
 
-/// Number of coordinates beyond which nothing is sought: the expressions are written out.
+/// Largest number of coordinates for which invariants are sought, because all expressions are written out.
 const COORDINATES: usize = 8;
 
-/// Distinct parts beyond which an expression is not tested.
+/// Largest number of distinct subexpressions of a tested expression.
 const PARTS: usize = 4000;
 
-/// A value at a real point that exceeds this part of its size before cancellation is not zero.
+/// A value at a real point is not 0 above this multiple of its magnitude before cancellation.
 const CLEAR: f64 = 1e-9;
 
-/// Number of points at which an expression is evaluated before a zero test.
+/// Number of points at which an expression is evaluated before its zero test.
 const SAMPLES: u32 = 3;
 
-/// Looks for expressions that do not depend on the configuration. `None` where the frame is not solved by formulas.
+/// Seeks expressions that do not depend on the configuration. `None` if the frame is not solved by formulas.
 pub(super) fn invariant(
     model: &mut Model,
     coordinates: &Coordinates,
@@ -131,7 +131,7 @@ pub(super) fn invariant(
     })
 }
 
-/// The rates that follow from the right-hand side by a division.
+/// The rates that are quotients of a right-hand side and a diagonal entry.
 fn rates(
     pool: &mut Pool,
     metric: &[Vec<Option<ExprId>>],
@@ -152,7 +152,7 @@ fn rates(
         .collect()
 }
 
-/// A configuration at which expressions are written out: 0, or the middle of an interval.
+/// Configuration at which expressions are evaluated symbolically: 0, or the middle of an interval.
 fn base(model: &mut Model) -> Vec<(SymbolId, ExprId)> {
     let half = Rational::HALF;
     (0..model.coordinates.len())
@@ -187,7 +187,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The velocities `x` with `alpha^i(x)` and `eta^a(x)` as given; `None` where a block has no formula.
+    /// The vector `x` with the given values of `alpha^i(x)` and `eta^a(x)`; `None` if a block has no formula.
     fn solve(&mut self, right: &dyn Fn(&mut Model, Row) -> ExprId) -> Option<Vec<ExprId>> {
         let zero = self.model.pool.zero();
         let mut x = vec![zero; self.model.coordinates.len()];
@@ -204,7 +204,7 @@ impl<'a> Search<'a> {
         Some(x)
     }
 
-    /// Column `k` of a block.
+    /// Component `k` of the solution of a block.
     fn solved(&mut self, block: &Block, rest: &[ExprId], k: usize) -> Option<ExprId> {
         Some(match &block.solve {
             Solve::Entry => {
@@ -226,7 +226,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// A sum of products with the entries of an axis over its factor and their square.
+    /// `sum / (factor * squared)` of an axis: coefficient of a vector along the axis, from its product with the
+    /// entries.
     fn over(&mut self, sum: ExprId, axis: &Axis) -> ExprId {
         let powers = [(sum, 1), (axis.factor, -1), (axis.squared, -1)];
         let powers = powers.map(|(base, exponent)| (base, Rational::from(exponent)));
@@ -250,7 +251,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// `f - gdot qdot - Adot - g a` at the velocities of the motion.
+    /// `f - gdot qdot - Adot - g a` at the velocities `motion` of the frame.
     fn forces(&mut self, field: &FieldTerms, motion: &[(SymbolId, ExprId)]) -> Option<Vec<ExprId>> {
         let (constraints, quasi) = (self.constraints, self.quasi);
         let steady = self.solve(&|model, row| {
@@ -283,8 +284,8 @@ impl<'a> Search<'a> {
         pool.sum(&terms)
     }
 
-    /// The expression with the coordinates on which it does not depend at the base configuration. `None` where it depends
-    /// on all that occur, or was not shown to be independent of one.
+    /// The expression with the coordinates on which it does not depend at the base configuration. `None` if it depends
+    /// on all coordinates in it, or was not proved to be independent of one.
     fn fixed(&mut self, expression: ExprId) -> Option<ExprId> {
         let pool = &self.model.pool;
         let occurs = |(symbol, _): &&(SymbolId, ExprId)| pool.depends_on(expression, *symbol);
@@ -309,7 +310,7 @@ impl<'a> Search<'a> {
         vanishes.then_some(fixed)
     }
 
-    /// True if the expression is about 0 at some points. This excludes most expressions other than 0 at little cost.
+    /// True if the expression is nearly 0 at some sample points. This cheap test excludes most other expressions.
     fn may_vanish(&self, expression: ExprId) -> bool {
         (0..SAMPLES).all(|sample| {
             let (value, size) = self.at(expression, |symbol| self.sample(symbol, sample));
@@ -317,7 +318,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// True if the expression is about the same at some points where one coordinate has two values.
+    /// True if the expression is nearly unchanged at some sample points when one coordinate has another value.
     fn may_be_idle(&self, expression: ExprId, coordinate: SymbolId) -> bool {
         (0..SAMPLES).all(|sample| {
             let moved = |symbol| match symbol == coordinate {
@@ -335,7 +336,7 @@ impl<'a> Search<'a> {
         self.model.pool.eval_magnitude(expression, &symbol)
     }
 
-    /// A value of a symbol, within its interval.
+    /// A sample value of a symbol, inside its interval.
     fn sample(&self, symbol: SymbolId, sample: u32) -> f64 {
         let number = symbol.index() as f64 + 17.0 * f64::from(sample);
         let share = (0.618_033_988_749_895 * number).fract();

@@ -1,7 +1,7 @@
-//! The order in which the coframe `(alpha, eta)` is solved for velocities, block after block.
+//! Order in which the coframe `(alpha, eta)` is solved for the velocities, block by block.
 //!
-//! A row with one column left gives that velocity first; a column with one row left is found last. What remains falls
-//! into connected blocks: one whose rows, or columns, are orthogonal is solved by products, any other by
+//! A row with one column left gives its velocity first. A column with one row left is solved last. The remaining rows
+//! and columns fall into connected blocks. A block with orthogonal rows or columns is solved by products, any other by
 //! orthogonalisation in the emitted code.
 
 use dalembert_expr::{ExprId, Pool};
@@ -31,7 +31,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// True if it can be solved everywhere.
+    /// True if it can be solved at every state.
     pub(super) fn is_regular(&self) -> bool {
         match &self.solve {
             Solve::Entry => true,
@@ -87,7 +87,7 @@ pub(super) fn plan(
     first
 }
 
-/// The rows and columns that no block holds yet.
+/// The rows and columns that are in no block yet.
 struct Matrix<'a> {
     rows: Vec<(Row, &'a [ExprId])>,
     free_rows: Vec<usize>,
@@ -115,7 +115,7 @@ impl<'a> Matrix<'a> {
         !pool.is_syntactic_zero(self.rows[row].1[column])
     }
 
-    /// A row with one column left, in an entry that is never zero: the first to be solved.
+    /// A row with one column left and an entry that is never zero. It is solved next.
     fn lone_column_in_row(&mut self, pool: &Pool) -> Option<Block> {
         let entry = self.free_rows.iter().find_map(|&row| {
             let mut columns = self.free_columns.iter();
@@ -126,7 +126,7 @@ impl<'a> Matrix<'a> {
         self.take_entry(entry?)
     }
 
-    /// A column with one row left, in an entry that is never zero: the last to be solved.
+    /// A column with one row left and an entry that is never zero. It is solved last.
     fn lone_row_in_column(&mut self, pool: &Pool) -> Option<Block> {
         let entry = self.free_columns.iter().find_map(|&column| {
             let mut rows = self.free_rows.iter();
@@ -151,7 +151,7 @@ impl<'a> Matrix<'a> {
         })
     }
 
-    /// Takes away the rows and columns that are connected with the first row left.
+    /// Removes and returns the rows and columns connected with the first remaining row.
     fn component(&mut self, pool: &Pool) -> Option<(Vec<usize>, Vec<usize>)> {
         let mut rows = vec![*self.free_rows.first()?];
         let mut columns: Vec<usize> = Vec::new();
@@ -166,8 +166,8 @@ impl<'a> Matrix<'a> {
                 break;
             }
         }
-        // A component that is not square belongs to a coframe that is singular everywhere, which was refused. It takes all
-        // that is left, so that it can be solved at all.
+        // A component that is not square belongs to a coframe that is singular everywhere, which was refused. It takes
+        // all remaining rows and columns, so that the block is square.
         if rows.is_empty() || rows.len() != columns.len() {
             (rows, columns) = (self.free_rows.clone(), self.free_columns.clone());
         }

@@ -1,15 +1,16 @@
-//! A metric and constraints that are regular for indeterminate parameters are regular with the declared defaults too.
+//! A metric and constraints that are regular for indeterminate parameters must be regular at the declared defaults,
+//! too.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
 use super::super::resolve::Resolver;
 use super::super::{Constraint, Lagrangian};
 
-/// Position of a parameter, and its replacement.
+/// Position of a parameter, with its symbol and its default.
 type Default = (usize, (SymbolId, ExprId));
 
-/// Refuses defaults with which the metric is singular or the constraints are dependent, if they are neither for
-/// indeterminate parameters.
+/// Refuses defaults that make the metric singular or the constraints dependent, unless they are so for indeterminate
+/// parameters, too.
 pub(super) fn check(
     resolver: &mut Resolver<'_>,
     lagrangian: &Lagrangian,
@@ -28,12 +29,12 @@ fn refuse_singular(resolver: &mut Resolver<'_>, rows: &[Vec<ExprId>], what: &str
     if defaults.is_empty() {
         return;
     }
-    // What is replaced is replaced in a copy: the check adds nothing to the model.
+    // The substitution works on a copy of the pool, so that the check adds nothing to the model.
     let mut pool = resolver.pool.clone();
     if pool.rank(rows).rank < rows.len() || !is_singular(&mut pool, rows, &defaults) {
         return;
     }
-    // Defaults that can be left indeterminate are not to blame.
+    // The message leaves out defaults without which the rows stay dependent.
     let mut guilty = defaults.clone();
     for default in &defaults {
         let others: Vec<Default> = guilty
@@ -62,7 +63,7 @@ fn refuse_singular(resolver: &mut Resolver<'_>, rows: &[Vec<ExprId>], what: &str
     resolver.refuse::<()>(at, text, help);
 }
 
-/// The defaults of the parameters that occur.
+/// The defaults of the parameters in the rows.
 fn defaults(resolver: &Resolver<'_>, rows: &[Vec<ExprId>]) -> Vec<Default> {
     let occurs = |symbol: SymbolId| {
         let mut entries = rows.iter().flatten();
@@ -77,7 +78,7 @@ fn defaults(resolver: &Resolver<'_>, rows: &[Vec<ExprId>]) -> Vec<Default> {
         .collect()
 }
 
-/// True if the rows are surely dependent with these defaults.
+/// True if the rows are proved to be dependent with these defaults.
 fn is_singular(pool: &mut Pool, rows: &[Vec<ExprId>], defaults: &[Default]) -> bool {
     let replacements: Vec<(SymbolId, ExprId)> =
         defaults.iter().map(|(_, default)| *default).collect();

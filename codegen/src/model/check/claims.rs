@@ -1,4 +1,4 @@
-//! The declared claims, resolved; whether they hold is decided later.
+//! Resolves the declared claims. Later stages decide them.
 
 use dalembert_expr::{Assumption as Known, ExprId, Node};
 
@@ -62,7 +62,7 @@ fn listed_as_written(functions: &[StatedFunction]) -> String {
 }
 
 impl Resolver<'_> {
-    /// The statement, and its text.
+    /// The resolved statement, with its canonical text.
     fn statement(
         &mut self,
         written: &spec::Statement,
@@ -181,7 +181,7 @@ impl Resolver<'_> {
         Some((statement, format!("density under {name}: factor = {value}")))
     }
 
-    /// Refuses a quantity for which the mode behind a transition has no name.
+    /// Refuses a quantity with a coordinate that the mode behind a transition does not have.
     fn check_known_behind(
         &mut self,
         value: &spec::Scalar,
@@ -217,7 +217,7 @@ impl Resolver<'_> {
         self.refuse(value.at, text, help)
     }
 
-    /// The functions of a claim about several; their derivatives are periodic.
+    /// The functions of a claim about several functions. Their derivatives must be periodic.
     fn functions(&mut self, written: &[spec::Scalar]) -> Option<Vec<StatedFunction>> {
         let moving = [self.symbols.positions(), self.symbols.velocities()].concat();
         let values: Vec<Option<ExprId>> = (written.iter())
@@ -278,7 +278,7 @@ impl Resolver<'_> {
     fn scene(&mut self, word: &spec::Word, scenes: &[Scene]) -> Option<usize> {
         let found = scenes.iter().position(|scene| scene.name == word.text);
         found.or_else(|| {
-            // A scene that was refused is missing; its own mistake has been told.
+            // A refused scene is missing here, and its error is reported already.
             if self
                 .spec
                 .scenes
@@ -321,12 +321,12 @@ impl Resolver<'_> {
         self.refuse::<()>(at, text, &help).is_some()
     }
 
-    /// The surface of a declared name.
+    /// The index of the surface of a declared name.
     fn surface(&mut self, declared: &spec::Declared, surfaces: &[Surface]) -> Option<usize> {
         let members: Vec<(Name, Scope)> = self.members(declared);
         let (name, _) = members.first()?;
         let display = &name.display;
-        // A member of a family of transitions has its number behind its name.
+        // The name of a member of a family of transitions ends with its number.
         let member = name.member.map(|member| format!("{}{member}", name.field));
         let is_member = |surface: &Surface| {
             surface.transition.is_some() && member.as_ref() == Some(&surface.name.display)

@@ -1,7 +1,7 @@
 //! First-order systems: the rate of every coordinate in place of a Lagrangian.
 //!
-//! Declarations that belong to mechanics are refused here: constraints, forces and frames, impulses at surfaces,
-//! velocities that are set.
+//! Refuses declarations that belong to mechanics: constraints, forces and frames, impulses at surfaces, assignments to
+//! velocities.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -16,7 +16,7 @@ use crate::spec::{
 
 const NONE: &str = "a first-order system has no";
 
-/// The rates by coordinate, if all of them are given.
+/// The rate of every coordinate, in their order; `None` if one is missing.
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Option<Vec<ExprId>> {
     let field = resolver.spec.field.as_ref()?;
     let count = resolver.symbols.coordinates.len();
@@ -51,7 +51,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Option<Vec<ExprId>> {
     rates.into_iter().collect()
 }
 
-/// Placeholder Lagrangian with the metric of the coordinates, so that the lowering of any model finds one. It does not
+/// Placeholder Lagrangian with the identity as metric, because the lowering of every model needs one. It does not
 /// appear in the emitted code.
 pub(super) fn euclidean(pool: &mut Pool, size: usize, item: ItemId) -> Lagrangian {
     let (zero, one) = (pool.zero(), pool.one());
@@ -141,7 +141,7 @@ pub(super) fn check_surfaces(resolver: &mut Resolver<'_>) {
     if spec.field.is_none() {
         return;
     }
-    // Of a transition without a reset the state stays.
+    // A transition without a reset keeps the state.
     let takes_reset = |surface: &&spec::Surface| surface.enters.is_none() || surface.law.is_some();
     for surface in spec.surfaces.iter().filter(takes_reset) {
         match &surface.law {

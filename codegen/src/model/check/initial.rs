@@ -8,7 +8,7 @@ use super::targets::Section;
 use crate::diagnostics::Location;
 use crate::spec::{Declared, InitialTarget, InitialValue, Scalar};
 
-/// All initial values by coordinate.
+/// Resolves all initial values, by coordinate.
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
     let spec = resolver.spec;
     let count = resolver.symbols.coordinates.len();
@@ -34,7 +34,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Initial {
     initial
 }
 
-/// Remarks on coordinates that start outside of their interval.
+/// Notes on coordinates whose default 0 lies outside of their interval.
 pub(super) fn notes(resolver: &Resolver<'_>, initial: &Initial) -> Vec<String> {
     let coordinates = resolver.symbols.coordinates.iter().zip(&initial.q);
     let outside = coordinates.filter(|(coordinate, value)| {
@@ -61,7 +61,8 @@ fn target_text(entry: &InitialValue) -> String {
 }
 
 impl Resolver<'_> {
-    /// Coordinates of an entry, each with the value of its index; one without meaning for `until`.
+    /// The coordinates of an entry, each with the value of its index in scope. For `until`, a single target without
+    /// meaning.
     fn initial_targets(&mut self, entry: &InitialValue) -> Vec<(usize, Scope)> {
         match entry.target {
             InitialTarget::Until => vec![(0, Scope::default())],
@@ -69,7 +70,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Refuses a second value for the same quantity.
+    /// Rejects a second value for the same quantity.
     fn given_once(
         &mut self,
         given: &mut Vec<(InitialTarget, usize, Location)>,
@@ -108,7 +109,7 @@ impl Resolver<'_> {
         Some(value)
     }
 
-    /// Refuses a constant outside of the interval of its coordinate.
+    /// Rejects a constant value outside of the interval of its coordinate.
     pub(super) fn check_in_chart(
         &mut self,
         written: &Scalar,
@@ -128,7 +129,7 @@ impl Resolver<'_> {
         )
     }
 
-    /// True if a value may lie in the set of a coordinate. A value that depends on parameters may.
+    /// True if a value may lie in the set of a coordinate; always true for values that depend on parameters.
     fn is_in_chart(&self, topology: Topology, value: ExprId) -> bool {
         let Topology::Interval { low, high } = topology else {
             return true;

@@ -1,4 +1,4 @@
-//! Impact laws: their names, their coefficients, and what they do not promise.
+//! Impact laws: names, coefficients, and remarks on their limits.
 
 use dalembert_expr::{ExprId, Rational, SymbolId};
 
@@ -45,7 +45,7 @@ impl Resolver<'_> {
         self.refuse(name.at, format!("unknown law `{}`", name.text), &help)
     }
 
-    /// A coefficient of restitution: a constant lies in `[0, 1]`, an expression of the parameters does so at their
+    /// A coefficient of restitution. A constant must lie in `[0, 1]`, an expression of parameters must do so at their
     /// defaults.
     fn coefficient(&mut self, law: &str, written: &Scalar, scope: &mut Scope) -> Option<ExprId> {
         const HELP: &str = "the coefficient lies in [0, 1]";
@@ -79,7 +79,7 @@ impl Resolver<'_> {
         self.refuse(written.at, text, HELP)
     }
 
-    /// Value of an expression of the parameters at their defaults; NaN if a parameter that it needs has none.
+    /// Value of an expression of the parameters at their defaults; NaN if one of its parameters has none.
     fn value_at_defaults(&self, expr: ExprId) -> f64 {
         let default = |symbol: SymbolId| {
             let parameter = self
@@ -103,7 +103,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Remarks on what the laws of a model do not promise.
+/// Remarks on properties that the laws of a model do not guarantee.
 pub(super) fn notes(
     resolver: &Resolver<'_>,
     surfaces: &[Surface],
@@ -125,8 +125,8 @@ pub(super) fn notes(
     notes
 }
 
-/// `rho = dh(pi_D grad h)/dh(grad h)` lies in `[0, 1]`; a law that multiplies the gap rate by a positive number
-/// leaves the state approaching.
+/// `rho = dh(pi_D grad h)/dh(grad h)` lies in `[0, 1]`. After a law that multiplies the gap rate by a positive number,
+/// the state still approaches the surface.
 fn plastic_note(surface: &Surface) -> Option<String> {
     let (factor, approaches) = match surface.law {
         Law::NonholonomicPlastic => ("1 - 2 rho", "rho < 1/2"),
@@ -176,7 +176,7 @@ fn coefficient_notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<Strin
     notes
 }
 
-/// The parameter that an expression is.
+/// The parameter that is the whole expression; `None` for any other expression.
 fn parameter_of<'r>(resolver: &'r Resolver<'_>, expr: ExprId) -> Option<&'r Parameter> {
     let is_it = |parameter: &&Parameter| match resolver.pool.node(expr) {
         dalembert_expr::Node::Symbol(symbol) => parameter.symbol == *symbol,

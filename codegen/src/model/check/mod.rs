@@ -1,7 +1,7 @@
 //! Rules of the language, one file per topic.
 //!
-//! Every declaration is resolved and checked by itself first; what concerns several of them (ranks, surfaces against
-//! constraints) follows for those without a fault. So independent mistakes are all reported.
+//! Every declaration is resolved and checked by itself first. Rules for several declarations (ranks, surfaces against
+//! constraints) then apply to those without errors. All independent errors are therefore reported.
 
 mod at_defaults;
 mod beside;
@@ -49,7 +49,7 @@ use names::Names;
 /// Noun for the entries of `field`. They are the only functions of the position that take inputs.
 const RATES: &str = "rates";
 
-/// Declared motion, resolved.
+/// The declarations besides coordinates, parameters and definitions, resolved.
 struct Parts {
     lagrangian: Option<Lagrangian>,
     field: Option<Vec<ExprId>>,
@@ -68,17 +68,17 @@ struct Parts {
 /// Checks a declaration and resolves every name in it.
 ///
 /// # Errors
-/// Every mistake, each at the smallest part of the declaration that is wrong.
+/// All errors, each at the smallest part of the declaration that is wrong.
 pub fn check(spec: &Spec) -> Result<Model, Diagnostics> {
     check_within(spec, STEPS)
 }
 
-/// Same as [`check()`], with this budget for the algebra of this and the later stages.
+/// Same as [`check()`], with a budget of `steps` for the algebra of this and later stages.
 pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics> {
     check_mode(spec, &[], steps)
 }
 
-/// Same as [`check()`], for one of these modes.
+/// Same as [`check()`], for one mode of a hybrid model. `modes`: data of all modes.
 pub(in crate::model) fn check_mode(
     spec: &Spec,
     modes: &[Peer],
@@ -125,7 +125,7 @@ pub(in crate::model) fn check_mode(
     Ok(model(resolver, lagrangian, parts))
 }
 
-/// Data of a mode that other modes need. Its mistakes are reported when it is checked itself.
+/// Data of a mode for the check of other modes. Its errors are reported when it is checked itself.
 pub(in crate::model) fn peer(name: &str, spec: &Spec) -> Peer {
     let mut resolver = Resolver::new(spec, STEPS);
     resolver.constants();
@@ -140,7 +140,7 @@ pub(in crate::model) fn peer(name: &str, spec: &Spec) -> Peer {
     }
 }
 
-/// The rules that concern several declarations.
+/// Applies the rules for several declarations.
 fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
     if let (Some(lagrangian), Some(written), None) = (
         &parts.lagrangian,
@@ -151,7 +151,7 @@ fn together(resolver: &mut Resolver<'_>, parts: &Parts) {
         at_defaults::check(resolver, lagrangian, &parts.constraints);
         resolver.within_budget(written.value.at);
     }
-    // A rule that some of the constraints violate is not reported for all of them: refused constraints may be missing.
+    // NOTE: the rules below tolerate missing declarations, because refused constraints are not among `parts`.
     field::check_alone(resolver);
     field::check_surfaces(resolver);
     nonlinear::check_alone(resolver, &parts.constraints);
@@ -242,7 +242,7 @@ fn notes(resolver: &Resolver<'_>, lagrangian: &Lagrangian, parts: &Parts) -> Vec
 
 /// The symbols that occur in any declaration.
 fn used_symbols(pool: &Pool, lagrangian: &Lagrangian, parts: &Parts) -> BTreeSet<SymbolId> {
-    // NOTE: every part is named, so that a declaration that is added is not forgotten here.
+    // NOTE: the pattern names every field, so that a new declaration cannot be forgotten here.
     let Parts {
         lagrangian: _,
         field,

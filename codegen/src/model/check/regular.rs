@@ -1,10 +1,10 @@
-//! Regular surfaces: `dh` does not vanish where `h` does, so that a gap changes its sign there.
+//! Regular surfaces: `dh` does not vanish where `h` does, so that a gap changes its sign at its surface.
 //!
-//! Three faults are looked for. `h` is a power of at least 2. `h` is never negative or never positive, from its
-//! structure: then 0 is an extremum, where a gradient vanishes if there is one. And `h` is a polynomial of position
-//! with a repeated factor, which is seen on straight lines: the restriction of `h` to a general line has a multiple
-//! root on every zero of the factor. Points and directions are rational, so that each line is decided exactly; that
-//! a factor is repeated on all lines by accident is out of the question.
+//! There are three errors. `h` is a power of at least 2. The structure of `h` shows that it is never negative or never
+//! positive: then 0 is an extremum, where the gradient vanishes if it exists. `h` is a polynomial of position with a
+//! repeated factor. Straight lines show the last one: the restriction of `h` to a general line has a multiple root at
+//! every zero of the factor. Points and directions are rational, so that each line is decided exactly. Repeated factors
+//! on all lines by accident are practically impossible.
 
 use dalembert_expr::{ExprId, Node, Pool, Rational, Sign, SymbolId};
 
@@ -15,9 +15,9 @@ use super::super::{Assumption, Coordinate, Topology};
 use super::parameters::nearest_rational;
 use crate::diagnostics::Location;
 
-/// Polynomials of higher degree are not looked at.
+/// Polynomials of higher degree are not examined.
 const LARGEST_DEGREE: u32 = 8;
-/// Straight lines on which a repeated factor must be seen.
+/// Number of straight lines, all of which must show a repeated factor.
 const LINES: u64 = 6;
 
 impl Resolver<'_> {
@@ -57,7 +57,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The base of which the gap is a constant times a power of at least 2.
+/// The first base of a gap whose factors, constants apart, are all powers of at least 2.
 fn perfect_power(resolver: &Resolver<'_>, gap: ExprId) -> Option<ExprId> {
     let (_, power) = resolver.pool.as_multiple(gap);
     let Node::Product(factors) = resolver.pool.node(power) else {
@@ -74,7 +74,7 @@ fn perfect_power(resolver: &Resolver<'_>, gap: ExprId) -> Option<ExprId> {
     base.filter(|_| all_multiple)
 }
 
-/// Fault of a polynomial.
+/// Error of a polynomial gap.
 enum Fault {
     /// No zero in the charts.
     NeverZero,
@@ -114,12 +114,12 @@ fn polynomial_fault(resolver: &Resolver<'_>, gap: ExprId) -> Option<Fault> {
     is_reached.then_some(Fault::Repeated)
 }
 
-/// A straight line `point + s*direction` through the charts, and fixed values of all other symbols.
+/// A straight line `point + s*direction` through the charts, with fixed values of all other symbols.
 struct Line {
     /// Symbol, point, direction.
     coordinates: Vec<(SymbolId, Rational, Rational)>,
     others: Random,
-    /// Ends of the line in the charts.
+    /// Range of `s` in the charts.
     ends: [Option<Rational>; 2],
 }
 
@@ -154,7 +154,7 @@ impl Line {
         Some(line)
     }
 
-    /// The line ends at this parameter, on its side of the point.
+    /// Lets the line end at the parameter `at`, if it is longer on that side of the point.
     fn shorten(&mut self, at: &Rational) {
         let [low, high] = &mut self.ends;
         if at.is_negative() {
@@ -171,7 +171,7 @@ impl Line {
         polynomial.has_root_between(low.as_ref(), high.as_ref())
     }
 
-    /// `expr` on the line, a polynomial of at most this degree.
+    /// `expr` on the line, a polynomial of degree at most `degree`.
     fn restriction(
         &self,
         resolver: &Resolver<'_>,
@@ -210,7 +210,7 @@ fn chart(resolver: &Resolver<'_>, coordinate: &Coordinate) -> Option<[Option<Rat
     Some([Some(end(low)?), Some(end(high)?)])
 }
 
-/// The value of an expression of sums, products and whole powers.
+/// The value of an expression of sums, products and integer powers; `None` for any other expression.
 fn exact_value(
     pool: &Pool,
     expr: ExprId,
@@ -225,7 +225,7 @@ fn exact_value(
         };
         let value = match pool.node(*id) {
             Node::Number(value) => value.clone(),
-            // An identity of polynomials that holds at pi holds at every number in its place.
+            // An identity of polynomials in pi holds for any number in its place.
             Node::Pi => Rational::new(245_850_922, 78_256_779),
             Node::Symbol(symbol) => point(*symbol),
             Node::Sum { constant, terms } => {
@@ -250,7 +250,7 @@ fn exact_value(
     values.pop()
 }
 
-/// Rational numbers by Knuth's linear congruence; the high bits are used.
+/// Random rational numbers from the high bits of Knuth's linear congruential generator.
 #[derive(Clone)]
 struct Random(u64);
 
@@ -265,7 +265,7 @@ impl Random {
         Rational::new(2 * bits + 1, 1 << 22)
     }
 
-    /// A number in an open interval, near 0 where it has no ends.
+    /// A number in an open interval; between -2 and 2 if an end is missing.
     fn between(&mut self, ends: &[Option<Rational>; 2]) -> Rational {
         let default = [Rational::from(-2), Rational::from(2)];
         let [low, high] = match ends {

@@ -1,11 +1,11 @@
-//! Scenes: what each of them uses, and the names of their types.
+//! Scenes: the declarations that each of them uses, and the names of their types.
 
 use super::super::resolve::Resolver;
 use super::super::{Extras, Force, Name, Parts, Scene, Surface};
 use crate::diagnostics::{Location, listed};
 use crate::spec::{self, Declared, EXTRAS, SCENES, WHOLE};
 
-/// Modules of indices, next to which the module of a scene stands.
+/// Modules of indices. The module of a scene is next to them and must have another name.
 const MODULES: [&str; 5] = [
     "coordinate",
     "constraint",
@@ -14,7 +14,7 @@ const MODULES: [&str; 5] = [
     "output",
 ];
 
-/// Declarations that scenes may name.
+/// Declarations that a scene may name.
 struct Material<'m> {
     forces: &'m [Force],
     surfaces: &'m [Surface],
@@ -61,13 +61,13 @@ pub(super) fn resolve(
     material.scenes
 }
 
-/// True if two scenes would have the same type name, that of their global forms included.
+/// True if two scenes share a type name, including the names of their global forms.
 fn share_a_type(a: &str, b: &str) -> bool {
     a == b || *a == format!("{b}Global") || *b == format!("{a}Global")
 }
 
 impl Resolver<'_> {
-    /// True if a scene can go by its name, and says why where it cannot.
+    /// True if a scene may have its name; reports an error otherwise.
     fn check_scene_name(&mut self, scene: &spec::Scene, material: &Material<'_>) -> bool {
         let (name, at) = (scene.name.text.as_str(), scene.name.at);
         let type_name = spec::camel_case(name);
@@ -208,7 +208,7 @@ fn places(marks: impl Iterator<Item = bool>) -> Vec<usize> {
 }
 
 impl Parts {
-    /// Uses what another one uses, too.
+    /// Adds the declarations and extras of another scene.
     fn add(&mut self, other: &Self) {
         for (indices, others) in [
             (&mut self.forces, &other.forces),

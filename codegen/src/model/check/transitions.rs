@@ -1,4 +1,4 @@
-//! Transitions: the mode that is entered, and the state that it is entered with.
+//! Transitions: the mode that is entered, and the state in it after the transition.
 
 use dalembert_expr::ExprId;
 
@@ -54,7 +54,7 @@ impl Resolver<'_> {
         }))
     }
 
-    /// Refuses other coordinates in a mode that is entered without a reset: its positions stay the same.
+    /// Refuses other coordinates in a mode that is entered without a reset, because the state is kept.
     fn check_same_coordinates(&mut self, peer: &Peer, at: Location) -> Option<()> {
         let names = self
             .symbols
@@ -70,7 +70,7 @@ impl Resolver<'_> {
         self.refuse(at, text, help)
     }
 
-    /// The state that a mode is entered with.
+    /// The map from the state before the transition to the state in the mode entered.
     fn map(&mut self, law: &spec::Law, scope: &Scope, peer: &Peer, at: Location) -> Option<Map> {
         let errors = self.diagnostics.len();
         let n = peer.coordinates.len();
@@ -113,7 +113,8 @@ impl Resolver<'_> {
         })
     }
 
-    /// Values that are not given: they are kept if the mode that is left has a coordinate of the same name.
+    /// The values of a map. A value that is not given is kept; the mode that is left must have a coordinate of that
+    /// name.
     fn kept(
         &mut self,
         given: Vec<Option<ExprId>>,
@@ -151,7 +152,7 @@ impl Resolver<'_> {
         self.refuse(at, text, &help)
     }
 
-    /// A value of the state that a mode is entered with.
+    /// The value of one component of the state in the mode entered.
     fn entry_value(
         &mut self,
         entry: &Assignment,
@@ -173,7 +174,7 @@ impl Resolver<'_> {
         Some(value)
     }
 
-    /// The coordinates of another mode that a name with an index stands for.
+    /// Indices of the coordinates of another mode that a name with an index denotes, each with the scope of its value.
     fn entered_coordinates(
         &mut self,
         declared: &Declared,

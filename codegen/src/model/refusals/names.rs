@@ -1,4 +1,4 @@
-//! Names, numbers, definitions and families that cannot be used as written.
+//! Tests of error messages about names, numbers, definitions and families.
 
 use super::{refused, refused_in, refused_term};
 

@@ -1,11 +1,11 @@
-//! Computes Taylor coefficients without a compiler: the reference that emitted code is compared with.
+//! Computes Taylor coefficients without a compiler, as a reference for emitted code.
 
 use super::{Jet, Recurrence};
 use crate::program::interpret::values;
 use crate::program::{Function, Guard, Input, Value};
 
-/// Coefficients `0..=order` of the results of a function in time `unit * s`, along a motion whose components have
-/// the coefficients `component(i, k)`.
+/// Taylor coefficients `0..=order` in `s` of the results of a function, with time `unit * s`. The components of the
+/// motion have the coefficients `component(i, k)`. `input` returns the arguments at order 0.
 ///
 /// # Errors
 /// The guard that did not hold at order 0.
@@ -22,8 +22,8 @@ pub fn along(
     Ok(series.results(&jet.function))
 }
 
-/// Coefficients `0..=order` of the components of the motion from `state`, in time `unit * s`, and of the other results of
-/// the jet: the gaps.
+/// Taylor coefficients `0..=order` in `s` of the components of the motion from `state`, with time `unit * s`, followed
+/// by those of the gaps. `input` returns the arguments at `state`.
 ///
 /// # Errors
 /// The guard that does not hold at `state`.

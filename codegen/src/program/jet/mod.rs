@@ -1,14 +1,14 @@
-//! Taylor coefficients in time of every value of a function, order after order.
+//! Taylor coefficients in time of every value of a function, order by order.
 //!
 //! Along a motion every value `v` is a power series `v_0 + v_1 s + v_2 s^2 + ..` in time `s`. A [`Jet`] is a function
-//! together with a rule ([`Recurrence`]) for coefficient `k` of each of its values from the coefficients that are known by
-//! then. Sums go through term by term and products are Cauchy products; everything else follows from a differential
-//! equation with products or quotients only, as `c' = -a' s`, `s' = a' c` for cosine and sine. A value that such an
-//! equation needs besides the value itself is a companion: one more operation of the function. Examples are the other one
-//! of sine and cosine, and `1 + a^2` for the arc tangent.
+//! with one rule ([`Recurrence`]) per value. The rule computes coefficient `k` of the value from coefficients that are
+//! already known. Sums are computed term by term, products are Cauchy products. All other functions satisfy a
+//! differential equation that contains only products or quotients, such as `c' = -a' s`, `s' = a' c` for cosine and
+//! sine. A further value that occurs in such an equation is called a companion, and is one more operation of the
+//! function. Examples are the sine for a cosine (and conversely), and `1 + a^2` for the arc tangent.
 //!
-//! Values whose series end by structure are found ([`degree`]): a product with one of them has as many terms as its
-//! series, and a constant has no recurrence at all.
+//! Values whose series end by structure are determined beforehand ([`degree`]). A product with such a value has only as
+//! many terms as its series, and a constant has no recurrence.
 //!
 //! References: R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank and A. Walther, *Evaluating
 //! Derivatives* (2008), section 13.2, tables 13.1 and 13.2.
@@ -24,16 +24,17 @@ use super::builder::Builder;
 use super::{Function, Input, Op, Value};
 use degree::Degree;
 
-/// Rule for coefficient `k >= 1` of a value, from lower ones of all values and those of order `k` of its operands.
+/// Rule for coefficient `k >= 1` of a value, from lower coefficients of all values and coefficients of order `k` of its
+/// operands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recurrence {
-    /// The derivative vanishes.
+    /// A constant: all coefficients are 0.
     Constant,
-    /// Time itself.
+    /// The time.
     Time,
-    /// This component of the state.
+    /// The component of the state with this index.
     Component(usize),
-    /// The coefficient of another value.
+    /// Equal to the coefficient of another value.
     Same(Value),
     /// `-a`
     Neg(Value),
@@ -41,21 +42,21 @@ pub enum Recurrence {
     Add(Value, Value),
     /// `a - b`
     Sub(Value, Value),
-    /// `a b` with a constant `a`.
+    /// `a b` with constant `a`
     Scaled(Value, Value),
-    /// `a / b` with a constant `b`.
+    /// `a / b` with constant `b`
     Divided(Value, Value),
     /// `a b`
     Product(Value, Value),
     /// `a^2`
     Square(Value),
-    /// `a / b`; without `a` where that is constant.
+    /// `a / b`; without `a` if it is constant.
     Quotient(Option<Value>, Value),
     /// `sqrt(a)`
     Root(Value),
-    /// `a^e`: `a c' = e a' c`.
+    /// `a^e`, by `a c' = e a' c`
     Power(Value, Rational),
-    /// `c' = a' b`, negative where `negative`.
+    /// `c' = a' b`, or `c' = -a' b`
     Integral {
         /// `a`
         of: Value,
@@ -64,7 +65,7 @@ pub enum Recurrence {
         /// True if `c' = -a' b`.
         negative: bool,
     },
-    /// `c' = a' / b`, negative where `negative`.
+    /// `c' = a' / b`, or `c' = -a' / b`
     IntegralQuotient {
         /// `a`
         of: Value,
@@ -73,7 +74,7 @@ pub enum Recurrence {
         /// True if `c' = -a' / b`.
         negative: bool,
     },
-    /// The angle of `(x, y)`: `r c' = x y' - y x'`.
+    /// The angle of `(x, y)`, by `r c' = x y' - y x'`
     Angle {
         /// `y`
         y: Value,
@@ -82,21 +83,21 @@ pub enum Recurrence {
         /// `r = x^2 + y^2`
         squared: Value,
     },
-    /// `|a|`, with the sign it starts with.
+    /// `|a|`, with the sign of `a` at order 0.
     Absolute(Value),
 }
 
-/// Coefficients of a value that are kept over all orders.
+/// The coefficients of a value, kept for all orders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct History {
     /// The value.
     pub value: Value,
-    /// True if coefficient `k` is kept `k` times: the coefficients of the derivative, shifted by one.
+    /// True if coefficient `k` is kept multiplied by `k`: the coefficients of the derivative, shifted by one order.
     pub weighted: bool,
 }
 
 impl History {
-    /// History of the coefficients as they are.
+    /// The coefficients themselves.
     pub fn plain(value: Value) -> Self {
         Self {
             value,
@@ -104,7 +105,7 @@ impl History {
         }
     }
 
-    /// History of the coefficients times their order.
+    /// The coefficients multiplied by their order.
     pub fn weighted(value: Value) -> Self {
         Self {
             value,
@@ -113,24 +114,25 @@ impl History {
     }
 }
 
-/// A function with the Taylor coefficients of its values.
+/// A function with recurrences for the Taylor coefficients of its values.
 #[derive(Debug)]
 pub struct Jet {
-    /// Order 0: the operations of the functions it was made from, then the companions. The same results.
+    /// Order 0: the operations of the original functions, followed by the companions. The results are those of the
+    /// original functions.
     pub function: Function,
-    /// Recurrences, by value.
+    /// Recurrence of each value.
     pub recurrences: Vec<Recurrence>,
-    /// Orders after which the series end, by value.
+    /// Degree of the series of each value: the order after which it ends, if it ends.
     pub degrees: Vec<Degree>,
-    /// True for values whose coefficients above order 0 a result needs, by value.
+    /// For each value: true if a result depends on its coefficients above order 0.
     pub needed: Vec<bool>,
-    /// Coefficients that are kept over the orders.
+    /// Coefficients that are kept for later orders.
     pub histories: Vec<History>,
 }
 
 impl Jet {
-    /// The jet of functions, whose results follow each other, along motions whose components have these degrees.
-    /// `component` gives the component of the state that an input is.
+    /// The jet of some functions, whose results are concatenated. `components` are the degrees of the components of the
+    /// state along the motion. `component` maps an input to its component of the state.
     pub fn of(
         functions: &[&Function],
         components: &[Degree],
@@ -141,7 +143,7 @@ impl Jet {
         let mut builder = Builder::new();
         let outputs = builder.replay(&function);
         let (mut recurrences, mut degrees) = (Vec::new(), Vec::new());
-        // Companions are added at the end and have their turn later.
+        // Companions are appended at the end, so the loop reaches them later.
         while recurrences.len() < builder.len() {
             let value = Value::new(recurrences.len());
             let op = builder.op(value).clone();
@@ -164,21 +166,22 @@ impl Jet {
         }
     }
 
-    /// True if the results are analytic wherever they exist: a series then describes them up to its radius.
+    /// True if the results are analytic wherever they are defined. Then their series represent them up to the radius of
+    /// convergence.
     pub fn is_analytic(&self) -> bool {
         let absolute =
             |value: Value| matches!(self.recurrences[value.index()], Recurrence::Absolute(_));
         !self.varying().any(absolute)
     }
 
-    /// True if any coefficients of a value are kept.
+    /// True if coefficients of a value are kept.
     pub fn is_kept(&self, value: Value) -> bool {
         let histories = [History::plain(value), History::weighted(value)];
         let known = |history| self.histories.binary_search(history).is_ok();
         histories.iter().any(known)
     }
 
-    /// Number of times coefficient `k` of each value is read for other values and for results.
+    /// For each value: number of reads of its coefficient `k`, by other values and as a result.
     pub fn uses(&self) -> Vec<usize> {
         let mut uses = vec![0; self.recurrences.len()];
         let operands = self
@@ -190,7 +193,7 @@ impl Jet {
         uses
     }
 
-    /// Sums over products of coefficients of all orders below one: half of one for a square.
+    /// Number of sums over products of coefficients of all lower orders. The sum of a square counts as one half.
     pub fn sums(&self) -> f64 {
         let endless = |value: &Value| self.degrees[value.index()] == Degree::Endless;
         let sums = |value: Value| match self.recurrences[value.index()] {
@@ -207,7 +210,7 @@ impl Jet {
         self.varying().map(sums).sum()
     }
 
-    /// The degree of the motion, whose rate the first results are, and of all others.
+    /// Largest degree of the motion, whose rates are the first `components` results, and of the other results.
     pub fn degree(&self, components: usize) -> Degree {
         let degrees = self.function.outputs.iter().enumerate();
         let degrees = degrees.map(|(i, output)| {
@@ -220,14 +223,14 @@ impl Jet {
         degrees.max().unwrap_or(Degree::AtMost(0))
     }
 
-    /// Values that have coefficients of order `k`, in an order in which they can be computed.
+    /// Values with coefficients of order `k`, in an order in which these can be computed.
     pub fn varying(&self) -> impl Iterator<Item = Value> + '_ {
         let varies = |i: &usize| self.needed[*i] && self.recurrences[*i] != Recurrence::Constant;
         (0..self.recurrences.len()).filter(varies).map(Value::new)
     }
 }
 
-/// Functions as one, whose results follow each other.
+/// The functions joined into one, with concatenated results.
 fn together(functions: &[&Function]) -> Function {
     let mut builder = Builder::new();
     let outputs = functions.iter();
@@ -236,7 +239,7 @@ fn together(functions: &[&Function]) -> Function {
     builder.finish_whole(outputs)
 }
 
-/// The recurrence of an operation that is not constant. Adds the companions that it needs.
+/// The recurrence of an operation. Adds the companions that it needs.
 fn recurrence(
     builder: &mut Builder,
     value: Value,
@@ -272,7 +275,7 @@ fn recurrence(
     }
 }
 
-/// The differential equation of an elementary function.
+/// The recurrence of an elementary function, from its differential equation.
 fn call(builder: &mut Builder, value: Value, function: Elementary, a: Value) -> Recurrence {
     let integral = |by, negative| Recurrence::Integral {
         of: a,
@@ -311,7 +314,7 @@ fn one_plus_square(builder: &mut Builder, a: Value) -> Value {
     builder.add(one, square)
 }
 
-/// `1 - a^2` as a product, whose relative error stays small where `a` comes close to 1.
+/// `1 - a^2` as a product, which keeps its relative accuracy for `a` near 1.
 fn one_minus_square(builder: &mut Builder, a: Value) -> Value {
     let one = builder.integer(1);
     let (below, above) = (builder.sub(one, a), builder.add(one, a));
@@ -319,7 +322,7 @@ fn one_minus_square(builder: &mut Builder, a: Value) -> Value {
 }
 
 impl Recurrence {
-    /// The values whose coefficients above order 0 the recurrence reads.
+    /// The values whose coefficients above order 0 are read.
     fn operands(&self) -> Vec<Value> {
         match *self {
             Self::Constant | Self::Time | Self::Component(_) => Vec::new(),
@@ -342,7 +345,7 @@ impl Recurrence {
         }
     }
 
-    /// Histories that the coefficients of `value` need.
+    /// Histories that are read for the coefficients of `value`.
     fn histories(&self, value: Value) -> Vec<History> {
         let (plain, weighted) = (History::plain, History::weighted);
         match *self {
@@ -366,7 +369,7 @@ impl Recurrence {
     }
 }
 
-/// Values whose coefficients above order 0 the results need, companions included.
+/// For each value: true if a result depends on its coefficients above order 0. Companions are included.
 fn needed(outputs: &[Value], recurrences: &[Recurrence]) -> Vec<bool> {
     let mut needed = vec![false; recurrences.len()];
     let mut open = outputs.to_vec();

@@ -1,10 +1,10 @@
-//! The blow of a surface by its declared law: an impulse `size * direction` on the state's momenta or quasi-velocities,
-//! and the share of the gap rate that it takes.
+//! The impulse of a surface by its declared law: `size * direction`, added to the state's momenta or quasi-velocities,
+//! and the share of the gap rate that it removes.
 //!
-//! With `z` any multiple of `X^T dh` and `d = G_D^{-1} z` the blow of a wall that stands still is
-//! `-share (z . u)/(z . d) d` for the laws whose share is a number; without constraints `z` is a multiple of `dh` and
-//! the direction. Where the metric is a multiple of the identity along `z`, the metric does not matter at all. The other
-//! laws, and surfaces without a frame, compute the blow from the whole [contact](super::impact).
+//! Let `z` be any multiple of `X^T dh`, and `d = G_D^{-1} z`. For laws with a constant share, the impulse of a wall at
+//! rest is `-share (z . u)/(z . d) d`. Without constraints, `z` is a multiple of `dh` and also the direction. If the
+//! metric is a multiple of the identity along `z`, the impulse does not depend on it. For other laws, and for surfaces
+//! without a frame, the impulse is computed from all values of the [contact](super::impact).
 
 use dalembert_expr::{ExprId, Rational, Sign};
 
@@ -14,7 +14,8 @@ use crate::model::{Law, Model};
 use crate::program::kernel::Kernel;
 use crate::program::{Form, Function, Guard, Value};
 
-/// `(t, s) -> size, share, direction`; `None` for a reset. Of several formulas, the one with the fewest operations is used.
+/// `(t, s) -> size, share, direction`; `None` if the law is no impulse. Of several formulas, the one with the fewest
+/// operations is used.
 pub(super) fn blow(
     model: &Model,
     derivation: &Derivation,
@@ -51,7 +52,7 @@ struct Blow {
     direction: Vec<Value>,
 }
 
-/// Share of the gap rate that a law takes, where that is known before the impact.
+/// Share of the gap rate that a law removes; `None` if it depends on the state.
 fn constant_share(kernel: &mut Kernel<'_>, law: Law) -> Option<Value> {
     match law {
         Law::Elastic => Some(kernel.builder.integer(2)),
@@ -68,7 +69,8 @@ fn constant_share(kernel: &mut Kernel<'_>, law: Law) -> Option<Value> {
     }
 }
 
-/// True if a law is stated for the momentum along the projected gradient, not for the gap rate. The two differ off the constraints.
+/// True if a law is stated for the momentum along the projected gradient instead of the gap rate. The two differ off
+/// the constraints.
 fn takes_momentum(law: Law) -> bool {
     matches!(law, Law::Elastic | Law::Restitution(_))
 }
@@ -80,7 +82,7 @@ fn along_ray(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
         return None;
     }
     let share = constant_share(kernel, law)?;
-    // The quotients of `dh`, which occur again in its ray.
+    // The ray repeats quotients of `dh`.
     kernel.values(&surface.form);
     let (rate, squared, direction) = match (form, kernel.constraints()) {
         (Form::Global, 0) => free(kernel, surface.ray.as_deref()?),
@@ -130,7 +132,7 @@ fn on_momenta(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Val
     let momenta = kernel.lowered_velocity();
     let rate = kernel.dot(&velocity, &momenta);
     let mut direction = kernel.lower_vector(&velocity);
-    // `X^T (g X d) = z`: along a field that is the field of a coordinate, the component is known.
+    // `X^T (g X d) = z`: along the field of a coordinate, the component is known.
     for (field, &z) in kernel.frame_fields().iter().zip(&z) {
         if let Some(coordinate) = kernel.only_unit(field) {
             direction[coordinate] = z;
@@ -139,7 +141,7 @@ fn on_momenta(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Val
     (rate, squared, direction)
 }
 
-/// `z`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two without a common weight.
+/// `z`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two up to a common weight.
 fn raised(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Vec<Value>, Value, Vec<Value>) {
     let known = kernel.known_metric();
     let entry = |i: usize, j: usize| known.and_then(|metric| metric[i.max(j)][i.min(j)]);
@@ -161,7 +163,7 @@ fn raised_fully(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Vec<Value>, Value, 
     (z, squared, direction)
 }
 
-/// The blow from the values of the contact.
+/// The impulse from the values of the contact.
 fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     let law = kernel.model.surfaces[s].law;
     let ContactValues { scalars, direction } = match form {
@@ -200,7 +202,8 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
 }
 
 impl Kernel<'_> {
-    /// True if the coordinates along which `z` has components have the same weight in a metric, and are coupled to no others.
+    /// True if all coordinates along which `z` has components have the same weight in a metric, and are coupled to no
+    /// others.
     fn is_round(&self, z: &[ExprId], entry: impl Fn(usize, usize) -> Option<ExprId>) -> bool {
         let pool = &self.model.pool;
         let met = |i: &usize| !pool.is_syntactic_zero(z[*i]);
@@ -216,7 +219,7 @@ impl Kernel<'_> {
             })
     }
 
-    /// The coordinate along which a field is 1, if it is 0 along all others.
+    /// The coordinate along which a field is 1; `None` unless it is 0 along all others.
     fn only_unit(&self, field: &[Value]) -> Option<usize> {
         let mut met = (0..field.len()).filter(|&k| !self.builder.is_zero(field[k]));
         let only = met.next().filter(|_| met.next().is_none())?;

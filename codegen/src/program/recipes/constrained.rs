@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::{Constrained, Form, Function, Input, Return, Value};
 
-/// All of them; `None` without constraints.
+/// All functions of the constraints; `None` without constraints.
 pub fn constrained(model: &Model, derivation: &Derivation, form: Form) -> Option<Constrained> {
     if derivation.constraints.is_empty() {
         return None;
@@ -33,7 +33,7 @@ fn multipliers(model: &Model, derivation: &Derivation, form: Form) -> Function {
     kernel.finish(outputs)
 }
 
-/// `eta^a(qdot) + eta^a_0`, then their natural sizes.
+/// `eta^a(qdot) + eta^a_0` for all `a`, then the natural scale of each.
 fn residuals(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Velocities);
     let residuals = derivation
@@ -49,7 +49,7 @@ fn residuals(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `eta` row after row, then `eta_0`; of constraints that are not linear in the velocities at the velocities given.
+/// `eta` row by row, then `eta_0`. For constraints that are not linear in the velocities, at the given velocities.
 fn forms(model: &Model, derivation: &Derivation) -> Function {
     let arguments = match model.is_nonlinear() {
         true => Arguments::Velocities,
@@ -66,7 +66,7 @@ fn forms(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// The `mu` of `m mu = -(eta(qdot) + eta_0)`: the multipliers that lead to the nearest momenta on D*.
+/// The `mu` of `m mu = -(eta(qdot) + eta_0)`: multipliers that lead to the nearest momenta on D*.
 fn shift(kernel: &mut Kernel<'_>, kinetic: &[Value]) -> Vec<Value> {
     let affine: Vec<_> = kernel
         .derivation
@@ -100,8 +100,8 @@ fn constrained_velocity(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta in the metric on D*, from momenta or
-/// velocities.
+/// `p + mu_a eta^a` with `m mu = -(eta(qdot) + eta_0)`: the nearest momenta on D*, in the metric. `arguments` are
+/// momenta or velocities.
 fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Function {
     let mut kernel = Kernel::new(model, derivation, arguments);
     let kinetic = kernel.lowered_velocity();
@@ -111,11 +111,11 @@ fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Func
     kernel.finish(outputs)
 }
 
-/// The momenta with the velocities of dependent coordinates taken from the others, where a minor that is regular
-/// everywhere gives them; the nearest momenta otherwise.
+/// The momenta with the dependent velocities computed from the independent ones, if a minor of the forms is regular
+/// everywhere; the nearest momenta otherwise.
 ///
-/// The independent velocities, which integration got right, are not touched: an orthogonal projection would spread the
-/// error of the dependent ones over them, and with it over the energy.
+/// The independent velocities, which integration computes accurately, are unchanged. An orthogonal projection would
+/// spread the error of the dependent velocities over them, and over the energy.
 fn restore(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
     let pairs = kernel.regular_minor().filter(|_| !model.is_nonlinear());
@@ -160,7 +160,7 @@ fn levels(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// The natural sizes of levels that are declared to be 0, and 0 for the others.
+/// The natural scales of levels that are declared to be 0, and 0 for other levels; `None` if no level has a scale.
 fn level_scales(model: &Model, derivation: &Derivation) -> Option<Function> {
     let mut levelled = derivation
         .constraints
@@ -182,7 +182,7 @@ fn level_scales(model: &Model, derivation: &Derivation) -> Option<Function> {
     Some(kernel.finish(outputs))
 }
 
-/// `g^{-1} nu_k eta^k` with `m nu = -excess`, over the integrable constraints with a known function.
+/// `g^{-1} nu_k eta^k` with `m nu = -excess`, over the integrable constraints with a known level.
 fn level_correction(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let n = kernel.dimension();

@@ -8,7 +8,7 @@ use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::motion::energy_value;
 use crate::program::{Form, Function, Value};
 
-/// The declared outputs; `None` without any.
+/// The declared outputs; `None` if there are none.
 pub fn outputs(model: &Model, derivation: &Derivation, form: Form) -> Option<Function> {
     if model.outputs.is_empty() {
         return None;
@@ -20,7 +20,7 @@ pub fn outputs(model: &Model, derivation: &Derivation, form: Form) -> Option<Fun
     Some(kernel.finish(values))
 }
 
-/// Binds the derived quantities that the expressions name, and no others.
+/// Binds the derived quantities that occur in the expressions.
 fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
     let model = kernel.model;
     let named = |symbol| {
@@ -51,7 +51,7 @@ fn bind_derived(kernel: &mut Kernel<'_>, expressions: &[ExprId]) {
     }
 }
 
-/// A function of time and position.
+/// A function of time and position with these results.
 pub fn position_function(
     model: &Model,
     derivation: &Derivation,
@@ -62,7 +62,7 @@ pub fn position_function(
     kernel.finish(values)
 }
 
-/// The declared initial positions, then velocities; 0 where nothing was declared.
+/// The declared initial positions, then velocities. Undeclared values are 0.
 pub fn initial(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let declared = model.initial.q.iter().chain(&model.initial.qdot);

@@ -1,6 +1,6 @@
-//! All quantities derived at a state, by name: for tables, tests and the command line's `eval`.
+//! Functions of all derived quantities at a state, by name: for tables, tests and the command `eval`.
 //!
-//! Formulas of the density form and the divergence: [`crate::mechanics::density`].
+//! The formulas of density form and divergence are in [`crate::mechanics::density`].
 
 pub use dalembert_numbers::kernel::Shape;
 
@@ -11,7 +11,7 @@ use crate::program::kernel::{Arguments, Kernel};
 use crate::program::recipes::{impact, instantaneous, motion, volume};
 use crate::program::{Form, Function, Value};
 
-/// A named group of results.
+/// A named group of results: a number, vector or matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Group {
     /// Name in the output of `eval`.
@@ -20,12 +20,12 @@ pub struct Group {
     pub shape: Shape,
 }
 
-/// A function whose results are the groups, one after the other.
+/// A function whose results are concatenated groups.
 #[derive(Debug)]
 pub struct Geometry {
-    /// The function.
+    /// The function. Its results are those of the groups in order.
     pub function: Function,
-    /// Results.
+    /// Name and shape of each group.
     pub groups: Vec<Group>,
 }
 
@@ -58,7 +58,7 @@ impl Results {
     }
 }
 
-/// `(t, q, p)` to everything.
+/// All derived quantities as a function of `(t, q, p)`.
 pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Both).without_surface_guards();
     let mut results = Results {
@@ -67,7 +67,7 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     };
     report_motion(&mut kernel, &mut results);
     report_constraints(&mut kernel, &mut results);
-    // An integral is not straight-line code; it is reported by itself.
+    // An integral is not straight-line code, so it is reported separately.
     if let Some(found) = found.filter(|volume| volume.integral.is_none()) {
         let density = volume::log_density(&mut kernel, found);
         results.scalar("log_density", density);
@@ -79,7 +79,7 @@ pub fn geometry(model: &Model, derivation: &Derivation, found: Option<&Volume>) 
     }
 }
 
-/// `(t, q)` to the rates of a first-order system, and the quantities of its surfaces.
+/// Rates and surface quantities of a first-order system, as a function of `(t, q)`.
 pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let mut results = Results {
@@ -103,7 +103,7 @@ pub fn first_order_geometry(model: &Model, derivation: &Derivation) -> Geometry 
     }
 }
 
-/// `(t, q, u)` to the quantities derived on D.
+/// Quantities derived on D, as a function of `(t, q, u)`.
 pub fn reduced_geometry(model: &Model, derivation: &Derivation) -> Geometry {
     let mut kernel = Kernel::new(model, derivation, Arguments::Quasi);
     let mut results = Results {
@@ -335,7 +335,7 @@ impl DualFrame {
         theta
     }
 
-    /// `m_ab W^{a,i} W^{b,j}`, with both orders of `i != j` added up.
+    /// `m_ab W^{a,i} W^{b,j}`; for `i != j` twice that, for both orders.
     fn cometric_part(
         &self,
         kernel: &mut Kernel<'_>,

@@ -1,10 +1,10 @@
 //! Functions of the surfaces: gaps, gap rates, conditions, contacts.
 //!
-//! With `y = L^{-1} dh` and `y'` the rest of `y` after the constraint columns are projected out,
-//! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`: sums of squares, so nothing
-//! cancels when the surface is almost tangent to the constraints. On D, with `z = L_D^{-1} X^T dh` in the factors of
-//! `G_D`, `dh(pi_D grad h) = <z, z>`, and the impulse changes the quasi-velocities along `G_D^{-1} X^T dh`. The gap rate
-//! of a contact is taken from `dh`, which the rest of it needs anyway.
+//! Let `y = L^{-1} dh`, and `y'` the remainder of `y` after projection orthogonal to the constraint columns. Then
+//! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`. These are sums of squares, without
+//! cancellation for surfaces that are almost tangent to the constraints. On D, with `z = L_D^{-1} X^T dh` in the
+//! factors of `G_D`, `dh(pi_D grad h) = <z, z>`, and an impulse changes the quasi-velocities along `G_D^{-1} X^T dh`.
+//! The gap rate of a contact is computed from `dh`, which the other results need as well.
 
 use dalembert_expr::ExprId;
 
@@ -16,7 +16,7 @@ use crate::program::recipes::declared::position_function;
 use crate::program::recipes::instantaneous;
 use crate::program::{Form, Function, Guard, Impacting, Input, Value};
 
-/// All of them; `None` without surfaces.
+/// All functions of the surfaces; `None` without surfaces.
 pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<Impacting> {
     if derivation.surfaces.is_empty() {
         return None;
@@ -76,7 +76,7 @@ pub fn impacting(model: &Model, derivation: &Derivation, form: Form) -> Option<I
     })
 }
 
-/// The state in which another mode is entered, where it is declared.
+/// The declared state in the mode that is entered; `None` if no state is declared.
 fn entry(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option<Function> {
     let map = model.surfaces[s].transition.as_ref()?.map.as_ref()?;
     let mut kernel = Kernel::new(model, derivation, form.state());
@@ -92,7 +92,7 @@ fn reset(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Option
     Some(kernel.finish([q, qdot].concat()))
 }
 
-/// Positions and velocities after the reset of a surface, if it has one.
+/// Positions and velocities after the reset of a surface; `None` without a reset.
 pub(super) fn reset_values(kernel: &mut Kernel<'_>, s: usize) -> Option<[Vec<Value>; 2]> {
     let model = kernel.model;
     let reset = model.surfaces[s].reset.as_ref()?;
@@ -108,7 +108,7 @@ pub(super) fn reset_values(kernel: &mut Kernel<'_>, s: usize) -> Option<[Vec<Val
     Some([after(&reset.q, before), after(&reset.qdot, velocities)])
 }
 
-/// A function of the same expressions of every surface.
+/// A function of the expressions `of` each surface.
 fn evaluate(
     model: &Model,
     derivation: &Derivation,
@@ -121,7 +121,7 @@ fn evaluate(
     kernel.finish(outputs)
 }
 
-/// `d^2h/dt^2 = dh(qddot) + curvature`, with `qddot = X w + Xdot u + Xdot_0`, or `g^{-1}(w - drift)`.
+/// `d^2h/dt^2 = dh(qddot) + curvature`, with `qddot = X w + Xdot u + Xdot_0` or `qddot = g^{-1}(w - drift)`
 fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, form.state());
     if form == Form::FirstOrder {
@@ -142,7 +142,7 @@ fn accelerations(model: &Model, derivation: &Derivation, form: Form) -> Function
     kernel.finish(outputs)
 }
 
-/// `qddot` for these rates of the motion's part of the state.
+/// `qddot` for the rates `motion` of momenta or quasi-velocities
 pub(super) fn acceleration(kernel: &mut Kernel<'_>, form: Form, motion: &[Value]) -> Vec<Value> {
     match form {
         Form::Global => {
@@ -217,15 +217,15 @@ fn contact(model: &Model, derivation: &Derivation, form: Form, s: usize) -> Func
     kernel.finish([contact.scalars.to_vec(), contact.direction].concat())
 }
 
-/// Values of a contact.
+/// Results of a contact.
 pub(super) struct ContactValues {
-    /// In the order of [`SCALARS`].
+    /// The numbers named by [`SCALARS`], in their order.
     pub scalars: [Value; 5],
     /// `pi_D^* dh`, or `G_D^{-1} X^T dh`
     pub direction: Vec<Value>,
 }
 
-/// Names of a contact's numbers.
+/// Names of the numbers of a contact.
 pub(super) const SCALARS: [&str; 5] = [
     "gap_rate",
     "constrained_rate",
@@ -234,7 +234,7 @@ pub(super) const SCALARS: [&str; 5] = [
     "free_compliance",
 ];
 
-/// The contact of a surface.
+/// The contact of a surface in global form.
 pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     let surface = &kernel.derivation.surfaces[s];
     let qdot = kernel.velocity();
@@ -256,7 +256,7 @@ pub(super) fn contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues
     named(kernel, scalars, direction)
 }
 
-/// The contact of a surface on D.
+/// The contact of a surface in reduced form.
 pub(super) fn reduced_contact_values(kernel: &mut Kernel<'_>, s: usize) -> ContactValues {
     let surface = &kernel.derivation.surfaces[s];
     let form = kernel.values(&surface.form);

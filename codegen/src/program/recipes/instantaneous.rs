@@ -1,9 +1,9 @@
-//! Functions of the constraints that hold in the moment of an impact only.
+//! Functions of instantaneous constraints, which hold during an impact only.
 //!
-//! With `C_b = L^{-1} psi^b` without its components along the constraint columns, or `L_D^{-1} X^T psi^b` on D, the
-//! impulse `x = C nu` of least norm with `<C_b, x> = r_b` changes `psi^b(qdot)` by `r_b` and keeps every constraint. Such
-//! an impulse brings the state to `D' = ker(eta, psi)`, and such a force keeps it there. Within `D'` a law acts as it does
-//! within D: along `dh` without its components along `C`.
+//! Let `C_b` be `L^{-1} psi^b` without its components along the constraint columns, or `L_D^{-1} X^T psi^b` on D. The
+//! impulse `x = C nu` of least norm with `<C_b, x> = r_b` changes `psi^b(qdot)` by `r_b` and preserves every
+//! constraint. Such an impulse brings the state to `D' = ker(eta, psi)`, and such a force keeps it there. Within `D'` a
+//! law acts as within D: along `dh` without its components along `C`.
 
 use dalembert_expr::ExprId;
 
@@ -15,7 +15,7 @@ use crate::program::kernel::Kernel;
 use crate::program::linear::Orthogonal;
 use crate::program::{Form, Function, Guard, Value};
 
-/// `(t, s) ->` the impulse after which the instantaneous constraints of a surface hold; `None` without any.
+/// `(t, s) ->` impulse that establishes the instantaneous constraints of a surface; `None` without these.
 pub(super) fn focus(
     model: &Model,
     derivation: &Derivation,
@@ -39,7 +39,8 @@ pub(super) fn focus_values(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Opt
     Some(against(kernel, form, s, &residuals))
 }
 
-/// `(t, s, w) ->` the addition to the rates `w` that keeps the instantaneous constraints of a surface; `None` without any.
+/// `(t, s, w) ->` addition to the rates `w` that maintains the instantaneous constraints of a surface; `None` without
+/// these.
 pub(super) fn trace(
     model: &Model,
     derivation: &Derivation,
@@ -63,13 +64,13 @@ pub(super) fn trace(
     Some(kernel.finish(force))
 }
 
-/// The instantaneous constraints of a surface, if it has any.
+/// The instantaneous constraints of a surface; `None` if there are none.
 fn constraints<'d>(kernel: &Kernel<'d>, s: usize) -> Option<&'d [InstantaneousForm]> {
     let instantaneous = &kernel.derivation.surfaces[s].instantaneous;
     (!instantaneous.is_empty()).then_some(instantaneous)
 }
 
-/// The impulse within the constraints that removes these rates of the instantaneous ones.
+/// The impulse within the constraints that cancels these rates of the instantaneous constraints.
 fn against(kernel: &mut Kernel<'_>, form: Form, s: usize, rates: &[Value]) -> Vec<Value> {
     let factors = kernel.factor_instantaneous(form, s);
     let wanted: Vec<Value> = rates.iter().map(|&rate| kernel.builder.neg(rate)).collect();
@@ -85,7 +86,8 @@ fn against(kernel: &mut Kernel<'_>, form: Form, s: usize, rates: &[Value]) -> Ve
 }
 
 impl Kernel<'_> {
-    /// A column `L^{-1} b`, or `L_D^{-1} X^T b`, without its components along the instantaneous constraints of a surface.
+    /// Removes from a column `L^{-1} b`, or `L_D^{-1} X^T b`, its components along the instantaneous constraints of a
+    /// surface.
     pub(super) fn within_instantaneous(
         &mut self,
         form: Form,
@@ -101,7 +103,7 @@ impl Kernel<'_> {
         })
     }
 
-    /// True if constraints, or instantaneous ones of a surface, have an affine part.
+    /// True if a constraint, or an instantaneous constraint of a surface, has an affine part.
     pub(super) fn is_affine_at(&self, s: usize) -> bool {
         let mut instantaneous = self.derivation.surfaces[s].instantaneous.iter();
         let pool = &self.model.pool;

@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::program::kernel::{Arguments, Kernel};
 use crate::program::{Function, Reduced, Value};
 
-/// All of them; `None` without a frame.
+/// All functions of the reduced state; `None` without a frame.
 pub fn reduced(model: &Model, derivation: &Derivation) -> Option<Reduced> {
     let frame = derivation.frame.as_ref().ok()?;
     Some(Reduced {
@@ -41,7 +41,7 @@ fn quasi(model: &Model, derivation: &Derivation, frame: &Frame) -> Function {
     kernel.finish(outputs)
 }
 
-/// `G_D u = X^T (p - A - g X_0)` from momenta, or from velocities with `p - A = g qdot`.
+/// The `u` of `G_D u = X^T (p - A - g X_0)`, from momenta, or from velocities with `p - A = g qdot`.
 fn nearest(model: &Model, derivation: &Derivation, arguments: Arguments) -> Function {
     let mut kernel = Kernel::new(model, derivation, arguments);
     let kinetic = kernel.lowered_velocity();

@@ -1,7 +1,7 @@
 //! Functions of the invariant volume `exp(G) mu_C = exp(G) det g / |det A_dep| dq dv_ind`.
 //!
-//! Logarithms of determinants are sums of logarithms of the diagonal of a factorisation: `ln det g` of the pivots of
-//! `L D L^T`, `ln det m^{ab}` of the squared norms of the orthogonalised constraint columns.
+//! Logarithms of determinants are sums of logarithms from a factorisation: `ln det g` of the pivots of `L D L^T`,
+//! `ln det m^{ab}` of the squared norms of the orthogonalised constraint columns.
 
 use dalembert_expr::{ExprId, Function as Elementary, Rational};
 
@@ -13,7 +13,7 @@ use crate::program::kernel::{Arguments, Kernel};
 use crate::program::linear::{Ldlt, Orthogonal};
 use crate::program::{Guard, InvariantVolume, Value};
 
-/// All of them.
+/// All functions of an invariant volume.
 pub fn invariant_volume(
     model: &Model,
     derivation: &Derivation,
@@ -105,11 +105,11 @@ fn sum_of_logarithms(kernel: &mut Kernel<'_>, factors: &[Value]) -> Value {
     total
 }
 
-/// `ln |det A|` of the columns of the constraint forms that belong to these velocities.
+/// `ln |det A|` for the columns `columns` of the constraint forms.
 ///
-/// An entry that is the only one of its row or column is a factor of the determinant. The rest without such entries is
-/// orthogonalised: no choice of pivots is good at every state, and the product of the norms is the absolute value of the
-/// determinant.
+/// An entry that is the only one of its row or column is a factor of the determinant. The remaining matrix is
+/// orthogonalised, because no choice of pivots is good at every state. The product of the norms is the absolute value
+/// of its determinant.
 fn log_minor(kernel: &mut Kernel<'_>, columns: &[usize]) -> Value {
     let mut rows: Vec<usize> = (0..kernel.constraints()).collect();
     let mut columns = columns.to_vec();
@@ -129,7 +129,7 @@ fn log_minor(kernel: &mut Kernel<'_>, columns: &[usize]) -> Value {
     kernel.builder.add_product(total, half, doubled)
 }
 
-/// Row and column of an entry that is not zero by structure and the only such entry of its row or column.
+/// Row and column of an entry that is the only one of its row or column, apart from structural zeros.
 fn lone_entry(kernel: &Kernel<'_>, rows: &[usize], columns: &[usize]) -> Option<(usize, usize)> {
     let is_entry = |a: usize, j: usize| {
         let entry = kernel.derivation.constraints[a].form[j];
@@ -146,7 +146,7 @@ fn lone_entry(kernel: &Kernel<'_>, rows: &[usize], columns: &[usize]) -> Option<
     entries.find(is_lone)
 }
 
-/// `ln |eta^a_j|`, with a fault where the entry is 0.
+/// `ln |eta^a_j|`, with an error where the entry is 0.
 fn log_entry(kernel: &mut Kernel<'_>, a: usize, j: usize) -> Value {
     let entry = kernel.derivation.constraints[a].form[j];
     if !kernel.model.pool.sign(entry).is_nonzero() {

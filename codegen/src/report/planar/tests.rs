@@ -1,4 +1,5 @@
-//! Hypotheses of the Poincare-Bendixson theorem against closed forms of rimless wheels, and systems that lack one of them.
+//! Hypotheses of the Poincare-Bendixson theorem: rimless wheels against closed forms, and systems that lack a
+//! hypothesis.
 
 use std::f64::consts::PI;
 
@@ -121,7 +122,7 @@ fn a_wheel_of_five_spokes_has_a_gait_and_its_energies_are_those_of_the_thesis() 
     let product: f64 = energies.iter().map(|[_, _, kept]| kept).product();
     let multiplier = cascade(&found).multiplier;
     assert!((multiplier.lo - product).abs() < 1e-12 && multiplier.hi - multiplier.lo < 1e-12);
-    // The energy that a round leaves as it is.
+    // A round maps the energy of the orbit to itself.
     let orbit = cascade(&found).energy.expect("an energy");
     let round = (0..5).fold(orbit.lo, |energy, index| {
         let [_, gained, kept] = energies[(first + index) % 5];
@@ -143,7 +144,7 @@ fn a_flat_slope_leaves_the_wheel_without_an_invariant_set() {
 
 #[test]
 fn the_inequality_is_decided_on_both_sides_of_its_boundary() {
-    // eta(R) > R for one mode with K = 1/4, P = sin(alpha) and R = 1 - cos(pi/6 - alpha).
+    // The condition eta(R) > R, for one mode with K = 1/4, P = sin(alpha) and R = 1 - cos(pi/6 - alpha).
     let excess = |alpha: f64| alpha.sin() - 3.0 * (1.0 - (PI / 6.0 - alpha).cos());
     let (mut low, mut high) = (0.0, 0.5);
     while high - low > 1e-15 {
@@ -164,7 +165,7 @@ fn the_inequality_is_decided_on_both_sides_of_its_boundary() {
     assert_eq!(cascade(&below).steps[0].holds(), Some(false));
 }
 
-/// The verdicts of a declaration whose parts are replaced.
+/// The verdicts on a declaration with these parts.
 fn ball(parts: &str) -> Planar {
     decided(&format!("Ball {{ {parts} }}"), &[])
 }
@@ -280,7 +281,7 @@ fn the_mirrored_ball_is_decided_like_the_ball() {
 
 #[test]
 fn a_ball_that_is_lifted_after_every_fall_has_one_orbit() {
-    // Lifted from 0 to 1 with half of its speed: E -> (E + 1)/4, so that E = 1/3.
+    // The ball is lifted from 0 to 1 with half its speed: E -> (E + 1)/4, with the fixed point E = 1/3.
     let found = ball(
         "coordinates { x; } lagrangian = dot(x)^2/2 - x;
         impacts { floor: x >= 0 => reset { x = 1; dot(x) = dot(x)/2; }; }",

@@ -1,4 +1,4 @@
-//! Families of modes: `spoke[i in 1..=N] { .. }`, what one member has beside it, and how their members are named.
+//! Families of modes: `spoke[i in 1..=N] { .. }`, additions to one member, and names of members.
 
 use proc_macro2::{Group, TokenTree};
 
@@ -13,7 +13,8 @@ use crate::diagnostics::{Diagnostics, listed, nearest};
 pub(super) struct Constants {
     shared: Spec,
     indices: Indices,
-    /// True if it was read without a mistake, of which those in indices may be consequences.
+    /// True if the declarations were read without error. Otherwise errors in indices may be consequences, and are not
+    /// reported.
     is_sound: bool,
 }
 
@@ -24,20 +25,20 @@ pub(super) struct Entry {
     pub(super) block: Group,
 }
 
-/// A mode with everything that stands in its braces.
+/// A mode with all declarations in its braces.
 pub(super) struct Member {
     /// Name: `rough`, `spoke3`.
     pub(super) name: Word,
-    /// Family and index in it.
+    /// Family, and index of the mode in it.
     family: Option<(String, usize)>,
     pub(super) documentation: Vec<String>,
     pub(super) inside: Vec<TokenTree>,
 }
 
-/// The modes, in the order in which they are met.
+/// The modes, in the order of their first appearance.
 pub(super) struct Members {
     pub(super) list: Vec<Member>,
-    /// True if all are there: else a reference to one that is not may be right.
+    /// True if no mode is missing. Otherwise an unknown reference may be right.
     is_complete: bool,
 }
 
@@ -61,7 +62,7 @@ impl Constants {
         }
     }
 
-    /// The members that a name stands for.
+    /// Indices of the members that a name with an index denotes.
     pub(super) fn members(
         &self,
         declared: &Declared,
@@ -97,13 +98,13 @@ pub(super) fn member_word(family: &Word, member: usize) -> Word {
     }
 }
 
-/// A member as a declaration writes it: `spoke[3]`.
+/// A member in the notation of declarations: `spoke[3]`.
 fn written(family: &str, member: impl std::fmt::Display) -> String {
     format!("{family}[{member}]")
 }
 
 impl Member {
-    /// Name as written in a declaration.
+    /// Name in the notation of declarations.
     pub(super) fn written(&self) -> String {
         match &self.family {
             Some((family, member)) => written(family, member),
@@ -113,7 +114,7 @@ impl Member {
 }
 
 impl Members {
-    /// Writes families out.
+    /// Expands families into members.
     pub(super) fn of(
         entries: &[Entry],
         constants: &Constants,
@@ -163,7 +164,7 @@ impl Members {
         }
     }
 
-    /// Adds to what is known of a mode; whether that can be.
+    /// Adds declarations to a mode, and the mode if it is new. False if the mode is refused.
     fn add(
         &mut self,
         entry: &Entry,
@@ -199,7 +200,7 @@ impl Members {
         true
     }
 
-    /// Refuses a name that another mode has; whether there is one.
+    /// Refuses the name of an existing mode. True if there is one.
     fn is_taken(
         &self,
         base: &Word,
@@ -238,7 +239,7 @@ impl Members {
         true
     }
 
-    /// Refuses families that lack a member before their last.
+    /// Refuses families with a missing member before the last.
     fn check_gaps(&self, diagnostics: &mut Diagnostics) {
         for mode in &self.list {
             let Some((family, member)) = &mode.family else {
@@ -284,7 +285,7 @@ impl Members {
         }
     }
 
-    /// A mode by its name alone. Whether there is one is asked when the modes are checked.
+    /// A mode by its name alone. The check of the modes finds out if it exists.
     fn alone(&self, name: Word, cursor: &mut Cursor<'_>) -> Read<Word> {
         let size = self.size(&name.text);
         if size > 0 {
@@ -335,7 +336,7 @@ impl Members {
     }
 }
 
-/// Advice on a mode that does not exist; `names` are the modes as written in declarations.
+/// Advice on an unknown mode. `names`: the modes in the notation of declarations.
 pub fn mode_help(name: &str, names: &[String]) -> String {
     let names = || names.iter().map(String::as_str);
     let bases = names().map(|name| name.split('[').next().unwrap_or(name));

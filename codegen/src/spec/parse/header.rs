@@ -1,4 +1,4 @@
-//! `/// documentation pub(crate) Name { .. }`
+//! Header of a model: `/// documentation pub(crate) Name { .. }`
 
 use proc_macro2::{Delimiter, Group};
 
@@ -9,7 +9,7 @@ use super::{documentation, source};
 
 const FORM: &str = "a model is written `pub Name { coordinates { .. } lagrangian = ..; }`";
 
-/// Documentation, visibility, name; and the group with the declarations.
+/// Reads documentation, visibility and name. Returns the empty model, and the group with its declarations.
 pub(super) fn read(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
     let documentation = documentation(cursor)?;
     let visibility = visibility(cursor);
@@ -30,7 +30,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Read<(Spec, Group)> {
     Ok((spec, body.clone()))
 }
 
-/// `pub`, `pub(crate)` or nothing.
+/// Reads `pub`, `pub(crate)` or nothing.
 fn visibility(cursor: &mut Cursor<'_>) -> String {
     if !cursor.eat_word("pub") {
         return String::new();
@@ -41,13 +41,13 @@ fn visibility(cursor: &mut Cursor<'_>) -> String {
     }
 }
 
-/// The name of the type and that of its module, which Rust must accept next to each other.
+/// Reads the name of the type. Returns it with the name of its module. Rust must accept both side by side.
 fn name(cursor: &mut Cursor<'_>) -> Read<(Word, String)> {
     if cursor.peek().is_none() {
         return Err(cursor.unexpected("expected the name of a model", FORM));
     }
     let name = cursor.name("the name of a model")?;
-    // The name was left out, or stands behind a word that a model does not have.
+    // The name is missing, or follows a word that is not part of the syntax.
     let is_other = matches!(name.text.as_str(), "struct" | "enum" | "model" | "mod");
     if is_other || SECTIONS.contains(&name.text.as_str()) {
         let text = format!("expected the name of a model, found `{}`", name.text);
@@ -81,7 +81,7 @@ fn refuse_snake_case(cursor: &mut Cursor<'_>, name: &Word) -> Refused {
     cursor.refuse(name.at, text, &help)
 }
 
-/// `RollingDisk` as `rolling_disk`.
+/// Converts `RollingDisk` to `rolling_disk`.
 fn snake_case(name: &str) -> String {
     let mut snake = String::new();
     let characters: Vec<char> = name.chars().collect();
@@ -101,7 +101,7 @@ fn snake_case(name: &str) -> String {
     snake
 }
 
-/// `rolling_disk` as `RollingDisk`.
+/// Converts `rolling_disk` to `RollingDisk`.
 pub fn camel_case(name: &str) -> String {
     let capitalised = |word: &str| {
         let mut letters = word.chars();

@@ -32,7 +32,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     Ok(())
 }
 
-/// Reads `when a > 0 when b > 0` or `otherwise`, if it is there, and says whether it is the latter.
+/// Reads `when a > 0 when b > 0` or `otherwise`, or nothing. True for `otherwise`.
 pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<(Vec<Comparison>, bool)> {
     const ALONE: &str =
         "`otherwise` is the only condition: the surface counts where no other of the same gap does";
@@ -60,7 +60,7 @@ pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<(Vec<Compa
     Ok((conditions, false))
 }
 
-/// True if equality is allowed.
+/// Signs that a comparison may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Strictness {
     /// `>=`, `<=`
@@ -69,7 +69,8 @@ pub(super) enum Strictness {
     Either,
 }
 
-/// Reads `a >= b`, `a <= b`, or the same without equality. `form` is how the whole entry is written.
+/// Reads `a >= b` or `a <= b`, or the strict forms if they are allowed. `form`: the form of the whole entry, for
+/// messages.
 pub(super) fn comparison(
     cursor: &mut Cursor<'_>,
     strictness: Strictness,
@@ -108,7 +109,7 @@ fn listed_with_or(signs: &[&str]) -> String {
     }
 }
 
-/// A second comparison behind the first: `0 <= x <= 1`, or two of them joined.
+/// Refuses a second comparison after the first: `0 <= x <= 1`, or two joined comparisons.
 fn chained(
     cursor: &mut Cursor<'_>,
     [left, middle]: [&Scalar; 2],
@@ -160,7 +161,7 @@ fn oriented(left: Scalar, right: Scalar, sign: &str) -> Comparison {
     }
 }
 
-/// Reads `=> LAW`, if it is there. `form` is how the whole entry is written.
+/// Reads `=> LAW`, or nothing. `form`: the form of the whole entry, for messages.
 pub(super) fn law(cursor: &mut Cursor<'_>, spec: &mut Spec, form: &str) -> Read<Option<Law>> {
     if let Some(sign) = ["->", ",", ":"]
         .into_iter()

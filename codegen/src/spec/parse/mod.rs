@@ -33,10 +33,10 @@ use crate::diagnostics::{Diagnostics, Location, listed, nearest};
 pub use families::mode_help;
 pub use header::camel_case;
 
-/// Reads a declaration: a model, or a model with modes. `indices` says what the indices of families of modes stand for.
+/// Reads a declaration: a model, or a model with modes. `indices` evaluates the indices of families of modes.
 ///
 /// # Errors
-/// Every mistake of syntax, each at its token.
+/// All syntax errors, each at its token.
 pub fn read(tokens: TokenStream, indices: Indices) -> Result<Declaration, Diagnostics> {
     let (spec, body, diagnostics) = header(tokens)?;
     let tokens = tokens_of(body.stream());
@@ -47,10 +47,10 @@ pub fn read(tokens: TokenStream, indices: Indices) -> Result<Declaration, Diagno
     Ok(Declaration::Model(Box::new(spec)))
 }
 
-/// Reads the declaration of a model in one piece.
+/// Reads the declaration of a model without modes.
 ///
 /// # Errors
-/// Same as [`read`]; modes are refused.
+/// Same as [`read`]. Modes are refused, too.
 pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     let (spec, body, mut diagnostics) = header(tokens)?;
     let tokens = tokens_of(body.stream());
@@ -65,17 +65,17 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     one_piece(spec, &tokens, &body, diagnostics)
 }
 
-/// Reads one more claim of a model, without the `;` behind it.
+/// Reads one more claim of a model, without the `;` after it.
 ///
 /// # Errors
-/// Its first mistake of syntax.
+/// The first syntax error.
 pub fn add_claim(spec: &mut Spec, tokens: TokenStream) -> Result<(), Diagnostics> {
     check_nesting(&tokens)?;
     let tokens = tokens_of(tokens);
     let mut diagnostics = Diagnostics::new();
     let start = Location::from(Span::call_site());
     let mut cursor = Cursor::new(&tokens, start, &mut diagnostics);
-    // A mistake is among the diagnostics.
+    // The diagnostics contain the error, if any.
     let _ = claims::claim(&mut cursor, spec).and_then(|()| cursor.end());
     diagnostics.finish(())
 }
@@ -105,7 +105,7 @@ fn one_piece(
     diagnostics.finish(spec)
 }
 
-/// The lines of the doc comments that come next. Other attributes are refused.
+/// The lines of the next doc comments. Other attributes are refused.
 fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
     let mut lines = Vec::new();
     while cursor.eat_operator("#").is_some() {
@@ -126,7 +126,7 @@ fn documentation(cursor: &mut Cursor<'_>) -> Read<Vec<String>> {
     Ok(lines)
 }
 
-/// Reads the declarations one after the other; a mistake in one does not hide those in the next.
+/// Reads the declarations in order. An error in one does not hide errors in the next.
 fn declarations(
     tokens: &[TokenTree],
     body: &Group,
@@ -152,7 +152,7 @@ fn declarations(
     }
 }
 
-/// The declarations one after the other.
+/// The tokens of each declaration, in order.
 fn split(tokens: &[TokenTree]) -> impl Iterator<Item = &[TokenTree]> {
     let mut rest = tokens;
     core::iter::from_fn(move || {
@@ -189,7 +189,7 @@ fn documentation_length(tokens: &[TokenTree]) -> usize {
     2 * tokens.chunks(2).take_while(is_attribute).count()
 }
 
-/// True if this word, followed by this token, can only be the beginning of a declaration.
+/// True if this word, followed by this token, always begins a declaration.
 fn begins_declaration(word: &Ident, next: Option<&TokenTree>) -> bool {
     let word = word.to_string();
     let known = SECTIONS.contains(&word.as_str());
@@ -246,7 +246,7 @@ fn declare(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     }
 }
 
-/// Refuses a word that begins no declaration of this version.
+/// Refuses a word that begins no declaration.
 fn unknown_declaration(word: &Word, cursor: &mut Cursor<'_>) -> super::cursor::Refused {
     let help = if let Some(section) = keyword::foreign_section(&word.text) {
         section.to_owned()
@@ -332,13 +332,13 @@ fn lagrangian(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<
     Ok(())
 }
 
-/// Takes the `;` behind a declaration; where it is missing the caller says so.
+/// Takes the `;` after a declaration. The caller reports a missing one.
 fn end_of_declaration(cursor: &mut Cursor<'_>) -> Read<()> {
     cursor.eat_operator(";");
     cursor.end()
 }
 
-/// A name about to be declared, with what stands in brackets behind it.
+/// A name to be declared, with its index in brackets.
 fn declared(cursor: &mut Cursor<'_>, what: &str) -> Read<Declared> {
     let name = cursor.new_name(what)?;
     let index = index(cursor)?;
@@ -371,7 +371,8 @@ fn index(cursor: &mut Cursor<'_>) -> Read<Option<Index>> {
     Ok(Some(Index::Each(binder)))
 }
 
-/// A doc comment, a name with an index, and the `:` behind it. `entry` is `a surface`, `form` how one is written.
+/// A doc comment, a name with an index, and the `:` after it. `entry` is a noun such as `a surface`, `form` the form of
+/// an entry; both are for messages.
 fn labelled(cursor: &mut Cursor<'_>, entry: &str, form: &str) -> Read<(Vec<String>, Declared)> {
     let documentation = documentation(cursor)?;
     if !begins_with_name(cursor.remaining()) {
@@ -387,7 +388,7 @@ fn labelled(cursor: &mut Cursor<'_>, entry: &str, form: &str) -> Read<(Vec<Strin
     Ok((documentation, declared))
 }
 
-/// True if the first token of an entry can be its name: what comes next, behind an index, is no part of an
+/// True if the first token of an entry can be its name: the token after it, or after its index, cannot continue an
 /// expression.
 fn begins_with_name(tokens: &[TokenTree]) -> bool {
     let is_index = |token: &TokenTree| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket);

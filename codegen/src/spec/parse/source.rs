@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use super::super::cursor::tokens_of;
 
-/// The tokens with invisible groups taken off: a visibility passed through `macro_rules` comes in one.
+/// The tokens without invisible groups. A visibility passed through `macro_rules` is in one.
 pub(super) fn flatten_header(tokens: TokenStream) -> Vec<TokenTree> {
     let mut flat = Vec::new();
     for token in tokens {
@@ -27,7 +27,7 @@ pub(super) fn doc_lines(text: &TokenTree) -> Vec<String> {
         .collect()
 }
 
-/// The declaration as it was written, or its tokens where that text is not at hand.
+/// The source text of the declaration, or its tokens where the source text is not available.
 pub(super) fn text(documentation: &[String], visibility: &str, name: &str, body: &Group) -> String {
     let mut text = String::new();
     for line in documentation {
@@ -44,8 +44,8 @@ pub(super) fn text(documentation: &[String], visibility: &str, name: &str, body:
     text
 }
 
-/// The text between and including the braces. What a span covers inside of a `macro_rules` is the macro and not
-/// the model, so the text counts only if it reads as the same tokens.
+/// The text of the braces and everything between them. Inside of a `macro_rules`, a span covers the macro instead of
+/// the model; the text therefore counts only if it has the same tokens.
 fn body_text(body: &Group) -> String {
     let tokens = visible(TokenTree::from(body.clone()).into()).to_string();
     let written = body.span().source_text().map(|text| dedent(&text));
@@ -56,7 +56,7 @@ fn body_text(body: &Group) -> String {
     written.filter(same).unwrap_or(tokens)
 }
 
-/// The tokens with parentheses for invisible groups, which text cannot show otherwise.
+/// The tokens with parentheses in place of invisible groups, which text cannot show.
 fn visible(tokens: TokenStream) -> TokenStream {
     let show = |token: TokenTree| match token {
         TokenTree::Group(group) => {
@@ -79,7 +79,7 @@ fn without_blanks(text: &str) -> String {
         .collect()
 }
 
-/// Takes off the indentation that the last line has from the lines after the first.
+/// Removes the indentation of the last line from all lines after the first.
 fn dedent(text: &str) -> String {
     let Some((_, last)) = text.rsplit_once('\n') else {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! The index of a family of modes or transitions written out: its value in the place of its name.
+//! Expansion of families of modes or transitions: the value of the index replaces its name.
 
 use proc_macro2::{Delimiter, Group, Literal, TokenStream, TokenTree};
 
@@ -17,7 +17,7 @@ pub(super) struct Bound<'a> {
     pub(super) member: usize,
 }
 
-/// True if a name stands for the index, or for an index or argument that hides it.
+/// Meaning of the index name at a place.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sight {
     Seen,
@@ -33,13 +33,13 @@ impl<'a> Bound<'a> {
         }
     }
 
-    /// `[k]` in the place of the brackets with the range.
+    /// `[k]`, replacing the brackets with the range.
     pub(super) fn brackets(&self, range: &TokenTree) -> TokenTree {
         let value = self.value(range);
         regrouped(Delimiter::Bracket, range, vec![value])
     }
 
-    /// Contents of the braces of a mode.
+    /// Contents of the braces of a mode, with the index replaced.
     pub(super) fn declarations(
         &self,
         tokens: &[TokenTree],
@@ -50,7 +50,7 @@ impl<'a> Bound<'a> {
             .collect()
     }
 
-    /// A declaration without braces, or an entry of one with them. What it declares cannot have the name of the index.
+    /// A declaration without braces, or an entry of one with braces. The declared name must differ from the index.
     pub(super) fn entry(
         &self,
         tokens: &[TokenTree],
@@ -82,7 +82,7 @@ impl<'a> Bound<'a> {
         written
     }
 
-    /// Entries, each up to its `;`.
+    /// Entries with the index replaced. Each of them ends with `;`.
     fn entries(&self, tokens: &[TokenTree], diagnostics: &mut Diagnostics) -> Vec<TokenTree> {
         let mut written = Vec::new();
         let mut rest = tokens;
@@ -141,7 +141,8 @@ impl<'a> Bound<'a> {
         regrouped(group.delimiter(), token, written)
     }
 
-    /// `i in a..=b` of another index of this name, up to a length: only its ends can mean this one.
+    /// The first `length` tokens of `i in a..=b` bind another index of the same name. Only the ends `a` and `b` can
+    /// contain this one.
     fn range(
         &self,
         tokens: &[TokenTree],
@@ -170,7 +171,8 @@ impl<'a> Bound<'a> {
         matches!(tokens, [name, TokenTree::Ident(word), ..] if self.is_index(name) && *word == "in")
     }
 
-    /// True if brackets with `i in a..=b` are here or inside of parentheses, as in `dot(theta[i in 1..=N])`.
+    /// True if a token is brackets with `i in a..=b`, or parentheses that contain such brackets:
+    /// `dot(theta[i in 1..=N])`.
     fn is_bound_in(&self, token: &TokenTree) -> bool {
         let TokenTree::Group(group) = token else {
             return false;
@@ -183,13 +185,13 @@ impl<'a> Bound<'a> {
         }
     }
 
-    /// True if these are parentheses with an argument of this name.
+    /// True if a token is parentheses with an argument of the name of the index.
     fn is_argument_in(&self, token: &TokenTree) -> bool {
         matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis
             && tokens_of(group.stream()).iter().any(|token| self.is_index(token)))
     }
 
-    /// The value of the index, in the place of a token.
+    /// The value of the index, with the span of the replaced token.
     fn value(&self, token: &TokenTree) -> TokenTree {
         let mut value = Literal::usize_unsuffixed(self.member);
         value.set_span(token.span());
@@ -204,7 +206,7 @@ fn range_length(tokens: &[TokenTree]) -> usize {
     tokens.iter().position(is_end).unwrap_or(tokens.len())
 }
 
-/// A group with other tokens inside, in the place of a token.
+/// A group with the tokens `inside`, and the span of the replaced token.
 fn regrouped(delimiter: Delimiter, token: &TokenTree, inside: Vec<TokenTree>) -> TokenTree {
     let mut group = Group::new(delimiter, inside.into_iter().collect::<TokenStream>());
     group.set_span(token.span());

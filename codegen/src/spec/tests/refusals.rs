@@ -1,9 +1,9 @@
-//! One case for each error of the parser: the message, and the part of the text it points at, marked `«..»`.
+//! One test case per error of the parser: the message, and the source text that it points at, marked `«..»`.
 
 use super::{lagrangian, read};
 use crate::diagnostics::{reported, unmarked};
 
-/// Exactly one error, with this message, at the marked place.
+/// Checks that there is exactly one error, with this message, at the marked place.
 #[track_caller]
 pub(super) fn refused(source: &str, message: &str) {
     let (source, marked) = unmarked(source);

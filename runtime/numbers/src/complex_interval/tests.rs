@@ -1,4 +1,4 @@
-//! Rectangles against complex arithmetic.
+//! Complex intervals against complex arithmetic.
 
 use super::*;
 use crate::interval::tests::{Complex, FUNCTIONS, Sample};

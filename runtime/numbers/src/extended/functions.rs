@@ -1,17 +1,17 @@
-//! Elementary functions in 6 parts: more than any number has to which they are rounded.
+//! Elementary functions in 6 doubles, more than any result has after rounding.
 //!
-//! Exponentials and sines are sums of their series after the argument has been reduced. Their inverses follow by Newton's
-//! method or a similar one of third order. Infinite values, NaN and jumps are those of `f64`.
+//! Exponentials and sines are sums of their series after argument reduction. Their inverses follow by Newton's method
+//! or a similar method of third order. Infinite values, NaN and jumps agree with those of `f64`.
 
 use core::f64::consts;
 
 use super::number::Extended;
 use crate::math;
 
-/// Numbers in which functions are computed.
+/// The numbers in which functions are computed.
 pub(super) type Wide = Extended<6>;
 
-/// Half of the circle constant.
+/// Half of pi.
 const HALF_PI: Wide = Wide::constant_of([
     consts::FRAC_PI_2,
     6.123233995736766e-17,
@@ -33,16 +33,16 @@ const LN_2: Wide = Wide::constant_of([
 
 const ONE: Wide = Wide::plain(1.0);
 
-/// Angles beyond this are not reduced: `2^50`.
+/// Largest angle that is reduced, `2^50`. Sine and cosine of larger angles are NaN.
 const LARGEST_ANGLE: f64 = (1_u64 << 50) as f64;
 
-/// Halvings of the argument of an exponential before its series is summed.
+/// Number of halvings of the argument of an exponential before its series is summed.
 const HALVINGS: u32 = 8;
 
-/// Up to this size hyperbolic functions follow from `e^x - 1`.
+/// Below this magnitude, hyperbolic functions follow from `e^x - 1`.
 const SMALL: f64 = 0.25;
 
-/// Steps of methods of third order from a double: 53, 159, 477 bits.
+/// Number of steps of a method of third order that starts with a double: 53, 159, 477 bits.
 const STEPS: u32 = 2;
 
 /// The nearest integer of a number below `2^51`.
@@ -72,7 +72,7 @@ fn shifted(x: Wide, exponent: i32) -> Wide {
         .scaled(power_of_two(exponent - half))
 }
 
-/// `first + .. ` where each term is the last one times `factor` over the next divisor, to its last digit.
+/// `first + ..`, to the last digit. Each term is the previous term times `factor` over the next divisor.
 fn series(first: Wide, factor: Wide, mut divisor: impl FnMut(u32) -> f64) -> Wide {
     let (mut sum, mut term) = (first, first);
     for k in 1.. {
@@ -85,7 +85,7 @@ fn series(first: Wide, factor: Wide, mut divisor: impl FnMut(u32) -> f64) -> Wid
     sum
 }
 
-/// `e^x - 1` of a number below 1.
+/// `e^x - 1` for `|x| < 1`.
 fn exp_less_one(x: Wide) -> Wide {
     if x.nearest() == 0.0 {
         return x;
@@ -99,7 +99,7 @@ fn exp_less_one(x: Wide) -> Wide {
 }
 
 pub(super) fn exp(x: Wide) -> Wide {
-    /// Beyond it `e^x` is infinite, or 0.
+    /// Beyond this magnitude, `e^x` is infinite or 0.
     const RANGE: f64 = 750.0;
     let leading = x.nearest();
     if leading.is_nan() || leading.abs() > RANGE {
@@ -129,7 +129,8 @@ pub(super) fn ln(x: Wide) -> Wide {
     LN_2.fused(Wide::plain(f64::from(twos)), logarithm)
 }
 
-/// The power of a base that is positive, or has a whole exponent; else that of `f64`.
+/// The power. It agrees with `f64` if base or exponent is 0 or not finite. A negative base with a fractional exponent
+/// gives NaN.
 pub(super) fn power(base: Wide, exponent: Wide) -> Wide {
     let (x, e) = (base.nearest(), exponent.nearest());
     if x == 0.0 || e == 0.0 || !x.is_finite() || !e.is_finite() {
@@ -138,7 +139,7 @@ pub(super) fn power(base: Wide, exponent: Wide) -> Wide {
     if x > 0.0 {
         return exp(exponent * ln(base));
     }
-    // Of exponents so large all are even.
+    // NOTE: exponents of at least `2^50` count as even integers. Odd and fractional exponents exist up to `2^53`.
     let is_large = e.abs() >= LARGEST_ANGLE;
     let is_whole = is_large || rounded(e) == e;
     if !is_whole || exponent != Wide::plain(e) {
@@ -153,7 +154,7 @@ pub(super) fn power(base: Wide, exponent: Wide) -> Wide {
 
 pub(super) fn sin_cos(x: Wide) -> (Wide, Wide) {
     let leading = x.nearest();
-    // Not a comparison that NaN passes.
+    // This comparison is false for NaN.
     let is_reduced = leading.abs() <= LARGEST_ANGLE;
     if !is_reduced {
         return (Wide::plain(f64::NAN), Wide::plain(f64::NAN));
@@ -166,7 +167,7 @@ pub(super) fn sin_cos(x: Wide) -> (Wide, Wide) {
         false => series(rest, square, |k| f64::from(2 * k * (2 * k + 1))),
     };
     let cosine = series(ONE, square, |k| f64::from((2 * k - 1) * 2 * k));
-    // NOTE: whole, so that the conversion is exact.
+    // NOTE: `quarters` is an integer, so that the conversion is exact.
     match (quarters as i64).rem_euclid(4) {
         0 => (sine, cosine),
         1 => (cosine, -sine),
@@ -195,7 +196,7 @@ pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
     }
     let is_regular = |number: f64| number != 0.0 && number.is_finite();
     if !(is_regular(b) && is_regular(a)) {
-        // The angle is a multiple of an eighth of the circle.
+        // The angle is a multiple of an eighth of a turn.
         let eighths = rounded(math::atan2(b, a) * (2.0 * consts::FRAC_2_PI));
         return match eighths == 0.0 {
             true => Wide::plain(math::atan2(b, a)),
@@ -209,7 +210,7 @@ pub(super) fn atan2(y: Wide, x: Wide) -> Wide {
     let mut angle = Wide::plain(math::atan2(b, a));
     for _ in 0..STEPS {
         let (s, c) = sin_cos(angle);
-        // The sine of the missing angle.
+        // Sine of the difference between the angle and its approximation.
         angle = angle + (sine * c - cosine * s);
     }
     angle
@@ -231,14 +232,14 @@ fn cosine_of_asin(x: Wide) -> Wide {
     ((ONE - x) * (ONE + x)).root()
 }
 
-/// `e^x / 2`, which may be in the range where `e^x` is not, and a quarter of its inverse.
+/// `e^x / 2`, which may be finite where `e^x` is not, and `e^-x / 2`.
 fn halves(x: Wide) -> [Wide; 2] {
     let root = exp(x.scaled(0.5));
     let half = root.scaled(0.5) * root;
     [half, Wide::plain(0.25) / half]
 }
 
-/// An odd function, from its values at positive arguments.
+/// Value of an odd function, given for positive arguments.
 fn odd(x: Wide, function: impl Fn(Wide) -> Wide) -> Wide {
     match x.is_negative() {
         true => -function(-x),
@@ -275,7 +276,7 @@ pub(super) fn tanh(x: Wide) -> Wide {
 }
 
 pub(super) fn asinh(x: Wide) -> Wide {
-    /// Size of arguments whose squares may be infinite; 1 is negligible beside the squares.
+    /// Squares of larger arguments may overflow. For them, 1 is negligible relative to the square.
     const LARGE: f64 = 1e150;
     odd(x, |x| match x.nearest() {
         leading if leading < SMALL => small_asinh(x),
@@ -284,7 +285,7 @@ pub(super) fn asinh(x: Wide) -> Wide {
     })
 }
 
-/// The argument whose hyperbolic sine this is, by steps of third order: a sum with 1 would lose the last digits.
+/// Inverse hyperbolic sine of a small argument, by steps of third order. A sum with 1 would lose the last digits.
 fn small_asinh(x: Wide) -> Wide {
     let mut argument = Wide::plain(math::asinh(x.nearest()));
     for _ in 0..STEPS {

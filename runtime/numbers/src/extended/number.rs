@@ -9,18 +9,19 @@ use super::sums::Sum;
 use crate::math;
 use crate::numbers::Numbers;
 
-/// The most parts that an [`Extended`] may have. Constants of generated code have this many parts.
+/// Largest number of parts of an [`Extended`]. Constants of generated code have this many parts.
 pub const MOST_PARTS: usize = 4;
 
-/// A number that is the sum of `PARTS` doubles: about 53 bits, or 16 digits, for each of them, in the range of doubles.
+/// A number that is the unevaluated sum of `PARTS` doubles: double-double, triple-double or quad-double arithmetic.
+/// Each double adds about 53 bits, or 16 digits. The range is that of doubles.
 ///
 /// `PARTS` is 1 to [`MOST_PARTS`]; other counts do not compile. With 1 part the arithmetic is that of `f64`, with the
 /// elementary functions rounded from more digits.
 ///
-/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`. The errors of differences
-/// are relative to the larger operand, and one double less precise. Elementary functions are computed in 6 parts and
-/// rounded. Digits below `1e-308` do not exist: numbers below `1e-308 / 2^(-53 (PARTS - 1))` have fewer. Sines, cosines
-/// and tangents of angles beyond `2^50` are NaN. Results that are infinite or NaN in `f64` are so here.
+/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`. The errors of
+/// differences are relative to the larger operand, and one double less precise. Elementary functions are computed in 6
+/// parts and rounded. Digits below `1e-308` do not exist: numbers below `1e-308 / 2^(-53 (PARTS - 1))` have fewer.
+/// Sines, cosines and tangents of angles beyond `2^50` are NaN. A result is infinite or NaN if it is so in `f64`.
 ///
 /// ```
 /// use dalembert_numbers::Extended;
@@ -33,7 +34,7 @@ pub const MOST_PARTS: usize = 4;
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct Extended<const PARTS: usize> {
-    /// Each part is the rounded sum of itself and the parts behind it.
+    /// Each part is the rounded sum of itself and all later parts.
     parts: [f64; PARTS],
 }
 
@@ -44,7 +45,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         f64::from_bits((1023 - bits) << 52)
     };
 
-    /// The sum of these numbers, the largest first.
+    /// The sum of these numbers. The largest must come first.
     pub fn of_parts(parts: [f64; PARTS]) -> Self {
         let mut sum = Sum::of(&[0.0; PARTS]);
         for (level, part) in parts.into_iter().enumerate() {
@@ -53,7 +54,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         Self::summed(parts[0], sum)
     }
 
-    /// The summands of the number: each is the nearest double to the rest behind those before it.
+    /// The summands of the number. Each is the nearest double to the sum of itself and all later ones.
     pub const fn parts(&self) -> [f64; PARTS] {
         self.parts
     }
@@ -63,7 +64,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         self.parts[0]
     }
 
-    /// The sum, whose leading part is about `leading`; `leading` alone where it is not finite.
+    /// The value of `sum`, or `leading` if that is not finite. `leading` approximates the sum.
     #[inline(always)]
     fn summed(leading: f64, sum: Sum<PARTS>) -> Self {
         if !leading.is_finite() {
@@ -76,7 +77,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         }
     }
 
-    /// This double.
+    /// The value of a double.
     #[inline(always)]
     pub(super) const fn plain(number: f64) -> Self {
         let mut parts = [0.0; PARTS];
@@ -84,15 +85,15 @@ impl<const PARTS: usize> Extended<PARTS> {
         Self { parts }
     }
 
-    /// These parts, which do not overlap.
+    /// The sum of these parts, which must not overlap.
     pub(super) const fn constant_of(parts: [f64; PARTS]) -> Self {
         Self { parts }
     }
 
-    /// The same number in other parts, rounded to them.
+    /// The number in another count of parts, rounded.
     pub(super) fn converted<const OTHER: usize>(self) -> Extended<OTHER> {
         if self.parts[0] == 0.0 {
-            // With its sign.
+            // 0 keeps its sign.
             return Extended::plain(self.parts[0]);
         }
         let mut sum = Sum::<OTHER>::of(&[0.0; OTHER]);
@@ -102,7 +103,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         Extended::summed(self.parts[0], sum)
     }
 
-    /// Every part times a power of two.
+    /// The number times a power of two.
     pub(super) fn scaled(self, power: f64) -> Self {
         let parts = self.parts.map(|part| part * power);
         match parts[0].is_finite() {
@@ -128,7 +129,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         Self::summed(self.parts[0] * b.parts[0] + c.parts[0], sum)
     }
 
-    /// The square root, a part after the other.
+    /// The square root, one part after the other.
     #[inline]
     pub(super) fn root(self) -> Self {
         let first = math::sqrt(self.parts[0]);
@@ -147,7 +148,7 @@ impl<const PARTS: usize> Extended<PARTS> {
         self.parts[0] < 0.0
     }
 
-    /// A function computed in more parts, rounded to these.
+    /// A function, computed in 6 parts and rounded.
     fn by(self, function: impl FnOnce(Wide) -> Wide) -> Self {
         function(self.converted()).converted()
     }
@@ -205,7 +206,7 @@ impl<const PARTS: usize> Mul for Extended<PARTS> {
     fn mul(self, other: Self) -> Self {
         let product = self.fused(other, Self::plain(0.0));
         match product.parts[0] == 0.0 {
-            // The sign of a product that is 0.
+            // The sign of 0 is that of the product of doubles.
             true => Self::plain(self.parts[0] * other.parts[0]),
             false => product,
         }
@@ -215,7 +216,7 @@ impl<const PARTS: usize> Mul for Extended<PARTS> {
 impl<const PARTS: usize> Div for Extended<PARTS> {
     type Output = Self;
 
-    /// Long division, a part of the quotient after the other.
+    /// Long division, one part of the quotient after the other.
     #[inline]
     fn div(self, other: Self) -> Self {
         let first = self.parts[0] / other.parts[0];
@@ -247,7 +248,7 @@ impl<const PARTS: usize> Neg for Extended<PARTS> {
     }
 }
 
-/// The functions of one number, each computed in more parts.
+/// Functions of one number, each computed in 6 parts.
 macro_rules! functions_in_more_parts {
     ($($name:ident)+) => {$(
         fn $name(self) -> Self {

@@ -1,4 +1,4 @@
-//! Bounds of missing terms against series in closed form.
+//! Bounds of truncation errors against series in closed form.
 
 use super::*;
 use crate::math;
@@ -7,14 +7,14 @@ use nalgebra::SVector;
 
 type One = SVector<f64, 1>;
 
-/// A gap of one position, by its values, bounds and coefficients about a place.
+/// A gap of one position: values, bounds and Taylor coefficients.
 struct Known {
     name: &'static str,
     value: fn(f64) -> f64,
     bounds: fn(ComplexInterval) -> ComplexInterval,
     /// Coefficient `k` of the Taylor series about a place.
     coefficient: fn(f64, usize) -> f64,
-    /// Ends of the starts of steps.
+    /// Range of the starts of steps.
     range: [f64; 2],
 }
 
@@ -82,7 +82,8 @@ const KNOWN: [Known; 5] = [
     },
 ];
 
-/// The truncated series of a gap along `x + way z`, its distance from the gap, and the sum of its terms.
+/// Largest difference between the gap along `x + way z` and its truncated series, and the sum of the absolute values of
+/// the terms.
 fn truncated(known: &Known, [x, way]: [f64; 2], order: usize) -> (f64, f64) {
     let terms = |part: f64| {
         (0..=order).map(move |k| (known.coefficient)(x, k) * (way * part).powi(k as i32))
@@ -104,7 +105,7 @@ fn missing_terms_are_within_their_bounds() {
             (known.bounds)(component(0))
         };
         let (mut bounded, mut close) = (0, 0);
-        // Steps of many lengths from many places, in the order of a motion that goes to and fro.
+        // Steps of many lengths from many places, in the order of a motion back and forth.
         for k in 0..600_u32 {
             let share = math::sin(0.37 * f64::from(k));
             let [low, high] = known.range;

@@ -1,4 +1,4 @@
-//! Steps of several motions in SIMD lanes, each with the same bits as in a run of its own.
+//! Steps of several motions in SIMD lanes. Each motion has the same bits as in a run of its own.
 //!
 //! The series and the sums over them, which dominate the cost of a step, are computed in lanes. The decisions about a
 //! step (its length, its acceptance) are made for one motion after the other. A motion that needs special treatment,
@@ -72,8 +72,8 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
         gather(&mut self.parameters, |lane, i| of_lanes[lane].as_slice()[i]);
     }
 
-    /// Makes the next step of every motion whose integrator has the order of the first, and returns true for each
-    /// step that was made. The other motions must make theirs alone.
+    /// Makes the next step of every motion whose integrator has the order of the first one. True for each step that was
+    /// made. Every other motion must make its step alone.
     pub(crate) fn step(&mut self, walkers: &mut [impl Walker<F>]) -> [bool; MOST] {
         let order = walkers[0].taylor().order;
         for walker in walkers.iter_mut() {
@@ -169,7 +169,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
             .begin(field, &self.parameters, arrival, &self.end)
     }
 
-    /// Passes the end of its step to an integrator. Returns true if the step is accepted.
+    /// Passes the end of a lane's step to its integrator. True if the step is accepted.
     fn hand_over(
         &self,
         lane: usize,
@@ -223,7 +223,7 @@ impl<F: TaylorField, L: Numbers> Abreast<F, L> {
 /// Largest number of lanes.
 pub(crate) const MOST: usize = 8;
 
-/// Integrator of a lane; unused lanes have that of the last motion.
+/// Integrator of a lane. Unused lanes repeat the last motion.
 #[inline(always)]
 fn of<F: TaylorField>(walkers: &[impl Walker<F>], lane: usize) -> &Taylor<F> {
     walkers[lane.min(walkers.len() - 1)].taylor()

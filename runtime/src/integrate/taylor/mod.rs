@@ -4,17 +4,18 @@
 //! h_j = (tol e^-2.7 / |y_j|)^(1/j),   h = min(h_(p-1), h_p)
 //! ```
 //!
-//! with `|y_j|` the largest of the coefficients `j` of the state's components, each divided by the size that its
-//! tolerance is relative to. The order `p` is the one of least work ([`order`]). The step's polynomial is its dense
-//! output, so states between its ends are as accurate as those at them and cost no evaluation.
+//! Here `|y_j|` is the largest coefficient of order `j` among the components of the state, each divided by the size
+//! that its tolerance refers to. The order `p` is the one that costs the least work ([`order`]). The polynomial of the
+//! step is its dense output. States inside the step are therefore as accurate as those at its ends, and cost no
+//! evaluation.
 //!
 //! Coefficients are computed in a unit of time that is a power of two near the step. They neither overflow nor
-//! underflow in any system of units, and the change of unit is exact. The rounding error of the sum of state and
-//! increment is carried to the next step.
+//! underflow in any system of units, and the change of the unit is exact. The rounding error of state plus increment is
+//! carried to the next step (compensated summation).
 //!
-//! No step is rejected because of its error. A rate at the end that differs from the derivative of the polynomial
-//! shows that the step passes a point where the motion is not analytic. The step is then halved, which needs no new
-//! coefficients.
+//! No step is rejected because of its error estimate. A rate at the end that differs from the derivative of the
+//! polynomial shows that the step passes a point where the motion is not analytic. The step is then halved, which needs
+//! no new coefficients.
 //!
 //! References: A. Jorba and M. Zou, *A software package for the numerical integration of ODEs by means of high-order
 //! Taylor methods*, Experimental Mathematics 14 (2005), sections 3.1 to 3.3; E. Hairer, C. Lubich, G. Wanner,
@@ -48,26 +49,26 @@ use crate::math;
 use crate::numbers::Row;
 use crate::state::StateVector;
 
-/// The name of [`Taylor`], independent of a system.
+/// The name of [`Taylor`] as a constant, independent of the type of the system.
 pub const TAYLOR: &str = "taylor";
 
-/// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
+/// Largest step, in units of time of its expansion. Its powers stay far from overflow.
 const LONGEST: f64 = (1 << 20) as f64;
 
 /// Factor by which the unit of time shrinks when coefficients overflow.
 const SHRINK: f64 = 1.0 / (1 << 16) as f64;
 
-/// Largest factor between a step that was limited from outside and the next.
+/// Largest growth of the step after one that was limited from outside.
 const GROW: f64 = 8.0;
 
-/// Allowed difference of rate and polynomial at the end of a step, in units of the error allowed: the truncation
-/// error of a regular step is a small fraction of it.
+/// Largest accepted difference between the rate and the derivative of the polynomial at the end of a step, in units of
+/// the allowed error. The truncation error of a regular step is a small fraction of it.
 const DEFECT: f64 = 1024.0;
 
-/// Additional rounding error allowed in a rate, in units of the size of its component.
+/// Additional rounding error accepted in a rate, relative to the size of its component.
 const NOISE: f64 = 64.0 * f64::EPSILON;
 
-/// Integrator by generated Taylor series.
+/// Integrator by Taylor series, whose recurrences are generated.
 ///
 /// # Examples
 ///
@@ -90,23 +91,23 @@ const NOISE: f64 = 64.0 * f64::EPSILON;
 /// ```
 pub struct Taylor<F: TaylorField> {
     tolerance: Tolerance,
-    /// The order of the series, once a run has begun.
+    /// Order of the series; set at the start of a run.
     order: usize,
     given_order: Option<usize>,
     max_step: f64,
     first_step: Option<f64>,
     weights: Weights<F::State>,
-    /// Unit of time of the coefficients, a power of two, and the unit of the next ones.
+    /// Unit of time of the present coefficients, and of the next ones. Both are powers of two.
     unit: f64,
     next_unit: f64,
-    /// Temporary limit of the step: after a jump, and at the start.
+    /// Temporary limit of the step length, after a jump and at the start.
     limit: f64,
     /// Upper bound of the error of the last step divided by the allowed error.
     error: f64,
     ends: Ends<F::State>,
     rates: [F::State; 2],
     expansion: Expansion<F, f64>,
-    /// True if the coefficients of the last step are available. After a step in SIMD lanes they may not be.
+    /// True if the coefficients of the last step are available. After a step in SIMD lanes they may be missing.
     is_expanded: bool,
 }
 
@@ -130,7 +131,7 @@ impl<F: TaylorField> fmt::Debug for Taylor<F> {
 }
 
 impl<F: TaylorField> Taylor<F> {
-    /// An integrator with this tolerance, of the order chosen for it.
+    /// An integrator with this tolerance. Its order is chosen by the tolerance.
     pub fn new(tolerance: Tolerance) -> Self {
         let zeros = F::State::zeros(0);
         Self {
@@ -151,15 +152,15 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// Sets the order of the series, between 3 and 32, instead of the one chosen for the tolerance.
+    /// Sets the order of the series, clamped to 3 to 32. The default is chosen by the tolerance.
     #[must_use]
     pub fn with_order(mut self, order: usize) -> Self {
         self.given_order = Some(order.clamp(LEAST_ORDER, LENGTH - 1));
         self
     }
 
-    /// Limits steps to `max_step`, in units of time; infinity is no limit. A short force, for example a blow between
-    /// two steps, is detected if it lasts longer than this.
+    /// Limits the length of steps to `max_step`, in units of time; infinity means no limit. A short force, for example
+    /// a pulse that begins and ends between two steps, is detected if it lasts longer than `max_step`.
     ///
     /// # Errors
     /// [`MaxStepError`] if `max_step` is not positive.
@@ -168,20 +169,20 @@ impl<F: TaylorField> Taylor<F> {
         Ok(self)
     }
 
-    /// Limits the first step. Anything but a positive number is ignored.
+    /// Limits the length of the first step. Values that are not positive and finite are ignored.
     #[must_use]
     pub fn with_first_step(mut self, first_step: f64) -> Self {
         self.first_step = (first_step > 0.0 && first_step.is_finite()).then_some(first_step);
         self
     }
 
-    /// Order of the series for a system.
+    /// Order of the series that this integrator uses for a system.
     pub fn order_for(&self, field: &F) -> usize {
         let chosen = || order(self.tolerance.relative(), field.work());
         self.given_order.unwrap_or_else(chosen)
     }
 
-    /// Sets `(now, state)` as the end of a step, for a start.
+    /// Sets `(now, state)` as the end of a step, at the start of a run or after a jump.
     fn place(
         &mut self,
         field: &F,
@@ -197,7 +198,7 @@ impl<F: TaylorField> Taylor<F> {
         self.begin(field)
     }
 
-    /// Evaluates the rate and the other values at the end of the step.
+    /// Evaluates the rate and the other functions at the end of the step.
     #[inline(always)]
     fn begin(&mut self, field: &F) -> Result<(), StepFailure> {
         self.expansion.begin(
@@ -213,7 +214,7 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// Computes the coefficients at the start of the step, and returns the step that they allow, in units of time.
+    /// Computes the coefficients at the start of the step. Returns the step length that they allow, in units of time.
     fn expand(&mut self, field: &F, counters: &mut Counters) -> Result<f64, StepFailure> {
         loop {
             counters.expansions += 1;
@@ -233,7 +234,7 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// Step allowed by the last two coefficients, in units of time.
+    /// Step length that the last two coefficients allow, in units of time.
     #[inline(always)]
     fn reach(&self) -> f64 {
         let mut factors = self.expansion.coefficients[0].zeroed();
@@ -246,7 +247,8 @@ impl<F: TaylorField> Taylor<F> {
         self.reach_of(self.expansion.sizes(self.order, &factors))
     }
 
-    /// Step allowed by the sizes of the last two coefficients, in units of time. The sizes include the tolerance.
+    /// Step length that the sizes of the last two coefficients allow, in units of time. The sizes are relative to the
+    /// tolerance.
     #[inline(always)]
     fn reach_of(&self, sizes: [f64; 2]) -> f64 {
         let [last, before] = [(0, self.order), (1, self.order - 1)]
@@ -262,18 +264,18 @@ impl<F: TaylorField> Taylor<F> {
         self.unit = self.next_unit;
     }
 
-    /// Length of the step: the reach of the coefficients, within the limits.
+    /// Length of the step: the reach of the coefficients, limited by the bounds on steps.
     #[inline(always)]
     fn length(&self, reach: f64) -> f64 {
         let least = least_step(self.ends.t[0].t);
         reach.min(self.max_step).min(self.limit).max(least)
     }
 
-    /// Records an accepted step of this length.
+    /// Records an accepted step. `made` is its length, `reach` the length that its coefficients allow.
     #[inline(always)]
     fn accept(&mut self, made: f64, reach: f64, counters: &mut Counters) {
         counters.accepted += 1;
-        // The error grows with a power of the step that is at least the order.
+        // The local error grows with the power `order + 1` of the step, which is at least 4.
         let part = made / reach;
         self.error = (part * part) * (part * part);
         self.limit = if made < reach {
@@ -283,7 +285,7 @@ impl<F: TaylorField> Taylor<F> {
         };
     }
 
-    /// Sets the end of the step at `theta` units of time, and returns the derivative of the polynomial there.
+    /// Computes the end of the step at `theta` units of time. Returns the derivative of the polynomial there.
     #[inline(always)]
     fn arrive(&mut self, theta: f64) -> F::Row<f64> {
         let [change, slope] = self.expansion.change(self.order, theta);
@@ -297,7 +299,7 @@ impl<F: TaylorField> Taylor<F> {
         slope
     }
 
-    /// True if a step of `theta` units ends on the motion of the vector field.
+    /// True if the end of a step of `theta` units of time satisfies the vector field; see `is_motion`.
     #[inline(always)]
     fn attempt(
         &mut self,
@@ -333,7 +335,7 @@ impl<F: TaylorField> Taylor<F> {
         })
     }
 
-    /// The state at `theta` units of time, with its rounding error.
+    /// The state at the fraction `theta` of the step, with its rounding error.
     #[inline(always)]
     fn state_at(&self, theta: f64) -> Precise<F::State> {
         let s = theta * (self.ends.length() / self.unit);
@@ -347,7 +349,7 @@ impl<F: TaylorField> Taylor<F> {
         self.ends.start.advanced(|i| change.padded()[i] * s)
     }
 
-    /// Computes the coefficients of the last step again, after it was made in SIMD lanes.
+    /// Recomputes the coefficients of the last step, which was made in SIMD lanes.
     fn expand_again(&mut self, field: &F) -> Result<(), Fault> {
         let (parameters, start) = (field.parameters(), row::<F>(&self.ends.start.value));
         let end = self.expansion.firsts;
@@ -360,7 +362,7 @@ impl<F: TaylorField> Taylor<F> {
         Ok(())
     }
 
-    /// Restores the last good state after a failure.
+    /// Restores the last accepted state after a failure.
     fn retract(&mut self, field: &F) -> Result<(), StepFailure> {
         self.ends.retract();
         self.begin(field)
