@@ -129,6 +129,9 @@ pub(super) fn ln(x: Wide) -> Wide {
     LN_2.fused(Wide::plain(f64::from(twos)), logarithm)
 }
 
+/// Least size from which every double is an even integer: `2^53`.
+const EVEN: f64 = 9_007_199_254_740_992.0;
+
 /// The power. It agrees with `f64` if base or exponent is 0 or not finite. A negative base with a fractional exponent
 /// gives NaN.
 pub(super) fn power(base: Wide, exponent: Wide) -> Wide {
@@ -139,14 +142,14 @@ pub(super) fn power(base: Wide, exponent: Wide) -> Wide {
     if x > 0.0 {
         return exp(exponent * ln(base));
     }
-    // NOTE: exponents of at least `2^50` count as even integers. Odd and fractional exponents exist up to `2^53`.
-    let is_large = e.abs() >= LARGEST_ANGLE;
-    let is_whole = is_large || rounded(e) == e;
+    // Doubles from 2^53 on are even; the others fit into an integer.
+    let is_large = e.abs() >= EVEN;
+    let is_whole = is_large || (e as i64) as f64 == e;
     if !is_whole || exponent != Wide::plain(e) {
         return Wide::plain(f64::NAN);
     }
     let size = exp(exponent * ln(-base));
-    match is_large || rounded(0.5 * e) == 0.5 * e {
+    match is_large || (e as i64) % 2 == 0 {
         true => size,
         false => -size,
     }
