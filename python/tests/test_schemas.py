@@ -82,7 +82,7 @@ OUTPUTS = {
     ],
     "control_grid": [
         ["control", "controlled_ball", "--dp", "x=0..3:5,y=-6..6:5,u=-4..4:5", "--steps", "10", "--path", "x=0.5", "--path", "x=4"],
-        ["control", "controlled_ball", "--dp", "x=0..1.5:5,y=-6..0:5,u=-1..1:3", "--steps", "4", "--impacts", "0", "--starts", "1",
+        ["control", "controlled_ball", "--dp", "x=0..1.5:5,y=-6..0:5,u=-1..1:3", "--steps", "4", "--impacts", "0", "--starts", "24",
          "--at", "2.5"],
     ],
     "accuracy": [

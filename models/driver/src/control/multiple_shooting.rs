@@ -169,11 +169,9 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
                 column[row..row + 2 * n].copy_from_slice(slopes);
             }
         }
-        let is_finite = residuals.iter().chain(columns.iter().flatten());
-        is_finite
-            .clone()
-            .all(|it| it.is_finite())
-            .then_some(Equations { residuals, columns })
+        let mut values = residuals.iter().chain(columns.iter().flatten());
+        let is_finite = values.all(|value| value.is_finite());
+        is_finite.then_some(Equations { residuals, columns })
     }
 
     fn node(&self, unknowns: &[f64], k: usize) -> Vec<f64> {
