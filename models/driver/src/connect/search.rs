@@ -34,7 +34,7 @@ const AGAIN: usize = 6;
 const TRIED: usize = 240;
 
 /// Number of steps of the integrator after which no further direction is scanned, and after which no further start of a scan is
-/// tried, if the problem has guesses of its own.
+/// tried, if the problem has guesses of its own. With surfaces a scan finds the sequences of impacts, and goes on.
 const SPENT: u64 = 50_000;
 
 /// Extent of a search.
@@ -301,7 +301,8 @@ impl<'a> Search<'a> {
 
     /// True if enough steps have been made since there were as many as `begun`.
     fn is_spent(&self, begun: u64) -> bool {
-        self.aim.guesses() > 0 && self.aim.steps() - begun > SPENT
+        let relies_on_guesses = self.aim.guesses() > 0 && !self.units.has_surfaces;
+        relies_on_guesses && self.aim.steps() - begun > SPENT
     }
 
     /// Takes the starts that another method finds.

@@ -33,6 +33,9 @@ const STEPS: usize = 60;
 /// Largest change of an extremal by the next step, in units of the unknowns.
 const SOLVED: f64 = 1e-8;
 
+/// Least unit of a costate.
+const SMALL: f64 = 1e-3;
+
 /// First and least share of a Newton step.
 const SHARES: [f64; 2] = [0.25, 1e-3];
 
@@ -100,7 +103,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
     fn units(&self, unknowns: &[f64]) -> Vec<f64> {
         let n = self.n;
         let (_, _, sizes) = self.shooter.ends();
-        let mut units = [sizes, &vec![1e-3; n]].concat();
+        let mut units = [sizes, &vec![SMALL; n]].concat();
         for k in 0..STRETCHES {
             for (unit, value) in units.iter_mut().zip(self.node(unknowns, k)) {
                 *unit = unit.max(value.abs());

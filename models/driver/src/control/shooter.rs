@@ -26,8 +26,8 @@ use crate::variation::constant;
 /// Impacts within this fraction of the time from an end belong to no sequence.
 const AT_ENDS: f64 = 1e-9;
 
-/// Number of steps after which a motion is given up: at least, and in multiples of those with costate 0 at the start. With more
-/// unknowns, a scan has many motions that run away.
+/// Number of steps after which a motion is given up: at least, and in multiples of those with costate 0 at the start. The second
+/// pair is for three unknowns and more without surfaces, where a scan has many motions that run away.
 const STEPS: [u64; 2] = [4000, 50];
 const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 
@@ -182,7 +182,11 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         let still = vec![0.0; n];
         let (shot, run) = self.flight(&still, true);
         let steps = run.as_ref().map_or(0, |run| run.counters.accepted);
-        let [least, times] = if n < 3 { STEPS } else { STEPS_IN_SPACE };
+        let has_surfaces = !self.system.description().surfaces.is_empty();
+        let [least, times] = match n < 3 || has_surfaces {
+            true => STEPS,
+            false => STEPS_IN_SPACE,
+        };
         self.budget = least.max(times * steps);
         let end = run.map(|run| run.state);
         for index in 0..n {
