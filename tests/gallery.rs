@@ -60,6 +60,7 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
             _ if name.starts_with("controlled_ball-weak") => {
                 "6 paths: 2 impacts, 2 impacts, 2 impacts, 1 impact, 1 impact, 1 impact"
             }
+            "controlled_ball-displacement" => "2 paths: 1 impact, 1 impact",
             _ if name.starts_with("controlled_ball-least") => "1 path: 2 impacts",
             "controlled_ball-loss-e07" => "2 extremals: 1 with 1 impact, 1 with 2 impacts",
             "controlled_ball-loss-e09" => "3 extremals: 2 with 1 impact, 1 with 2 impacts",
@@ -79,7 +80,7 @@ fn every_picture_is_made_and_runs_end_as_captions_say() {
         assert!(outcome.starts_with(expected), "{name}: {outcome}");
     }
     for source in [
-        "4.4", "4.5", "6.2", "6.3", "6.4", "8.4", "8.5", "9.5", "9.7", "10.1", "10.2",
+        "4.4", "4.5", "6.2", "6.3", "6.4", "8.4", "8.5", "9.3", "9.5", "9.7", "10.1", "10.2",
     ] {
         assert!(page.contains(&format!("W. Clark, thesis, Fig. {source}")));
     }

@@ -151,7 +151,7 @@ fn inputs_decide_no_transition() {
     let two = "modes { a { } b { } }";
     for transition in [
         "go: a -> b when x >= u;",
-        "go: a -> b when x >= 0 => { dot(x) = u; };",
+        "go: a -> b when x >= 0 => reset { dot(x) = u; };",
     ] {
         let text = refused(&format!("{two} transitions {{ {transition} }}"));
         assert!(text.contains(acts), "{transition}: {text}");
