@@ -165,6 +165,7 @@ impl Resolver<'_> {
         let text = "a reset contains no differentials";
         let help = "velocities are written `dot(x)`";
         self.forbid(written, &scope, value, &differentials, text, help)?;
+        self.forbid_inputs(written, &scope, value)?;
         match (entry.target, topology) {
             (AssignmentTarget::Position, Topology::Angle) => {
                 self.check_periodic_angle(&[written], &scope, value);
