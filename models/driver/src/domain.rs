@@ -1,31 +1,47 @@
 //! The states that a model allows: on the allowed side of its surfaces, within its charts.
 
-use dalembert::Instance;
 use dalembert::contract::{TaylorField, Variational};
 use dalembert::numbers::{Numbers, Row};
 use dalembert::state::StateVector;
 use dalembert::variations::Dual;
+use dalembert::{Fault, Instance};
 
 use crate::variation::constant;
 
 /// Largest gap behind a surface that is rounding, as a fraction of the size of the state.
 const ROUNDING: f64 = 1e-9;
 
-/// True if a state is behind a surface that counts there, or its gaps do not exist. `size` is that of the state.
-pub(crate) fn is_behind<S: Instance + Variational>(
+/// The surfaces that count at a state, with their gaps.
+///
+/// # Errors
+/// A [`Fault`] where a gap does not exist.
+pub(crate) fn gaps<S: Instance + Variational>(
+    system: &S,
+    t: f64,
+    state: &S::State,
+) -> Result<Vec<(usize, f64)>, Fault> {
+    let parameters = TaylorField::parameters(system);
+    let parameters = constant::<S::Parameters<Dual>>(parameters.as_slice());
+    let row = constant::<S::Row<Dual>>(state.as_slice());
+    let gaps = system.clearances(&parameters, Dual::of(t), &row)?;
+    let numbered = gaps.as_slice().iter().map(|gap| gap.value).enumerate();
+    let counted = numbered.filter(|(surface, _)| system.counts(*surface, t, state));
+    Ok(counted.collect())
+}
+
+/// A surface that a state is behind, with its gap; `size` is that of the state.
+///
+/// # Errors
+/// A [`Fault`] where a gap does not exist.
+pub(crate) fn behind<S: Instance + Variational>(
     system: &S,
     t: f64,
     state: &S::State,
     size: f64,
-) -> bool {
-    let parameters = TaylorField::parameters(system);
-    let parameters = constant::<S::Parameters<Dual>>(parameters.as_slice());
-    let row = constant::<S::Row<Dual>>(state.as_slice());
-    let Ok(gaps) = system.clearances(&parameters, Dual::of(t), &row) else {
-        return true;
-    };
-    let mut numbered = gaps.as_slice().iter().map(|gap| gap.value).enumerate();
-    numbered.any(|(surface, gap)| gap < -ROUNDING * size && system.counts(surface, t, state))
+) -> Result<Option<(usize, f64)>, Fault> {
+    let gaps = gaps(system, t, state)?;
+    let mut behind = gaps.into_iter().filter(|(_, gap)| *gap < -ROUNDING * size);
+    Ok(behind.next())
 }
 
 /// The largest absolute value of some components of a state, at least 1.

@@ -47,6 +47,7 @@ mod modulo;
 pub mod names;
 mod orbit;
 pub mod outcome;
+mod owner;
 mod refusal;
 mod run;
 mod typed;

@@ -369,6 +369,8 @@ impl<'a> Search<'a> {
         let groups = || candidates.chunk_by(|left, right| left.course == right.course);
         let all: usize = groups().map(|group| group.len().min(TRIED)).sum();
         let mut done = 0;
+        // The last of the parts of a search: guesses in space, the scan, this.
+        let parts = if self.unknowns > 2 { 3 } else { 2 };
         let begun = self.aim.steps();
         for group in groups() {
             let mut known = Vec::new();
@@ -378,7 +380,7 @@ impl<'a> Search<'a> {
                 }
                 self.try_from(candidate, &mut known, false);
                 done += 1;
-                self.note(all + done, 2 * all);
+                self.note((parts - 1) * all + done, parts * all);
             }
             for candidate in group.iter().take(AGAIN) {
                 while !known.is_empty()

@@ -15,6 +15,7 @@ use super::conjugate::{self, Mark};
 use super::observers::{Determinants, Film, Marksman, Stand};
 use super::units::{Units, unit, units};
 use super::{Boundary, Conjugate, Connection, Unjoined};
+use crate::domain;
 use crate::linear::determinant;
 use crate::model::Point;
 use crate::model::point;
@@ -481,18 +482,14 @@ fn gaps<S: Instance + Scene + Variational>(
     t: f64,
     state: &S::State,
 ) -> Vec<(usize, f64)> {
-    let parameters = TaylorField::parameters(system);
-    let parameters = constant::<S::Parameters<Dual>>(parameters.as_slice());
-    let row = constant::<S::Row<Dual>>(StateVector::as_slice(state));
-    let Ok(gaps) = system.clearances(&parameters, Dual::of(t), &row) else {
-        return Vec::new();
-    };
-    let numbered = gaps.as_slice().iter().map(|gap| gap.value).enumerate();
+    let gaps = domain::gaps(system, t, state).unwrap_or_default();
     let stops = |surface: usize| {
         let law = effects.law(system, surface);
-        law.is_some_and(|law| !law.is_map()) && system.counts(surface, t, state)
+        law.is_some_and(|law| !law.is_map())
     };
-    numbered.filter(|(surface, _)| stops(*surface)).collect()
+    gaps.into_iter()
+        .filter(|(surface, _)| stops(*surface))
+        .collect()
 }
 
 /// The values of the constraints of positions.

@@ -2,11 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use dalembert::contract::{TaylorField, Variational};
+use dalembert::contract::Variational;
 use dalembert::integrate::{Chosen, Taylor};
-use dalembert::numbers::{Numbers, Row};
 use dalembert::simulation::STEP_BUDGET;
-use dalembert::variations::{Dual, Tangent};
+use dalembert::variations::Tangent;
 use dalembert::{
     Event, Fault, Instance, Observer, Outcome, Run, Scene, SceneEffects, Simulation, StateError,
     StateVector, Variations,
@@ -18,10 +17,10 @@ use super::{Extremal, Kick, Moment, Task, Unsought};
 use crate::connect::aim::{Aim, Course, Shot};
 use crate::connect::observers::Marksman;
 use crate::connect::units::Units;
+use crate::domain;
 use crate::linear::norm;
 use crate::refusal::Refusal;
 use crate::typed::vector;
-use crate::variation::constant;
 
 /// Impacts within this fraction of the time from an end belong to no sequence.
 const AT_ENDS: f64 = 1e-9;
@@ -30,9 +29,6 @@ const AT_ENDS: f64 = 1e-9;
 /// pair is for three unknowns and more without surfaces, where a scan has many motions that run away.
 const STEPS: [u64; 2] = [4000, 50];
 const STEPS_IN_SPACE: [u64; 2] = [500, 10];
-
-/// Largest gap behind a surface that is rounding, as a fraction of the largest component of the state.
-const ROUNDING: f64 = 1e-9;
 
 /// Numbers of stretches of the second-order test. Short stretches tell conjugate points apart, long ones control what an input acts on
 /// through others.
@@ -154,19 +150,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
 
     /// A surface that a state lies behind, with its gap.
     fn behind(&self, t: f64, state: &S::State) -> Option<(usize, f64)> {
-        let parameters = TaylorField::parameters(self.system);
-        let parameters = constant::<S::Parameters<Dual>>(parameters.as_slice());
-        let row = constant::<S::Row<Dual>>(StateVector::as_slice(state));
-        let gaps = self
-            .system
-            .clearances(&parameters, Dual::of(t), &row)
-            .ok()?;
-        let state_size = state.as_slice()[..self.layout.states].iter();
-        let size = state_size.fold(1.0_f64, |most, it| most.max(it.abs()));
-        let mut numbered = gaps.as_slice().iter().map(|gap| gap.value).enumerate();
-        numbered.find(|(surface, gap)| {
-            *gap < -ROUNDING * size && self.system.counts(*surface, t, state)
-        })
+        let size = domain::size(&state.as_slice()[..self.layout.states]);
+        domain::behind(self.system, t, state, size).ok()?
     }
 
     /// True for a state behind no surface, with a best input.

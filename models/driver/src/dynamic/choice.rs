@@ -1,9 +1,6 @@
 //! The best input of a state: the least of the sums of the cost of a step and the least cost after it.
 
-use super::lattice::Lattice;
-
-/// A margin that rounding may have made negative.
-const ROUNDING: f64 = 1e-9;
+use super::lattice::{Lattice, ROUNDING};
 
 /// The margin of a motion that does not get to the end of its step.
 const LOST: f64 = -1.0;
@@ -35,7 +32,7 @@ impl Move {
     }
 }
 
-/// What is known of all nodes at one time.
+/// Least costs and margins of all nodes at one time.
 #[derive(Debug, Clone, Default)]
 pub struct Layer {
     /// The least costs from here on.

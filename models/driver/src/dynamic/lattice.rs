@@ -7,6 +7,9 @@
 /// Added to squares of second differences, as a fraction of their sum.
 const FLOOR: f64 = 1e-6;
 
+/// Distance outside of a rectangle that is rounding, in steps.
+pub(super) const ROUNDING: f64 = 1e-9;
+
 /// Equally spaced values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis {
@@ -71,6 +74,11 @@ impl Lattice {
     pub fn margin(&self, at: [f64; 2]) -> f64 {
         let [x, y] = [0, 1].map(|index| self.axes[index].margin(at[index]));
         x.min(y)
+    }
+
+    /// True for a place on the rectangle, up to rounding.
+    pub fn contains(&self, at: [f64; 2]) -> bool {
+        self.margin(at) >= -ROUNDING
     }
 
     /// The value at a place, from those of the nodes around. Outside, it is the value at the nearest place of the edge.

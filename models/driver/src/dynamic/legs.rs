@@ -107,7 +107,7 @@ fn start<S: Instance + Scene + Variational>(
 
 fn is_behind<S: Instance + Scene + Variational>(system: &S, t: f64, state: &S::State) -> bool {
     let size = domain::size(&state.as_slice()[..STATE]);
-    domain::is_behind(system, t, state, size)
+    domain::behind(system, t, state, size) != Ok(None)
 }
 
 fn landing<S: Instance + Scene + Variational>(

@@ -8,9 +8,6 @@ use crate::args::ControlArgs;
 use crate::entry::Entry;
 use crate::error::CliError;
 
-/// A distance outside of the grid that is rounding, in steps of its axes.
-const ROUNDING: f64 = 1e-9;
-
 /// A moment of a path.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
@@ -151,7 +148,7 @@ fn step(
     let pair = pair
         .into_iter()
         .filter_map(|(input, it)| Some((input, it?)))
-        .filter(|(_, it)| problem.lattice.margin(it.state) >= -ROUNDING);
+        .filter(|(_, it)| problem.lattice.contains(it.state));
     let sum =
         |landing: &Landing| landing.cost + problem.lattice.between(&after.costs, landing.state);
     Ok(pair.min_by(|(_, left), (_, right)| sum(left).total_cmp(&sum(right))))

@@ -1,0 +1,131 @@
+//! Owners of a model with values for its parameters: by its type, or by its form.
+
+use dalembert::TaylorField;
+use dalembert::describe::{Description, Instance};
+use dalembert::erased::{self, Erased, Shared};
+use dalembert::kernels::Declared;
+use dalembert::numbers::Row;
+
+use crate::typed::Model;
+
+/// Owner of a model with values for its parameters.
+pub(crate) trait Owner {
+    /// The model as a system, which may borrow from its owner.
+    type System<'a>: Model
+    where
+        Self: 'a;
+
+    fn system(&self) -> Self::System<'_>;
+
+    /// The form, of a model that has one.
+    fn form(&self) -> Option<&erased::Form>;
+
+    fn description(&self) -> &Description;
+
+    fn inputs(&self) -> &[&'static str];
+
+    fn set_parameter(&mut self, index: usize, value: f64);
+
+    fn set_mode(&mut self, mode: usize);
+
+    /// The mode in which states are made, and its form; `None` without modes or without a form.
+    fn mode(&self) -> Option<(usize, Shared<erased::Form>)>;
+}
+
+/// The model of a type.
+pub(crate) struct OfType<M>(pub M);
+
+impl<M: Model + 'static> Owner for OfType<M> {
+    type System<'a> = M;
+
+    fn system(&self) -> M {
+        self.0.clone()
+    }
+
+    fn form(&self) -> Option<&erased::Form> {
+        None
+    }
+
+    fn description(&self) -> &Description {
+        self.0.description()
+    }
+
+    fn inputs(&self) -> &[&'static str] {
+        self.0.inputs()
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        self.0.set_parameter(index, value);
+    }
+
+    fn set_mode(&mut self, mode: usize) {
+        self.0.set_mode(mode);
+    }
+
+    fn mode(&self) -> Option<(usize, Shared<erased::Form>)> {
+        None
+    }
+}
+
+/// The model of a form, whose vectors have at most `C` components.
+pub(crate) struct OfForm<const C: usize> {
+    form: Shared<erased::Form>,
+    /// The values of all parameters, inputs included.
+    values: Vec<f64>,
+    /// The number of the mode in which states are made.
+    mode: usize,
+}
+
+impl<const C: usize> OfForm<C> {
+    /// The model with its declared values; `None` if the form has longer vectors.
+    pub fn of(form: &Shared<erased::Form>) -> Option<Self> {
+        let values = TaylorField::parameters(&Erased::<C>::of(form)?);
+        Some(Self {
+            form: form.clone(),
+            values: Row::as_slice(&values).to_vec(),
+            mode: 0,
+        })
+    }
+}
+
+impl<const C: usize> Owner for OfForm<C> {
+    type System<'a> = Erased<'a, C>;
+
+    fn system(&self) -> Erased<'_, C> {
+        let mut system = Erased::of(&self.form).expect("vectors of at most `C` components");
+        for (index, value) in self.values.iter().enumerate() {
+            system.set_parameter(index, *value);
+        }
+        system.set_mode(self.mode);
+        system
+    }
+
+    fn form(&self) -> Option<&erased::Form> {
+        Some(&self.form)
+    }
+
+    fn description(&self) -> &Description {
+        &self.form.documentation.description
+    }
+
+    fn inputs(&self) -> &[&'static str] {
+        &self.form.documentation.inputs
+    }
+
+    fn set_parameter(&mut self, index: usize, value: f64) {
+        if let Some(entry) = self.values.get_mut(index) {
+            *entry = value;
+        }
+    }
+
+    fn set_mode(&mut self, mode: usize) {
+        let mut system = self.system();
+        system.set_mode(mode);
+        self.mode = Declared::start(&system);
+    }
+
+    fn mode(&self) -> Option<(usize, Shared<erased::Form>)> {
+        let mode = self.form.tables.modes.get(self.mode)?;
+        Some((self.mode, self.form.forms.get(mode.kernels)?.clone()))
+    }
+}
