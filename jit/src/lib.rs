@@ -7,6 +7,7 @@
 //! | file | job |
 //! |---|---|
 //! | `source.rs` | models of a text, and mistakes in it with their lines |
+//! | `feedback.rs` | texts whose inputs follow laws |
 //! | `form.rs` | forms, of tables and of what executes programs |
 //! | `machine.rs` | a function over any kind of number, by a machine with registers |
 //! | `series.rs` | power series over any kind of number |
@@ -33,6 +34,7 @@
 //! # Ok::<(), dalembert_jit::Refused>(())
 //! ```
 
+mod feedback;
 mod form;
 mod machine;
 #[cfg_attr(
@@ -53,6 +55,7 @@ use dalembert_codegen::spec::Declaration;
 use dalembert_codegen::{self as codegen, Compiled};
 
 pub use dalembert_codegen::diagnostics::Counterexample;
+pub use feedback::{FeedbackError, close};
 pub use source::{Mistake, Refused};
 
 /// A model of a text.
@@ -134,20 +137,23 @@ pub fn load_held(name: &str, text: &str, scene: Option<&str>) -> Result<Vec<Load
 /// Stack size of the thread that loads, in bytes.
 const STACK: usize = 64 << 20;
 
-/// Loads in a thread of its own: with it goes the copy of the text that `proc_macro2` keeps for places, and its stack has
-/// room for the deepest nesting that is accepted.
 fn load_by<T: Send>(
     name: &str,
     text: &str,
     build: impl Fn(Declaration) -> Result<T, Diagnostics> + Send + Sync,
 ) -> Result<Vec<T>, Refused> {
+    in_thread(|| load_here(name, text, &build))
+}
+
+/// Does work in a thread of its own: with it goes the copy of the text that `proc_macro2` keeps for places, and its stack
+/// has room for the deepest nesting that is accepted.
+fn in_thread<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
     thread::scope(|scope| {
-        let work = || load_here(name, text, &build);
         let thread = thread::Builder::new().stack_size(STACK);
-        match thread.spawn_scoped(scope, work) {
+        match thread.spawn_scoped(scope, &work) {
             Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
             // No other thread can be had.
-            Err(_) => load_here(name, text, &build),
+            Err(_) => work(),
         }
     })
 }

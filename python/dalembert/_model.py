@@ -80,8 +80,11 @@ class Model(Swept):
         self._scene = scene
 
     def __reduce__(self) -> Any:
-        values = {name: value for name, value in self.parameters.items() if not math.isnan(value)}
-        return _restored, (self.source, self._claims, self._scene, values)
+        return _restored, (self.source, self._claims, self._scene, self._values())
+
+    def _values(self) -> dict[str, float]:
+        """The values of the parameters that have one."""
+        return {name: value for name, value in self.parameters.items() if not math.isnan(value)}
 
     @cached_property
     def _description(self) -> dict[str, Any]:
@@ -169,6 +172,42 @@ class Model(Swept):
             No such parameter, or a value that the declaration rules out.
         """
         return self._changed(self._native.with_parameters(pairs(values)))
+
+    def with_feedback(self, /, **laws: str) -> Model:
+        """The closed loop: the model with inputs replaced by laws in the language.
+
+        The result is a model without these inputs. Whatever a model has, it has too: derivatives, power series, ensembles,
+        machine code. An input that is a Python function belongs into :meth:`simulate`.
+
+        Parameters
+        ----------
+        **laws : str
+            Expressions of time, coordinates, velocities, parameters and definitions, by inputs:
+            ``with_feedback(u="-4*x - dot(x)")``; of a member of a family as
+            ``with_feedback(**{"thrust[2]": "-x"})``.
+
+        Returns
+        -------
+        Model
+            In the same scene, with the values of the parameters of this one.
+
+        Raises
+        ------
+        RequestError
+            No such input, or a law that is not one expression.
+        ModelError
+            A law that the language refuses.
+
+        Examples
+        --------
+        >>> from dalembert import Model
+        >>> cart = Model.from_text("Cart { coordinates { x; } inputs { u; } lagrangian = dot(x)^2/2; forces { push: u*d(x); } }")
+        >>> run = cart.with_feedback(u="-4*x").simulate(state={"x": 1, "x_dot": 0}, until=1)
+        >>> float(run.jacobian(["x"])[0, 0])  # cos(2)
+        -0.416146836547142...
+        """
+        text = _native.close(self.source, f"{self.name} with feedback", list(laws.items()))
+        return _restored(text, self._claims, self._scene, self._values())
 
     def scene(self, name: str) -> Model:
         """A declared scene of this model, with the values of this one.
@@ -572,17 +611,8 @@ class Model(Swept):
         table = f"<table><tr><th>parameter</th><th>value</th><th>values</th><th></th></tr>{rows}</table>" if rows else ""
         return f"<h3>{escape(self.name)}</h3><p>{escape(self.documentation)}</p>{table}{self.derive().to_html(heading=False)}"
 
-    def __reduce__(self) -> Any:
-        given = {item.name: item.value for item in self.declared_parameters if item.value == item.value}
-        return _restored, (self.source, self._claims, self._scene, given)
-
-
-def _restored(source: str, claims: bool, scene: str, parameters: dict[str, float]) -> Model:
-    model = Model.from_text(source, claims=claims).with_parameters(**parameters)
-    return model if scene == "all" else model.scene(scene)
-
 
 def _restored(source: str, claims: bool, scene: str, values: dict[str, float]) -> Model:
-    """A model that was pickled."""
+    """The model of a text, in a scene, with these values of parameters."""
     model = Model.from_text(source, claims=claims)
     return (model if scene == "all" else model.scene(scene)).with_parameters(**values)

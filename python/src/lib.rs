@@ -43,7 +43,7 @@ mod _native {
     #[pymodule_export]
     use crate::export::{lines, to_c};
     #[pymodule_export]
-    use crate::model::{NativeModel, load, shipped};
+    use crate::model::{NativeModel, close, load, shipped};
     #[pymodule_export]
     use crate::report::{derive, documentation};
     #[pymodule_export]

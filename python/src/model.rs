@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use dalembert::describe::{Description, Topology};
 use dalembert::erased::Form;
 use dalembert_driver::{AnyModel, Code, names, of_form};
-use dalembert_jit::Loaded;
+use dalembert_jit::{FeedbackError, Loaded};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -62,6 +62,21 @@ pub fn load(py: Python<'_>, text: &str, shown: &str, claims: bool) -> PyResult<V
     (0..models.len())
         .map(|place| NativeModel::of(&models, place))
         .collect()
+}
+
+/// The text with inputs of its model replaced by laws. `shown` is its name in messages.
+#[pyfunction]
+pub fn close(
+    py: Python<'_>,
+    text: &str,
+    shown: &str,
+    laws: Vec<(String, String)>,
+) -> PyResult<String> {
+    let laws: Vec<(&str, &str)> = laws.iter().map(|(input, law)| (&**input, &**law)).collect();
+    dalembert_jit::close(shown, text, &laws).map_err(|error| match error {
+        FeedbackError::Text(refused) => error::model_error(py, &refused),
+        error => error::refused(error),
+    })
 }
 
 /// The shipped models: name and text.

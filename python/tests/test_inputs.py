@@ -80,6 +80,31 @@ def test_the_run_is_made_again(cart, period):
         run.jacobian(["x"])
 
 
+def test_a_closed_loop_is_the_model_with_the_law_written_out(cart):
+    closed = cart.with_parameters(c=0.25).with_feedback(u="-3*x - c*dot(x)", w="sin(t)")
+    assert closed.inputs == () and closed.parameters == {"m": 2, "c": 0.25}
+    written = Model.from_text(WRITTEN).with_parameters(c=0.25)
+    start = {"state": {"x": -0.5, "x_dot": 2.5}, "integrator": "taylor", "tol": 1e-12}
+    run, other = closed.simulate(**start), written.simulate(**start)
+    assert len(run.events) > 2 and run.last == other.last
+    names = ["x", "x_dot", "c"]
+    np.testing.assert_array_equal(run.jacobian(names), other.jacobian(names))
+    # One law alone leaves the other input to the caller.
+    half = cart.with_feedback(u="-3*x - c*dot(x)")
+    assert half.inputs == ("w",)
+    mixed = half.simulate(inputs={"w": lambda t, q, qdot: math.sin(t)}, until=2, tol=1e-12)
+    assert mixed.last["x"] == pytest.approx(cart.with_feedback(u="-3*x - c*dot(x)", w="sin(t)").simulate(until=2, tol=1e-12).last["x"], abs=1e-9)
+
+
+def test_laws_that_are_refused(cart):
+    with pytest.raises(RequestError, match="no input `v`; the inputs are `u`, `w`"):
+        cart.with_feedback(v="x")
+    with pytest.raises(RequestError, match="write one expression"):
+        cart.with_feedback(u="1; let y = 2")
+    with pytest.raises(dalembert.ModelError, match="unknown name `y`"):
+        cart.with_feedback(u="-y")
+
+
 def test_constrained_models_have_inputs():
     text = """
         Blade {

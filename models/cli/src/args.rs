@@ -184,14 +184,19 @@ pub enum Command {
 }
 
 impl Command {
-    /// The argument that names the model of the command, for commands that read one model once.
-    pub fn model(&mut self) -> Option<&mut String> {
-        match self {
-            Self::Derive(args) => Some(&mut args.model),
-            Self::Check(args) => Some(&mut args.model),
-            Self::Export(args) => Some(&mut args.model),
-            _ => self.model_to_run().map(|args| &mut args.model),
-        }
+    /// The flags that select the model of the command, for commands that read one model once.
+    pub fn selection(&mut self) -> Option<Selection<'_>> {
+        let (model, feedback) = match self {
+            Self::Derive(args) => (&mut args.model, &args.feedback.feedback),
+            Self::Check(args) => (&mut args.model, &args.feedback.feedback),
+            Self::Export(args) => (&mut args.model, &args.feedback.feedback),
+            _ => return self.model_to_run().map(ModelArgs::selection),
+        };
+        Some(Selection {
+            model,
+            feedback,
+            skips_claims: false,
+        })
     }
 
     /// The model arguments of the command, if it runs a model.
@@ -208,11 +213,6 @@ impl Command {
             Self::Eval(args) => Some(&mut args.model),
             _ => None,
         }
-    }
-
-    /// True if the claims of a model of a file are not examined.
-    pub fn skips_claims(&mut self) -> bool {
-        self.model_to_run().is_some_and(|args| args.no_claims)
     }
 }
 
@@ -233,6 +233,26 @@ pub struct ListArgs {
     pub format: Format,
 }
 
+/// The flags that select a model.
+#[derive(Debug)]
+pub struct Selection<'a> {
+    /// The argument that names it.
+    pub model: &'a mut String,
+    /// Laws of inputs.
+    pub feedback: &'a [String],
+    /// True if claims are not examined.
+    pub skips_claims: bool,
+}
+
+/// Laws of inputs.
+#[derive(Debug, Default, Args)]
+pub struct FeedbackArgs {
+    /// Replace an input by a law: an expression of time, coordinates, velocities, parameters and definitions, such as
+    /// `u=-4*x-dot(x)`. The closed loop is a model like any other, with derivatives, series and enclosures. May be repeated.
+    #[arg(long, value_name = "INPUT=LAW", allow_hyphen_values = true)]
+    pub feedback: Vec<String>,
+}
+
 /// The model, its scene and its parameters.
 #[derive(Debug, Args)]
 pub struct ModelArgs {
@@ -244,12 +264,26 @@ pub struct ModelArgs {
     /// Set a parameter. May be repeated.
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
+    /// Laws of inputs.
+    #[command(flatten)]
+    pub feedback: FeedbackArgs,
     /// Do not examine the claims of a model of a file.
     #[arg(long)]
     pub no_claims: bool,
     /// First mode of the run, for a model with modes. Default: the mode declared first.
     #[arg(long, value_name = "MODE")]
     pub mode: Option<String>,
+}
+
+impl ModelArgs {
+    /// The flags that select the model.
+    pub fn selection(&mut self) -> Selection<'_> {
+        Selection {
+            model: &mut self.model,
+            feedback: &self.feedback.feedback,
+            skips_claims: self.no_claims,
+        }
+    }
 }
 
 /// The state to start from.

@@ -34,6 +34,7 @@ pub mod errata;
 mod error;
 mod exit;
 mod expression;
+mod feedback;
 pub mod gallery;
 mod input_table;
 mod json;
@@ -138,11 +139,9 @@ fn with_files(
     catalogue: &Catalogue,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
-    let skips_claims = line.command.skips_claims();
-    if let Some(given) = line.command.model()
-        && let Some((models, name)) = model_file::read(given, skips_claims, streams.input)?
+    if let Some(selection) = line.command.selection()
+        && let Some(models) = model_file::selected(selection, catalogue.models(), streams.input)?
     {
-        *given = name;
         return dispatch(&mut line.command, &catalogue.with_models(models), streams);
     }
     dispatch(&mut line.command, catalogue, streams)

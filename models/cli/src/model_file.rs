@@ -4,9 +4,12 @@ use std::fs::File;
 use std::io::{Read, Take};
 use std::path::{Path, PathBuf};
 
+use crate::args::Selection;
 use crate::entry::Entry;
 use crate::error::CliError;
+use crate::feedback;
 use crate::names;
+use crate::state_input::find_model;
 
 /// The file name extension of files with models.
 pub(crate) const EXTENSION: &str = "dal";
@@ -23,12 +26,41 @@ pub(crate) fn path(given: &str) -> Option<&Path> {
     (file != INPUT).then_some(Path::new(file))
 }
 
+/// The models that flags add to those of the command line: those of the file that the model argument names, with the
+/// inputs of the selected one replaced by their laws. The argument names the selected model afterwards. `None` if the
+/// flags add nothing.
+///
+/// # Errors
+/// The errors of [`read`] and of [`feedback::close`].
+pub(crate) fn selected(
+    selection: Selection<'_>,
+    models: &[Entry],
+    input: &mut dyn Read,
+) -> Result<Option<Vec<Entry>>, CliError> {
+    let Selection {
+        model,
+        feedback,
+        skips_claims,
+    } = selection;
+    // Claims are examined once, of what runs.
+    let read = read(model, skips_claims || !feedback.is_empty(), input)?;
+    let of_file = read.map(|(models, name)| {
+        *model = name;
+        models
+    });
+    if feedback.is_empty() {
+        return Ok(of_file);
+    }
+    let entry = find_model(of_file.as_deref().unwrap_or(models), model)?;
+    feedback::close(entry, feedback, skips_claims).map(|closed| Some(vec![closed]))
+}
+
 /// The models in the file that an argument names, and the name of the selected one: `disk.dal`, or `systems.dal:disk`
 /// for a file with several models. `None` if the argument names no file.
 ///
 /// # Errors
 /// A file that cannot be read, every mistake in it, an unknown or missing name.
-pub(crate) fn read(
+fn read(
     given: &str,
     skips_claims: bool,
     input: &mut dyn Read,
@@ -42,12 +74,7 @@ pub(crate) fn read(
     } else {
         file
     };
-    let load = match skips_claims {
-        true => dalembert_jit::load_without_claims,
-        false => dalembert_jit::load,
-    };
-    let models = load(shown, &text).map_err(CliError::Declaration)?;
-    let entries: Vec<Entry> = models.iter().map(Entry::loaded).collect();
+    let entries = entries(shown, &text, skips_claims)?;
     let all = entries.iter().map(Entry::name);
     let chosen = match (name, entries.as_slice()) {
         (Some(name), _) => names::find(file, "model", name, all)?,
@@ -62,6 +89,19 @@ pub(crate) fn read(
     entry.check_size()?;
     let name = entry.name().to_owned();
     Ok(Some((entries, name)))
+}
+
+/// The models of a text. `shown` is its name in messages.
+///
+/// # Errors
+/// Every mistake in the text.
+pub(crate) fn entries(shown: &str, text: &str, skips_claims: bool) -> Result<Vec<Entry>, CliError> {
+    let load = match skips_claims {
+        true => dalembert_jit::load_without_claims,
+        false => dalembert_jit::load,
+    };
+    let models = load(shown, text).map_err(CliError::Declaration)?;
+    Ok(models.iter().map(Entry::loaded).collect())
 }
 
 /// The file that an argument names, and the name of the model in it, if given.

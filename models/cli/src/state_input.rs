@@ -86,7 +86,6 @@ pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliErro
 /// # Errors
 /// An unknown input, or a value that is not a number.
 pub fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
-    const HELD: &str = "a constant number, such as 0.5 or -pi/2; inputs that depend on time or state are given in Rust, by                         `with_inputs`";
     let (name, value) = names::assignment("--input", text, "NAME=VALUE")?;
     let index = names::find("--input", "input", name, model.inputs().iter().copied())?;
     match scalar::parse(value) {
@@ -98,7 +97,9 @@ pub fn set_input(model: &mut dyn AnyModel, text: &str) -> Result<(), CliError> {
         _ => Err(CliError::value(
             format!("--input {name}"),
             value,
-            HELD.to_owned(),
+            format!(
+                "a constant number, such as 0.5 or -pi/2; a law of time and state is given by --feedback {name}={value}"
+            ),
         )),
     }
 }

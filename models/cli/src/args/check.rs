@@ -4,13 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Format;
+use super::{FeedbackArgs, Format};
 
 /// `check`
 #[derive(Debug, Args)]
 pub struct CheckArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
+    /// Laws of inputs.
+    #[command(flatten)]
+    pub feedback: FeedbackArgs,
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,

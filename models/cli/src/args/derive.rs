@@ -2,6 +2,8 @@
 
 use clap::{Args, ValueEnum};
 
+use super::FeedbackArgs;
+
 /// Format of a derivation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum DeriveFormat {
@@ -21,6 +23,9 @@ pub struct DeriveArgs {
     /// Scene: which forces and surfaces are used, as `list --format json` prints them.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
+    /// Laws of inputs.
+    #[command(flatten)]
+    pub feedback: FeedbackArgs,
     /// Print the bracket of two functions of positions, velocities and momenta, such as `x,momentum(x)`, instead.
     #[arg(
         long,

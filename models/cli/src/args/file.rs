@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::SimulateArgs;
+use super::{FeedbackArgs, SimulateArgs};
 
 pub const NEW_EXAMPLES: &str = "The command writes pendulum.dal. With --crate it writes the crate pendulum/, with the declaration in
 src/pendulum.dal.
@@ -79,6 +79,9 @@ pub struct ExportArgs {
     /// Scene: which forces and surfaces are used, as `list --format json` prints them.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
+    /// Laws of inputs.
+    #[command(flatten)]
+    pub feedback: FeedbackArgs,
     /// Write a header of C. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub c: PathBuf,

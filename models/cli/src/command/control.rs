@@ -13,7 +13,7 @@ use dalembert_driver::{
     AnyModel, Controlled, Extremal, Form, Integrator, Settings, Task, Unsought,
 };
 
-use crate::args::{ControlArgs, ModelArgs};
+use crate::args::{ControlArgs, FeedbackArgs, ModelArgs};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -167,6 +167,7 @@ fn build(
         model: extremals.first().map_or("", Entry::name).to_owned(),
         scene: "all".to_owned(),
         set: args.model.set.iter().cloned().chain(set).collect(),
+        feedback: FeedbackArgs::default(),
         no_claims: false,
         mode: None,
     };

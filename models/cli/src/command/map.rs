@@ -206,7 +206,7 @@ fn check_flags(args: &MapArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("--class returns needs --returns N"));
     }
     if !args.run.input.is_empty() {
-        let text = "--input: a map leaves inputs at 0; declare a parameter for what its cells vary";
+        let text = "--input: a map leaves inputs at 0; give them a law by --feedback, or declare a parameter for what its cells vary";
         return Err(CliError::Usage(text));
     }
     Ok(())

@@ -55,13 +55,10 @@ fn simulate_once(
     args: &mut WatchArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
-    let model = &mut args.simulate.run.model;
-    let read = model_file::read(&model.model, model.no_claims, streams.input)?;
-    let Some((models, name)) = read else {
-        return simulate::run(catalogue.models(), &args.simulate, streams);
-    };
-    model.model = name;
-    simulate::run(&models, &args.simulate, streams)
+    let selection = args.simulate.run.model.selection();
+    let added = model_file::selected(selection, catalogue.models(), streams.input)?;
+    let models = added.as_deref().unwrap_or(catalogue.models());
+    simulate::run(models, &args.simulate, streams)
 }
 
 /// State of a file that can be read without its content; empty for a file that does not exist.
