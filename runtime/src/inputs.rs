@@ -60,7 +60,8 @@ pub trait Actuated: System + Copy {
 ///
 /// The function is called wherever the motion is evaluated, also at trial states that no run accepts. It should be
 /// smooth between impacts, as the integrators expect. Power series of the motion (`Taylor`) and the discrete
-/// principle are not available for it. Effects are made for it as for any system: `Projection::new()`,
+/// principle are not available for it, nor are derivatives: for these the law is written in the declaration, in place of
+/// the input. Effects are made for it as for any system: `Projection::new()`,
 /// `Impacts::declared(&steered)`.
 #[derive(Debug, Clone, Copy)]
 pub struct Steered<Sys, F> {

@@ -114,8 +114,8 @@ fn inputs_without_a_law_stay() {
     let half = "simulate - --feedback u=-k*x --input wind=0.3 --json -";
     let whole = "simulate - --feedback u=-k*x --feedback wind=0.3 --json -";
     assert_eq!(
-        ran(CART, half)["final"]["q"],
-        ran(CART, whole)["final"]["q"]
+        ran(CART, half)["outcome"]["q"],
+        ran(CART, whole)["outcome"]["q"]
     );
     let left = run_on(CART, "derive - --feedback u=-k*x --control");
     assert_eq!(left.exit, Exit::Reached, "{}", left.errors);
@@ -138,7 +138,7 @@ fn families_of_inputs_have_laws() {
         "simulate - --feedback thrust.1=-x[1] --feedback thrust[2]=-4*x[2] --tol 1e-13 --json -",
     );
     for document in [all, each] {
-        let q = &document["final"]["q"];
+        let q = &document["outcome"]["q"];
         for (place, expected) in [1.0_f64.cos(), 2.0 * 2.0_f64.cos()].into_iter().enumerate() {
             let value = q[place].as_f64().unwrap();
             assert!((value - expected).abs() < 1e-11, "{place}: {value}");
@@ -157,14 +157,14 @@ fn modes_share_a_law() {
     assert!((event - crossing).abs() < 1e-12, "{event}");
     let (sin, cos) = ((2.0 - crossing) / 2.0).sin_cos();
     let expected = 0.5 * cos - 2.0 * (3.0_f64.sqrt() / 2.0) * sin;
-    let x = document["final"]["q"][0].as_f64().unwrap();
+    let x = document["outcome"]["q"][0].as_f64().unwrap();
     assert!((x - expected).abs() < 1e-11, "{x} {expected}");
 }
 
 /// Every start of a map and every member of an ensemble is run with the law.
 #[test]
 fn sweeps_run_closed_loops() {
-    let line = "map - --feedback u=-4*x --feedback wind=0 --vary x=0.1..0.5:5 --until 1 --class outcome --csv -";
+    let line = "map - --feedback u=-4*x --feedback wind=0 --vary x=0.1..0.5:5 --until 1 --csv -";
     let done = run_on(CART, line);
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     assert_eq!(

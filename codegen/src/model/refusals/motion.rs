@@ -1,6 +1,8 @@
 //! Lagrangians, angles, constraints and forces that are refused.
 
-use super::{diagnostics, particle, refused, refused_in, refused_term, with_lagrangian};
+use super::{
+    KINETIC, accepted, diagnostics, particle, refused, refused_in, refused_term, with_lagrangian,
+};
 
 #[test]
 fn a_lagrangian_that_is_not_natural_is_refused_at_its_term() {
@@ -73,6 +75,22 @@ fn a_model_has_one_lagrangian_and_a_coordinate() {
     }));
 }
 
+/// Functions of half an angle that a turn does not change, in other words than multiples of the angle.
+#[test]
+fn a_turn_may_leave_functions_of_half_an_angle_unchanged() {
+    for term in [
+        "sin(theta/2)^2",
+        "sqrt(2 + cos(theta/2)^2)",
+        "sin(theta/2)*cos(theta/2)*x",
+        "tan(theta/2)*x",
+        "exp(cos(theta/2 + v)^2)",
+        "sqrt(sin(theta/2)^2 + x^2)*cos(3*theta/2)*sin(theta/2)",
+        "1/(2 + sin(theta/4)^2*cos(theta/4)^2)",
+    ] {
+        accepted(&with_lagrangian(&format!("{KINETIC} - {term}")));
+    }
+}
+
 #[test]
 fn angles_are_used_periodically() {
     refused_term(
@@ -86,6 +104,15 @@ fn angles_are_used_periodically() {
     refused_term(
         "«sin(theta/2)»",
         "`theta` is an angle but `sin(theta/2)` is not periodic",
+    );
+    // A bump that is 0 in doubles almost everywhere.
+    refused_term(
+        "«exp(-(1000*(theta - 5))^2)»",
+        "`theta` is an angle but `exp(-(1000*(theta - 5))^2)` is not periodic",
+    );
+    refused_term(
+        "«sqrt(x - 5 - theta^2)»",
+        "`theta` is an angle but `sqrt(x - 5 - theta^2)` is not periodic",
     );
     refused_in(
         "constraints { c: d(x) = «k*a*d(y)»; }",
