@@ -1,5 +1,5 @@
-//! Grammar of the command line. What it accepts is a public interface. Values are checked where they are used, because
-//! only there the names of the model are known.
+//! Grammar of the command line, a public interface. Values are checked where they are used, because only there are the
+//! names of the model known.
 
 mod certify;
 mod check;
@@ -416,7 +416,7 @@ pub struct RunArgs {
     pub projection: Option<Switch>,
 }
 
-/// The integrator of a run, and what ends it before its time.
+/// The integrator of a run, and the limits that end it before its end time.
 #[derive(Debug, Args)]
 pub struct CourseArgs {
     /// Stop after this many impacts. Without --until the end time is then 3600, or the model's `until` if that is later.

@@ -33,7 +33,7 @@ pub struct DynamicArgs {
     /// Number of steps in time, in each of which the input is held.
     #[arg(long, value_name = "N", requires = "dp", value_parser = clap::value_parser!(u32).range(1..=100_000), default_value_t = 100)]
     pub steps: u32,
-    /// Follow the path of least cost from this state; without it from the initial one. May be repeated.
+    /// Follow the path of least cost from this state. Default: the initial state. May be repeated.
     #[arg(
         long,
         value_name = "NAME=VALUE,..",
@@ -41,7 +41,7 @@ pub struct DynamicArgs {
         allow_hyphen_values = true
     )]
     pub path: Vec<String>,
-    /// Time of the map and of the rows, which is that of the nearest step. Default: 0.
+    /// Time of the map and of the rows, rounded to the nearest step. Default: 0.
     #[arg(long, value_name = "T", requires = "dp", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse))]
     pub at: Option<f64>,
     /// Quantity of the map.

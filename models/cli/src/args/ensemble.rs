@@ -42,7 +42,7 @@ pub struct EnsembleArgs {
         allow_hyphen_values = true
     )]
     pub vary: Vec<String>,
-    /// Number of members: of values of the one range `A..B` without a count, or of random draws with --random.
+    /// Number of members: the number of values of the range `A..B` that has no count or, with --random, of random draws.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub members: Option<u64>,
     /// Draw the varied quantities at random, from this seed.
@@ -82,7 +82,7 @@ pub struct EnsembleArgs {
     /// Time between the states that --density counts.
     #[arg(long, value_name = "DT", allow_hyphen_values = true, requires = "density", value_parser = ValueParser::new(scalar::positive), default_value = "1")]
     pub every: f64,
-    /// Time at the beginning of every member that --density does not count.
+    /// Time from the start of every member during which --density does not count states.
     #[arg(long, value_name = "T", allow_hyphen_values = true, requires = "density", value_parser = ValueParser::new(scalar::nonnegative), default_value = "0")]
     pub discard: f64,
     /// Write the counts of --density as a table, one cell in each row. `-` is the standard output.

@@ -49,7 +49,7 @@ fn is_package_name(name: &str) -> bool {
             .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
-/// The folder of the library.
+/// The folder of the library: the given one, else the one from which this command was built.
 ///
 /// # Errors
 /// A folder without the library.

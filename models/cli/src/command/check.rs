@@ -132,7 +132,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     checks
 }
 
-/// The name of a surface with a negative gap at this state, if there is one; the first step of a run reports it.
+/// A message that names a surface with a negative gap at this state, if there is one. The first step of a run reports it.
 fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
     let settings = Settings {
         form: Form::Global,
@@ -425,7 +425,7 @@ fn topology_json(topology: Topology) -> Value {
     }
 }
 
-/// A report that keeps nothing, to test if a state can be inspected.
+/// A receiver that discards everything it is given: only success or failure of a run or an inspection counts.
 struct Silent;
 
 impl Watch for Silent {

@@ -79,7 +79,7 @@ pub fn draw(models: &[Entry], args: &ConnectArgs) -> Result<Drawn, CliError> {
     })
 }
 
-/// Makes the search.
+/// Runs the search.
 fn find<'a>(
     model: &'a dyn AnyModel,
     args: &'a ConnectArgs,
@@ -102,7 +102,7 @@ fn find<'a>(
     })
 }
 
-/// The error for a problem without an answer, in the model's names.
+/// The error for a problem that is refused, in the model's names.
 fn refused(description: &Description, unjoined: &Unjoined) -> CliError {
     let coordinates: Vec<&str> = names::coordinates(description).collect();
     let surface = |index: usize| names::surfaces(description).nth(index).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `ensemble`: many members of one scene, as rows, as a summary and as a density.
+//! `ensemble`: runs many members of one scene and writes rows, a summary and a density.
 
 mod cells;
 mod document;
@@ -28,7 +28,7 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::build_model;
 use crate::{Streams, plot, run_request};
 
-/// A finished ensemble, with the data that its files name.
+/// A finished ensemble: its request and its results.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     settings: &'a Settings,

@@ -16,11 +16,11 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::{build_model, initial_state, set_input};
 use crate::{Streams, names, run_request};
 
-/// A model and its linearisation, or the reason for which there is none.
+/// A model and its linearisation, or the reason why it has none.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
-    /// The mode whose equations they are, of a model with modes.
+    /// The linearised mode, for a model with modes.
     mode: Option<&'static str>,
     found: Result<Linearisation, Unlinear>,
 }
@@ -39,7 +39,7 @@ pub fn run(
     for text in &args.input {
         set_input(model.as_mut(), text)?;
     }
-    // Deviations stay in a mode.
+    // The linearised equations are those of one mode.
     let mode = model.present_mode();
     let model = model.mode_alone().unwrap_or(model);
     let model = model.as_ref();

@@ -1,4 +1,4 @@
-//! Varied quantities of members, as they are written in flags.
+//! Parser of the varied quantities in flags.
 
 use dalembert::describe::Description;
 use dalembert_driver::ensemble::{Quantity, Values};
@@ -17,12 +17,12 @@ pub fn find(place: &str, name: &str, description: &Description) -> Result<Quanti
     })
 }
 
-/// Number of members and their kind, as given by the flags.
+/// The flags `--members` and `--random`, which hold for all varied quantities.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
     /// Number of members, if given.
     pub members: Option<u64>,
-    /// True if the values are drawn.
+    /// True if the values are drawn at random.
     pub random: bool,
 }
 

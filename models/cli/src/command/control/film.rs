@@ -1,4 +1,4 @@
-//! Pictures and tables along extremals, whose runs are repeated.
+//! Pictures of extremals, and rows along one of them. The runs of the extremals are repeated for both.
 
 use dalembert_driver::{
     Contact, Extremal, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,

@@ -123,7 +123,7 @@ fn time(finished: &Finished<'_>) -> String {
     text
 }
 
-/// `1/16`, .. `1/2`, `all`.
+/// A fraction of the states in words: `1/16`, .. `1/2`, `all`.
 fn part(part: f64) -> String {
     match (1.0 / part).round() {
         1.0 => "all".to_owned(),
