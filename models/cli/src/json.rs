@@ -117,14 +117,14 @@ pub fn write_array(output: &mut dyn Write, rows: impl Iterator<Item = Value>) ->
     writeln!(output)
 }
 
-/// An object that is written key by key, one per line, so that long arrays need not be kept as values.
+/// An object that is written key by key, one per line. Long arrays therefore need not be kept in memory as values.
 pub struct Document<'a> {
     output: &'a mut dyn Write,
     empty: bool,
 }
 
 impl<'a> Document<'a> {
-    /// Opens the object.
+    /// Begins the object.
     ///
     /// # Errors
     /// An I/O error of the stream, as for every method.
@@ -136,7 +136,7 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// Opens the object of a command that runs a model, with its name, scene and parameters.
+    /// Begins the object of a command that runs a model, and writes the name, the scene and the parameters of the model.
     ///
     /// # Errors
     /// An I/O error of the stream.

@@ -1,4 +1,4 @@
-//! Models in files: a model argument that names a file selects the model in it.
+//! Models in files: a model argument may name a file and a model in it.
 
 use std::fs::File;
 use std::io::{Read, Take};
@@ -11,7 +11,7 @@ use crate::names;
 /// The file name extension of files with models.
 pub(crate) const EXTENSION: &str = "dal";
 
-/// The argument that means the standard input.
+/// The argument that stands for the standard input.
 const INPUT: &str = "-";
 
 /// The longest accepted text, in bytes.
@@ -27,7 +27,7 @@ pub(crate) fn path(given: &str) -> Option<&Path> {
 /// for a file with several models. `None` if the argument names no file.
 ///
 /// # Errors
-/// A file that cannot be read, every mistake in it, an unknown or missing name.
+/// A file that cannot be read, all mistakes in the declarations, an unknown or missing name.
 pub(crate) fn read(
     given: &str,
     skips_claims: bool,

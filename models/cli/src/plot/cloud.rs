@@ -20,7 +20,7 @@ pub struct Cloud<'a> {
     pub subtitle: &'a str,
     /// The points.
     pub points: &'a [[f64; 2]],
-    /// The central point of the scatter.
+    /// The point of the start that is not scattered.
     pub middle: Option<[f64; 2]>,
 }
 
