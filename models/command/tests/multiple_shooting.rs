@@ -19,7 +19,7 @@ const CHAIN: &str = "
         initial { until = 1; }
     }";
 
-/// A rod of length 1 that does not stretch, by the angle of its tangent along its length: extremals are Euler's elastica.
+/// A rod of length 1 that does not stretch, described by the angle of its tangent. Its extremals are Euler's elastica.
 const ROD: &str = "
     Rod {
         coordinates { x; y; th; }
@@ -55,7 +55,7 @@ fn elliptic(m: f64) -> [f64; 2] {
     [k, k * (1.0 - sum)]
 }
 
-/// A rod clamped along its chord at both ends, which are at half of its length, is four quarter waves of an elastica:
+/// A rod is clamped at both ends along its chord, whose length is half of its own. It consists of four quarter waves of an elastica:
 /// `2 E/K - 1 = 1/2`, with the cost `32 K^2 (E/K - 1 + m)`. It bends to either side; further forms cost more.
 #[test]
 fn a_clamped_rod_bends_to_the_first_of_eulers_elastica() {
