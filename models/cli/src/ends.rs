@@ -10,7 +10,8 @@ use crate::{names, scalar};
 /// Largest number of impacts.
 const MOST_IMPACTS: usize = 1000;
 
-/// Runs a search and shows its progress. `place` is the flag of the start; `refused` makes the error for a problem without an answer.
+/// Runs a search and shows its progress. `place` is the flag of the start; `refused` makes the error for a problem
+/// without an answer.
 ///
 /// # Errors
 /// A start that is refused, a problem without an answer, a scene without variations.
@@ -52,8 +53,8 @@ pub fn doubts(unresolved: usize, given_up: usize) -> String {
     text
 }
 
-/// The components that a flag gives by name, in the order of `accepted`; `None` for the others. `what` is the noun for a component in
-/// messages.
+/// The components that a flag gives by name, in the order of `accepted`; `None` for the others. `what` is the noun for
+/// a component in messages.
 ///
 /// # Errors
 /// An unknown name, a value that is not a number, a component that is given again.

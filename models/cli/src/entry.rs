@@ -53,7 +53,7 @@ enum Build {
 }
 
 impl Build {
-    // NOTE: evaluated at compile time, so that only kernels are compiled for a type that has a form.
+    // NOTE: the match is evaluated at compile time. Therefore only kernels are compiled for a type that has a form.
     const fn of<M: Model + Described + 'static>() -> Self {
         match M::FORM {
             Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),

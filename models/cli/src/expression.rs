@@ -1,5 +1,5 @@
-//! Expressions in flags, written in the language of models. They become outputs of the model, so that the parser and the compiler
-//! of models read them.
+//! Expressions in flags, written in the language of models. They become outputs of the model, so that the parser and
+//! the compiler of models read them.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;

@@ -1,7 +1,7 @@
 //! Inputs from a table: columns `t` and the names of inputs.
 //!
-//! Two rows at the same time are a jump; the later row holds from that time on. Inputs are constant before the first row and after
-//! the last one.
+//! Two rows at the same time are a jump; the later row holds from that time on. Inputs are constant before the first
+//! row and after the last one.
 
 use std::cell::Cell;
 use std::path::Path;
@@ -53,8 +53,8 @@ impl InputTable {
     /// Reads a table.
     ///
     /// # Errors
-    /// A file that cannot be read, a table without a column `t` or without a column of an input, a field that is not a number, times that
-    /// decrease.
+    /// A file that cannot be read, a table without a column `t` or without a column of an input, a field that is not a
+    /// number, times that decrease.
     pub fn read(path: &Path, between: Between, model: &dyn AnyModel) -> Result<Self, CliError> {
         let text = std::fs::read(path).map_err(|source| CliError::File {
             flag: "--inputs",
@@ -213,7 +213,8 @@ impl InputTable {
 }
 
 impl Piece {
-    /// The index of the first row that is interpolated at a time, and the weights of the rows from there on (Lagrange interpolation).
+    /// The index of the first row that is interpolated at a time, and the weights of the rows from there on (Lagrange
+    /// interpolation).
     fn weights(&self, t: f64) -> (usize, Vec<f64>) {
         let count = self.t.len().min(CUBIC);
         let before = self.t.partition_point(|row| *row <= t);

@@ -115,7 +115,8 @@ impl<'a> Recorder<'a> {
 }
 
 impl Watch for Recorder<'_> {
-    /// The end of a step is sampled with the next step, so that a sample at the time of an impact shows the state after it.
+    /// The end of a step is sampled with the next step, so that a sample at the time of an impact shows the state after
+    /// it.
     fn step(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(time) = self.next_time().filter(|&time| time < end) {

@@ -20,8 +20,8 @@ pub struct Symbol {
 }
 
 impl Symbol {
-    /// The parts of a name: `x`, `x_dot`, `theta1_dot`, `theta_dot.3`. `None` for a word of several letters that is not the name of a
-    /// Greek letter, and for an index that is not a number.
+    /// The parts of a name: `x`, `x_dot`, `theta1_dot`, `theta_dot.3`. `None` for a word of several letters that is not
+    /// the name of a Greek letter, and for an index that is not a number.
     pub fn of(name: &str) -> Option<Self> {
         let (family, member) = name.split_once('.').unwrap_or((name, ""));
         let (family, is_rate) = match family.strip_suffix("_dot") {

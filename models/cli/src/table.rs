@@ -1,5 +1,5 @@
-//! Tables as CSV. The table of a run has a row for each sample and each impact, with the columns `t`, coordinates, velocities,
-//! `energy` (except for first-order systems), outputs, `mode` (for models with modes), `event`.
+//! Tables as CSV. The table of a run has a row for each sample and each impact, with the columns `t`, coordinates,
+//! velocities, `energy` (except for first-order systems), outputs, `mode` (for models with modes), `event`.
 
 use std::io::{self, Write};
 
@@ -11,8 +11,8 @@ use crate::names;
 use crate::record::Keep;
 use crate::sink::Stream;
 
-/// The table of a run, which is written during the run. The row of an impact shows the state after it and names the surface in
-/// the column `event`. A sample at the same time follows it.
+/// The table of a run, which is written during the run. The row of an impact shows the state after it and names the
+/// surface in the column `event`. A sample at the same time follows it.
 pub struct RunTable<'a> {
     description: &'a Description,
     writer: csv::Writer<Stream<'a>>,
@@ -120,7 +120,8 @@ fn row(description: &Description, t: f64, point: &Point, event: &str) -> Vec<Str
     let has_modes = !description.modes.is_empty();
     numbers
         .map(|number| match has_modes && number.is_nan() {
-            // The mode lacks this quantity. For other numbers, `Debug` writes the shortest decimal that parses to the same number.
+            // The mode lacks this quantity. For other numbers, `Debug` writes the shortest decimal that parses to the
+            // same number.
             true => String::new(),
             false => format!("{number:?}"),
         })

@@ -1,8 +1,8 @@
 //! Errata of the sources of the shipped models, explained in `docs/theory/errata.md`.
 //!
-//! `C`: W. Clark, thesis (2020). `CB`: W. Clark and A. Bloch, Invariant forms in hybrid and impact systems. `CV`: J. Cortes
-//! and A. M. Vinogradov (2006). Every right value follows from the declaration of a model. The printed formula is evaluated
-//! at the same state.
+//! `C`: W. Clark, thesis (2020). `CB`: W. Clark and A. Bloch, Invariant forms in hybrid and impact systems. `CV`: J.
+//! Cortes and A. M. Vinogradov (2006). Every right value follows from the declaration of a model. The printed formula
+//! is evaluated at the same state.
 
 use std::f64::consts::FRAC_PI_2;
 

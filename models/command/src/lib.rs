@@ -1,5 +1,5 @@
-//! The shipped models as texts for the `dalembert` command, with the [`figures`] and [`errata`] of the papers in which they
-//! appear.
+//! The shipped models as texts for the `dalembert` command, with the [`figures`] and [`errata`] of the papers in which
+//! they appear.
 //!
 //! No model is compiled: a command loads the text of its model. With the feature `inlined` the models are compiled, and
 //! their functions are inlined into the code that runs them.

@@ -21,7 +21,8 @@ const BOX: &str = "
         }
     }";
 
-/// A linear oscillator in two directions with the frequencies w and 2 w. Its motions from the origin all meet after half a period.
+/// A linear oscillator in two directions with the frequencies w and 2 w. Its motions from the origin all meet after
+/// half a period.
 const SPRING: &str = "
     Spring {
         coordinates { x; y; }
@@ -91,8 +92,8 @@ fn assert_near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found} and {expected}");
 }
 
-/// Velocities and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, after `k` impacts. The times between
-/// impacts are `2 v`, and `x = v s - s^2/2` at the time `s = t - 2 k v` after the last impact.
+/// Velocities and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, after `k` impacts.
+/// The times between impacts are `2 v`, and `x = v s - s^2/2` at the time `s = t - 2 k v` after the last impact.
 fn closed(x: f64, t: f64, k: f64) -> Vec<[f64; 2]> {
     let root = (t * t - 8.0 * k * (k + 1.0) * x).sqrt();
     let velocities = match k {
@@ -286,8 +287,8 @@ fn a_lossy_wall_multiplies_the_times_behind_it() {
 
 #[test]
 fn gravity_and_a_wall_are_two_independent_balls() {
-    // Along x the motion is free, with or without an impact on the wall x = 1; along z it is the ball. Two impacts are two on the floor, or
-    // one on the floor and one on the wall.
+    // Along x the motion is free, with or without an impact on the wall x = 1; along z it is the ball. Two impacts are
+    // two on the floor, or one on the floor and one on the wall.
     let found = motions_on(
         SHELF,
         "- --from x=0,z=0 --to x=0.5,z=0.2 --time 5 --impacts 0..3",

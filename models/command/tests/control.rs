@@ -34,8 +34,8 @@ const MASSES: &str = "
         initial { until = 2; }
     }";
 
-/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is `6 (a^2 + b^2)/T^3`. With an
-/// impact on the wall at rest, the motion is that to the mirror image of the end.
+/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is `6 (a^2 +
+/// b^2)/T^3`. With an impact on the wall at rest, the cost is that of the motion to the mirror image of the end.
 const MIRROR: &str = "
     Mirror {
         coordinates { x; y; }
@@ -279,8 +279,8 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     assert!(lossy.iter().all(|it| count(it) == 1));
 }
 
-/// Without an input the ball has two impacts, and small costates do not change that: the search must go on to large ones. The cost of
-/// holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
+/// Without an input the ball has two impacts, and small costates do not change that: the search must go on to large
+/// ones. The cost of holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
 #[test]
 fn motions_with_fewer_impacts_than_without_an_input_are_found() {
     let mut last = 3.466699139518846;
@@ -414,7 +414,8 @@ fn the_costate_is_the_gradient_of_the_cost() {
     }
 }
 
-/// The ball moves under the forces of the table, which are linear in time between rows, and reaches the end of the extremal.
+/// The ball moves under the forces of the table, which are linear in time between rows, and reaches the end of the
+/// extremal.
 #[test]
 fn the_table_of_inputs_reaches_the_end() {
     let done = run_on(

@@ -91,8 +91,8 @@ const SLIDER: &str = "
         initial { until = 1; }
     }";
 
-/// A motion stays on the grid if it can stop in time: `x + v^2/16 <= 2` if it rises, `x - v^2/16 >= -1` if it falls. Without edges
-/// the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
+/// A motion stays on the grid if it can stop in time: `x + v^2/16 <= 2` if it rises, `x - v^2/16 >= -1` if it falls.
+/// Without edges the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
 #[test]
 fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
     let lowest = [41, 81].map(|count| {
@@ -141,7 +141,8 @@ fn a_ball_takes_the_impacts_that_are_cheapest() {
     let nodes = document["nodes"].as_array().unwrap();
     assert_eq!(nodes.len(), 61 * 61);
     let at = |x: usize, y: usize| nodes[x * 61 + y].as_array().unwrap().clone();
-    // The node x = 2, y = 0 has the cost and the impacts of the second path. From a high rising ball every motion leaves the grid.
+    // The node x = 2, y = 0 has the cost and the impacts of the second path. From a high ball that rises fast every
+    // motion leaves the grid.
     assert!((number(&at(40, 30)[2]) - 0.0363).abs() < 3e-3);
     assert!((number(&at(40, 30)[4]) - 1.0).abs() < 0.1);
     assert!(at(59, 59)[2].is_null() && at(59, 59)[3].is_null());

@@ -101,8 +101,8 @@ fn jumps_are_where_two_rows_are() {
     }
 }
 
-/// Rows at 0.5, 1 and 2: two lines, two constant values, or the parabola through three rows. Before and after the rows the input is
-/// constant.
+/// Rows at 0.5, 1 and 2: two lines, two constant values, or the parabola through three rows. Before and after the rows
+/// the input is constant.
 #[test]
 fn between_rows_inputs_are_as_asked() {
     let folder = Folder::new("between");
@@ -119,8 +119,8 @@ fn between_rows_inputs_are_as_asked() {
     );
 }
 
-/// For rows at the distance h the cubic differs from a sine by at most `3/128 h^4`, and by `h^4/24` in the intervals at the ends. Over the
-/// time 3 the integral differs by less than 5e-7.
+/// For rows at the distance h the cubic differs from a sine by at most `3/128 h^4`, and by `h^4/24` in the intervals at
+/// the ends. Over the time 3 the integral differs by less than 5e-7.
 #[test]
 fn a_smooth_input_is_met_closely() {
     let folder = Folder::new("sine");

@@ -21,7 +21,7 @@ const CART: &str = "
         outputs { tip: x + l*sin(theta); speed: dot(x)^2; }
     }";
 
-/// A charge on a turning table, with friction, a force that depends on time, and inputs.
+/// A metric that depends on position, a term linear in a velocity, friction, a force that depends on time, and inputs.
 const CHARGE: &str = "
     Charge {
         coordinates { x; y; }
@@ -262,7 +262,8 @@ fn a_sampled_oscillator_has_its_exact_matrices() {
     assert!(found["stability"].is_null());
 }
 
-/// A ball that falls from rest hits the floor at `sqrt(2 x/g)`. The derivatives of its motion afterwards are computed by hand.
+/// A ball that falls from rest hits the floor at `sqrt(2 x/g)`. The derivatives of its motion afterwards are computed
+/// by hand.
 #[test]
 fn samples_go_across_impacts() {
     let found = document(BALL, "- --every 2.5 --samples 1");
@@ -350,8 +351,8 @@ const SWITCHED: &str = "
         initial { dot(x) = 1; }
     }";
 
-/// A mass on a spring whose equilibrium -1 lies outside of an interval, or behind a floor; and a pendulum that a torque holds at an
-/// angle.
+/// A mass on a spring whose equilibrium -1 lies outside of an interval, or behind a floor; and a pendulum that a torque
+/// holds at an angle.
 #[test]
 fn an_equilibrium_is_a_state_that_the_model_allows() {
     for (coordinate, surface) in [("x in (0.5, 3)", ""), ("x", "impacts { floor: x >= 0; }")] {
@@ -423,8 +424,8 @@ fn a_sampled_motion_ends_where_it_leaves_the_mode() {
     );
 }
 
-/// A pendulum whose torque just holds it level. Two equilibria meet there: one eigenvalue is 0, and only half of the digits of the
-/// state are known.
+/// A pendulum whose torque just holds it level. Two equilibria meet there: one eigenvalue is 0, and only half of the
+/// digits of the state are known.
 #[test]
 fn the_stability_of_a_fold_is_open() {
     let text = "

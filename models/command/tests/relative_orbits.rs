@@ -12,8 +12,8 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::{Done, run_on};
 
-/// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section consists of the states of largest
-/// radius. `r^2` oscillates with the period `pi/w`, in which the angle grows by `pi L/sqrt(L^2 + b)`.
+/// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section consists of the
+/// states of largest radius. `r^2` oscillates with the period `pi/w`, in which the angle grows by `pi L/sqrt(L^2 + b)`.
 const CENTRAL: &str = "
     Central {
         coordinates { x; y; u; v; }
@@ -316,7 +316,7 @@ fn a_central_force_turns_by_its_apsidal_angle() {
         assert_near(number(&orbit["period"]), PI / parameter("w"), 1e-12);
         let angle = PI * momentum / momentum.hypot(parameter("b").sqrt());
         assert_near(advance(&orbit, 0), angle, 1e-12);
-        // Neither the energy nor the momentum changes the period, and the angle is left out.
+        // Energy and momentum do not change the period, and the group removes the angle, so both multipliers are 1.
         let found = multipliers(&orbit);
         assert_eq!(found.len(), 2);
         assert!(
@@ -356,8 +356,8 @@ fn chords_of_a_round_table_turn_by_their_angle() {
     );
 }
 
-/// A point in a round table with a round lens in its middle. Outside the lens its speed is v, inside it is v' with v'^2 = v^2 + 2. The
-/// refraction keeps the angular momentum: p v = p' v'.
+/// A point in a round table with a round lens in its middle. Outside the lens its speed is v, inside it is v' with v'^2
+/// = v^2 + 2. The refraction keeps the angular momentum: p v = p' v'.
 #[test]
 fn rays_through_a_lens_turn_by_their_angle() {
     let words = [
@@ -434,8 +434,8 @@ fn a_cart_closes_up_to_motions_of_the_plane() {
     // No direction is left across the group. In a period of the clock the heading turns by `2 pi w`.
     assert_eq!(multipliers(&orbit).len(), 0);
     assert_near(advance(&orbit, 0), 2.0 * PI * 0.3, 1e-12);
-    // `exp(a_0 (turn) + a_1 partial(x) + a_2 partial(y))` turns the plane about `(-a_2, a_1)/a_0`. A run of two periods ends at the image
-    // of its start under the turn by twice the angle.
+    // `exp(a_0 (turn) + a_1 partial(x) + a_2 partial(y))` turns the plane about `(-a_2, a_1)/a_0`. A run of two periods
+    // ends at the image of its start under the turn by twice the angle.
     let a = [0, 1, 2].map(|index| advance(&orbit, index));
     let start = numbers(&orbit["before"]["q"]);
     let given = format!("x={:?},y={:?},h={:?},s=0", start[0], start[1], start[2]);

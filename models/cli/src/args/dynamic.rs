@@ -10,7 +10,7 @@ use crate::scalar;
 /// Quantity of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Shown {
-    /// The least cost from there to the end.
+    /// The least cost from the node to the end.
     Cost,
     /// The best input.
     Input,
@@ -21,7 +21,8 @@ pub enum Shown {
 /// The grid, the paths, and the picture of dynamic programming.
 #[derive(Debug, Args)]
 pub struct DynamicArgs {
-    /// Solve by dynamic programming on this grid instead: an axis for each of the two components of the state and for the input.
+    /// Solve by dynamic programming on this grid instead: an axis for each of the two components of the state and for
+    /// the input.
     #[arg(
         long,
         value_name = "NAME=A..B:COUNT,..",
@@ -30,7 +31,7 @@ pub struct DynamicArgs {
         conflicts_with = "end"
     )]
     pub dp: Vec<String>,
-    /// Number of steps in time, in each of which the input is held.
+    /// Number of time steps; the input is constant in each of them.
     #[arg(long, value_name = "N", requires = "dp", value_parser = clap::value_parser!(u32).range(1..=100_000), default_value_t = 100)]
     pub steps: u32,
     /// Follow the path of least cost from this state. Default: the initial state. May be repeated.

@@ -76,7 +76,8 @@ pub struct MapArgs {
     /// be repeated.
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub contour: Vec<String>,
-    /// Add a column `out.NAME` with an expression at the end of each run, such as `S = integral(lagrangian)`. May be repeated.
+    /// Add a column `out.NAME` with an expression at the end of each run, such as `S = integral(lagrangian)`. May be
+    /// repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub output: Vec<String>,
     /// Longest period of an orbit that is searched for, in returns.

@@ -1,4 +1,4 @@
-//! `connect`: all motions between two configurations, as a summary, a table, a document and a picture.
+//! `connect`: motions between two configurations, as a summary, a table, a document and a picture.
 
 mod document;
 mod film;
@@ -29,8 +29,8 @@ struct Finished<'a> {
 /// Carries out `connect`.
 ///
 /// # Errors
-/// Invalid flags, a configuration that is refused, a file that cannot be written. If no motion is found, the result is not
-/// an error but [`Exit::Other`].
+/// Invalid flags, a configuration that is refused, a file that cannot be written. If no motion is found, the result is
+/// not an error but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &ConnectArgs,

@@ -72,8 +72,8 @@ impl Finished<'_> {
 /// Carries out `control`, also with --dp or --vary.
 ///
 /// # Errors
-/// Invalid flags, a model without a maximum principle, a state that is refused, a file that cannot be written. If no extremal
-/// is found, the result is not an error but [`Exit::Other`].
+/// Invalid flags, a model without a maximum principle, a state that is refused, a file that cannot be written. If no
+/// extremal is found, the result is not an error but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &ControlArgs,
@@ -173,7 +173,7 @@ fn build(
     build_model(extremals, &args)
 }
 
-/// The declared model, and its scene if one is asked for.
+/// The declared model, and its scene if one is selected.
 fn declared<'a>(
     models: &'a [Entry],
     args: &'a ControlArgs,

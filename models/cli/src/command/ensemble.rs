@@ -127,7 +127,7 @@ pub fn run(
     })
 }
 
-/// Writes the files about the whole ensemble.
+/// Writes the files and the summary of the whole ensemble.
 fn write_files(
     args: &EnsembleArgs,
     finished: &Finished<'_>,

@@ -1,4 +1,4 @@
-//! `errata`: misprints of the sources of the models, with printed and right values that are computed again.
+//! `errata`: lists misprints in the sources of the models, and computes the printed and the right values again.
 
 use std::io::{self, Write};
 

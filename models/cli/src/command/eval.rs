@@ -24,8 +24,8 @@ use impact::Moment;
 use input::Given;
 use report::Collected;
 
-/// Keys that are printed first for a state, in this order, with `null` for a quantity that the model does not have. The other
-/// reported quantities follow, then the impacts.
+/// Keys that are printed first for a state, in this order, with `null` for a quantity that the model does not have. The
+/// other reported quantities follow, then the impacts.
 const KEYS: [&str; 15] = [
     "q",
     "qdot",

@@ -65,7 +65,8 @@ pub fn run(
     })
 }
 
-/// The figures of the models with these names, or of all models without names. The standard figure of each model comes last.
+/// The figures of the models with these names, or of all models without names. The standard figure of each model comes
+/// last.
 fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliError> {
     let models = catalogue.models().iter();
     for name in wanted {

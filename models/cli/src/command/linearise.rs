@@ -28,8 +28,8 @@ struct Finished<'a> {
 /// Carries out `linearise`.
 ///
 /// # Errors
-/// Invalid flags, a state that is refused, a file that cannot be written. Equations without a derivative, and an equilibrium
-/// that is not found, are not errors but [`Exit::Other`].
+/// Invalid flags, a state that is refused, a file that cannot be written. Equations without a derivative, and an
+/// equilibrium that is not found, are not errors but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &LineariseArgs,

@@ -54,8 +54,8 @@ struct Finished<'a> {
 /// Carries out `map`.
 ///
 /// # Errors
-/// Invalid flags, an expression with names that the model does not have, a file that cannot be written or continued. A cell whose
-/// start is refused is not an error but an [`Exit`].
+/// Invalid flags, an expression with names that the model does not have, a file that cannot be written or continued. A
+/// cell whose start is refused is not an error but an [`Exit`].
 pub fn run(models: &[Entry], args: &MapArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     check_flags(args)?;
     // Opened before the runs, so that a path that cannot be written is reported at once.

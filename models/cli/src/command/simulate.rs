@@ -186,8 +186,8 @@ fn finish<'a>(
     })
 }
 
-/// Makes the run. If the end time is not known beforehand, the same run is made twice: first to find the end, then to
-/// sample it. Runs are deterministic, so only requested data is kept.
+/// Makes the run. If the end time is not known beforehand, the run is made twice: first to find the end, then to sample
+/// it. Both runs are the same, because runs are deterministic.
 fn carry_out(
     model: &dyn AnyModel,
     Prepared {

@@ -28,7 +28,7 @@ use crate::sink;
 /// Shortest time between two saves of counts.
 const SAVE: Duration = Duration::from_secs(1);
 
-/// Ratio of the time between two saves of counts to the duration of a save, at least.
+/// Least ratio of the time between two saves of counts to the duration of a save.
 const SAVING: u32 = 20;
 
 /// Length of a line of `FILE.sums`, in bytes.

@@ -1,4 +1,4 @@
-//! Parser of the lines of CSV that rows were written as.
+//! Parser of rows from lines of CSV.
 
 use std::borrow::Cow;
 

@@ -51,8 +51,8 @@ pub enum Output<'a> {
 }
 
 impl<'a> Output<'a> {
-    /// Opens the destination, passes the rows of an earlier run to `see`, and returns their number. If the number is 0, the caller must
-    /// discard everything that `see` and `counts` have received.
+    /// Opens the destination, passes the rows of an earlier run to `see`, and returns their number. If the number is 0,
+    /// the caller must discard everything that `see` and `counts` have received.
     ///
     /// # Errors
     /// A file that cannot be written, that another run is writing, or that belongs to other runs.

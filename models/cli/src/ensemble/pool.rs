@@ -1,7 +1,7 @@
 //! Parallel work whose results arrive in order.
 //!
-//! Free threads take the next block of items. Results that arrive early wait. The number of waiting results is bounded, because
-//! no thread takes a block that is too far ahead of the first missing result.
+//! Free threads take the next block of items. Results that arrive early wait. The number of waiting results is bounded,
+//! because no thread takes a block that is too far ahead of the first missing result.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

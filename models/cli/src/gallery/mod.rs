@@ -2,7 +2,8 @@
 //!
 //! Every model has figures of its motion. A [`Catalogue`](crate::Catalogue) may add others, such as those of the papers
 //! its models come from: [`Catalogue::with_figures`](crate::Catalogue::with_figures). A picture is specified by flags
-//! of `simulate`, `map`, `orbit`, `connect`, `control` or `accuracy`, so that its caption can give the command that draws it.
+//! of `simulate`, `map`, `orbit`, `connect`, `control` or `accuracy`, so that its caption can give the command that
+//! draws it.
 
 mod density;
 mod manifest;
@@ -30,7 +31,8 @@ pub struct Figure {
     pub chapter: &'static str,
     /// The index of the panel that the first row of the page shows, if any.
     pub highlight: Option<usize>,
-    /// Its description, with the values that were chosen because the source does not state them. Formulas stand between dollar signs.
+    /// Its description, with the values that were chosen because the source does not state them. Formulas stand between
+    /// dollar signs.
     pub caption: String,
     /// The figure of a source that it reproduces, if any.
     pub source: Option<&'static str>,

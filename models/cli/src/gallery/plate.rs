@@ -17,7 +17,8 @@ use crate::plot::Drawn;
 pub enum Effort {
     /// The effort that the captions state.
     Full,
-    /// A fiftieth of the positions of densities, an eighth of the values along each axis of `--vary`, and no timed pictures.
+    /// A fiftieth of the positions of densities, an eighth of the values along each axis of `--vary`, and no timed
+    /// pictures.
     Quick,
 }
 

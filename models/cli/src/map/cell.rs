@@ -113,8 +113,8 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
     }
 }
 
-/// The Lyapunov exponent from the last return on, if requested; the error explains why there is none. On an orbit it is the mean over
-/// whole periods.
+/// The Lyapunov exponent from the last return on, if requested; the error explains why there is none. On an orbit it is
+/// the mean over whole periods.
 fn grown(
     runner: &Runner<'_>,
     returns: &Returns,

@@ -2,8 +2,8 @@
 
 use super::request::Components;
 
-/// Factor on the tolerance of one run for returns of one orbit in several cells. It is large because a run approaches its orbit slowly
-/// if a multiplier is near 1.
+/// Factor on the tolerance of one run for returns of one orbit in several cells. It is large because a run approaches
+/// its orbit slowly if a multiplier is near 1.
 const APART: f64 = 1000.0;
 
 /// Largest number of orbits that are distinguished.
@@ -18,8 +18,9 @@ pub struct Return {
     pub duration: f64,
 }
 
-/// The points of the orbit that the last returns repeat, the last return first; empty if they do not repeat. A period is found if the
-/// returns contain it twice. Durations are compared too, because equal states do not suffice if the motion depends on time.
+/// The points of the orbit that the last returns repeat, the last return first; empty if they do not repeat. A period
+/// is found if the returns contain it twice. Durations are compared too, because equal states do not suffice if the
+/// motion depends on time.
 pub fn cycle(recent: &[Return], longest: usize, components: &Components) -> Vec<Vec<f64>> {
     let last = |back: usize| &recent[recent.len() - 1 - back];
     let are_same = |one: &Return, other: &Return| {
@@ -57,8 +58,8 @@ impl Orbits {
         &self.0
     }
 
-    /// The number, counted from 1, of the orbit with these points. A new orbit gets the next number, or 0 if there are too many
-    /// orbits.
+    /// The number, counted from 1, of the orbit with these points. A new orbit gets the next number, or 0 if there are
+    /// too many orbits.
     pub fn number(&self, cycle: &[Vec<f64>], components: &Components) -> u64 {
         let is_same = |orbit: &Orbit| {
             orbit.period == cycle.len() as u64
@@ -73,7 +74,8 @@ impl Orbits {
         }
     }
 
-    /// Counts a cell that converges to the orbit of this number, and adds the orbit if it is new. The number 0 is ignored.
+    /// Counts a cell that converges to the orbit of this number, and adds the orbit if it is new. The number 0 is
+    /// ignored.
     pub fn count(&mut self, number: u64, period: u64, point: &[f64]) {
         let Some(index) = number.checked_sub(1) else {
             return;

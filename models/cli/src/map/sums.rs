@@ -155,7 +155,8 @@ impl Sums {
         }
     }
 
-    /// The indices of the classes: orbits by number, then periods by length, then the other classes from most to fewest cells.
+    /// The indices of the classes: orbits by number, then periods by length, then the other classes from most to fewest
+    /// cells.
     pub fn sorted_classes(&self) -> Vec<usize> {
         let rank = |index: &usize| {
             let (name, cells) = &self.classes[*index];

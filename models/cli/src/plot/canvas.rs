@@ -41,8 +41,8 @@ pub const TITLE_HEIGHT: f64 = 54.0;
 /// Left edge of titles and legends, in pixels.
 pub const INDENT: f64 = 20.0;
 
-/// Width of dashed lines, in pixels. No other line has this width. The drawing library would write every dash as a line of its own;
-/// therefore dashed lines are drawn as whole lines, and [`sheet`] adds the dashes.
+/// Width of dashed lines, in pixels. No other line has this width. The drawing library would write every dash as a line
+/// of its own; therefore dashed lines are drawn as whole lines, and [`sheet`] adds the dashes.
 pub const DASHED: f64 = 0.9;
 
 /// Length of a dash and of the gap after it, in pixels.

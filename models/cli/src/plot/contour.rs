@@ -148,8 +148,8 @@ impl Grid {
             Side::Horizontal(column, row + 1),
             Side::Vertical(column, row),
         ];
-        // Counterclockwise, side k leads from corner k to corner k + 1. A segment starts on a side on which the function turns negative, and
-        // ends on a side on which it turns positive.
+        // Counterclockwise, side k leads from corner k to corner k + 1. A segment starts on a side on which the
+        // function turns negative, and ends on a side on which it turns positive.
         let starts: Vec<usize> = (0..4)
             .filter(|&k| positive[k] && !positive[(k + 1) % 4])
             .collect();
@@ -159,8 +159,8 @@ impl Grid {
         let joined = corners.iter().sum::<f64>() > 0.0;
         let end_of = |start: usize| match ends.as_slice() {
             [end] => *end,
-            // A saddle. If the mean of the corners is positive, the segment cuts off the negative corner after `start`, otherwise the
-            // positive corner before it.
+            // A saddle. If the mean of the corners is positive, the segment cuts off the negative corner after `start`,
+            // otherwise the positive corner before it.
             _ if joined => (start + 1) % 4,
             _ => (start + 3) % 4,
         };

@@ -79,8 +79,8 @@ struct Scale {
 }
 
 impl Scale {
-    /// A scale that ends at the largest density. If a few cells far exceed the others, it ends at the density that 199 of 200
-    /// non-empty cells do not exceed.
+    /// A scale that ends at the largest density. If a few cells far exceed the others, it ends at the density that 199
+    /// of 200 non-empty cells do not exceed.
     fn of(density: &Density, counts: &[u64]) -> Self {
         let all: u64 = counts.iter().sum();
         let unit = 1.0 / (all.max(1) as f64 * density.cell_area());

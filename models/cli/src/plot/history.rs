@@ -1,5 +1,5 @@
-//! Quantities against time, with impacts as vertical lines. By default one panel shows all coordinates and a second one the
-//! outputs.
+//! Quantities against time, with impacts as vertical lines. By default one panel shows all coordinates and a second one
+//! the outputs.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;

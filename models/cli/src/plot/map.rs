@@ -259,7 +259,8 @@ impl Chart<'_> {
         }
     }
 
-    /// Colours cells by numbers. The colour scale leaves out a fraction `beyond` of the numbers at either end; they have the colour of that end.
+    /// Colours cells by numbers. The colour scale leaves out a fraction `beyond` of the numbers at either end; they
+    /// have the colour of that end.
     fn by_number<'s>(&'s self, name: &'s str, beyond: f64) -> Painted<'s> {
         let numbers = self.cells.numbers.iter().copied();
         let mut sorted: Vec<f64> = numbers.clone().filter(|value| value.is_finite()).collect();

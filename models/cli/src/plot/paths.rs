@@ -1,5 +1,5 @@
-//! Several motions in one picture, with a panel for each ordinate and a colour for each number of impacts. Dots mark the states before
-//! impacts, dashes the jumps, rings the starts and squares the ends.
+//! Several motions in one picture, with a panel for each ordinate and a colour for each number of impacts. Dots mark
+//! the states before impacts, dashes the jumps, rings the starts and squares the ends.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;

@@ -72,8 +72,8 @@ impl<'a> Region<'a> {
         path.grown(ROOM)
     }
 
-    /// The bounding rectangle of the region, to the resolution of a grid in a window; `None` if the region reaches the edge of the window
-    /// or lies outside.
+    /// The bounding rectangle of the region, to the resolution of a grid in a window; `None` if the region reaches the
+    /// edge of the window or lies outside.
     pub fn extent(&self, window: Window, cells: usize) -> Option<Window> {
         let contours = self.contours(window, cells);
         let inside = contours
@@ -95,8 +95,8 @@ impl<'a> Region<'a> {
         self.model.region(t, &q).unwrap_or(f64::NAN)
     }
 
-    /// True if the region depends on the coordinates of the plane only. The test compares four points at the first and the last time, and at
-    /// two times between with the other coordinates of the first and of the last state.
+    /// True if the region depends on the coordinates of the plane only. The test compares four points at the first and
+    /// the last time, and at two times between with the other coordinates of the first and of the last state.
     fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let points =
             [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));

@@ -5,7 +5,8 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::style::{RGBColor, WHITE};
 
-/// Colours that colour-blind people can distinguish: those of Okabe and Ito that are readable on white, a dark grey and a brown.
+/// Colours that colour-blind people can distinguish: those of Okabe and Ito that are readable on white, a dark grey and
+/// a brown.
 pub const PALETTE: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),

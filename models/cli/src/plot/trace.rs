@@ -39,8 +39,8 @@ impl Source {
         }
     }
 
-    /// True if states inside a step add to the curve. They do not for energies alone: inside a step, energies only show errors of the
-    /// dense output.
+    /// True if states inside a step add to the curve. They do not for energies alone: inside a step, energies only show
+    /// errors of the dense output.
     fn looks_inside(&self) -> bool {
         match self {
             Self::View | Self::Coordinates => true,
@@ -77,7 +77,8 @@ pub struct Mark {
     pub t: f64,
     /// The values of the components at that time.
     pub values: Vec<f64>,
-    /// True for either side of an impact, for an event of a contact and for an end of the run. Thinning keeps such points.
+    /// True for either side of an impact, for an event of a contact and for an end of the run. Thinning keeps such
+    /// points.
     pub corner: bool,
 }
 

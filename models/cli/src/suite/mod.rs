@@ -1,5 +1,5 @@
-//! Suites of hard cases, which `dalembert stability` runs. Each case has a correct result (a closed form, an exact count or a
-//! class of outcome) and a bound on its measured error.
+//! Suites of hard cases, which `dalembert stability` runs. Each case has a correct result (a closed form, an exact
+//! count or a class of outcome) and a bound on its measured error.
 //!
 //! A suite is a list of [`Case`]s for [`Catalogue::with_suite`](crate::Catalogue::with_suite). A case writes its
 //! measurements into a [`Report`]. [`examine`] runs it under every [`Setting`] that its [`Run`] requests.
@@ -25,7 +25,8 @@ pub struct Case {
     pub bound: &'static str,
     /// True if it takes so long that it runs only on request.
     pub nightly: bool,
-    /// The reason why it cannot hold yet. If such a case holds, it is reported as a failure, so that the reason is removed.
+    /// The reason why it cannot hold yet. If such a case holds, it is reported as a failure, so that the reason is
+    /// removed.
     pub pending: Option<&'static str>,
     /// The measurement.
     pub run: Run,
@@ -74,8 +75,8 @@ pub enum Run {
     Integrators(fn(Setting, &mut Report)),
     /// Measured by these integrators only, otherwise like [`Run::Integrators`].
     Chosen(&'static [Integrator], fn(Setting, &mut Report)),
-    /// Measured by every integrator: with steps of any length, with steps of at most each of [`FORCED_STEPS`], and with the
-    /// dense output read in every step. The class of the outcome must be the same in all settings.
+    /// Measured by every integrator: with steps of any length, with steps of at most each of [`FORCED_STEPS`], and with
+    /// the dense output read in every step. The class of the outcome must be the same in all settings.
     Steps(fn(Setting, &mut Report)),
 }
 

@@ -1,4 +1,5 @@
-//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4, 4.5, 10.1 and 10.2), and gaits that double their period.
+//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4, 4.5, 10.1 and 10.2), and gaits that
+//! double their period.
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 

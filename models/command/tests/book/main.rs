@@ -1,5 +1,5 @@
-//! The book under `docs/` and the README: commands run and print the shown text, models load, and the stored pictures are those
-//! that the commands draw.
+//! The book under `docs/` and the README: commands run and print the shown text, models load, and the stored pictures
+//! are those that the commands draw.
 //!
 //! Blocks of the pages that are tested:
 //!

@@ -52,7 +52,7 @@ impl Session {
         Ok(())
     }
 
-    /// Runs the commands of a block that begin with `cargo run`, without cargo.
+    /// Runs the `cargo run` commands of a block by the command under test.
     pub fn cargo_commands(&mut self, text: &str) -> Result<(), String> {
         let commands = text
             .lines()
@@ -81,7 +81,8 @@ impl Session {
         Ok((done.status.code().unwrap_or(-1), output))
     }
 
-    /// Compares the texts of a stored picture (title, axes, legend) with those of the picture that a command drew under the same name.
+    /// Compares the texts of a stored picture (title, axes, legend) with those of the picture that a command drew under
+    /// the same name.
     pub fn compare_picture(&self, stored: &Path) -> Result<(), String> {
         let name = stored.file_name().unwrap_or_default();
         let drawn = fs::read_to_string(self.folder.join(name))

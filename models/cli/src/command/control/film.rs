@@ -11,7 +11,7 @@ use crate::plot::film;
 use crate::plot::paths::{self, Path, Sheet};
 use crate::plot::quantity;
 
-/// The picture of all extremals.
+/// The picture of the extremals that were found.
 ///
 /// # Errors
 /// An extremal that cannot be repeated, or an error of the drawing library.

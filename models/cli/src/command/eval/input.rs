@@ -1,5 +1,5 @@
-//! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, where `p` may replace `qdot`. Values are JSON numbers or
-//! decimal strings. A first-order system takes `q` alone; a model with inputs also takes `inputs: [..]`.
+//! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, where `p` may replace `qdot`. Values are JSON
+//! numbers or decimal strings. A first-order system takes `q` alone; a model with inputs also takes `inputs: [..]`.
 
 use std::fs::File;
 use std::io::Read;

@@ -9,7 +9,8 @@ use serde_json::{Map, Value};
 
 use crate::json;
 
-/// All reported quantities of one state. Quantities whose names begin with `impacts.` belong to the contact with a surface.
+/// All reported quantities of one state. Quantities whose names begin with `impacts.` belong to the contact with a
+/// surface.
 #[derive(Default)]
 pub struct Collected {
     values: Map<String, Value>,

@@ -1,5 +1,5 @@
-//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a picture. With a second
-//! parameter, also the curves of its bifurcations in the plane of both.
+//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a picture. With a
+//! second parameter, also the curves of its bifurcations in the plane of both.
 
 mod curves;
 mod document;
@@ -56,7 +56,8 @@ pub fn run(
     )
 }
 
-/// Writes the files of `--csv`, `--json` and `--plot`, and the summary unless the table or the document is the standard output.
+/// Writes the files of `--csv`, `--json` and `--plot`, and the summary unless the table or the document is the standard
+/// output.
 fn write(
     args: &OrbitArgs,
     [csv, json, plot]: [Option<Sink>; 3],

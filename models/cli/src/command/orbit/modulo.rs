@@ -98,8 +98,8 @@ fn generator(model: &dyn AnyModel, field: &Symmetry) -> Generator {
     }
 }
 
-/// The coordinates that drift in the first return of a search that did not converge, if translations along them are proved
-/// symmetries.
+/// The coordinates that drift in the first return of a search that did not converge, if translations along them are
+/// proved symmetries.
 pub(super) fn drift(
     model: &dyn AnyModel,
     args: &OrbitArgs,

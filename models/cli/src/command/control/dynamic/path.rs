@@ -119,11 +119,11 @@ impl Path {
     }
 }
 
-/// The best input at a state, with its motion over the step: the interpolated input, or the best input of the grid if that costs
-/// less. `None` if both motions leave the grid.
+/// The best input at a state, with its motion over the step: the interpolated input, or the best input of the grid if
+/// that costs less. `None` if both motions leave the grid.
 ///
-/// Interpolated margins have errors: a motion along an edge of the grid may have a negative margin and still stay on the grid.
-/// Therefore the states decide, not the margins.
+/// Interpolated margins have errors: a motion along an edge of the grid may have a negative margin and still stay on
+/// the grid. Therefore the states decide, not the margins.
 fn step(
     problem: &Problem,
     after: &Layer,

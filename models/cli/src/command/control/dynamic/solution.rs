@@ -82,7 +82,8 @@ impl Solution {
         nodes.filter(|node| !layer.cost(*node).is_nan()).count()
     }
 
-    /// Least cost, best input and number of impacts of a node at the time that is shown; NaN where every motion leaves the grid.
+    /// Least cost, best input and number of impacts of a node at the time that is shown; NaN where every motion leaves
+    /// the grid.
     pub fn shown(&self, node: usize) -> [f64; 3] {
         let layer = &self.layers[self.step];
         let cost = layer.cost(node);

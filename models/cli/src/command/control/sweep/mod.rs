@@ -76,7 +76,7 @@ fn cheapest<'a>(finished: &'a Finished<'_>, impacts: usize) -> Option<&'a Extrem
 /// Carries out `control --vary`.
 ///
 /// # Errors
-/// The errors of `control`. An error at single values stands in the results, unless every value has an error.
+/// The errors of `control`. Errors at single values are part of the results, unless every value has an error.
 pub(super) fn run(
     models: &[Entry],
     args: &ControlArgs,

@@ -1,4 +1,5 @@
-//! Certified motion in a few lines of text. If the certification ends early, the text gives the reason in the model's names.
+//! Certified motion in a few lines of text. If the certification ends early, the text gives the reason in the model's
+//! names.
 
 use std::io::{self, Write};
 

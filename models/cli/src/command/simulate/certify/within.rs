@@ -10,7 +10,8 @@ use crate::{names, scalar};
 
 const FLAG: &str = "--certify-within";
 
-/// Largest absolute value of a factor in an end, and of its reciprocal: products of four such factors neither overflow nor vanish.
+/// Largest absolute value of a factor in an end, and of its reciprocal: products of four such factors neither overflow
+/// nor vanish.
 const LARGEST: f64 = 1e30;
 
 /// Ranges by the kind of their quantities.
