@@ -48,7 +48,7 @@ pub fn doubts(unresolved: usize, given_up: usize) -> String {
     }
     if given_up > 0 {
         let starts = counted(given_up, "start");
-        text += &format!("; {starts} given up, whose motions take too many steps");
+        text += &format!("; {starts} given up because their motions take too many steps");
     }
     text
 }

@@ -197,7 +197,7 @@ fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
         }
         if constraint.level.is_some() {
             notes.push(format!(
-                "constraint `{}` is integrable: it keeps a function of position",
+                "constraint `{}` is integrable: it keeps a function of the position constant",
                 constraint.name
             ));
         }

@@ -164,7 +164,7 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
     let description = model.description();
     if !description.modes.is_empty() {
         return Err(CliError::Usage(
-            "connect: motions that change between modes are not solved for; write the mode as a model of its own",
+            "connect: motions that change between modes are not supported; declare the mode as a model of its own",
         ));
     }
     let impacts = ends::impacts(&args.search.impacts)?;

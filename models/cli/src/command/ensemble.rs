@@ -54,7 +54,7 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     check_flags(args)?;
     if !args.run.input.is_empty() {
-        let text = "--input: an ensemble leaves inputs at 0; declare a parameter for what its members vary";
+        let text = "--input: an ensemble leaves inputs at 0; declare a parameter in place of an input that members vary";
         return Err(CliError::Usage(text));
     }
     let models = &*expression::with_outputs(models, &args.run.model.model, &args.output)?;

@@ -130,7 +130,7 @@ fn text(description: &Description, reason: &Unlinear) -> String {
     match reason {
         Unlinear::Fault(fault) => format!("{reason}: {}", words::fault_text(description, fault)),
         Unlinear::NoEquilibrium { component, rate } => format!(
-            "no equilibrium was found: the rate of {} stays at {rate:.3e}; try --moving, another start, or more that is free",
+            "no equilibrium was found: the rate of {} stays at {rate:.3e}; try --moving, another start, or more free components",
             components(description)[*component]
         ),
         Unlinear::Ended { t, outcome } => {

@@ -199,14 +199,14 @@ fn check_flags(args: &MapArgs) -> Result<(), CliError> {
     args.rows.check()?;
     if args.class == "lyapunov" && args.lyapunov.is_none() {
         return Err(CliError::Usage(
-            "--class lyapunov needs --lyapunov N: say over how many returns",
+            "--class lyapunov needs --lyapunov N, the number of further returns",
         ));
     }
     if args.class == "returns" && args.returns.is_none() {
         return Err(CliError::Usage("--class returns needs --returns N"));
     }
     if !args.run.input.is_empty() {
-        let text = "--input: a map leaves inputs at 0; declare a parameter for what its cells vary";
+        let text = "--input: a map leaves inputs at 0; declare a parameter in place of an input that cells vary";
         return Err(CliError::Usage(text));
     }
     Ok(())
@@ -409,7 +409,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
         (None, 1) => 0,
         (None, _) => {
             return Err(CliError::Usage(
-                "--returns: the model has several surfaces; say which with --surface",
+                "--returns: the model has several surfaces; choose one with --surface",
             ));
         }
     };
@@ -485,7 +485,7 @@ fn check_states(models: &[Entry], args: &MapArgs, request: &Request) -> Result<(
         Some((flag, watched)) => Err(CliError::value(
             flag,
             watched.expression.text(),
-            "an expression of the start: an integral is known along a run alone",
+            "an expression of the start: an integral exists only along a run",
         )),
     }
 }

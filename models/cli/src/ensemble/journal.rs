@@ -293,7 +293,7 @@ fn again(flag: &str) -> &'static str {
 
 /// The error for a line that was altered since it was written.
 fn altered(flag: &'static str, path: &Path, line: u64) -> CliError {
-    let (what, difference, help) = match line {
+    let (what, defect, help) = match line {
         1 => ("header", "it differs from the header of these runs", ""),
         _ => (
             "row",
@@ -304,7 +304,7 @@ fn altered(flag: &'static str, path: &Path, line: u64) -> CliError {
     CliError::Input {
         place: format!("{flag} {}, line {line}", path.display()),
         reason: format!(
-            "the {what} was altered after it was written: {difference}; {help}{}",
+            "the {what} was altered after it was written: {defect}; {help}{}",
             again(flag)
         ),
     }

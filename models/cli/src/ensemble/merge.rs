@@ -92,7 +92,7 @@ fn part<'a>(path: &'a Path, metadata: &Map<String, Value>) -> Result<Part<'a>, C
     };
     read().ok_or_else(|| CliError::Input {
         place,
-        reason: "its metadata name no shard; run it again".to_owned(),
+        reason: "its metadata do not name a shard; run the shard again".to_owned(),
     })
 }
 

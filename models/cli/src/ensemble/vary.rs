@@ -51,7 +51,7 @@ fn parse_values(name: &str, text: &str, asked: Asked) -> Result<Values, CliError
     };
     if let Some((mean, deviation)) = text.split_once("+-") {
         if !asked.random {
-            return Err(refuse("A..B, or --random SEED for values that scatter"));
+            return Err(refuse("A..B, or --random SEED for a normal distribution"));
         }
         let (mean, deviation) = (number(mean)?, number(deviation)?);
         return match deviation >= 0.0 {

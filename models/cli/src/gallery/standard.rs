@@ -24,7 +24,7 @@ pub fn figure(description: &Description) -> Figure {
         add("phase", &title, format!("--axes {first},{velocity} "));
     }
     if !description.is_first_order {
-        let title = "Change of the energy, as a share of it";
+        let title = "Relative change of the energy";
         add("energy", title, "--axes t,energy_error ".to_owned());
     }
 
@@ -41,8 +41,8 @@ pub fn figure(description: &Description) -> Figure {
         title: "Motion from the declared start",
         chapter: MOTIONS,
         highlight: None,
-        caption: "Parameters and state are those that the model declares. Where the energy is kept, its change is \
-                  the error of the run."
+        caption: "Parameters and start are those of the declaration. If the energy is conserved, its change is the \
+                  error of the run."
             .to_owned(),
         source: None,
         panels: panels.collect(),

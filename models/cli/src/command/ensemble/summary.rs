@@ -187,7 +187,7 @@ fn write_density(
     }
     writeln!(
         output,
-        "  independent: what as many states that do not depend on each other would show; more says that the density has not \
+        "  independent: mean distance for as many independent states; a larger distance means that the density has not \
          converged"
     )
 }

@@ -166,7 +166,7 @@ fn number(place: &str, value: &Value) -> Result<f64, CliError> {
         CliError::value(
             place,
             value.to_string(),
-            "a finite number, or one in a string",
+            "a finite number, or a string that contains one",
         )
     })
 }
