@@ -73,7 +73,7 @@ impl<'de> Visitor<'de> for UniqueVisitor {
         while let Some((key, Unique(value))) = entries.next_entry::<String, Unique>()? {
             if object.contains_key(&key) {
                 return Err(A::Error::custom(format_args!(
-                    "the key `{key}` is there twice; expected every key once"
+                    "the key `{key}` occurs twice; expected every key once"
                 )));
             }
             object.insert(key, value);
@@ -231,7 +231,7 @@ mod tests {
             r#"[{"c": 1, "c": 1}]"#,
         ] {
             let error = parse(text.as_bytes()).unwrap_err().to_string();
-            assert!(error.contains("`c` is there twice"), "{error}");
+            assert!(error.contains("`c` occurs twice"), "{error}");
         }
     }
 

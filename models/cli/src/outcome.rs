@@ -15,7 +15,7 @@ pub type Details = Vec<(&'static str, Value)>;
 /// The kind of an outcome, and its details.
 pub type Told = (&'static str, Details);
 
-/// The details of an outcome besides its kind and its time, in the model's names.
+/// The details of an outcome except its kind and its time, in the model's names.
 pub fn details(description: &Description, outcome: &Outcome) -> Details {
     let facts = outcome::details(description, outcome).into_iter();
     facts.map(|(name, fact)| (name, value(fact))).collect()

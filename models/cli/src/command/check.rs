@@ -289,7 +289,7 @@ fn write_claim(output: &mut dyn Write, scene: &str, finding: &Finding) -> Result
     Ok(())
 }
 
-/// Declarations besides parameters: titles, each with its entries.
+/// The declarations except parameters: titles, each with its entries.
 fn declarations(description: &Description) -> [(&'static str, Vec<String>); 6] {
     let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     let coordinates = description.coordinates.iter();

@@ -96,7 +96,7 @@ impl Colours {
 pub struct Components {
     /// Their names.
     pub names: Vec<String>,
-    /// How each component is compared.
+    /// The comparison of each component, in the same order.
     kinds: Vec<Kind>,
     /// Number of coordinates.
     coordinates: usize,

@@ -36,7 +36,7 @@ pub fn draw(cloud: &Cloud<'_>) -> Result<String, String> {
             style::PATH,
             format!("scattered starts ({})", cloud.points.len()),
         ),
-        Item::new(Symbol::Ring, style::INK, "the start itself"),
+        Item::new(Symbol::Ring, style::INK, "unscattered start"),
     ];
     let labels = cloud.table.labels();
     let words = Words {

@@ -102,7 +102,7 @@ impl Report {
 
     /// The check closest to failing, or the worst failure.
     pub(super) fn worst(&self) -> Option<&Check> {
-        // Of equal checks the first one is taken, because a failure begins there.
+        // The first of equal checks is taken, because a failure begins there.
         let checks = self.checks.iter().rev();
         checks.max_by(|a, b| a.share.total_cmp(&b.share))
     }
