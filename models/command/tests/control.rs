@@ -34,8 +34,8 @@ const MASSES: &str = "
         initial { until = 2; }
     }";
 
-/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is `6 (a^2 +
-/// b^2)/T^3`. With an impact on the wall at rest, the cost is that of the motion to the mirror image of the end.
+/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is
+/// `6 (a^2 + b^2)/T^3`. With an impact on the wall at rest, it is the cost of the motion to the mirror image of the end.
 const MIRROR: &str = "
     Mirror {
         coordinates { x; y; }

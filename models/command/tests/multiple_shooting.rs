@@ -9,8 +9,8 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::run_on;
 
-/// A chain of four integrators. From rest at 0 to rest at 1 in a time of 1, the least integral of `u^2` is `7!^2/(3!^2
-/// 7)`, 100800.
+/// A chain of four integrators. From rest at 0 to rest at 1 in a time of 1, the least integral of `u^2` is
+/// `7!^2/(3!^2 7) = 100800`.
 const CHAIN: &str = "
     Chain {
         coordinates { a; b; c; g; }

@@ -356,8 +356,8 @@ fn chords_of_a_round_table_turn_by_their_angle() {
     );
 }
 
-/// A point in a round table with a round lens in its middle. Outside the lens its speed is v, inside it is v' with v'^2
-/// = v^2 + 2. The refraction keeps the angular momentum: p v = p' v'.
+/// A point in a round table with a round lens in its middle. Outside the lens its speed is v, inside it is v'
+/// with v'^2 = v^2 + 2. The refraction keeps the angular momentum: p v = p' v'.
 #[test]
 fn rays_through_a_lens_turn_by_their_angle() {
     let words = [
