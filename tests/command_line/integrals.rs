@@ -235,11 +235,11 @@ fn a_map_refuses_integrals_of_a_start_and_returns_to_a_stop() {
     for (flags, message) in [
         (
             &["--contour", "integral(x)"][..],
-            "an integral is known along a run alone",
+            "an integral exists only along a run",
         ),
         (
             &["--start", "x = integral(x)"],
-            "an integral is known along a run alone",
+            "an integral exists only along a run",
         ),
         (
             &["--returns", "3", "--law", "stop"],

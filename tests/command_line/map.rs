@@ -436,7 +436,7 @@ fn a_model_with_several_surfaces_or_none_needs_a_word() {
         .collect::<Vec<_>>();
     let refused = run_on(&two, &words);
     assert!(
-        refused.errors.contains("say which with --surface"),
+        refused.errors.contains("choose one with --surface"),
         "{}",
         refused.errors
     );

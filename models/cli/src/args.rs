@@ -1,5 +1,5 @@
-//! Grammar of the command line. What it accepts is a public interface. Values are checked where they are used, because
-//! only there the names of the model are known.
+//! Grammar of the command line, a public interface. Values are checked where they are used, because only there are the
+//! names of the model known.
 
 mod certify;
 mod check;
@@ -112,7 +112,7 @@ pub enum Command {
         after_help = orbit::EXAMPLES
     )]
     Orbit(Box<OrbitArgs>),
-    /// Find all motions that join two configurations in a given time, with given numbers of impacts.
+    /// Find motions that join two configurations in a given time, with given numbers of impacts.
     #[command(
         help_template = help::TEMPLATE,
         before_help = "Example: dalembert connect bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 0..3",
@@ -126,7 +126,7 @@ pub enum Command {
         after_help = linearise::EXAMPLES
     )]
     Linearise(Box<LineariseArgs>),
-    /// Find inputs that make the cost of a model least, across impacts.
+    /// Find inputs that minimise the cost of a model, across impacts.
     #[command(
         help_template = help::TEMPLATE,
         before_help = "Example: dalembert control controlled_ball --impacts 0..2",
@@ -140,7 +140,7 @@ pub enum Command {
         after_help = help::EVAL
     )]
     Eval(EvalArgs),
-    /// Write a file with a commented declaration to begin with.
+    /// Write a file with a commented declaration as a starting point.
     #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert new pendulum", after_help = file::NEW_EXAMPLES)]
     New(NewArgs),
     /// Run a model of a file again whenever the file is saved.
@@ -171,7 +171,7 @@ pub enum Command {
         after_help = gallery::EXAMPLES
     )]
     Gallery(GalleryArgs),
-    /// List misprints of the sources of the models, with printed and right values computed again.
+    /// List misprints in the sources of the models, and compute the printed and the right values.
     #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert errata", after_help = errata::EXAMPLES)]
     Errata(ErrataArgs),
     /// Run the hard cases and report which of them keep their bounds.
@@ -331,7 +331,7 @@ pub enum RestPolicy {
     Contact,
 }
 
-/// Treatment of a law that leaves the state approaching.
+/// Treatment of a law after which the state still approaches the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum PenetrationPolicy {
     /// End the run with the outcome `still_penetrating`.
@@ -339,11 +339,11 @@ pub enum PenetrationPolicy {
     Stop,
     /// Use the limit of the repeated law, which is `impact_plastic`.
     Repeat,
-    /// The same, and continue along the surface as with `--rest contact`.
+    /// Like `repeat`, and continue along the surface as with `--rest contact`.
     Contact,
 }
 
-/// Treatment of impacts at several surfaces at one time whose order matters.
+/// Treatment of simultaneous impacts at several surfaces whose order matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum CornerPolicy {
     /// End the run with the outcome `ambiguous`.
@@ -372,10 +372,10 @@ pub struct PolicyArgs {
     /// the start.
     #[arg(long, value_enum, default_value_t)]
     pub rest: RestPolicy,
-    /// Treatment of a law that leaves the state approaching the surface.
+    /// Treatment of a law after which the state still approaches the surface.
     #[arg(long, value_enum, default_value_t)]
     pub penetration: PenetrationPolicy,
-    /// Treatment of impacts at several surfaces at one time whose order matters.
+    /// Treatment of simultaneous impacts at several surfaces whose order matters.
     #[arg(long, value_enum, default_value_t)]
     pub corner: CornerPolicy,
     /// Treatment of a transition after which the motion may be refracted or reflected.
@@ -450,7 +450,7 @@ pub struct RunArgs {
     pub projection: Option<Switch>,
 }
 
-/// The integrator of a run, and what ends it before its time.
+/// The integrator of a run, and the limits that end it before its end time.
 #[derive(Debug, Args)]
 pub struct CourseArgs {
     /// Stop after this many impacts. Without --until the end time is then 3600, or the model's `until` if that is later.
@@ -463,8 +463,8 @@ pub struct CourseArgs {
     /// run takes more than about four million steps. The summary prints it.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub step: Option<f64>,
-    /// Largest step of dop853, dopri5 and taylor. A force that acts for a time shorter than the step may be missed: choose a
-    /// largest step below its duration.
+    /// Largest step of dop853, dopri5 and taylor. A force that acts for a time shorter than the step may be missed:
+    /// choose a largest step below its duration.
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub max_step: Option<f64>,
     /// Tolerance: relative local error per step, between 1e-15 and 0.1.
@@ -484,15 +484,16 @@ pub struct SimulateArgs {
     /// Integrator and end of the run.
     #[command(flatten)]
     pub course: CourseArgs,
-    /// Take inputs from a table with a column `t` and columns of inputs, such as that of `control --inputs`. Two rows at one time
-    /// are a jump. Inputs without a column are those of --input; before the first row and after the last one they are held.
+    /// Take inputs from a table with a column `t` and columns of inputs, such as that of `control --inputs`. Two rows at
+    /// one time are a jump. Inputs without a column have the values of --input. Inputs are constant before the first row
+    /// and after the last one.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["verify", "certify"])]
     pub inputs: Option<PathBuf>,
-    /// Inputs between the rows of --inputs.
+    /// Interpolation of the inputs between the rows of --inputs.
     #[arg(long, value_enum, requires = "inputs", default_value_t = Between::Cubic)]
     pub between: Between,
-    /// Add an output to the model for this run, such as `S = integral(lagrangian)`: an expression as of a declared output, or an
-    /// integral along the run. May be repeated.
+    /// Add an output to the model for this run, such as `S = integral(lagrangian)`. The expression has the syntax of
+    /// `outputs` in a model. May be repeated.
     #[arg(
         long,
         value_name = "NAME = EXPR",
@@ -503,9 +504,9 @@ pub struct SimulateArgs {
     /// Certified motion.
     #[command(flatten)]
     pub certify: CertifyArgs,
-    /// Measure the error of the run against a reference at the smallest tolerance. This takes three more runs. The impacts of
-    /// all runs are checked by interval enclosures, independently of event location. If the check fails, or if the runs have
-    /// different impacts, the run is `not verified` and the exit status is 1.
+    /// Measure the error of the run against a reference at the smallest tolerance. This takes three more runs. The
+    /// impacts of all runs are checked by interval enclosures, independently of event location. If the check fails, or
+    /// if the runs have different impacts, the run is `not verified` and the exit status is 1.
     #[arg(long)]
     pub verify: bool,
     /// Number of equally spaced times from 0 to the end, both included, to record (at most 1000000).

@@ -34,7 +34,7 @@ impl Catalogue {
         self
     }
 
-    /// Sets the figures that follow those that every model has.
+    /// Sets the added figures, which come before the figures that every model has.
     #[must_use]
     pub fn with_figures(mut self, figures: Vec<Figure>) -> Self {
         self.figures = figures;

@@ -1,4 +1,4 @@
-//! Flags of boundary-value problems: components of an end by name, and numbers of impacts.
+//! Flags of boundary-value problems: components of the states at both ends by name, and numbers of impacts.
 
 use dalembert::describe::Description;
 use dalembert_driver::{AnyModel, Refusal, Stage};
@@ -10,7 +10,8 @@ use crate::{names, scalar};
 /// Largest number of impacts.
 const MOST_IMPACTS: usize = 1000;
 
-/// Makes a search and shows its progress. `place` is the flag of the start, `refused` words a problem that has no answer.
+/// Runs a search and shows its progress. `place` is the flag of the start; `refused` makes the error for a problem
+/// without an answer.
 ///
 /// # Errors
 /// A start that is refused, a problem without an answer, a scene without variations.
@@ -38,7 +39,7 @@ pub fn sought<T, E>(
     }
 }
 
-/// Reasons of a scan for which its search is not exhaustive, to be appended to others.
+/// Reasons why a scan is not exhaustive, as text to append to other reasons.
 pub fn doubts(unresolved: usize, given_up: usize) -> String {
     let mut text = String::new();
     if unresolved > 0 {
@@ -47,12 +48,13 @@ pub fn doubts(unresolved: usize, given_up: usize) -> String {
     }
     if given_up > 0 {
         let starts = counted(given_up, "start");
-        text += &format!("; {starts} given up, whose motions take too many steps");
+        text += &format!("; {starts} given up because their motions take too many steps");
     }
     text
 }
 
-/// The components that a flag gives by name; `None` for those that it does not name. `what` is what they are.
+/// The components that a flag gives by name, in the order of `accepted`; `None` for the others. `what` is the noun for
+/// a component in messages.
 ///
 /// # Errors
 /// An unknown name, a value that is not a number, a component that is given again.

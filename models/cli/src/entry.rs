@@ -1,6 +1,6 @@
-//! The models of the command line: types, and texts that are loaded on first use.
+//! The models of the command line: Rust types, and texts that are loaded on first use.
 //!
-//! Every model is run behind [`AnyModel`].
+//! The commands use every model through [`AnyModel`].
 
 use std::sync::{Arc, OnceLock};
 
@@ -41,19 +41,19 @@ struct Known {
     scenes: Vec<(String, Build)>,
 }
 
-/// A maker of a model with declared defaults.
+/// Constructor of a model with declared defaults.
 #[derive(Debug, Clone)]
 enum Build {
-    /// A compiled form, run by the systems of all forms.
+    /// A compiled form, run by code that all forms share.
     Erased(&'static Form),
     /// A form loaded from a text.
     Loaded(Arc<Form>),
-    /// A type for which all code that runs it is compiled, and its description.
+    /// A type whose runs have code compiled for it alone, and its description.
     Typed(fn() -> Box<dyn AnyModel>, &'static Description),
 }
 
 impl Build {
-    // NOTE: evaluated at compile time, so that only kernels are compiled for a type that has a form.
+    // NOTE: the match is evaluated at compile time. Therefore only kernels are compiled for a type that has a form.
     const fn of<M: Model + Described + 'static>() -> Self {
         match M::FORM {
             Some(form) if !cfg!(feature = "inlined") => Self::Erased(form),
@@ -80,7 +80,7 @@ impl Build {
 
 /// The model of a form, which must fit the largest capacity.
 fn erased(form: Shared<Form>, code: Code) -> Box<dyn AnyModel> {
-    of_form(form, code).expect("a form that there is a capacity for")
+    of_form(form, code).expect("a form within the largest capacity")
 }
 
 impl Entry {

@@ -19,7 +19,7 @@ pub enum CliError {
     Unknown {
         /// The flag or argument.
         place: String,
-        /// The name, and the accepted ones.
+        /// The given name and the accepted names.
         unknown: Unknown,
     },
     /// A value of the wrong kind.
@@ -144,13 +144,13 @@ pub enum CliError {
     /// The generator refused the source of the model.
     #[error("derive: {0}")]
     Derive(String),
-    /// A field of `--modulo` that is no symmetry to follow.
+    /// A field of `--modulo` that is not a usable symmetry, or fields that do not generate a group.
     #[error("--modulo: {0}")]
     Modulo(String),
     /// A picture that could not be drawn.
     #[error("{flag} {}: {reason}", path.display())]
     Plot {
-        /// The flag that asked for it.
+        /// The flag that requested it.
         flag: &'static str,
         /// Its intended path.
         path: PathBuf,

@@ -1,5 +1,5 @@
-//! Expressions of flags in the language of models. They become outputs of the model, so that its own parser and its own
-//! compiler read them.
+//! Expressions in flags, written in the language of models. They become outputs of the model, so that the parser and
+//! the compiler of models read them.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -38,13 +38,13 @@ pub enum Sign {
 pub struct Expression {
     flag: &'static str,
     text: String,
-    /// The first column of each side, from 0 on, and the side.
+    /// Each side with its first column, counted from 0.
     sides: Vec<(usize, String)>,
     sign: Option<Sign>,
 }
 
 impl Expression {
-    /// The sides of an expression.
+    /// Parses an expression into its sides.
     ///
     /// # Errors
     /// An empty side, several comparisons, brackets that do not match, a character that cannot be in an expression.
@@ -72,10 +72,10 @@ impl Expression {
         Ok(found)
     }
 
-    /// The right side of an equation whose left side is one name, with this name.
+    /// Splits an equation whose left side is one name into the name and the right side.
     ///
     /// # Errors
-    /// Another text.
+    /// An expression that is not such an equation.
     pub fn assigned(mut self) -> Result<(String, Self), CliError> {
         let is_name = |side: &str| !side.contains(['(', '+', '-', '*', '/', '^', ' ']);
         match self.sides.first() {
@@ -137,12 +137,12 @@ impl Expression {
         }
     }
 
-    /// The column of a byte, from 0 on.
+    /// The column of a byte, counted from 0.
     fn column(&self, byte: usize) -> usize {
         self.text[..byte].chars().count()
     }
 
-    /// Refuses what would end the expression, or go on behind it.
+    /// Refuses unmatched brackets, and characters that would end the declaration of the output or begin a comment.
     fn check_brackets(&self) -> Result<(), CliError> {
         let mut open = Vec::new();
         for (at, letter) in self.text.char_indices() {
@@ -168,13 +168,13 @@ impl Expression {
         }
     }
 
-    /// True unless the character is a lone slash, the sign of division: two begin a comment.
+    /// True unless the character is the slash of a division: `//` and `/*` begin comments.
     fn is_wrong(&self, at: usize) -> bool {
         let rest = &self.text[at..];
         !rest.starts_with('/') || rest.starts_with("//") || rest.starts_with("/*")
     }
 
-    /// Refuses a part of the expression, from a byte on.
+    /// The error that marks `width` characters of the expression from a byte on.
     fn refuse(&self, byte: usize, width: usize, reason: &str) -> CliError {
         self.refuse_at(self.column(byte), width, reason)
     }
@@ -208,12 +208,12 @@ impl Expression {
 /// A line that declares an output.
 struct Line {
     text: String,
-    /// For each side, its first column in the line and in the flag.
+    /// The first column of each side, in the line and in the flag.
     places: Vec<(usize, usize)>,
 }
 
 impl Line {
-    /// The column of the flag for a column of the line.
+    /// The column in the flag that belongs to a column in the line.
     fn column(&self, column: usize) -> usize {
         let before = self.places.iter().rev().find(|(from, _)| *from <= column);
         before.map_or(0, |(from, first)| first + column - from)
@@ -223,7 +223,7 @@ impl Line {
 /// The names and the expressions of `--output`.
 ///
 /// # Errors
-/// A flag that is no `NAME = EXPR`, a name that is not a word or is given twice.
+/// A flag that is not `NAME = EXPR`, a name that is not a word or is given twice.
 pub fn named_outputs(flags: &[String]) -> Result<Vec<(String, Expression)>, CliError> {
     let mut named: Vec<(String, Expression)> = Vec::new();
     for flag in flags {
@@ -242,10 +242,10 @@ pub fn named_outputs(flags: &[String]) -> Result<Vec<(String, Expression)>, CliE
     Ok(named)
 }
 
-/// The models, the one of this name with the outputs of `--output`.
+/// Without flags, all models; else only the model of this name, with the outputs of `--output` added.
 ///
 /// # Errors
-/// A flag that is no `NAME = EXPR`, and the errors of [`add_to`].
+/// A flag that is not `NAME = EXPR`, and the errors of [`add_to`].
 pub fn with_outputs<'m>(
     models: &'m [Entry],
     model: &str,
@@ -265,10 +265,10 @@ pub fn with_outputs<'m>(
     )?]))
 }
 
-/// The model with expressions as its last outputs, in their order.
+/// The model with the expressions as additional outputs after its own, in their order.
 ///
 /// # Errors
-/// An expression that is not one of the model, at the place where it is wrong; a model without a text.
+/// An expression that the model does not accept, with a mark at the mistake; a model without a text.
 pub fn add_to(entry: &Entry, expressions: &[&Expression]) -> Result<Entry, CliError> {
     let numbered = expressions.iter().enumerate();
     let named: Vec<(String, &Expression)> = numbered
@@ -277,7 +277,7 @@ pub fn add_to(entry: &Entry, expressions: &[&Expression]) -> Result<Entry, CliEr
     add_named(entry, &named)
 }
 
-/// The model with expressions as its last outputs, with these names.
+/// The model with the expressions as additional outputs of these names, after its own.
 fn add_named(entry: &Entry, named: &[(String, &Expression)]) -> Result<Entry, CliError> {
     let source = &entry.description().source;
     let Some((body, _)) = source.rsplit_once('}') else {

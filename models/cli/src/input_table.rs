@@ -1,6 +1,7 @@
 //! Inputs from a table: columns `t` and the names of inputs.
 //!
-//! Two rows at one time are a jump: the later one holds from there on. Before the first row and after the last one inputs are held.
+//! Two rows at the same time are a jump; the later row holds from that time on. Inputs are constant before the first
+//! row and after the last one.
 
 use std::cell::Cell;
 use std::path::Path;
@@ -14,7 +15,7 @@ use crate::scalar;
 /// Largest number of rows.
 const MOST_ROWS: usize = 10_000_000;
 
-/// Number of rows of a cubic.
+/// Number of rows that determine a cubic.
 const CUBIC: usize = 4;
 
 /// Inputs between two rows.
@@ -40,11 +41,11 @@ struct Piece {
 #[derive(Debug, Clone)]
 pub struct InputTable {
     pieces: Vec<Piece>,
-    /// The times between pieces.
+    /// The times at which pieces meet, in order.
     ends: Vec<f64>,
     /// The index of the input of each column.
     columns: Vec<usize>,
-    /// The values of inputs without a column.
+    /// The values of all inputs; a column replaces the value of its input.
     constant: Vec<f64>,
 }
 
@@ -52,8 +53,8 @@ impl InputTable {
     /// Reads a table.
     ///
     /// # Errors
-    /// A file that cannot be read, a table without a column `t` or without an input, a field that is not a number, times that
-    /// decrease.
+    /// A file that cannot be read, a table without a column `t` or without a column of an input, a field that is not a
+    /// number, times that decrease.
     pub fn read(path: &Path, between: Between, model: &dyn AnyModel) -> Result<Self, CliError> {
         let text = std::fs::read(path).map_err(|source| CliError::File {
             flag: "--inputs",
@@ -122,7 +123,7 @@ impl InputTable {
         Ok(table)
     }
 
-    /// Cuts rows into pieces on which the inputs are smooth.
+    /// Divides the rows into pieces: at jumps and, for linear or constant inputs, at every row.
     fn cut(&mut self, rows: Vec<(f64, Vec<f64>)>, between: Between) {
         let held = |t: f64, values: &[f64]| Piece {
             t: vec![t],
@@ -145,7 +146,7 @@ impl InputTable {
                     _ => open.t[open.t.len() - 1],
                 };
                 let next = match (between, is_jump) {
-                    // The line to this row begins at the row before.
+                    // The line that ends at this row begins at the row before.
                     (Between::Linear, false) => {
                         let row = open.rows[open.rows.len() - 1].clone();
                         Piece {
@@ -171,7 +172,7 @@ impl InputTable {
         self.columns.contains(&input)
     }
 
-    /// All inputs on a piece at a time.
+    /// The values of all inputs at a time, by the interpolation of this piece.
     fn values(&self, piece: usize, t: f64) -> Vec<f64> {
         let mut values = self.constant.clone();
         let Some(piece) = self.pieces.get(piece) else {
@@ -212,7 +213,8 @@ impl InputTable {
 }
 
 impl Piece {
-    /// The first of the rows that count at a time, and their weights: those of the polynomial through them.
+    /// The index of the first row that is interpolated at a time, and the weights of the rows from there on (Lagrange
+    /// interpolation).
     fn weights(&self, t: f64) -> (usize, Vec<f64>) {
         let count = self.t.len().min(CUBIC);
         let before = self.t.partition_point(|row| *row <= t);
@@ -228,7 +230,7 @@ impl Piece {
     }
 }
 
-/// The table that a flag names.
+/// Reads the table of `--inputs`, if the flag is given.
 ///
 /// # Errors
 /// The errors of [`InputTable::read`]; a model without inputs.

@@ -73,7 +73,7 @@ impl<'de> Visitor<'de> for UniqueVisitor {
         while let Some((key, Unique(value))) = entries.next_entry::<String, Unique>()? {
             if object.contains_key(&key) {
                 return Err(A::Error::custom(format_args!(
-                    "the key `{key}` is there twice; expected every key once"
+                    "the key `{key}` occurs twice; expected every key once"
                 )));
             }
             object.insert(key, value);
@@ -117,14 +117,14 @@ pub fn write_array(output: &mut dyn Write, rows: impl Iterator<Item = Value>) ->
     writeln!(output)
 }
 
-/// An object that is written key by key, one per line, so that long arrays need not be kept as values.
+/// An object that is written key by key, one per line. Long arrays therefore need not be kept in memory as values.
 pub struct Document<'a> {
     output: &'a mut dyn Write,
     empty: bool,
 }
 
 impl<'a> Document<'a> {
-    /// Opens the object.
+    /// Begins the object.
     ///
     /// # Errors
     /// An I/O error of the stream, as for every method.
@@ -136,7 +136,7 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// Opens the object of a command that runs a model, with its name, scene and parameters.
+    /// Begins the object of a command that runs a model, and writes the name, the scene and the parameters of the model.
     ///
     /// # Errors
     /// An I/O error of the stream.
@@ -231,7 +231,7 @@ mod tests {
             r#"[{"c": 1, "c": 1}]"#,
         ] {
             let error = parse(text.as_bytes()).unwrap_err().to_string();
-            assert!(error.contains("`c` is there twice"), "{error}");
+            assert!(error.contains("`c` occurs twice"), "{error}");
         }
     }
 

@@ -20,7 +20,7 @@
 //! ```
 //!
 //! Exit status: 0 the requested end was reached, 1 any other outcome (output is still written), 2 bad flags or
-//! input. Standard output holds results only, standard error messages only.
+//! input. The standard output holds results only, the standard error messages only.
 
 #![forbid(unsafe_code)]
 
@@ -133,7 +133,7 @@ impl Catalogue {
     }
 }
 
-/// Carries out a command; reads its model first if the model is in a file.
+/// Carries out a command. If its model is in a file, the file is read first.
 fn with_files(
     line: &mut CommandLine,
     catalogue: &Catalogue,

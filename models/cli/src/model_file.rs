@@ -1,4 +1,4 @@
-//! Models in files: a model argument that names a file selects the model in it.
+//! Models in files: a model argument may name a file and a model in it.
 
 use std::fs::File;
 use std::io::{Read, Take};
@@ -14,7 +14,7 @@ use crate::state_input::find_model;
 /// The file name extension of files with models.
 pub(crate) const EXTENSION: &str = "dal";
 
-/// The argument that means the standard input.
+/// The argument that stands for the standard input.
 const INPUT: &str = "-";
 
 /// The longest accepted text, in bytes.
@@ -59,7 +59,7 @@ pub(crate) fn selected(
 /// for a file with several models. `None` if the argument names no file.
 ///
 /// # Errors
-/// A file that cannot be read, every mistake in it, an unknown or missing name.
+/// A file that cannot be read, all mistakes in the declarations, an unknown or missing name.
 fn read(
     given: &str,
     skips_claims: bool,

@@ -22,7 +22,7 @@ pub fn find<'a>(
     })
 }
 
-/// `name=value`, split at the first equals sign.
+/// Splits `name=value` at the first equals sign.
 ///
 /// # Errors
 /// [`CliError::Value`] if there is no equals sign.
@@ -37,7 +37,7 @@ pub fn assignment<'a>(
     Ok((name.trim(), value.trim()))
 }
 
-/// The first line of the model's documentation.
+/// The first line of the model's documentation that is not empty.
 pub fn summary(description: &Description) -> &str {
     description
         .documentation

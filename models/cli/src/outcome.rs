@@ -15,7 +15,7 @@ pub type Details = Vec<(&'static str, Value)>;
 /// The kind of an outcome, and its details.
 pub type Told = (&'static str, Details);
 
-/// The details of an outcome besides its kind and its time, in the model's names.
+/// The details of an outcome except its kind and its time, in the model's names.
 pub fn details(description: &Description, outcome: &Outcome) -> Details {
     let facts = outcome::details(description, outcome).into_iter();
     facts.map(|(name, fact)| (name, value(fact))).collect()
@@ -31,7 +31,7 @@ fn value(fact: Fact) -> Value {
     }
 }
 
-/// Lines about a run that did not reach its end, each with a title: the event, and a remedy if there is one.
+/// Lines about a run that did not reach its end, each with a title: the reason, and a remedy if one is known.
 pub fn remarks(description: &Description, outcome: &Outcome) -> Vec<(&'static str, String)> {
     let reason = outcome::explanation(description, outcome);
     let remedy = remedy(outcome).map(str::to_owned);
@@ -90,7 +90,7 @@ const fn remedy(outcome: &Outcome) -> Option<&'static str> {
     })
 }
 
-/// The reason for a failed search for an orbit, and a remedy if there is one, each with a title.
+/// Lines about a failed search for an orbit, each with a title: the reason, and a remedy if one is known.
 pub fn remarks_on_orbit(
     description: &Description,
     error: &OrbitError,
@@ -142,7 +142,7 @@ pub fn missed(description: &Description, error: &OrbitError) -> Told {
     }
 }
 
-/// Details of the event at which a run has no derivative.
+/// Details of the event at which the run has no derivative: its surface and its time.
 fn place(description: &Description, undefined: &Undefined) -> Details {
     match *undefined {
         Undefined::Graze { t, surface }

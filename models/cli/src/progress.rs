@@ -1,4 +1,4 @@
-//! A progress bar on a terminal, for runs of more than a second.
+//! Progress bars on a terminal.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ const STRIDE: u32 = 256;
 /// Resolution of the bar.
 const PARTS: u64 = 1000;
 
-/// Progress bar of a run.
+/// Progress bar of a run, shown after one second.
 pub struct Progress {
     end: f64,
     steps: u32,
@@ -90,7 +90,7 @@ impl Steps {
     }
 }
 
-/// Progress bar of an ensemble's members; shown from the start, because one member may take long.
+/// Progress bar of the members of an ensemble; shown from the start, because one member may take long.
 pub struct Count {
     done: u64,
     members: u64,
@@ -177,7 +177,7 @@ impl Points {
     }
 }
 
-/// Progress bar of a search, whose number of tasks is known as it goes on; for searches of more than a second.
+/// Progress bar of a search whose number of tasks may change; shown after one second.
 pub struct Stages {
     started: Option<Instant>,
     bar: Option<ProgressBar>,

@@ -1,6 +1,6 @@
-//! Records of a run: states at equally spaced times, the impacts, and the trace of a picture.
+//! Records of a run: states at equally spaced times, the impacts, and the curve of a picture.
 //!
-//! Samples, impacts and contacts are forwarded during the run; only a picture keeps impacts in memory.
+//! Samples, impacts and contacts are forwarded during the run. Impacts are kept in memory only for a picture.
 
 use std::io;
 
@@ -14,7 +14,7 @@ use crate::progress::Progress;
 pub struct Wanted<'a> {
     /// The times of the samples.
     pub grid: Grid,
-    /// The empty trace of a picture.
+    /// An empty trace, if a picture is requested.
     pub trace: Option<Trace>,
     /// Receivers of samples, impacts and contacts, in order of time.
     pub keeps: Vec<&'a mut dyn Keep>,
@@ -25,13 +25,13 @@ pub trait Keep {
     /// The state at a time of the grid; an impact at the same instant comes first.
     fn sample(&mut self, t: f64, point: &Point) -> io::Result<()>;
 
-    /// An impact was carried out.
+    /// An impact happened.
     fn impact(&mut self, impact: &Impact) -> io::Result<()>;
 
     /// A surface begins or ceases to hold the motion.
     fn contact(&mut self, contact: &Contact) -> io::Result<()>;
 
-    /// Converts an error of this receiver.
+    /// Converts an I/O error of this receiver to an error that names its file.
     fn failed(&self, error: io::Error) -> CliError;
 }
 
@@ -52,7 +52,7 @@ pub struct Record {
     pub impacts: Vec<Impact>,
     /// The trace, if a picture was requested.
     pub trace: Option<Trace>,
-    /// The number of impacts, with or without a picture.
+    /// The numbers of impacts and contacts, with or without a picture.
     pub tally: ImpactTally,
 }
 
@@ -73,7 +73,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Takes the sample at the last instant of the run, if the grid has one there.
+    /// Takes the samples of the grid that are left at the end of the run.
     ///
     /// # Errors
     /// The first error of a receiver.
@@ -115,7 +115,8 @@ impl<'a> Recorder<'a> {
 }
 
 impl Watch for Recorder<'_> {
-    /// The last instant of a step is left to the next step: at an impact, a sample shows the state after it.
+    /// The end of a step is sampled with the next step, so that a sample at the time of an impact shows the state after
+    /// it.
     fn step(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(time) = self.next_time().filter(|&time| time < end) {

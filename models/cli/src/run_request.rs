@@ -28,7 +28,7 @@ pub fn check_plot(path: Option<&Path>) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses outputs that exclude each other: the paths of `--csv`, `--json` and others, and of `--plot`, which is last.
+/// Refuses outputs with the same path. The last path is that of `--plot`, which must end in `.svg`.
 pub fn check_outputs<const N: usize>(paths: [&Option<PathBuf>; N]) -> Result<(), CliError> {
     check_plot(paths.last().and_then(|path| path.as_deref()))?;
     let mut given: Vec<&PathBuf> = paths.into_iter().flatten().collect();
@@ -41,12 +41,12 @@ pub fn check_outputs<const N: usize>(paths: [&Option<PathBuf>; N]) -> Result<(),
     }
 }
 
-/// True if a table or a document is written to the standard output, which then has no other content.
+/// True if one of these outputs goes to the standard output, which then must have no other content.
 pub fn uses_stdout<const N: usize>(paths: [&Option<PathBuf>; N]) -> bool {
     paths.into_iter().flatten().any(|path| is_stdout(path))
 }
 
-/// The settings of a run with the integrator, the steps and the end of the flags.
+/// The settings of a run with the integrator, the step limits and the end of the flags.
 pub fn course(
     model: &dyn AnyModel,
     run: &RunArgs,
@@ -55,7 +55,8 @@ pub fn course(
     course_to(model, run, course, course.impacts)
 }
 
-/// The same for a run that a number of impacts, or of returns among them, ends in place of a time.
+/// Like [`course`], for a run that may end after `counted` impacts, or after `counted` returns to one surface, in place
+/// of a time.
 pub fn course_to(
     model: &dyn AnyModel,
     run: &RunArgs,
@@ -84,7 +85,7 @@ pub fn course_to(
     })
 }
 
-/// The settings of a run by this integrator at this tolerance, up to the requested time or number of impacts.
+/// The settings of a run by this integrator at this tolerance, to the requested time or number of impacts.
 pub fn settings(
     model: &dyn AnyModel,
     args: &RunArgs,
@@ -111,7 +112,7 @@ pub fn settings(
     })
 }
 
-/// The form of the equations: as requested; by default reduced if the model and the flags allow it.
+/// The requested form of the equations. The default is the reduced form if the model and the flags allow it.
 fn form(description: &Description, args: &RunArgs) -> Result<Form, CliError> {
     let needs_global =
         args.state.off_constraint == OffConstraint::Keep || args.projection.is_some();
@@ -133,7 +134,7 @@ fn horizon(
     ))
 }
 
-/// The laws of `--law`, in order; of two for one surface the later counts.
+/// The laws of `--law`, in order. A later law for a surface replaces an earlier one.
 pub(crate) fn laws(model: &dyn AnyModel, flags: &[String]) -> Result<Vec<(usize, Law)>, CliError> {
     let description = model.description();
     let mut laws = Vec::new();
@@ -187,6 +188,6 @@ fn parse_law(text: &str) -> Result<Law, CliError> {
         }
         (false, None) => 0.0,
     };
-    // The name is one of the law's names, so this is never `None`.
+    // The name is one of `Law::NAMES`, so this is never `None`.
     Law::from_name(name, e).ok_or_else(|| CliError::value("--law", text, "an impact law"))
 }

@@ -1,7 +1,7 @@
 //! Numbers on the command line: decimals and multiples of pi.
 //!
-//! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Evaluated from left to right
-//! in `f64`; a single decimal is the nearest `f64`.
+//! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Factors are evaluated from left
+//! to right in `f64`. A single decimal gives the nearest `f64`.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ pub const EXPECTED: &str = "a finite number such as -1.5, 2e-3, pi/2 or -3*pi/4"
 /// Parses a number.
 ///
 /// # Errors
-/// [`EXPECTED`] if `text` is anything else, an infinity or NaN included.
+/// [`EXPECTED`] for any other text, and for values that are infinite or NaN.
 pub fn parse(text: &str) -> Result<f64, &'static str> {
     let text = text.trim();
     let (sign, mut rest) = match text.strip_prefix('-') {
@@ -50,7 +50,7 @@ fn factor(text: &str) -> Option<f64> {
     }
 }
 
-/// Parses an unsigned decimal; signs, `inf` and `nan`, which the standard library accepts, are refused.
+/// Parses an unsigned decimal. It refuses signs, `inf` and `nan`, which the standard library accepts.
 fn decimal(text: &str) -> Option<f64> {
     let starts_as_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
     starts_as_number.then(|| text.parse().ok()).flatten()

@@ -1,4 +1,4 @@
-//! Output files of commands, or the standard output in their place.
+//! Outputs of commands: files, or the standard output in their place.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use crate::Streams;
 use crate::error::CliError;
 
-/// True if the path means the standard output.
+/// True if the path is `-`, which stands for the standard output.
 pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Opens and locks a file with `options`; its content is kept. Other runs are refused until the file is closed.
+/// Opens and locks a file with `options`, and keeps its content. Other runs are refused until the file is closed.
 ///
 /// # Errors
 /// The file cannot be written, or another run is writing it.
@@ -38,20 +38,20 @@ pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Resu
             flag,
             path: path.to_owned(),
         }),
-        // Some file systems have no locks.
+        // Some file systems do not support locks.
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
         Err(TryLockError::Error(error)) => Err(failed(error)),
     }
 }
 
-/// A file whose old content is lost with the first write, not before.
+/// A file whose old content is removed at the first write, not before.
 struct Replaced {
     file: File,
     is_emptied: bool,
 }
 
 impl Replaced {
-    /// The file, emptied.
+    /// The file, without its old content.
     fn emptied(&mut self) -> io::Result<&mut File> {
         if !self.is_emptied {
             // Devices and pipes have no length.
@@ -114,7 +114,7 @@ impl Sink {
         path.map(|path| Self::open(flag, path)).transpose()
     }
 
-    /// Opens a file in a folder, if the file is wanted; creates the folder if it does not exist.
+    /// Opens a file in a folder if it is wanted. Creates the folder if it does not exist.
     ///
     /// # Errors
     /// The folder or the file cannot be written.
@@ -154,7 +154,7 @@ impl Sink {
         }
     }
 
-    /// Writes the output with a function.
+    /// Writes the output that `content` produces.
     ///
     /// # Errors
     /// An I/O error of the file or stream.

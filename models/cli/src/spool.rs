@@ -1,5 +1,5 @@
-//! Buffered rows of a JSON array: a document states the end of a run before its events. A few rows are kept in memory,
-//! many in a temporary file.
+//! Buffer for the rows of a JSON array, because a document states the end of a run before its events. It keeps some
+//! rows in memory, and more of them in a temporary file.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, Write};
@@ -11,14 +11,14 @@ use serde_json::Value;
 /// Size of the buffer in memory, in bytes.
 const ROOM: usize = 1 << 20;
 
-/// Number of names tried for a temporary file.
+/// Largest number of names that are tried for a temporary file.
 const NAMES: u32 = 1000;
 
-/// Buffered rows, as text.
+/// The buffered rows as text.
 pub struct Spool {
-    /// The last part of the text.
+    /// The end of the text, which is in memory.
     text: Vec<u8>,
-    /// The text before it.
+    /// The text before it, in a file.
     file: Option<Temporary>,
     room: usize,
 }
@@ -72,7 +72,7 @@ impl Spool {
     }
 }
 
-/// A temporary file: without a name, or removed at the end on systems where open files keep their names.
+/// A temporary file. Its name is removed at once, or at the end on systems where open files keep their names.
 struct Temporary {
     file: File,
     path: Option<PathBuf>,

@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::names;
 use crate::scalar;
 
-/// The position of the model of this name in the list.
+/// The model of this name in the list.
 ///
 /// # Errors
 /// [`CliError::Unknown`] if no model has this name.
@@ -17,7 +17,7 @@ pub fn find_model<'a>(models: &'a [Entry], name: &str) -> Result<&'a Entry, CliE
     Ok(&models[names::find("MODEL", "model", name, names)?])
 }
 
-/// The model that a command names, in its scene, with `--set` applied and every parameter checked.
+/// The model that a command names, in its scene and first mode, with `--set` applied and every parameter checked.
 ///
 /// # Errors
 /// An unknown name, a value that is not a number, a value that contradicts the parameter's declaration.
@@ -41,7 +41,7 @@ pub fn build_model(models: &[Entry], args: &ModelArgs) -> Result<Box<dyn AnyMode
     Ok(model)
 }
 
-/// The model of a run, with its inputs held at the values of the flags.
+/// The model of a run, with constant inputs from the flags.
 ///
 /// # Errors
 /// The errors of [`build_model`]; an unknown input, or a value that is not a number.
@@ -81,7 +81,7 @@ pub fn set_parameter(model: &mut dyn AnyModel, text: &str) -> Result<(), CliErro
     }
 }
 
-/// Holds an input at a value through a run.
+/// Sets an input to a constant value from `NAME=VALUE`.
 ///
 /// # Errors
 /// An unknown input, or a value that is not a number.
@@ -112,10 +112,10 @@ pub fn initial_state(model: &dyn AnyModel, args: &StateArgs) -> Result<Origin, C
     initial_state_with(model, args, |_| Ok(()))
 }
 
-/// The state that the flags describe, with changes by `changes`.
+/// The state that the flags describe, after `change` has modified it.
 ///
 /// # Errors
-/// The errors of [`initial_state`], and those of `changes`.
+/// The errors of [`initial_state`], and those of `change`.
 pub fn initial_state_with(
     model: &dyn AnyModel,
     args: &StateArgs,
@@ -127,7 +127,7 @@ pub fn initial_state_with(
     beginning.settle(model, args.off_constraint).map_err(refuse)
 }
 
-/// The model's `initial`; the constraints determine the components that it does not name.
+/// The state of the model's `initial`. The constraints determine the components that it does not name.
 ///
 /// # Errors
 /// A state that the system refuses.
@@ -137,10 +137,10 @@ pub fn declared_state(model: &dyn AnyModel) -> Result<Origin, CliError> {
         .map_err(|error| CliError::state(DECLARED, model.description(), error))
 }
 
-/// Origin of a state without flags, for messages.
+/// Origin of a state that no flag changes, for messages.
 const DECLARED: &str = "the model's `initial`";
 
-/// The state that the flags describe, before its checks.
+/// The state that the flags describe, before it is completed and checked.
 ///
 /// # Errors
 /// An error of the flags.
@@ -178,7 +178,7 @@ fn beginning_of_first_order(model: &dyn AnyModel, args: &StateArgs) -> Result<Be
     }
 }
 
-/// The model's `initial` with some changes `name=value`.
+/// The model's `initial` with changes `name=value`.
 fn changed(model: &dyn AnyModel, changes: &[String]) -> Result<Beginning, CliError> {
     let mut beginning = Beginning::Named(model.initial());
     for change in changes
@@ -191,7 +191,7 @@ fn changed(model: &dyn AnyModel, changes: &[String]) -> Result<Beginning, CliErr
     Ok(beginning)
 }
 
-/// The flags that a state comes from, for messages.
+/// The flags that give the state, for messages.
 fn place(beginning: &Beginning, args: &StateArgs) -> &'static str {
     match beginning {
         Beginning::Named(_) if args.initial.is_empty() => DECLARED,

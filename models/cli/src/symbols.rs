@@ -5,7 +5,7 @@ use dalembert_codegen::model::greek_letter;
 /// A dot above the letter before it.
 const DOT: char = '\u{307}';
 
-/// Digits below the line.
+/// Subscript digits.
 const INDICES: [char; 10] = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈', '₉'];
 
 /// Parts of a name of a quantity.
@@ -20,8 +20,8 @@ pub struct Symbol {
 }
 
 impl Symbol {
-    /// The parts of a name: `x`, `x_dot`, `theta1_dot`, `theta_dot.3`. `None` for a word of several letters that is no Greek
-    /// letter.
+    /// The parts of a name: `x`, `x_dot`, `theta1_dot`, `theta_dot.3`. `None` for a word of several letters that is not
+    /// the name of a Greek letter, and for an index that is not a number.
     pub fn of(name: &str) -> Option<Self> {
         let (family, member) = name.split_once('.').unwrap_or((name, ""));
         let (family, is_rate) = match family.strip_suffix("_dot") {
@@ -29,7 +29,7 @@ impl Symbol {
             None => (family, false),
         };
         let letters = family.trim_end_matches(|it: char| it.is_ascii_digit());
-        // A common short name.
+        // A common abbreviation.
         let name = if letters == "eps" { "epsilon" } else { letters };
         let letter = match greek_letter(name) {
             Some(letter) => letter.to_string(),
@@ -51,7 +51,7 @@ impl Symbol {
     }
 }
 
-/// A name as plain text: `ẋ₁` for `x1_dot`; words keep their letters.
+/// A name as plain text: `ẋ₁` for `x1_dot`. Words keep their letters.
 pub fn text(name: &str) -> String {
     if let Some(momentum) = name.strip_prefix("p_") {
         return format!("p_{}", text(momentum));
@@ -67,7 +67,7 @@ pub fn text(name: &str) -> String {
     }
 }
 
-/// A digit below the line.
+/// The subscript of a digit; other characters stay.
 fn lowered(digit: char) -> char {
     let place = digit.to_digit(10).map(|place| place as usize);
     place.map_or(digit, |place| INDICES[place])

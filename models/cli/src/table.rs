@@ -1,5 +1,5 @@
-//! Tables as CSV. The table of a run has samples and impacts, with the columns `t`, coordinates, velocities, `energy`
-//! (except for first-order systems), outputs, `event`.
+//! Tables as CSV. The table of a run has a row for each sample and each impact, with the columns `t`, coordinates,
+//! velocities, `energy` (except for first-order systems), outputs, `mode` (for models with modes), `event`.
 
 use std::io::{self, Write};
 
@@ -11,8 +11,8 @@ use crate::names;
 use crate::record::Keep;
 use crate::sink::Stream;
 
-/// The table of a run, written during the run. The row of an impact shows the state after it and names the surface in
-/// the column `event`; a sample at the same instant follows it.
+/// The table of a run, which is written during the run. The row of an impact shows the state after it and names the
+/// surface in the column `event`. A sample at the same time follows it.
 pub struct RunTable<'a> {
     description: &'a Description,
     writer: csv::Writer<Stream<'a>>,
@@ -20,7 +20,7 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// A table without any rows or header yet.
+    /// A table without rows and without a header.
     pub fn new(description: &'a Description, stream: Stream<'a>) -> Self {
         Self {
             description,
@@ -117,11 +117,11 @@ fn row(description: &Description, t: f64, point: &Point, event: &str) -> Vec<Str
     let numbers = numbers
         .chain(energy(description).map(|()| point.energy))
         .chain(point.outputs.iter().copied());
-    // `Debug` writes the shortest decimal that parses to the same number, with an exponent if that is shorter.
     let has_modes = !description.modes.is_empty();
     numbers
         .map(|number| match has_modes && number.is_nan() {
-            // The mode lacks this quantity.
+            // The mode lacks this quantity. For other numbers, `Debug` writes the shortest decimal that parses to the
+            // same number.
             true => String::new(),
             false => format!("{number:?}"),
         })

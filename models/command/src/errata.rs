@@ -1,8 +1,8 @@
 //! Errata of the sources of the shipped models, explained in `docs/theory/errata.md`.
 //!
-//! `C`: W. Clark, thesis (2020). `CB`: W. Clark and A. Bloch, Invariant forms in hybrid and impact systems. `CV`: J. Cortes
-//! and A. M. Vinogradov (2006). Every right value comes from the declaration of a model; the printed formula is evaluated
-//! at the same state.
+//! `C`: W. Clark, thesis (2020). `CB`: W. Clark and A. Bloch, Invariant forms in hybrid and impact systems. `CV`: J.
+//! Cortes and A. M. Vinogradov (2006). Every right value follows from the declaration of a model. The printed formula
+//! is evaluated at the same state.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -25,7 +25,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Divergence of the first evaluated state: with the printed factor n, and as derived.
+/// Divergence at the first evaluated state: with the printed factor n, and as derived.
 fn divergence(document: &Value) -> Option<[f64; 2]> {
     let (theta, qdot) = (
         vector(document, "/0/density_form_theta")?,
@@ -58,11 +58,11 @@ const DISK_COMMAND: &str =
     "eval rolling_disk --set m=1.5 --set R=0.375 --set I=0.2 --set J=0.1 --set ta=2 --set tb=1";
 const DISK_STATE: &str = r#"[{"q": [0.5, 0.25, 0, 0], "qdot": [0.375, 0, 1, 0.75]}]"#;
 
-/// Positions and half axes of [`DISK_STATE`] and [`DISK_COMMAND`].
+/// The position in [`DISK_STATE`] and the half axes in [`DISK_COMMAND`].
 const PLACE: [f64; 2] = [0.5, 0.25];
 const HALF_AXES: [f64; 2] = [2.0, 1.0];
 
-/// `h_x`, `h_y` at the leading end of the disk; it points along x.
+/// `h_x`, `h_y` at the leading end of the disk, which points along x.
 fn slopes() -> [f64; 2] {
     let [x, y] = [PLACE[0] + DISK.radius, PLACE[1]];
     [
@@ -89,7 +89,7 @@ fn rolling_component() -> f64 {
     radius * slopes()[0] / (inertia + mass * radius * radius)
 }
 
-/// Ratio of the components of `pi_D grad h` along phi and theta, with `R/I` and as derived.
+/// Ratio of the components of `pi_D grad h` along phi and theta, as printed with `R/I` and as derived.
 fn turning_component(document: &Value) -> Option<[f64; 2]> {
     let printed = DISK.radius / DISK.inertia * slopes()[1] / rolling_component();
     let change = change(document)?;
@@ -159,14 +159,14 @@ fn falling(document: &Value) -> Option<[f64; 2]> {
     Some([mass * gravity, number(document, "/0/pdot/0")?])
 }
 
-/// First entry of the metric of the sphere, with minus sign and as declared by the embedding.
+/// First entry of the metric of the sphere, as printed with a minus sign and as it follows from the embedding.
 fn metric_of_the_sphere(document: &Value) -> Option<[f64; 2]> {
     let (x, y) = (number(document, "/0/q/0")?, number(document, "/0/q/1")?);
     let printed = 1.0 - x * x / (1.0 - x * x - y * y);
     Some([printed, number(document, "/0/metric/0/0")?])
 }
 
-/// A misprint whose values no command computes.
+/// A misprint without a computed value.
 const fn listed(place: &'static str, printed: &'static str, right: &'static str) -> Erratum {
     Erratum {
         place,

@@ -1,5 +1,5 @@
-//! The shipped models as texts, for the `dalembert` command, with the [`figures`] and [`errata`] of the papers that they
-//! come from.
+//! The shipped models as texts for the `dalembert` command, with the [`figures`] and [`errata`] of the papers in which
+//! they appear.
 //!
 //! No model is compiled: a command loads the text of its model. With the feature `inlined` the models are compiled, and
 //! their functions are inlined into the code that runs them.
@@ -33,7 +33,7 @@ fn entries() -> Vec<Entry> {
         .collect()
 }
 
-/// Every shipped model, for the command line. Each text is loaded at most once per process.
+/// The entries of all shipped models. Each text is loaded at most once per process.
 pub fn all() -> Vec<Entry> {
     static MODELS: OnceLock<Vec<Entry>> = OnceLock::new();
     MODELS.get_or_init(entries).clone()

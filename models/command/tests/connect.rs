@@ -9,7 +9,7 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::{Done, run_on};
 
-/// A point in a rectangle whose walls take a part of the normal speed.
+/// A point in a rectangle whose walls reduce the normal speed by the factor e.
 const BOX: &str = "
     Table {
         coordinates { x; y; }
@@ -21,7 +21,8 @@ const BOX: &str = "
         }
     }";
 
-/// A linear oscillator in two directions, whose motions from the origin all meet after half a period.
+/// A linear oscillator in two directions with the frequencies w and 2 w. Its motions from the origin all meet after
+/// half a period.
 const SPRING: &str = "
     Spring {
         coordinates { x; y; }
@@ -37,7 +38,7 @@ const DRIFT: &str = "
         lagrangian = (dot(x)^2 + dot(y)^2)/2 + B*x*dot(y);
     }";
 
-/// A pendulum in the plane, held on its circle by a constraint.
+/// A point in the plane that a constraint holds on a circle.
 const ROD: &str = "
     Rod {
         coordinates { x; y; }
@@ -91,8 +92,8 @@ fn assert_near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found} and {expected}");
 }
 
-/// Velocities and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, after `k` impacts: times
-/// `2 v` between impacts, and `x = v s - s^2/2` at the time `s = t - 2 k v` after the last.
+/// Velocities and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, after `k` impacts.
+/// The times between impacts are `2 v`, and `x = v s - s^2/2` at the time `s = t - 2 k v` after the last impact.
 fn closed(x: f64, t: f64, k: f64) -> Vec<[f64; 2]> {
     let root = (t * t - 8.0 * k * (k + 1.0) * x).sqrt();
     let velocities = match k {
@@ -187,7 +188,7 @@ fn conjugate_points_of_the_ball_lie_on_the_envelope() {
         impacts.push(k as usize);
     }
     assert_eq!([1, 2, 3, 4].map(|k| impacts.contains(&k)), [true; 4]);
-    // A motion of one impact that falls at the end has touched the envelope, one that rises has not.
+    // A motion with one impact that falls at the end has touched the envelope; one that rises at the end has not.
     let touches: Vec<usize> = motions("bouncing_ball --from x=0 --to x=0.2 --time 5 --impacts 1")
         .iter()
         .map(|motion| motion["conjugate"].as_array().unwrap().len())
@@ -227,7 +228,7 @@ fn an_end_on_the_floor_is_reached_before_the_impact_there() {
     for (k, motion) in found.iter().enumerate() {
         let velocity = 2.5 / (k + 1) as f64;
         assert_near(speed(motion), velocity, 1e-8);
-        // The velocity of the arrival, whatever the impact at the same time does.
+        // The velocity at the arrival, before the impact at the same time.
         assert_near(number(&motion["end"]["qdot"][0]), -velocity, 1e-8);
     }
 }
@@ -286,7 +287,8 @@ fn a_lossy_wall_multiplies_the_times_behind_it() {
 
 #[test]
 fn gravity_and_a_wall_are_two_independent_balls() {
-    // Along x free motion to the wall x = 1 or not; along z the ball. Two impacts: floor twice, or floor and wall.
+    // Along x the motion is free, with or without an impact on the wall x = 1; along z it is the ball. Two impacts are
+    // two on the floor, or one on the floor and one on the wall.
     let found = motions_on(
         SHELF,
         "- --from x=0,z=0 --to x=0.5,z=0.2 --time 5 --impacts 0..3",
@@ -351,7 +353,7 @@ fn a_constraint_of_positions_leaves_one_unknown() {
         .iter()
         .map(|it| number(&it["start"]["qdot"][1]))
         .collect();
-    // A quarter turn ahead, or three quarters back, and whole turns more.
+    // A quarter turn forward or three quarters of a turn back, plus whole turns.
     let quarter = std::f64::consts::FRAC_PI_2;
     for turn in [-1.0, 0.0] {
         let rate = (quarter + turn * 4.0 * quarter) / 2.0;
@@ -431,7 +433,7 @@ fn rows_and_text_and_picture_have_every_motion() {
     let svg = std::fs::read_to_string(&path).unwrap();
     std::fs::remove_file(&path).unwrap();
     assert!(svg.contains("3 impacts (2)"), "no legend");
-    // Nine impacts and a ring in the legend, a dot there, and the ends of seven paths.
+    // Dots at twelve impacts, rings at the starts of seven paths, and a ring and a dot in the legend.
     let circles = svg.matches("<circle").count();
     assert_eq!(circles, 12 + 7 + 2, "{circles}");
 }
@@ -451,7 +453,7 @@ fn nothing_found_is_no_error() {
     );
 }
 
-/// Lines that are refused, and a part of the message.
+/// Command lines that are refused, each with a part of the message.
 const REFUSED: &[(&str, &str)] = &[
     (
         "bouncing_ball --to y=1 --time 1",
@@ -569,7 +571,7 @@ fn what_cannot_be_sought_is_refused() {
     );
 }
 
-/// All neighbours of a motion meet it at once, so that the determinant touches 0 and keeps its sign.
+/// All neighbours of a motion meet it at the same time, so the determinant touches 0 and keeps its sign.
 #[test]
 fn conjugate_points_of_multiplicity_two() {
     let round = "

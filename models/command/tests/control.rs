@@ -9,7 +9,7 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::run_on;
 
-/// The ball by its Lagrangian.
+/// The model `controlled_ball`, declared by its Lagrangian.
 const BALL: &str = "
     Ball {
         coordinates { x; }
@@ -22,8 +22,8 @@ const BALL: &str = "
         initial { x = 1/2; until = 5; }
     }";
 
-/// Two coupled masses without forces but the inputs, with the metric `M = (2, 1; 1, 3)`. From rest to rest over `d` the
-/// input is `M d (6 - 12 s)/T^2`, `s = t/T`, and the cost `6 |M d|^2/T^3`.
+/// Two coupled masses on which only the inputs act, with the metric `M = (2, 1; 1, 3)`. From rest to rest over `d` the
+/// input is `M d (6 - 12 s)/T^2` with `s = t/T`, and the cost is `6 |M d|^2/T^3`.
 const MASSES: &str = "
     Masses {
         coordinates { x; y; }
@@ -34,8 +34,8 @@ const MASSES: &str = "
         initial { until = 2; }
     }";
 
-/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is `6 (a^2 + b^2)/T^3`; an
-/// impact on the wall at rest is the same motion to the mirror image of the end.
+/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is
+/// `6 (a^2 + b^2)/T^3`. With an impact on the wall at rest, it is the cost of the motion to the mirror image of the end.
 const MIRROR: &str = "
     Mirror {
         coordinates { x; y; }
@@ -48,7 +48,7 @@ const MIRROR: &str = "
         initial { y = 1; until = 2; }
     }";
 
-/// `x'' = -x` along extremals: a minimum while the time is less than pi.
+/// Extremals satisfy `x'' = -x`; they are minima as long as the time is less than pi.
 const SPRING: &str = "
     Spring {
         coordinates { x; }
@@ -58,7 +58,7 @@ const SPRING: &str = "
         initial { x = 1; }
     }";
 
-/// The running cost is convex for `k > -1` alone.
+/// The running cost is convex only for `k > -1`.
 const WEIGHTED: &str = "
     Weighted {
         coordinates { x; }
@@ -82,7 +82,7 @@ fn extremals_on(input: &str, line: &str) -> Vec<Value> {
     extremals
 }
 
-/// `H*` is the same at both ends and on both sides of every impact, where nothing depends on time.
+/// `H*` is the same at both ends and on both sides of every impact, because nothing depends on time.
 fn check_energy(extremal: &Value) {
     let first = number(&extremal["start"]["hamiltonian"]);
     let impacts = extremal["impacts"].as_array().unwrap().iter();
@@ -122,7 +122,7 @@ struct Reference {
     times: &'static [f64],
 }
 
-/// Every reference is among the extremals, as often as it is listed.
+/// Checks that every reference is among the extremals exactly once.
 #[track_caller]
 fn assert_found(extremals: &[Value], references: &[Reference]) {
     for reference in references {
@@ -252,7 +252,7 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     ];
     assert_found(&elastic, &references);
     assert_eq!(elastic.len(), 4);
-    // Between two minima that mirror each other in time lies one that is none.
+    // Between two minima that are mirror images in time lies an extremal that is not a minimum.
     let symmetric = elastic
         .iter()
         .find(|it| (number(&it["cost"]) - 3.468).abs() < 1e-9);
@@ -279,8 +279,8 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     assert!(lossy.iter().all(|it| count(it) == 1));
 }
 
-/// Without an input the ball has two impacts, and small costates change nothing: the search goes on to large ones. Held at its height the
-/// ball costs `T (m g)^2/2`; one impact costs more the more is lost.
+/// Without an input the ball has two impacts, and small costates do not change that: the search must go on to large
+/// ones. The cost of holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
 #[test]
 fn motions_with_fewer_impacts_than_without_an_input_are_found() {
     let mut last = 3.466699139518846;
@@ -341,7 +341,7 @@ fn an_impact_on_a_wall_is_a_motion_to_the_mirror_image() {
     assert_near(cost(1), 6.0 * (1.0 + 4.0) / 8.0, 1e-11);
 }
 
-/// A frame that moves with the wall sees the wall at rest: the inputs and the cost are the same.
+/// In a frame that moves with the wall, the wall is at rest: the inputs and the cost are the same.
 #[test]
 fn a_wall_that_moves_is_a_wall_at_rest_for_its_passenger() {
     let document = |line: &str| {
@@ -372,7 +372,7 @@ fn a_wall_that_moves_is_a_wall_at_rest_for_its_passenger() {
     assert_near(time(&moving[0]), time(&still[0]), 1e-10);
 }
 
-/// The cost of `x = cos(t) + b sin(t)` is `x x'/2` between its ends.
+/// The cost of `x = cos(t) + b sin(t)` is the change of `x x'/2` between its ends.
 #[test]
 fn an_extremal_behind_its_conjugate_point_fails() {
     for (time, expected) in [(3.0_f64, "minimum"), (4.0, "fails")] {
@@ -390,7 +390,7 @@ fn an_extremal_behind_its_conjugate_point_fails() {
     }
 }
 
-/// The costate at the start is the derivative of the least cost by the start.
+/// The costate at the start is the derivative of the least cost with respect to the start.
 #[test]
 fn the_costate_is_the_gradient_of_the_cost() {
     let solved = |x: f64, y: f64| {
@@ -404,7 +404,7 @@ fn the_costate_is_the_gradient_of_the_cost() {
     let step = 2e-3;
     let slope = |along: &dyn Fn(f64) -> f64| {
         let central = |h: f64| (along(h) - along(-h)) / (2.0 * h);
-        // Two steps, so that the error is of fourth order.
+        // Extrapolation from two steps makes the error of fourth order.
         (4.0 * central(step / 2.0) - central(step)) / 3.0
     };
     let slopes = [slope(&|h| cost(0.5 + h, 0.0)), slope(&|h| cost(0.5, h))];
@@ -414,7 +414,8 @@ fn the_costate_is_the_gradient_of_the_cost() {
     }
 }
 
-/// The ball moves under the forces of the table, which are linear in time between rows: it reaches the end of the extremal.
+/// The ball moves under the forces of the table, which are linear in time between rows, and reaches the end of the
+/// extremal.
 #[test]
 fn the_table_of_inputs_reaches_the_end() {
     let done = run_on(

@@ -1,4 +1,4 @@
-//! `control --vary`: least costs against closed forms, results that do not depend on threads, values and requests that are refused.
+//! `control --vary`: least costs against closed forms, independence of threads, and requests that are refused.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -9,8 +9,8 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::run_on;
 
-/// A free particle above a wall. From rest to rest over `(a, b)` the cost is `6 (a^2 + b^2)/T^3`; an impact on the wall is the same
-/// motion to the mirror image of the end.
+/// A free particle above a wall. From rest to rest over `(a, b)` the cost is `6 (a^2 + b^2)/T^3`. With an impact on the
+/// wall, the cost is that of the motion to the mirror image of the end.
 const MIRROR: &str = "
     Mirror {
         coordinates { x; y; }

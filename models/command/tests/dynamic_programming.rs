@@ -1,4 +1,4 @@
-//! `control --dp`: closed forms, the extremals' costs, threads, tables, and requests that are refused.
+//! `control --dp`: closed forms, costs of extremals, threads, tables, and requests that are refused.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -25,7 +25,7 @@ const CART: &str = "
         initial { until = 1; }
     }";
 
-/// Two components of a state that are no position and velocity, and two inputs.
+/// A state of two components that are not a position and its velocity, and two inputs.
 const PLANE: &str = "
     Plane {
         coordinates { x; y; }
@@ -45,7 +45,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// The costs of a path and of the grid for a cart with this many intervals.
+/// The cost of the path and the cost by the grid for a cart, with `5*fineness` intervals along each axis and in time.
 fn cart(input: &str, fineness: usize, more: &str) -> [f64; 2] {
     let nodes = 5 * fineness + 1;
     let line = format!(
@@ -62,7 +62,7 @@ fn a_cart_has_the_cost_of_its_closed_form_to_second_order() {
     let least = 2.0 / (1.0 + 4.0 / 3.0);
     let errors = [4, 8].map(|fineness| cart(&input, fineness, "").map(|cost| cost - least));
     for [of_path, by_grid] in errors {
-        // A path is a motion: it costs no less.
+        // A path is a motion, so it costs at least the least cost.
         assert!(of_path > 0.0, "{errors:?}");
         assert!((of_path - by_grid).abs() < 1e-4, "{errors:?}");
     }
@@ -91,8 +91,8 @@ const SLIDER: &str = "
         initial { until = 1; }
     }";
 
-/// A motion stays if it can stop in time: `x + v^2/16 <= 2` where it rises, `x - v^2/16 >= -1` where it falls. Without edges
-/// the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
+/// A motion stays on the grid if it can stop in time: `x + v^2/16 <= 2` if it rises, `x - v^2/16 >= -1` if it falls.
+/// Without edges the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
 #[test]
 fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
     let lowest = [41, 81].map(|count| {
@@ -105,7 +105,7 @@ fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
             let [x, v] = [0, 1].map(|index| number(&node[index]));
             let brake = v * v.abs() / 16.0;
             let room = (2.0 - x - brake.max(0.0)).min(x + 1.0 + brake.min(0.0));
-            // A twentieth of the distance of nodes may be wrong.
+            // Nodes closer to the boundary than a twentieth of the step along x may be wrong.
             if room.abs() > 0.05 * 3.0 / f64::from(count - 1) {
                 assert_eq!(node[2].is_number(), room > 0.0, "{x} {v}: {node}");
             }
@@ -141,7 +141,8 @@ fn a_ball_takes_the_impacts_that_are_cheapest() {
     let nodes = document["nodes"].as_array().unwrap();
     assert_eq!(nodes.len(), 61 * 61);
     let at = |x: usize, y: usize| nodes[x * 61 + y].as_array().unwrap().clone();
-    // At x = 2, y = 0: cost and impacts of the second path. High and rising, every motion leaves the grid.
+    // The node x = 2, y = 0 has the cost and the impacts of the second path. From a high ball that rises fast every
+    // motion leaves the grid.
     assert!((number(&at(40, 30)[2]) - 0.0363).abs() < 3e-3);
     assert!((number(&at(40, 30)[4]) - 1.0).abs() < 0.1);
     assert!(at(59, 59)[2].is_null() && at(59, 59)[3].is_null());

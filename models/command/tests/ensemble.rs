@@ -1,4 +1,4 @@
-//! An ensemble whose process is killed goes on to the very files that it would have written undisturbed.
+//! An ensemble that is killed and resumed writes the same files as one that runs without interruption.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Long enough to be killed in the middle.
+/// An ensemble that runs long enough to be killed before its end.
 const DISKS: &str = "ensemble rolling_disk --random 5 --members 1000 --vary theta_dot=10+-0.1 --vary phi=0..pi --until 100 \
                      --threads 2";
 

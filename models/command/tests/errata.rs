@@ -1,4 +1,4 @@
-//! The command `errata`: every computed value differs from the printed one, and is the value of the formula by hand.
+//! The command `errata`: every computed value differs from the printed one and equals the value of the formula by hand.
 
 mod support;
 

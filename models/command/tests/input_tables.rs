@@ -1,4 +1,4 @@
-//! Inputs from tables: extremals that reach their ends, jumps, lines, held values, and tables that are refused.
+//! Inputs from tables: extremals that reach their ends, jumps, lines, constant values, and tables that are refused.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -12,7 +12,7 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::{Done, run_on};
 
-/// A mass that a force pushes, with another input that pulls.
+/// A mass with one input that pushes and another one that pulls.
 const MASS: &str = "
     Mass {
         coordinates { x; }
@@ -66,7 +66,7 @@ fn assert_near(found: f64, expected: f64, bound: f64) {
     assert!((found - expected).abs() <= bound, "{found} {expected}");
 }
 
-/// Motions of the ball from a height of 1/2 with one and with two impacts, and of the sliding ball from 2.
+/// Motions of the ball from a height of 1/2 with one and with two impacts, and from a height of 2 with one impact.
 #[test]
 fn extremals_that_are_simulated_reach_their_ends() {
     let folder = Folder::new("extremals");
@@ -87,7 +87,7 @@ fn extremals_that_are_simulated_reach_their_ends() {
     }
 }
 
-/// `u` is 0 up to 1, then 2; the other input is that of the flag.
+/// `u` is 0 until the time 1, then 2. The other input has the value of the flag.
 #[test]
 fn jumps_are_where_two_rows_are() {
     let folder = Folder::new("jumps");
@@ -101,7 +101,8 @@ fn jumps_are_where_two_rows_are() {
     }
 }
 
-/// Rows at 0.5, 1 and 2: a corner of lines, steps of held values, a parabola of three rows; held before and after.
+/// Rows at 0.5, 1 and 2: two lines, two constant values, or the parabola through three rows. Before and after the rows
+/// the input is constant.
 #[test]
 fn between_rows_inputs_are_as_asked() {
     let folder = Folder::new("between");
@@ -118,7 +119,8 @@ fn between_rows_inputs_are_as_asked() {
     );
 }
 
-/// A sine at rows at a distance h is met to 3/128 h^4, and to h^4/24 beside the ends: in all less than 5e-7 in time 3.
+/// For rows at the distance h the cubic differs from a sine by at most `3/128 h^4`, and by `h^4/24` in the intervals at
+/// the ends. Over the time 3 the integral differs by less than 5e-7.
 #[test]
 fn a_smooth_input_is_met_closely() {
     let folder = Folder::new("sine");

@@ -9,7 +9,7 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::{Done, run_on};
 
-/// A pole on a cart that a force pushes.
+/// A pole on a cart, with a force on the cart.
 const CART: &str = "
     Cart {
         coordinates { x; theta: angle; }
@@ -21,7 +21,7 @@ const CART: &str = "
         outputs { tip: x + l*sin(theta); speed: dot(x)^2; }
     }";
 
-/// A charge on a turning table, with friction, a force that depends on time, and inputs.
+/// A metric that depends on position, a term linear in a velocity, friction, a force that depends on time, and inputs.
 const CHARGE: &str = "
     Charge {
         coordinates { x; y; }
@@ -45,7 +45,7 @@ const SLEIGH: &str = "
         initial { dot(x) = 2; }
     }";
 
-/// A mass on a spring that a force pushes.
+/// A mass on a spring, with a force on the mass.
 const SPRING: &str = "
     Spring {
         coordinates { x; }
@@ -56,7 +56,7 @@ const SPRING: &str = "
         initial { x = 0.4; }
     }";
 
-/// A ball above a floor that takes a part of its speed.
+/// A ball above a floor that reduces its speed by the factor e.
 const BALL: &str = "
     Ball {
         coordinates { x; }
@@ -91,7 +91,7 @@ fn assert_close(found: &Value, expected: &[&[f64]], bound: f64) {
     }
 }
 
-/// By hand `x'' = (u - m g theta)/M`, `theta'' = ((M + m) g theta - u)/(M l)` near the upright pole.
+/// By hand: `x'' = (u - m g theta)/M` and `theta'' = ((M + m) g theta - u)/(M l)` near the upright pole.
 #[test]
 fn a_pole_on_a_cart_has_its_textbook_matrices() {
     let found = document(CART, "- --trim");
@@ -120,7 +120,7 @@ fn a_pole_on_a_cart_has_its_textbook_matrices() {
     );
 }
 
-/// A force holds the pole aside while the cart accelerates: `a = g tan(theta)`, `u = (M + m) a`.
+/// A force holds the pole at an angle while the cart accelerates: `a = g tan(theta)`, `u = (M + m) a`.
 #[test]
 fn only_what_is_free_changes_and_what_moves_may_move() {
     let found = document(CART, "- --initial theta=3 --trim=u --moving x_dot,x");
@@ -144,7 +144,7 @@ fn only_what_is_free_changes_and_what_moves_may_move() {
     );
 }
 
-/// Central differences of the rates that `linearise` prints at states and inputs nearby.
+/// The derivatives against central differences of the rates that `linearise` prints at neighbouring states and inputs.
 #[test]
 fn derivatives_are_those_of_the_rates() {
     let line = |values: [f64; 6]| {
@@ -176,7 +176,7 @@ fn derivatives_are_those_of_the_rates() {
         }
         check(outputs, 0, "outputs", "spin");
     }
-    // The rates are those of `eval`, which goes another way.
+    // The rates are those of `eval`, which computes them by other functions.
     let state = r#"[{"t": 0.4, "q": [0.7, -0.4], "qdot": [1.1, 0.3], "inputs": [0.2, -0.5]}]"#;
     let folder = std::env::temp_dir().join(format!("dalembert-linearise-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
@@ -195,7 +195,7 @@ fn derivatives_are_those_of_the_rates() {
     }
 }
 
-/// Steady sliding at speed `v`: `w' = -m a v w/(I + m a^2)`.
+/// At steady sliding with speed `v`, a small rate of turning satisfies `w' = -m a v w/(I + m a^2)`.
 #[test]
 fn a_steady_motion_of_a_sleigh_is_linearised_in_its_frame() {
     let found = document(SLEIGH, "- --trim=w,thrust --moving x,y,theta");
@@ -241,7 +241,7 @@ fn an_equilibrium_keeps_the_levels_of_constraints() {
     assert_eq!(found["stability"], "undecided");
 }
 
-/// `Phi` and `Gamma` of an oscillator by its sine and cosine.
+/// `Phi` and `Gamma` of an oscillator in closed form.
 #[test]
 fn a_sampled_oscillator_has_its_exact_matrices() {
     let found = document(SPRING, "- --input u=0.3 --every 0.9 --samples 3");
@@ -262,7 +262,8 @@ fn a_sampled_oscillator_has_its_exact_matrices() {
     assert!(found["stability"].is_null());
 }
 
-/// A ball that falls from rest hits the floor at `sqrt(2 x/g)`; the derivatives of its motion afterwards by hand.
+/// A ball that falls from rest hits the floor at `sqrt(2 x/g)`. The derivatives of its motion afterwards are computed
+/// by hand.
 #[test]
 fn samples_go_across_impacts() {
     let found = document(BALL, "- --every 2.5 --samples 1");
@@ -286,7 +287,7 @@ fn samples_go_across_impacts() {
     );
     let next = matrix(&Value::Array(vec![sample["next"].clone()]));
     assert!((next[0][0] - (speed * left - left * left / 2.0)).abs() < 1e-12);
-    // A motion that accumulates before the sample has no derivative.
+    // If impacts accumulate before the sample, the motion has no derivative.
     let ended = linearise(BALL, "- --every 25 --samples 1");
     assert_eq!(ended.exit, Exit::Other);
     assert!(
@@ -331,7 +332,7 @@ fn flags_that_make_no_sense_are_refused() {
     }
 }
 
-/// A mass that a force pushes onto a plate, which has a spring.
+/// A mass that moves freely until it touches a plate on a spring, with a force on the mass.
 const SWITCHED: &str = "
     Switched {
         coordinates { x; }
@@ -350,7 +351,8 @@ const SWITCHED: &str = "
         initial { dot(x) = 1; }
     }";
 
-/// A mass on a spring that rests at -1: outside of an interval, or behind a floor; and a pendulum held beside its rest.
+/// A mass on a spring whose equilibrium -1 lies outside of an interval, or behind a floor; and a pendulum that a torque
+/// holds at an angle.
 #[test]
 fn an_equilibrium_is_a_state_that_the_model_allows() {
     for (coordinate, surface) in [("x in (0.5, 3)", ""), ("x", "impacts { floor: x >= 0; }")] {
@@ -422,8 +424,8 @@ fn a_sampled_motion_ends_where_it_leaves_the_mode() {
     );
 }
 
-/// A pendulum whose torque just holds it level: two equilibria meet there. The tangent has no negative real part at their meeting, and the
-/// state is known to half of its digits.
+/// A pendulum whose torque just holds it level. Two equilibria meet there: one eigenvalue is 0, and only half of the
+/// digits of the state are known.
 #[test]
 fn the_stability_of_a_fold_is_open() {
     let text = "
@@ -443,7 +445,7 @@ fn the_stability_of_a_fold_is_open() {
         let told = stability(&format!("--set {torque}"));
         assert!(told.contains("not decided"), "{told}");
     }
-    // Below, the lower equilibrium is stable and the upper one is not.
+    // For a smaller torque, the lower equilibrium is stable and the upper one is not.
     assert!(stability("--set T=0.9").contains("stable: all real parts are negative"));
     let upper = stability("--set T=0.9 --initial th=2");
     assert!(upper.contains("unstable"), "{upper}");

@@ -1,4 +1,4 @@
-//! Maps of the walker against numbers that are known of it.
+//! Maps of the walker against its known boundary, gait and multiplier.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]

@@ -9,7 +9,8 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::run_on;
 
-/// A chain of four integrators. From rest at 0 to rest at 1 in a time of 1, the least integral of `u^2` is `7!^2/(3!^2 7)`, 100800.
+/// A chain of four integrators. From rest at 0 to rest at 1 in a time of 1, the least integral of `u^2` is
+/// `7!^2/(3!^2 7) = 100800`.
 const CHAIN: &str = "
     Chain {
         coordinates { a; b; c; g; }
@@ -19,7 +20,7 @@ const CHAIN: &str = "
         initial { until = 1; }
     }";
 
-/// A rod of length 1 that does not stretch, by the angle of its tangent along its length: extremals are Euler's elastica.
+/// A rod of length 1 that does not stretch, described by the angle of its tangent. Its extremals are Euler's elastica.
 const ROD: &str = "
     Rod {
         coordinates { x; y; th; }
@@ -55,8 +56,9 @@ fn elliptic(m: f64) -> [f64; 2] {
     [k, k * (1.0 - sum)]
 }
 
-/// A rod clamped along its chord at both ends, which are at half of its length, is four quarter waves of an elastica:
-/// `2 E/K - 1 = 1/2`, with the cost `32 K^2 (E/K - 1 + m)`. It bends to either side; further forms cost more.
+/// A rod is clamped at both ends along its chord, which is half as long as the rod. It consists of four quarter waves
+/// of an elastica: `2 E/K - 1 = 1/2`, with the cost `32 K^2 (E/K - 1 + m)`. It bends to either side; further forms cost
+/// more.
 #[test]
 fn a_clamped_rod_bends_to_the_first_of_eulers_elastica() {
     let (mut low, mut high) = (0.0, 0.9);

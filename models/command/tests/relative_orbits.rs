@@ -1,5 +1,5 @@
 //! Orbits that close up to a group of symmetries: gaits against runs of a hundred steps, groups against closed forms, and
-//! what is said where a symmetry is missing or is none.
+//! messages about missing or wrong symmetries.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -12,8 +12,8 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::{Done, run_on};
 
-/// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section is where the radius is
-/// largest: `r^2` oscillates with the period `pi/w`, and in that time the angle grows by `pi L/sqrt(L^2 + b)`.
+/// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section consists of the
+/// states of largest radius. `r^2` oscillates with the period `pi/w`, in which the angle grows by `pi L/sqrt(L^2 + b)`.
 const CENTRAL: &str = "
     Central {
         coordinates { x; y; u; v; }
@@ -29,7 +29,7 @@ const CENTRAL: &str = "
         initial { x = 1; y = 1/10; u = 1/5; v = 3/5; until = 20; }
     }";
 
-/// A point in a round table. All chords of its motion are alike.
+/// A point in a round table. All chords of its motion are congruent.
 const ROUND: &str = "
     Round {
         coordinates { x; y; }
@@ -57,7 +57,7 @@ const LENS: &str = "
         transitions { enter: air -> glass when square <= 1; leave: glass -> air when square >= 1; }
     }";
 
-/// A charge in a magnetic field and an electric field across it: it drifts by `2 pi E/B^2` in each turn.
+/// A charge in a magnetic field and a perpendicular electric field. It drifts by `2 pi E/B^2` in each turn.
 const CROSSED: &str = "
     Crossed {
         coordinates { x; y; }
@@ -258,7 +258,7 @@ fn the_slipping_walker_has_the_multipliers_of_its_reduction() {
     assert_near(velocities[0], 0.5 * scaled[2], 1e-13);
     assert_near(velocities[1], scaled[1], 1e-13);
     assert_eq!(whole["modulo"][0]["conserves_momentum"], false);
-    // The same from where the declaration starts, at the declared slope.
+    // The gait of the declared parameters, found from the declared start.
     let declared = document("", &walker);
     assert_near(advance(&declared, 0), 0.369_980_386_579_607_5, 1e-12);
 }
@@ -316,7 +316,7 @@ fn a_central_force_turns_by_its_apsidal_angle() {
         assert_near(number(&orbit["period"]), PI / parameter("w"), 1e-12);
         let angle = PI * momentum / momentum.hypot(parameter("b").sqrt());
         assert_near(advance(&orbit, 0), angle, 1e-12);
-        // Neither the energy nor the momentum changes the period, and the angle is left out.
+        // Energy and momentum do not change the period, and the group removes the angle, so both multipliers are 1.
         let found = multipliers(&orbit);
         assert_eq!(found.len(), 2);
         assert!(
@@ -356,8 +356,8 @@ fn chords_of_a_round_table_turn_by_their_angle() {
     );
 }
 
-/// A point in a round table with a round lens in its middle: outside it goes at the speed v, inside at v' with v'^2 = v^2 + 2, and the angular momentum
-/// p v = p' v' is kept across the refraction.
+/// A point in a round table with a round lens in its middle. Outside the lens its speed is v, inside it is v'
+/// with v'^2 = v^2 + 2. The refraction keeps the angular momentum: p v = p' v'.
 #[test]
 fn rays_through_a_lens_turn_by_their_angle() {
     let words = [
@@ -376,7 +376,7 @@ fn rays_through_a_lens_turn_by_their_angle() {
     let half = |distance: f64, radius: f64| (radius * radius - distance * distance).sqrt();
     let time = 2.0 * ((half(p, 2.0) - half(p, 1.0)) / v + half(deep, 1.0) / inside);
     assert_near(number(&orbit["period"]), time, 1e-12);
-    // Along y = 0.3 to the right it runs round the middle clockwise.
+    // The ray along y = 0.3 to the right passes the middle clockwise.
     assert_near(advance(&orbit, 0).cos(), angle.cos(), 1e-12);
     assert_near(advance(&orbit, 0).sin(), -angle.sin(), 1e-12);
     assert_eq!(orbit["modulo"][0]["conserves_momentum"], true);
@@ -431,11 +431,11 @@ fn a_cart_closes_up_to_motions_of_the_plane() {
     let words = |fields| ["orbit", "-", "--surface", "tick", "--modulo", fields];
     let all = "partial(h) + x*partial(y) - y*partial(x), partial(x), partial(y)";
     let orbit = document(CART, &words(all));
-    // Nothing is left across the group; in a period of the clock the heading turns by `2 pi w`.
+    // No direction is left across the group. In a period of the clock the heading turns by `2 pi w`.
     assert_eq!(multipliers(&orbit).len(), 0);
     assert_near(advance(&orbit, 0), 2.0 * PI * 0.3, 1e-12);
-    // `exp(a_0 (turn) + a_1 partial(x) + a_2 partial(y))` turns the plane about `(-a_2, a_1)/a_0`: a run of two periods
-    // ends where the turn by twice the angle takes its start.
+    // `exp(a_0 (turn) + a_1 partial(x) + a_2 partial(y))` turns the plane about `(-a_2, a_1)/a_0`. A run of two periods
+    // ends at the image of its start under the turn by twice the angle.
     let a = [0, 1, 2].map(|index| advance(&orbit, index));
     let start = numbers(&orbit["before"]["q"]);
     let given = format!("x={:?},y={:?},h={:?},s=0", start[0], start[1], start[2]);
@@ -455,7 +455,7 @@ fn a_cart_closes_up_to_motions_of_the_plane() {
     let [dx, dy] = [start[0] - centre[0], start[1] - centre[1]];
     assert_near(after[0], centre[0] + cos * dx - sin * dy, 1e-11);
     assert_near(after[1], centre[1] + sin * dx + cos * dy, 1e-11);
-    // Without the turn, or with it and one translation, it does not close, or there is no group.
+    // With the translations alone the orbit does not close. The turn and one translation do not generate a group.
     let missed = run_missed(CART, &words("partial(x), partial(y)"));
     assert!(missed.output.contains("not_converged"), "{}", missed.output);
     let refused = run_missed(
@@ -545,7 +545,7 @@ fn gaits_are_followed_modulo_a_symmetry() {
         assert_near(found, expected, 1e-9);
     }
     assert!(points.iter().all(|point| point["stability"] == "stable"));
-    // Along the branch the gait advances as the slope of differences says.
+    // The advance of the gait grows along the branch.
     let [one, other] = [&points[points.len() / 2], &points[points.len() / 2 + 1]];
     assert!(number(&one["advance"][0]) < number(&other["advance"][0]));
 }

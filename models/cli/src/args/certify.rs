@@ -11,11 +11,11 @@ pub const EXAMPLES: &str = "
 /// Certified motion in place of a run.
 #[derive(Debug, Args)]
 pub struct CertifyArgs {
-    /// Enclose the motion by interval arithmetic, in place of a run by an integrator. Prints ranges that contain the time of
-    /// every impact and all positions and velocities at the end, rounding and truncation included. Initial values and
-    /// parameters are the doubles nearest to the given decimals. If a range becomes too wide to decide the next event, the
-    /// motion is certified up to that time and the exit status is 1. Sliding and resting contact are not certified, and
-    /// intervals of coordinates are not checked.
+    /// Enclose the motion by interval arithmetic, in place of a run by an integrator. Prints ranges that contain the
+    /// time of every impact and all positions and velocities at the end, rounding and truncation included. Initial
+    /// values and parameters are the doubles nearest to the given decimals. If a range becomes too wide to decide the
+    /// next event, the motion is certified up to that time and the exit status is 1. Sliding and resting contact are
+    /// not certified, and intervals of coordinates are not checked.
     #[arg(
         long,
         conflicts_with_all = [
@@ -24,9 +24,9 @@ pub struct CertifyArgs {
         ]
     )]
     pub certify: bool,
-    /// Certify all motions that start with a value in this range: of a coordinate, a velocity `x_dot` (with constraints, a
-    /// quasi-velocity) or a parameter. May be repeated. Ends that are not doubles are rounded outward. Values that follow from
-    /// the constraints are computed at the middle of the ranges.
+    /// Certify all motions that start with a value in this range: of a coordinate, a velocity `x_dot` (with
+    /// constraints, a quasi-velocity) or a parameter. May be repeated. Ends that are not doubles are rounded outward.
+    /// Values that follow from the constraints are computed at the middle of the ranges.
     #[arg(
         long,
         value_name = "NAME=LO..HI",

@@ -10,17 +10,17 @@ use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
     "The velocity at the start is unknown. It has as many free components as coordinates must be given at the end: all of
-them without constraints. Coordinates that --from does not name are those of the model's initial state. Angles are
-numbers here: a whole turn more is another end.
+them without constraints. Coordinates that --from does not name are those of the model's initial state. Angles are not
+reduced: an end that differs by a whole turn is another end.
 
 With one unknown both directions are scanned, and every change of sign of the miss is a bracket. With more unknowns the
 starts of --starts directions are scanned, and Newton's method goes on from those that come nearest, within one
-sequence of impacts. Derivatives across impacts are exact. The scan begins with the energies that the problem suggests,
-and goes on to faster starts until all of them have too many impacts, or to a large multiple. No search is exhaustive:
-two motions that differ by less than the scan resolves may be missed.
+sequence of impacts. Derivatives across impacts are exact. The scan begins with energies that are estimated from the
+problem, and goes on to faster starts until all of them have too many impacts, or to a large multiple. No search is
+exhaustive: two motions that differ by less than the resolution of the scan may be missed.
 
-An impact at the moment of the end is not counted. A conjugate point is where the determinant of the derivative of the
-configuration by the velocity at the start passes through 0: motions with neighbouring velocities meet there.
+An impact at the end time is not counted. At a conjugate point, the determinant of the derivative of the configuration
+with respect to the initial velocity passes through 0: motions with neighbouring velocities meet there.
 
 Exit status: 0 motions were found, 1 none was found, 2 bad flags or input.
 
@@ -53,10 +53,11 @@ pub struct ConnectArgs {
     /// The search.
     #[command(flatten)]
     pub search: SearchArgs,
-    /// Largest kinetic energy of a start. Default: as the problem suggests, see below.
+    /// Largest kinetic energy of a start. Default: an estimate from the problem, see below.
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub energy: Option<f64>,
-    /// Look for the envelope of the motions too: the conjugate points of N starts in each direction, with one unknown.
+    /// Also compute the envelope of the motions: the conjugate points of N starts in each direction. Needs a problem with
+    /// one unknown.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub envelope: Option<u32>,
     /// The motion.
@@ -68,7 +69,7 @@ pub struct ConnectArgs {
     /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Draw all motions: over the time, or on the axes of --axes.
+    /// Draw all motions against time, or on the axes of --axes.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
     /// Quantities of the picture: one along x, one or more along y, as for `simulate`. Default: t,q

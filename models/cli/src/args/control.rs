@@ -10,24 +10,25 @@ use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
     "The model declares `inputs` and a `cost { running = ..; terminal = ..; }`. Extremals satisfy the maximum principle: state and
-costate follow H*, and jump together at impacts. `derive MODEL --control` prints the equations. The state of a first-order
-model has its coordinates, that of a Lagrangian model positions and velocities: x, x_dot.
+costate follow H*, and jump together at impacts. `derive MODEL --control` prints the equations. The state consists of
+the coordinates of a first-order model, or of the positions and velocities of a Lagrangian model: x, x_dot.
 
-The costate at the start is unknown. At the end, components of the state that --end gives have their values, and the costate
-of the others is the derivative of the terminal cost. Costates are scanned in --starts directions, and Newton's method goes
-on from those that come nearest, within one sequence of impacts, with exact derivatives across impacts. No search is
-exhaustive: extremals may be missed. They are listed by their cost; each is one for its number of impacts.
+The costate at the start is unknown. At the end, --end fixes components of the state; the costate of each other component is
+the derivative of the terminal cost. Costates are scanned in --starts directions. Newton's method goes on from those that come
+nearest, within one sequence of impacts, with exact derivatives across impacts. No search is exhaustive: extremals may be
+missed. They are listed by cost. Each is extremal among motions with its number of impacts.
 
 The second-order test says whether the cost of neighbouring motions with the same sequence of impacts is larger: `minimum`; `fails`
 near a focal point; `open` where inputs do not control all directions of the state.
 
 With --dp the least cost is computed backwards in --steps steps on a grid of the state, for models whose state has two
-components and with one input, which is held in each step and chosen among those of its axis and between them. Motions that leave the grid
-have no cost. A path of least cost is a motion with these inputs; it is compared with the cheapest extremal that has --impacts. --csv has
-a row for each node at --at (state, cost, input, number of impacts), --inputs the first path. --plot is a map of --show with
-the paths on top or, with --axes, the paths over t, the state, the input, cost.
+components and which have one input. The input is constant in each step; its values are those of its axis and values between
+them. Motions that leave the grid have no cost. A path of least cost is a motion with the best inputs; it is compared with the
+cheapest extremal for --impacts. --csv has a row for each node at the time --at (state, cost, input, number of impacts), --inputs has
+the first path. --plot draws a map of --show with the paths on top or, with --axes, the paths on axes of t, the state, the input
+and cost.
 
-Bounds on inputs and states, constraints, and laws that forget the state before, such as plastic ones, are refused.
+Bounds on inputs and states, constraints, and impact laws without an inverse, such as plastic ones, are refused.
 
 Exit status: 0 extremals were found, 1 none was found, 2 bad flags or input.
 
@@ -54,8 +55,9 @@ pub struct ControlArgs {
     /// Time of the end. Default: the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// Search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`. --csv has the rows of all
-    /// values, --plot the costs over the values: a line of the least cost for each number of impacts, dots for the other extremals.
+    /// Search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`. --csv has the
+    /// rows of all values. --plot draws the costs against the values: for each number of impacts a line of the least
+    /// cost, and dots for the other extremals.
     #[arg(long, value_name = "NAME=A..B:COUNT", allow_hyphen_values = true, conflicts_with_all = ["dp", "inputs", "axes"])]
     pub vary: Option<String>,
     /// The search.
@@ -73,18 +75,18 @@ pub struct ControlArgs {
     /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the first extremal, that of least cost, as a table: time, state, costate, cost so far, inputs, H*. An impact has a row
+    /// Write the extremal of least cost as a table: time, state, costate, cost so far, inputs, H*. An impact has a row
     /// before it and a row after it. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
-    /// Number of rows of that table, evenly in time, besides those at impacts.
+    /// Number of rows of the table of --inputs, equally spaced in time; rows at impacts are added.
     #[arg(long, value_name = "N", requires = "inputs", value_parser = clap::value_parser!(u32).range(2..=10_000_000), default_value_t = 501)]
     pub samples: u32,
-    /// Draw all extremals: state and inputs over the time, or the axes of --axes.
+    /// Draw all extremals: state and inputs against time, or the axes of --axes.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Quantities of the picture: one along x, one or more along y. Those of the state, `costate_x` and so on, `cost`, the inputs,
-    /// `hamiltonian`. Default: t, the state, the inputs
+    /// Quantities of the picture: one along x, one or more along y. Quantities are those of the state, `costate_x` and so
+    /// on, `cost`, the inputs, `hamiltonian`. Default: t, the state, the inputs
     #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
     pub axes: Option<String>,
     /// Width of the picture, in pixels.

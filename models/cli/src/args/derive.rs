@@ -37,11 +37,12 @@ pub struct DeriveArgs {
     /// Print the Jacobiator of three functions instead.
     #[arg(long, value_name = "F,G,H", allow_hyphen_values = true)]
     pub jacobiator: Option<String>,
-    /// Print the reduction by symmetries instead: locked inertia, momentum map, connection, curvature, reduced equations. Fields are
-    /// written as in claims: `partial(x),partial(y)`.
+    /// Print the reduction by symmetries instead: locked inertia, momentum map, connection, curvature, reduced
+    /// equations. Fields are written as in claims: `partial(x),partial(y)`.
     #[arg(long, value_name = "XI,..", conflicts_with_all = ["bracket", "jacobiator"], allow_hyphen_values = true)]
     pub group: Option<String>,
-    /// Print the maximum principle instead, of a model with a `cost`: H*, optimal inputs, the field of the costate, its jumps at impacts.
+    /// Print the maximum principle instead, of a model with a `cost`: H*, optimal inputs, the field of the costate, its
+    /// jumps at impacts.
     #[arg(long, conflicts_with_all = ["bracket", "jacobiator", "group"])]
     pub control: bool,
     /// Output format.

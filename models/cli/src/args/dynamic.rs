@@ -10,7 +10,7 @@ use crate::scalar;
 /// Quantity of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Shown {
-    /// The least cost from there to the end.
+    /// The least cost from the node to the end.
     Cost,
     /// The best input.
     Input,
@@ -21,7 +21,8 @@ pub enum Shown {
 /// The grid, the paths, and the picture of dynamic programming.
 #[derive(Debug, Args)]
 pub struct DynamicArgs {
-    /// Solve by dynamic programming on this grid instead: an axis for each of the two components of the state and for the input.
+    /// Solve by dynamic programming on this grid instead: an axis for each of the two components of the state and for
+    /// the input.
     #[arg(
         long,
         value_name = "NAME=A..B:COUNT,..",
@@ -30,10 +31,10 @@ pub struct DynamicArgs {
         conflicts_with = "end"
     )]
     pub dp: Vec<String>,
-    /// Number of steps in time, in each of which the input is held.
+    /// Number of time steps; the input is constant in each of them.
     #[arg(long, value_name = "N", requires = "dp", value_parser = clap::value_parser!(u32).range(1..=100_000), default_value_t = 100)]
     pub steps: u32,
-    /// Follow the path of least cost from this state; without it from the initial one. May be repeated.
+    /// Follow the path of least cost from this state. Default: the initial state. May be repeated.
     #[arg(
         long,
         value_name = "NAME=VALUE,..",
@@ -41,7 +42,7 @@ pub struct DynamicArgs {
         allow_hyphen_values = true
     )]
     pub path: Vec<String>,
-    /// Time of the map and of the rows, which is that of the nearest step. Default: 0.
+    /// Time of the map and of the rows, rounded to the nearest step. Default: 0.
     #[arg(long, value_name = "T", requires = "dp", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse))]
     pub at: Option<f64>,
     /// Quantity of the map.

@@ -42,26 +42,26 @@ pub struct EnsembleArgs {
         allow_hyphen_values = true
     )]
     pub vary: Vec<String>,
-    /// Number of members: of values of the one range `A..B` without a count, or of random draws with --random.
+    /// Number of members: the number of values of the range `A..B` that has no count or, with --random, of random draws.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub members: Option<u64>,
     /// Draw the varied quantities at random, from this seed.
     #[arg(long, value_name = "SEED", conflicts_with = "from")]
     pub random: Option<u64>,
-    /// Read the members from a table, one in each row. Columns are named after coordinates, velocities and parameters, as in
-    /// the tables of `simulate --csv` and `ensemble --csv`. `-` is the standard input.
+    /// Read the members from a table, one in each row. Columns are named after coordinates, velocities and parameters,
+    /// as in the tables of `simulate --csv` and `ensemble --csv`. `-` is the standard input.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "members"])]
     pub from: Option<PathBuf>,
-    /// Add an output to the model for these runs, such as `S = integral(lagrangian)`: an expression as of a declared output, or an
-    /// integral along a run. May be repeated.
+    /// Add an output to the model for these runs, such as `S = integral(lagrangian)`. The expression has the syntax of
+    /// `outputs` in a model. May be repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub output: Vec<String>,
     /// Run only block I of N blocks of members, counted from 1. The rows of all blocks together are those of the whole
     /// ensemble.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
-    /// Take the rows and counts of all shards from their files in place of running them, as if one run had made them: the
-    /// same rows, sums, density and pictures. Give the flags that the shards were run with.
+    /// Merge the files of all shards in place of running them. Rows, sums, density and pictures are those of one run of
+    /// the whole ensemble. Give the flags with which the shards were run.
     #[arg(long, value_name = "PART.csv", num_args = 1.., conflicts_with_all = ["shard", "resume"])]
     pub merge: Vec<PathBuf>,
     /// Threads and rows.
@@ -70,9 +70,9 @@ pub struct EnsembleArgs {
     /// Write the request, the outcomes and the density of the ensemble as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Count the states of all members in the cells of a grid over two coordinates, velocities or outputs, or `energy`. BINS
-    /// is the number of cells in each direction, by default 100. Angles are reduced to -pi to pi. A range that is not given
-    /// is estimated from short runs of a few members. States outside of the grid are counted separately.
+    /// Count the states of all members in the cells of a grid over two coordinates, velocities or outputs, or `energy`.
+    /// BINS is the number of cells in each direction, by default 100. Angles are reduced to -pi to pi. A range that is
+    /// not given is estimated from short runs of a few members. States outside of the grid are counted separately.
     #[arg(
         long,
         value_name = "X[=A..B],Y[=A..B][:BINS[xBINS]]",
@@ -82,7 +82,7 @@ pub struct EnsembleArgs {
     /// Time between the states that --density counts.
     #[arg(long, value_name = "DT", allow_hyphen_values = true, requires = "density", value_parser = ValueParser::new(scalar::positive), default_value = "1")]
     pub every: f64,
-    /// Time at the beginning of every member that --density does not count.
+    /// Time from the start of every member during which --density does not count states.
     #[arg(long, value_name = "T", allow_hyphen_values = true, requires = "density", value_parser = ValueParser::new(scalar::nonnegative), default_value = "0")]
     pub discard: f64,
     /// Write the counts of --density as a table, one cell in each row. `-` is the standard output.

@@ -28,7 +28,7 @@ More examples:
 
 pub const EXPORT_EXAMPLES: &str =
     "The header is C99, allocates nothing and calls nothing but math.h. It has the rate, velocity, energy, gaps and impacts of the
-model as functions of time, state and parameters; of a model with modes those of each.
+model as functions of time, state and parameters. For a model with modes, it has those functions of each mode.
 
 More examples:
   dalembert export bouncing_ball --c -

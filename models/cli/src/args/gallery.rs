@@ -28,7 +28,7 @@ pub struct GalleryArgs {
     /// Draw only this picture, without a page. May be repeated.
     #[arg(long, value_name = "NAME", conflicts_with = "models")]
     pub picture: Vec<String>,
-    /// Print the names and captions of the pictures without drawing them.
+    /// Print the names and titles of the pictures without drawing them.
     #[arg(long)]
     pub list: bool,
     /// Draw densities from shorter runs, and leave out diagrams of measured times.

@@ -14,18 +14,19 @@ pub(super) const EXAMPLES: &str =
   d/dt y = A y + B u,   z = C y + D u
 
 with the derivatives of the equations of motion, exact to rounding. The state is positions and velocities; with constraints,
-positions and quasi-velocities; of a first-order model, its coordinates. Impacts are not part of it. A model with modes is linearised
+positions and quasi-velocities; of a first-order model, its coordinates. Impacts do not enter. A model with modes is linearised
 in the mode that --mode names, as if there were no other.
 
---trim searches an equilibrium near the given state by the Levenberg-Marquardt method. It may change everything, or only what
-is named: `--trim=u,theta`. --moving names coordinates that need not rest, such as the path of a wheel that rolls steadily.
+--trim searches an equilibrium near the given state by the Levenberg-Marquardt method. It changes all components of the state
+and all inputs, or only the named ones: `--trim=u,theta`. --moving names coordinates that need not rest, such as the position of
+a wheel that rolls steadily.
 An equilibrium is stable if all eigenvalues of A have negative real parts, unstable if one has a positive one.
 
---every and --samples follow the motion from there on, with the inputs held, and print for each sample
+--every and --samples follow the motion from that state with constant inputs, and print for each sample
 
   y(t + T) = Phi y(t) + Gamma u
 
-across impacts, with the saltation at each. Along a periodic orbit, whose start and period `orbit` prints, these are the
+across impacts, with the saltation matrix of each. Along a periodic orbit, whose start and period `orbit` prints, these are the
 matrices of a periodic linear-quadratic regulator.
 
 Exit status: 0 the equations were linearised, 1 no equilibrium was found or the equations have no derivative there, 2 bad
@@ -52,7 +53,7 @@ pub struct LineariseArgs {
     /// The time, for equations that depend on it.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse), default_value = "0")]
     pub at: f64,
-    /// Search an equilibrium first. With names, only these components of the state and inputs change.
+    /// Search an equilibrium first. With names, the search changes only these components of the state and inputs.
     #[arg(
         long,
         value_name = "NAME,..",

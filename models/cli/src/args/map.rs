@@ -10,7 +10,7 @@ use crate::scalar;
 
 /// The end of `map --help`.
 pub const EXAMPLES: &str = "The first --vary runs along x, the second along y; with one the map is a strip. Every cell is a run from the model's
-initial state, or that of the flags, with the varied quantities as they are in the cell. Its class is
+initial state, or that of the flags, with the varied quantities set to the values of the cell. Its class is
 
   failed at once      --fail holds before the first return
   failed              --fail holds later
@@ -19,8 +19,8 @@ initial state, or that of the flags, with the varied quantities as they are in t
   unsettled           it makes all returns, and they do not repeat
   done, zeno, ..      any other outcome of the run
 
-Expressions are those of `outputs` in a model file: coordinates, velocities `dot(x)`, parameters, definitions. --fail looks at
-the start, at every return and after every step of the integrator, which --max-step shortens.
+Expressions are those of `outputs` in a model file: coordinates, velocities `dot(x)`, parameters, definitions. --fail is
+evaluated at the start, at every return and after every step of the integrator, which --max-step shortens.
 
 Rows of --csv: `member`, `in.NAME` for what is varied, `class`, `outcome`, `returns`, `period`, `orbit` (0 without one),
 `t`, `end.NAME` (the state after the last return, without returns at the end), `exponent` with --lyapunov, `value` with a
@@ -50,7 +50,7 @@ pub struct MapArgs {
         required = true
     )]
     pub vary: Vec<String>,
-    /// Set a component of the start to an expression of parameters and of the other components; may be repeated.
+    /// Set a component of the start to an expression of parameters and other components. May be repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub start: Vec<String>,
     /// Stop a run after this many returns to the surface. Without --until it may then take up to 3600 units of time, or
@@ -60,11 +60,11 @@ pub struct MapArgs {
     /// The surface whose impacts are the returns; needed if the model has several.
     #[arg(long, value_name = "SURFACE", requires = "returns")]
     pub surface: Option<String>,
-    /// Stop a run where this holds, and count it as failed.
+    /// Stop a run when this condition holds, and count the run as failed.
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub fail: Option<String>,
-    /// Meaning of the colours: `end`, the class of the cell; `returns`, their number; `lyapunov`; or an expression at the
-    /// last return, in two colours if it is a comparison.
+    /// Quantity that the colours show: `end`, the class of the cell; `returns`, their number; `lyapunov`; or an
+    /// expression at the last return. A comparison has two colours.
     #[arg(
         long,
         value_name = "end|returns|lyapunov|EXPR",
@@ -72,20 +72,22 @@ pub struct MapArgs {
         default_value = "end"
     )]
     pub class: String,
-    /// Draw the line on which this holds for the starts, such as `xi = 2*eta`, or is 0; may be repeated.
+    /// Draw the line of starts on which this equation holds, such as `xi = 2*eta`, or on which this expression is 0. May
+    /// be repeated.
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub contour: Vec<String>,
-    /// Add a column `out.NAME` with an expression at the end of each run, such as `S = integral(lagrangian)`. May be repeated.
+    /// Add a column `out.NAME` with an expression at the end of each run, such as `S = integral(lagrangian)`. May be
+    /// repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub output: Vec<String>,
-    /// The longest period that is looked for, in returns.
+    /// Longest period of an orbit that is searched for, in returns.
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "returns", value_parser = clap::value_parser!(u32).range(1..=64), default_value_t = 8)]
     pub period: u32,
-    /// Returns repeat if they differ by less than this, relative to values above 1; without it 1e-6, or 1000 times --tol if
-    /// that is more. Cells are of one orbit if theirs differ by less than 1000 times that.
+    /// Largest difference between returns that repeat, relative to values above 1. Default: 1e-6, or 1000 times --tol if
+    /// that is larger. Cells have the same orbit if their returns differ by at most 1000 times this value.
     #[arg(long, value_name = "X", allow_hyphen_values = true, requires = "returns", value_parser = ValueParser::new(scalar::positive))]
     pub near: Option<f64>,
-    /// Coordinates and velocities in which returns need not repeat, such as the way that was gone.
+    /// Coordinates and velocities in which returns need not repeat, such as the distance travelled.
     #[arg(
         long,
         value_name = "NAME,..",
@@ -93,24 +95,23 @@ pub struct MapArgs {
         value_delimiter = ','
     )]
     pub ignore: Vec<String>,
-    /// Compute the Lyapunov exponent of each cell: the mean growth of a small deviation over this many further returns,
-    /// per return, in powers of e. On an orbit it is the logarithm of its largest multiplier, divided by its period; N is
+    /// Compute the Lyapunov exponent of each cell: the mean logarithm of the growth of a small deviation per return, over
+    /// this many further returns. On an orbit it is the logarithm of its largest multiplier, divided by its period; N is
     /// rounded up to whole periods.
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "returns", value_parser = clap::value_parser!(u32).range(1..))]
     pub lyapunov: Option<u32>,
     /// Threads and rows.
     #[command(flatten)]
     pub rows: RowsArgs,
-    /// Write what is known of the whole as one JSON document: what was asked for, classes, orbits; `-` is the standard
-    /// output.
+    /// Write the request, the classes and the orbits as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
     /// Draw the map.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Draw a dot for each cell in the plane of two quantities, in place of the map: what is varied, names of --output,
-    /// coordinates and velocities at the end, `t`, or columns of the table, such as `end.x` where x is varied. Colours are those of
-    /// --class.
+    /// Draw a dot for each cell in the plane of two quantities, in place of the map. Quantities are the varied ones,
+    /// names of --output, coordinates and velocities at the end, `t`, and columns of the table, such as `end.x` where x
+    /// is varied. Colours are those of --class.
     #[arg(
         long,
         value_name = "X,Y",

@@ -105,8 +105,8 @@ pub struct BranchArgs {
     /// Draw the branch over the parameter.
     #[arg(long, value_name = "FILE.svg", requires = "continue")]
     pub plot: Option<PathBuf>,
-    /// Quantity along y: `period`, or a coordinate, a velocity `x_dot`, a momentum `p_x`, `energy` or an output at the surface,
-    /// before the event there. Default: the first coordinate or velocity that changes along the branch.
+    /// Quantity along y: `period`, or a coordinate, a velocity `x_dot`, a momentum `p_x`, `energy` or an output at the
+    /// surface, before the event there. Default: the first coordinate or velocity that changes along the branch.
     #[arg(long, value_name = "NAME", requires = "plot")]
     pub axis: Option<String>,
 }

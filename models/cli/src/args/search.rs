@@ -16,7 +16,7 @@ pub struct SearchArgs {
     /// Number of directions that are scanned, for two unknowns or more. Default: 96 for two, 240 for three, 480 for more.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
     pub starts: Option<u32>,
-    /// Seed that turns these directions.
+    /// Seed of these directions.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
 }

@@ -1,4 +1,4 @@
-//! The flags of motion that is solved for.
+//! The flags of motions by Taylor series, which `orbit`, `connect` and `linearise` share.
 
 use clap::Args;
 use clap::builder::ValueParser;
@@ -8,7 +8,7 @@ use super::{PolicyArgs, law_help};
 use crate::error::CliError;
 use crate::scalar;
 
-/// Motion by a Taylor series with a small tolerance, through impacts.
+/// Motion by Taylor series with a small tolerance, across impacts.
 #[derive(Debug, Args)]
 pub struct SeriesArgs {
     /// Tolerance: relative local error per step of the Taylor series, between 1e-15 and 0.1.

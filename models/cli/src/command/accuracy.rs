@@ -1,4 +1,4 @@
-//! `accuracy`: the cost of accuracy, as a table for people, as CSV, JSON and a work-precision diagram.
+//! `accuracy`: the cost of accuracy, as a text table, as CSV, as JSON and as a work-precision diagram.
 
 mod document;
 mod spreadsheet;
@@ -19,7 +19,7 @@ use crate::sink::Sink;
 use crate::state_input::{build_run, initial_state};
 use crate::{Streams, run_request};
 
-/// A finished study, with the data that its files name.
+/// A finished study, with the model and the settings that its files name.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
@@ -160,7 +160,7 @@ impl Finished<'_> {
     }
 }
 
-/// Writes the table and the answer.
+/// Writes the table and the recommendation.
 fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let study = &finished.study;
     writeln!(output, "{}", finished.title())?;
@@ -224,7 +224,7 @@ fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     }
 }
 
-/// The recommendation: the fastest case.
+/// The recommendation: the fastest case for the wanted error.
 fn answer(finished: &Finished<'_>, best: &Sample) -> String {
     format!(
         "for an error of {:e}: --integrator {} --tol {:e} (measured error {:.1e}, {:.3} us per unit of time on this machine)",
@@ -236,7 +236,7 @@ fn answer(finished: &Finished<'_>, best: &Sample) -> String {
     )
 }
 
-/// Number of evaluations of the rate; for power series, of their coefficients.
+/// Number of evaluations of the rate; for Taylor series, number of coefficients.
 fn evaluations(sample: &Sample) -> u64 {
     match sample.integrator {
         Integrator::Taylor => sample.counters.coefficients,

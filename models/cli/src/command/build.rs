@@ -49,7 +49,7 @@ fn is_package_name(name: &str) -> bool {
             .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
-/// The folder of the library.
+/// The folder of the library: the given one, else the one from which this command was built.
 ///
 /// # Errors
 /// A folder without the library.
@@ -122,7 +122,7 @@ impl Package<'_> {
             .map(|part| format!("{:?}", self.library.join(part).display().to_string()));
         format!(
             "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
-             [features]\n# The functions of the models are inlined into the code that runs them: minutes to build.\n\
+             [features]\n# Inlines the functions of the models into the code that runs them. The build takes minutes.\n\
              inlined = [\"dalembert-cli/inlined\"]\n\n\
              [dependencies]\ndalembert = {{ path = {runtime} }}\ndalembert-cli = {{ path = {cli} }}\n\n\
              [workspace]\n"

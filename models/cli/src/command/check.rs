@@ -132,7 +132,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     checks
 }
 
-/// The name of a surface with a negative gap at this state, if there is one; the first step of a run reports it.
+/// A message that names a surface with a negative gap at this state, if there is one. The first step of a run reports it.
 fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
     let settings = Settings {
         form: Form::Global,
@@ -197,7 +197,7 @@ fn notes(model: &dyn AnyModel, report: Option<&report::Report>) -> Vec<String> {
         }
         if constraint.level.is_some() {
             notes.push(format!(
-                "constraint `{}` is integrable: it keeps a function of position",
+                "constraint `{}` is integrable: it keeps a function of the position constant",
                 constraint.name
             ));
         }
@@ -289,7 +289,7 @@ fn write_claim(output: &mut dyn Write, scene: &str, finding: &Finding) -> Result
     Ok(())
 }
 
-/// Declarations besides parameters: titles, each with its entries.
+/// The declarations except parameters: titles, each with its entries.
 fn declarations(description: &Description) -> [(&'static str, Vec<String>); 6] {
     let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     let coordinates = description.coordinates.iter();
@@ -425,7 +425,7 @@ fn topology_json(topology: Topology) -> Value {
     }
 }
 
-/// A report that keeps nothing, to test if a state can be inspected.
+/// A receiver that discards everything it is given: only success or failure of a run or an inspection counts.
 struct Silent;
 
 impl Watch for Silent {

@@ -1,4 +1,4 @@
-//! `connect`: all motions between two configurations, as a summary, a table, a document and a picture.
+//! `connect`: motions between two configurations, as a summary, a table, a document and a picture.
 
 mod document;
 mod film;
@@ -29,8 +29,8 @@ struct Finished<'a> {
 /// Carries out `connect`.
 ///
 /// # Errors
-/// Invalid flags, a configuration that is refused, a file that cannot be written. If no motion is found, the result is not
-/// an error but [`Exit::Other`].
+/// Invalid flags, a configuration that is refused, a file that cannot be written. If no motion is found, the result is
+/// not an error but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &ConnectArgs,
@@ -79,7 +79,7 @@ pub fn draw(models: &[Entry], args: &ConnectArgs) -> Result<Drawn, CliError> {
     })
 }
 
-/// Makes the search.
+/// Runs the search.
 fn find<'a>(
     model: &'a dyn AnyModel,
     args: &'a ConnectArgs,
@@ -102,7 +102,7 @@ fn find<'a>(
     })
 }
 
-/// The error for a problem without an answer, in the model's names.
+/// The error for a problem that is refused, in the model's names.
 fn refused(description: &Description, unjoined: &Unjoined) -> CliError {
     let coordinates: Vec<&str> = names::coordinates(description).collect();
     let surface = |index: usize| names::surfaces(description).nth(index).unwrap_or_default();
@@ -164,7 +164,7 @@ fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliErr
     let description = model.description();
     if !description.modes.is_empty() {
         return Err(CliError::Usage(
-            "connect: motions that change between modes are not solved for; write the mode as a model of its own",
+            "connect: motions that change between modes are not supported; declare the mode as a model of its own",
         ));
     }
     let impacts = ends::impacts(&args.search.impacts)?;

@@ -42,7 +42,7 @@ impl Finished<'_> {
         names::coordinates(self.description()).take(self.task.from.len())
     }
 
-    /// The names of the inputs: the first outputs, before H*.
+    /// The names of the inputs, which are the first outputs of the model of extremals; H* follows them.
     fn inputs(&self) -> impl Iterator<Item = &'static str> + Clone {
         let states = self.task.from.len();
         let outputs = &self.description().outputs;
@@ -69,11 +69,11 @@ impl Finished<'_> {
     }
 }
 
-/// Carries out `control`.
+/// Carries out `control`, also with --dp or --vary.
 ///
 /// # Errors
-/// Invalid flags, a model without a maximum principle, a state that is refused, a file that cannot be written. If no extremal
-/// is found, the result is not an error but [`Exit::Other`].
+/// Invalid flags, a model without a maximum principle, a state that is refused, a file that cannot be written. If no
+/// extremal is found, the result is not an error but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &ControlArgs,
@@ -157,7 +157,7 @@ fn entries(models: &[Entry], args: &ControlArgs) -> Result<Vec<Entry>, CliError>
     Ok(extremals)
 }
 
-/// The model of the extremals with the parameters of the flags, and perhaps one more.
+/// The model of the extremals with the parameters of the flags; `set` is one further assignment.
 fn build(
     extremals: &[Entry],
     args: &ControlArgs,
@@ -174,7 +174,7 @@ fn build(
     build_model(extremals, &args)
 }
 
-/// The declared model, and its scene if one is asked for.
+/// The declared model, and its scene if one is selected.
 fn declared<'a>(
     models: &'a [Entry],
     args: &'a ControlArgs,
@@ -212,7 +212,7 @@ fn held(models: &[Entry], args: &ControlArgs) -> Result<Held, CliError> {
         .ok_or(CliError::Usage("control: the model is not in its text"))
 }
 
-/// The extremal of least cost from a state, or the reason for which there is none.
+/// The extremal of least cost from a state, or the reason why none is known.
 ///
 /// # Errors
 /// Invalid flags.
@@ -271,7 +271,7 @@ fn task(model: &dyn AnyModel, args: &ControlArgs) -> Result<Task, CliError> {
     })
 }
 
-/// Makes the search.
+/// Runs the search.
 fn find<'a>(
     model: &'a dyn AnyModel,
     args: &'a ControlArgs,
@@ -298,7 +298,7 @@ fn controlled(
     ends::sought(about, terminal, |tell| model.control(task, tell), refused)
 }
 
-/// The error for a problem without extremals, in the model's names.
+/// The error for a problem that is refused, in the model's names.
 fn refused(description: &Description, unsought: &Unsought) -> CliError {
     let (place, reason) = match unsought {
         Unsought::Behind {

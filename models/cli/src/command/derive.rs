@@ -35,7 +35,7 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
     Ok(Exit::Reached)
 }
 
-/// The flag that asks for something else than the equations.
+/// The flag that asks for another output than the equations.
 fn flag(args: &DeriveArgs) -> Option<&'static str> {
     if args.control {
         return Some("--control");
@@ -50,7 +50,7 @@ fn flag(args: &DeriveArgs) -> Option<&'static str> {
         .find_map(|(value, flag)| value.is_some().then_some(flag))
 }
 
-/// The derivation that was asked for; the model itself is the first of its scenes.
+/// The requested derivation. Scene 0 is the model itself.
 fn derived(entry: &Entry, args: &DeriveArgs, scene: usize) -> Result<Report, ReportError> {
     let source = &entry.description().source;
     let part = (scene > 0).then_some(args.scene.as_str());
@@ -73,7 +73,7 @@ fn derived(entry: &Entry, args: &DeriveArgs, scene: usize) -> Result<Report, Rep
     })
 }
 
-/// Index of the two forms of every formula.
+/// Indices of the two forms of every formula.
 const TEXT: usize = 0;
 const LATEX: usize = 1;
 

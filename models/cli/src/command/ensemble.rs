@@ -1,4 +1,4 @@
-//! `ensemble`: many members of one scene, as rows, as a summary and as a density.
+//! `ensemble`: runs many members of one scene and writes rows, a summary and a density.
 
 mod cells;
 mod document;
@@ -28,7 +28,7 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::build_model;
 use crate::{Streams, plot, run_request};
 
-/// A finished ensemble, with the data that its files name.
+/// A finished ensemble: its request and its results.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     settings: &'a Settings,
@@ -54,7 +54,7 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     check_flags(args)?;
     if !args.run.input.is_empty() {
-        let text = "--input: an ensemble leaves inputs at 0; give them a law by --feedback, or declare a parameter for what its members vary";
+        let text = "--input: an ensemble leaves inputs at 0; give them a law by --feedback, or declare a parameter in place of an input that members vary";
         return Err(CliError::Usage(text));
     }
     let models = &*expression::with_outputs(models, &args.run.model.model, &args.output)?;
@@ -127,7 +127,7 @@ pub fn run(
     })
 }
 
-/// Writes the files about the whole ensemble.
+/// Writes the files and the summary of the whole ensemble.
 fn write_files(
     args: &EnsembleArgs,
     finished: &Finished<'_>,

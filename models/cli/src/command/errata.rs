@@ -1,4 +1,4 @@
-//! `errata`: misprints of the sources of the models, with printed and right values that are computed again.
+//! `errata`: lists misprints in the sources of the models, and computes the printed and the right values again.
 
 use std::io::{self, Write};
 
@@ -16,7 +16,7 @@ use crate::{Streams, json as parser};
 /// Relative difference below which a printed value counts as right.
 const ALIKE: f64 = 1e-6;
 
-/// Result of a check: the printed and the right value, or the reason for which there are none.
+/// Result of a check: the printed value and the right value, or the reason why they are missing.
 type Computed = Result<[f64; 2], String>;
 
 /// Carries out `errata`.
@@ -74,13 +74,13 @@ fn compute(catalogue: &Catalogue, check: &Check) -> Computed {
     let document = parser::parse(&output).map_err(|error| error.to_string())?;
     let values = (check.values)(&document);
     values
-        // Adding 0 leaves out the sign of a zero.
+        // Adding 0 turns a negative zero into a positive one.
         .map(|values| values.map(|value| value + 0.0))
         .filter(|values| values.iter().all(|value| value.is_finite()))
         .ok_or_else(|| "the output of the command lacks the value".to_owned())
 }
 
-/// True if the printed value differs from the right one.
+/// True if both values are known and differ.
 fn is_shown(computed: &Computed) -> bool {
     match computed {
         Ok([printed, right]) => (printed - right).abs() > ALIKE * printed.abs().max(right.abs()),

@@ -1,4 +1,4 @@
-//! `eval`: all derived quantities, evaluated by the emitted code at given states.
+//! `eval`: evaluates all derived quantities at given states.
 
 mod impact;
 mod input;
@@ -24,8 +24,8 @@ use impact::Moment;
 use input::Given;
 use report::Collected;
 
-/// Keys that are printed first for a state, in this order; `null` if a model has no such quantity. The other reported
-/// quantities follow, then the impacts.
+/// Keys that are printed first for a state, in this order, with `null` for a quantity that the model does not have. The
+/// other reported quantities follow, then the impacts.
 const KEYS: [&str; 15] = [
     "q",
     "qdot",
@@ -81,7 +81,7 @@ pub fn run(models: &[Entry], args: &EvalArgs, streams: &mut Streams<'_>) -> Resu
     Ok(exit)
 }
 
-/// The impulsive laws without a coefficient, and those with a given coefficient.
+/// The impulsive laws: those without a coefficient, and those whose coefficient is given.
 fn laws(args: &EvalArgs) -> Vec<Law> {
     let plain = Law::NAMES
         .iter()

@@ -1,4 +1,4 @@
-//! `export`: a model for other languages.
+//! `export`: the functions of a model as a header of C.
 
 use dalembert_codegen::export;
 

@@ -1,4 +1,4 @@
-//! `gallery`: figures of the models on one page, with each picture as a file, and a manifest.
+//! `gallery`: draws figures of the models on one page, writes each picture as a file, and a manifest.
 
 use std::fs;
 use std::io::Write;
@@ -65,7 +65,8 @@ pub fn run(
     })
 }
 
-/// The figures of the models with these names, or of all models. Figures that every model has come last.
+/// The figures of the models with these names, or of all models without names. The standard figure of each model comes
+/// last.
 fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliError> {
     let models = catalogue.models().iter();
     for name in wanted {
@@ -79,7 +80,7 @@ fn figures(catalogue: &Catalogue, wanted: &[String]) -> Result<Vec<Figure>, CliE
     Ok(figures)
 }
 
-/// The pictures with these names, or all pictures.
+/// The pictures with these names, or all pictures without names.
 fn chosen<'a>(plates: Vec<Plate<'a>>, wanted: &[String]) -> Result<Vec<Plate<'a>>, CliError> {
     let known: Vec<String> = plates.iter().map(Plate::name).collect();
     for name in wanted {

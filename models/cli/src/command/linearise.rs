@@ -16,11 +16,11 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::{build_model, initial_state, set_input};
 use crate::{Streams, names, run_request};
 
-/// A model and its linearisation, or the reason for which there is none.
+/// A model and its linearisation, or the reason why it has none.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,
-    /// The mode whose equations they are, of a model with modes.
+    /// The linearised mode, for a model with modes.
     mode: Option<&'static str>,
     found: Result<Linearisation, Unlinear>,
 }
@@ -28,8 +28,8 @@ struct Finished<'a> {
 /// Carries out `linearise`.
 ///
 /// # Errors
-/// Invalid flags, a state that is refused, a file that cannot be written. Equations without a derivative, and an equilibrium
-/// that is not found, are not errors but [`Exit::Other`].
+/// Invalid flags, a state that is refused, a file that cannot be written. Equations without a derivative, and an
+/// equilibrium that is not found, are not errors but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &LineariseArgs,
@@ -39,7 +39,7 @@ pub fn run(
     for text in &args.input {
         set_input(model.as_mut(), text)?;
     }
-    // Deviations stay in a mode.
+    // The linearised equations are those of one mode.
     let mode = model.present_mode();
     let model = model.mode_alone().unwrap_or(model);
     let model = model.as_ref();
@@ -130,7 +130,7 @@ fn text(description: &Description, reason: &Unlinear) -> String {
     match reason {
         Unlinear::Fault(fault) => format!("{reason}: {}", words::fault_text(description, fault)),
         Unlinear::NoEquilibrium { component, rate } => format!(
-            "no equilibrium was found: the rate of {} stays at {rate:.3e}; try --moving, another start, or more that is free",
+            "no equilibrium was found: the rate of {} stays at {rate:.3e}; try --moving, another start, or more free components",
             components(description)[*component]
         ),
         Unlinear::Ended { t, outcome } => {

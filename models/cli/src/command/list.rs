@@ -1,4 +1,5 @@
-//! `list`: the models with N, M, S and the first line of their documentation.
+//! `list`: the models with their numbers of coordinates (N), constraints (M) and surfaces (S), and the first line of
+//! their documentation.
 
 use std::io::Write;
 

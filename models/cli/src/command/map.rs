@@ -1,4 +1,4 @@
-//! `map`: a grid of runs, each with the class of its end, as rows, as a summary and as a picture.
+//! `map`: runs a grid of cells, classifies the end of each run, and writes rows, a summary and a picture.
 
 mod document;
 mod summary;
@@ -34,10 +34,10 @@ use crate::{Streams, names, plot, run_request};
 /// Largest number of values along an axis.
 const MOST: u64 = 4000;
 
-/// Longest time of a return for a Lyapunov exponent, unless the model's own `until` is longer.
+/// Longest time of one return in the computation of a Lyapunov exponent, unless the model's own `until` is longer.
 const HORIZON: f64 = 3600.0;
 
-/// A finished map, with the data that its files name.
+/// A finished map: its request and its results.
 struct Finished<'a> {
     model: &'a dyn AnyModel,
     settings: &'a Settings,
@@ -54,8 +54,8 @@ struct Finished<'a> {
 /// Carries out `map`.
 ///
 /// # Errors
-/// Invalid flags, an expression that is not one of the model, a file that cannot be written or continued. A cell whose
-/// start is refused is not an error but an [`Exit`].
+/// Invalid flags, an expression with names that the model does not have, a file that cannot be written or continued. A
+/// cell whose start is refused is not an error but an [`Exit`].
 pub fn run(models: &[Entry], args: &MapArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
     check_flags(args)?;
     // Opened before the runs, so that a path that cannot be written is reported at once.
@@ -199,14 +199,14 @@ fn check_flags(args: &MapArgs) -> Result<(), CliError> {
     args.rows.check()?;
     if args.class == "lyapunov" && args.lyapunov.is_none() {
         return Err(CliError::Usage(
-            "--class lyapunov needs --lyapunov N: say over how many returns",
+            "--class lyapunov needs --lyapunov N, the number of further returns",
         ));
     }
     if args.class == "returns" && args.returns.is_none() {
         return Err(CliError::Usage("--class returns needs --returns N"));
     }
     if !args.run.input.is_empty() {
-        let text = "--input: a map leaves inputs at 0; give them a law by --feedback, or declare a parameter for what its cells vary";
+        let text = "--input: a map leaves inputs at 0; give them a law by --feedback, or declare a parameter in place of an input that cells vary";
         return Err(CliError::Usage(text));
     }
     Ok(())
@@ -246,7 +246,7 @@ fn axes(model: &dyn AnyModel, args: &MapArgs, members: &Members) -> Result<Vec<A
     Ok(axes)
 }
 
-/// The request for every run. Expressions are the outputs after those that the model declares.
+/// The request for every run. Expressions become outputs, numbered after those that the model declares.
 fn request(model: &dyn AnyModel, args: &MapArgs, members: &Members) -> Result<Request, CliError> {
     let description = model.description();
     let mut output = description.outputs.len()..;
@@ -409,7 +409,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
         (None, 1) => 0,
         (None, _) => {
             return Err(CliError::Usage(
-                "--returns: the model has several surfaces; say which with --surface",
+                "--returns: the model has several surfaces; choose one with --surface",
             ));
         }
     };
@@ -445,7 +445,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
     }))
 }
 
-/// The models, with the one of the map first if it takes outputs from the flags.
+/// The models. If flags contain expressions, only the model of the map, with the expressions as additional outputs.
 fn extended(models: &[Entry], args: &MapArgs, request: &Request) -> Result<Vec<Entry>, CliError> {
     let value = match &request.colours {
         Colours::Value(watched) => Some(watched),
@@ -465,7 +465,7 @@ fn extended(models: &[Entry], args: &MapArgs, request: &Request) -> Result<Vec<E
     Ok(vec![expression::add_to(entry, &expressions)?])
 }
 
-/// Refuses integrals along a run where an expression of a state is expected.
+/// Refuses integrals along a run in expressions that are evaluated at a single state.
 fn check_states(models: &[Entry], args: &MapArgs, request: &Request) -> Result<(), CliError> {
     let model = find_model(models, &args.run.model.model)?;
     let integrals = &model.description().integrals;
@@ -485,7 +485,7 @@ fn check_states(models: &[Entry], args: &MapArgs, request: &Request) -> Result<(
         Some((flag, watched)) => Err(CliError::value(
             flag,
             watched.expression.text(),
-            "an expression of the start: an integral is known along a run alone",
+            "an expression of the start: an integral exists only along a run",
         )),
     }
 }

@@ -1,4 +1,4 @@
-//! `new`: a declaration as a starting point, in a file or in a crate.
+//! `new`: writes a commented declaration as a starting point, into a file or into a crate.
 
 use std::fs::OpenOptions;
 use std::io::Write;

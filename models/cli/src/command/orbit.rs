@@ -18,16 +18,16 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::{build_model, initial_state};
 use crate::{Streams, names, run_request};
 
-/// Longest time of a return, unless the model's own `until` is longer.
+/// Longest time of an orbit, unless the model's own `until` is longer.
 const HORIZON: f64 = 3600.0;
 
-/// A finished search: the request and its result, an orbit or a branch of orbits.
+/// A finished search: the request and its result. `T` is an orbit or a branch of orbits.
 struct Finished<'a, T> {
     model: &'a dyn AnyModel,
     scene: &'a str,
     search: Search,
     result: Result<T, OrbitError>,
-    /// Coordinates that drift, where that is why no orbit was found.
+    /// Coordinates that drift, if no orbit was found because of them.
     drift: Option<Drift>,
 }
 
@@ -59,7 +59,7 @@ pub fn run(
     Ok(exit(&finished))
 }
 
-/// A search with the result of the driver.
+/// Combines a search with the result of the driver.
 fn finished<'a, T>(
     model: &'a dyn AnyModel,
     args: &'a OrbitArgs,

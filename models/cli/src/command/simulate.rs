@@ -22,7 +22,7 @@ use crate::state_input::{build_run, initial_state};
 use crate::table::RunTable;
 use crate::{Streams, run_request};
 
-/// A finished run, with the data that its files name.
+/// A finished run: its request and its results.
 pub(crate) struct Finished<'a> {
     pub model: &'a dyn AnyModel,
     pub scene: &'a str,
@@ -42,7 +42,7 @@ pub struct Prepared {
     pub origin: Origin,
     /// Inputs that change.
     pub inputs: Option<InputTable>,
-    /// The source of the curve of its picture, if a picture is requested.
+    /// The quantities that the picture shows, if a picture is requested.
     pub source: Option<Source>,
 }
 
@@ -90,7 +90,7 @@ pub fn run(
     })
 }
 
-/// Makes the run. The table is written during the run; the rows of a document are kept until its end.
+/// Makes the run. The table is written during the run; the rows of the JSON document are kept until its end.
 fn write_as_it_goes<'a>(
     model: &'a dyn AnyModel,
     prepared: Prepared,
@@ -186,8 +186,8 @@ fn finish<'a>(
     })
 }
 
-/// Makes the run. If the end time is not known beforehand, the same run is made twice: first to find the end, then to
-/// sample it. Runs are deterministic, so only requested data is kept.
+/// Makes the run. If the end time is not known beforehand, the run is made twice: first to find the end, then to sample
+/// it. Both runs are the same, because runs are deterministic.
 fn carry_out(
     model: &dyn AnyModel,
     Prepared {

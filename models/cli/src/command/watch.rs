@@ -61,7 +61,7 @@ fn simulate_once(
     simulate::run(models, &args.simulate, streams)
 }
 
-/// State of a file that can be read without its content; empty for a file that does not exist.
+/// Modification time and length of a file; `None` if they cannot be read, as for a file that does not exist.
 #[derive(Debug, PartialEq, Eq)]
 struct Stamp(Option<(SystemTime, u64)>);
 
@@ -73,7 +73,7 @@ impl Stamp {
         Self(seen.ok())
     }
 
-    /// Waits until the file exists and its state differs from this one.
+    /// Waits until the file exists with a stamp that differs from this one.
     fn wait_for_another(&self, file: &Path) {
         loop {
             thread::sleep(PAUSE);

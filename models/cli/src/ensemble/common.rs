@@ -9,7 +9,7 @@ use crate::entry::Entry;
 use crate::error::ADVICE;
 use crate::state_input;
 
-/// The flags of a run, with the models that they choose from.
+/// The flags of a run, and the models from which they choose.
 pub struct Flags<'a> {
     /// The models.
     pub models: &'a [Entry],

@@ -11,7 +11,7 @@ const BINS: usize = 100;
 
 const EXPECTED: &str = "two names, such as x,y or x=-1..1,theta:200 or x,y:200x50";
 
-/// Parses the flag to axes; a range that is not known is NaN.
+/// Parses the flag to the two axes. A range that is not given is NaN.
 ///
 /// # Errors
 /// A name that the model does not have, an invalid range, or an invalid number.

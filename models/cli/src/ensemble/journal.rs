@@ -6,7 +6,7 @@
 //! | `FILE.sums` | a line for every row: its checksum, the [`fingerprint`] of the row with its line end |
 //! | `FILE.counts` | with a density: the counts of the first members, their number, and a checksum |
 //!
-//! After an interruption, complete rows whose counts are known are kept. A row that was changed since it was written is
+//! After an interruption, complete rows whose counts were saved are kept. A row that was changed since it was written is
 //! an error. Checksums are written before their rows, so that every complete row has one.
 //!
 //! `FILE` is locked during the run.
@@ -28,7 +28,7 @@ use crate::sink;
 /// Shortest time between two saves of counts.
 const SAVE: Duration = Duration::from_secs(1);
 
-/// Saves of counts take at most the reciprocal of this number as a fraction of the time.
+/// Least ratio of the time between two saves of counts to the duration of a save.
 const SAVING: u32 = 20;
 
 /// Length of a line of `FILE.sums`, in bytes.
@@ -42,7 +42,7 @@ pub struct Journal {
     flag: &'static str,
     path: PathBuf,
     file: File,
-    /// Checksums of the rows, after the file is begun or resumed.
+    /// The file of checksums; `None` before the rows are begun or resumed.
     sums: Option<File>,
     saved: Instant,
     /// Time between two saves of counts.
@@ -111,7 +111,7 @@ impl Journal {
     ) -> Result<Option<u64>, CliError> {
         let (flag, path) = (self.flag, self.path.clone());
         let whole = |source| failed(flag, &path, source);
-        // An empty file was begun just now; the files next to it may belong to another ensemble.
+        // An empty file is a new one; the files next to it may belong to another ensemble.
         if self.file.metadata().map_err(whole)?.len() == 0 {
             return Ok(None);
         }
@@ -128,7 +128,7 @@ impl Journal {
             Found::Complete(complete) => complete,
             Found::Altered { line } => return Err(altered("--resume", &path, line)),
         };
-        // Counts cannot be subtracted: if rows of counted members were lost, both start anew.
+        // Counts cannot be subtracted: if rows of counted members were lost, rows and counts start anew.
         let is_short = counted != u64::MAX && complete.rows < counted;
         if complete.length == 0 || is_short {
             return Ok(None);
@@ -226,10 +226,10 @@ pub fn discard(path: &Path) -> io::Result<()> {
     remove(&beside(path, ".counts"))
 }
 
-/// The data that identify the ensemble of a file, as they were written beside it.
+/// The metadata that were written beside a file: they identify its ensemble.
 ///
 /// # Errors
-/// A file without such data, or one that cannot be read.
+/// A file without metadata, or metadata that cannot be read.
 pub fn metadata_of(flag: &'static str, path: &Path) -> Result<Map<String, Value>, CliError> {
     let place = beside(path, ".meta.json");
     let text = fs::read(&place).map_err(|source| failed(flag, &place, source))?;
@@ -293,17 +293,18 @@ fn again(flag: &str) -> &'static str {
 
 /// The error for a line that was altered since it was written.
 fn altered(flag: &'static str, path: &Path, line: u64) -> CliError {
-    let (what, help) = match line {
-        1 => ("header", ""),
+    let (what, defect, help) = match line {
+        1 => ("header", "it differs from the header of these runs", ""),
         _ => (
             "row",
+            "its checksum differs",
             "cut the file before this line to continue from there, or ",
         ),
     };
     CliError::Input {
         place: format!("{flag} {}, line {line}", path.display()),
         reason: format!(
-            "the {what} was altered after it was written: its checksum differs; {help}{}",
+            "the {what} was altered after it was written: {defect}; {help}{}",
             again(flag)
         ),
     }
@@ -364,7 +365,7 @@ fn cut(file: &mut File, length: u64) -> io::Result<()> {
 /// The complete rows at the beginning of a file.
 struct Scan<'a> {
     reader: BufReader<&'a mut File>,
-    /// The checksums of the rows; without them rows are not compared.
+    /// The checksums of the rows; without them, rows are not checked.
     sums: Option<BufReader<&'a mut File>>,
     columns: &'a Columns,
     first_member: u64,
@@ -424,7 +425,7 @@ impl<'a> Scan<'a> {
         Ok(Found::Complete(complete))
     }
 
-    /// True if a row has the next checksum; `None` if there is no further checksum.
+    /// Compares a row with the next checksum; `None` if there is no further checksum.
     fn compare(&mut self, line: &[u8]) -> io::Result<Option<bool>> {
         let Some(sums) = &mut self.sums else {
             return Ok(Some(true));
@@ -466,7 +467,7 @@ fn save(path: &Path, members: u64, counts: &Counts) -> io::Result<()> {
     replace(path, &content)
 }
 
-/// Loads counts, and returns the number of members that they count; 0 if there are none.
+/// Loads counts, and returns the number of members that they count; 0 if the file does not exist.
 fn load(flag: &'static str, path: &Path, counts: &mut Counts) -> Result<u64, CliError> {
     let content = match fs::read(path) {
         Ok(content) => content,

@@ -1,10 +1,10 @@
-//! Rows as lines of CSV, read back.
+//! Parser of rows from lines of CSV.
 
 use std::borrow::Cow;
 
 use dalembert_driver::ensemble::row::{Columns, Field, Kind, Row};
 
-/// Parses a line of CSV as a row.
+/// Parses a line of CSV as a row; `None` if it does not fit the columns.
 pub fn parse(columns: &Columns, line: &[u8]) -> Option<Row> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

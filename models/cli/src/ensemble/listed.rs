@@ -39,7 +39,7 @@ const LIMITS: Limits = Limits {
     members: 10_000_000,
 };
 
-/// Reads the members. In a table written by `ensemble` they are the columns `in.NAME`.
+/// Reads the members. In a table written by `ensemble`, only the columns `in.NAME` count.
 ///
 /// # Errors
 /// A file that cannot be read, a column that the model does not have, a field that is not a number, a row of more than

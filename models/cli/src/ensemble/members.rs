@@ -1,4 +1,4 @@
-//! The members of an ensemble from flags, and the data that identify them.
+//! The members of an ensemble from flags, and the metadata that identify them.
 
 use std::ops::Range;
 
@@ -44,7 +44,7 @@ pub fn varied(
     Ok(Members::product(varied, seed, count))
 }
 
-/// Refuses velocities that are varied where momenta are given.
+/// Refuses to vary velocities if the start is given by momenta.
 ///
 /// # Errors
 /// [`CliError::Usage`], or an error of the flags of the state.
@@ -71,7 +71,7 @@ pub fn spaced(members: &Members) -> Vec<Option<([f64; 2], u64)>> {
     }
 }
 
-/// Data that identify members.
+/// Metadata that identify the members.
 pub fn metadata(members: &Members) -> Value {
     let (count, names) = (members.count(), members.names());
     match members.source() {
@@ -152,7 +152,7 @@ impl Shard {
             .ok_or_else(|| CliError::value("--shard", text, "I/N with I from 1 to N, such as 3/8"))
     }
 
-    /// Its members; lengths of shards differ by one at most.
+    /// The members of the shard. Shards differ by at most one member in size.
     pub fn range(self, count: u64) -> Range<u64> {
         let bound =
             |index: u64| (u128::from(count) * u128::from(index) / u128::from(self.of)) as u64;

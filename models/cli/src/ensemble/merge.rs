@@ -65,7 +65,7 @@ pub fn read(
     Ok(())
 }
 
-/// The shard in a file of this ensemble.
+/// The shard that a file contains; the file must belong to this ensemble.
 fn part<'a>(path: &'a Path, metadata: &Map<String, Value>) -> Result<Part<'a>, CliError> {
     let mut before = journal::metadata_of(FLAG, path)?;
     let shard = before.remove("shard").unwrap_or_default();
@@ -92,7 +92,7 @@ fn part<'a>(path: &'a Path, metadata: &Map<String, Value>) -> Result<Part<'a>, C
     };
     read().ok_or_else(|| CliError::Input {
         place,
-        reason: "its metadata name no shard; run it again".to_owned(),
+        reason: "its metadata do not name a shard; run the shard again".to_owned(),
     })
 }
 

@@ -1,4 +1,4 @@
-//! Data that identify an ensemble, in its files.
+//! Metadata that identify an ensemble in its files.
 
 use clap::ValueEnum;
 use dalembert::describe::Description;
@@ -48,6 +48,7 @@ pub fn metadata(
         "version": env!("CARGO_PKG_VERSION"),
         "model": description.name,
         "scene": run.model.scene,
+        "mode": model.present_mode(),
         "model_hash": fingerprint(description.source.as_bytes()),
         "model_source": *description.source,
         "parameters": named(names, &values),
@@ -81,7 +82,7 @@ pub fn metadata(
     }
 }
 
-/// Data that identify a density.
+/// Metadata that identify a density.
 pub fn measured(density: &Density) -> Value {
     let axes = density.axes.each_ref();
     let axes =
@@ -89,7 +90,7 @@ pub fn measured(density: &Density) -> Value {
     json!({ "axes": axes, "every": density.every, "discard": density.discard })
 }
 
-/// The common start of the members, without varied quantities.
+/// The common start of the members. It does not contain varied values.
 fn start(
     model: &dyn AnyModel,
     description: &Description,
@@ -110,7 +111,7 @@ fn start(
         Rates::Velocities(qdot) => ("qdot", qdot),
         Rates::Momenta(p) => ("p", p),
     };
-    // Velocities without a name in the start follow from the constraints.
+    // Velocities that the start does not name follow from the constraints.
     let known = coordinates().zip(&rates).zip(given);
     let known = known
         .filter(|(_, given)| *given)

@@ -5,11 +5,13 @@
 //! | `vary`, `members`, `listed`, `density` | members and densities from flags and tables |
 //! | `common` | the model and the start that members share, from flags |
 //! | `pool` | runs members on threads and returns the rows in order |
-//! | `output`, `journal`, `line`, `parquet` | where the rows go, the file they are appended to and continued from, its lines, the same as Parquet |
-//! | `merge` | rows and counts of shards that were run before |
-//! | `metadata` | data that identify an ensemble |
+//! | `output` | the destination of the rows |
+//! | `journal`, `line` | the file to which rows are appended and from which an interrupted run continues, and the parser of its lines |
+//! | `parquet` | the rows as Parquet |
+//! | `merge` | rows and counts from the files of shards |
+//! | `metadata` | metadata that identify an ensemble |
 //!
-//! Members, rows and sums themselves are those of [`dalembert_driver::ensemble`].
+//! The types of members, rows and sums are in [`dalembert_driver::ensemble`].
 
 pub mod common;
 pub mod density;
@@ -42,7 +44,7 @@ use pool::Division;
 /// Largest number of members in a block of a thread.
 const BLOCK: u64 = 64;
 
-/// Largest number of visits of the members in a block.
+/// Largest number of density samples of the members in a block.
 const VISITS: u64 = 1 << 16;
 
 /// Bytes of merged rows that are written at once.
@@ -140,7 +142,7 @@ fn merge(plan: &Plan<'_>, summary: &mut Summary, output: &mut Output<'_>) -> Res
             if lines.len() < LINES && *kept < members {
                 return Ok(());
             }
-            // NOTE: counts are complete at the end alone, where `finish` saves them.
+            // NOTE: the counts are complete only after the last shard; `finish` saves them.
             let written = output.append(&lines, *kept, None);
             lines.clear();
             written
@@ -148,7 +150,7 @@ fn merge(plan: &Plan<'_>, summary: &mut Summary, output: &mut Output<'_>) -> Res
     )
 }
 
-/// Number of members in a block: their visits are held in memory.
+/// Number of members in a block; it is limited because their density samples are held in memory.
 fn block(density: Option<&Density>) -> u64 {
     density.map_or(BLOCK, |density| {
         (VISITS / density.samples.max(1)).clamp(1, BLOCK)

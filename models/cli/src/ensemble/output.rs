@@ -1,4 +1,4 @@
-//! The destination of rows: nowhere, a stream, or a file that an interrupted run continues from.
+//! The destination of rows: nowhere, a stream, or a file from which an interrupted run continues.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::sink::is_stdout;
 pub struct Table<'a> {
     /// Its columns.
     pub columns: &'a Columns,
-    /// Data that identify the runs.
+    /// Metadata that identify the runs.
     pub metadata: &'a Map<String, Value>,
     /// The member of its first row.
     pub first: u64,
@@ -51,8 +51,8 @@ pub enum Output<'a> {
 }
 
 impl<'a> Output<'a> {
-    /// Opens the destination, and passes the rows of an earlier run to `see`; returns their number. If it is 0, rows
-    /// that `see` and `counts` have received do not count.
+    /// Opens the destination, passes the rows of an earlier run to `see`, and returns their number. If the number is 0,
+    /// the caller must discard everything that `see` and `counts` have received.
     ///
     /// # Errors
     /// A file that cannot be written, that another run is writing, or that belongs to other runs.
@@ -87,7 +87,7 @@ impl<'a> Output<'a> {
         Ok((output, 0))
     }
 
-    /// Appends lines; `members` is the number of members with a row, and in `counts`, afterwards.
+    /// Appends lines. `members` is the number of members whose rows are written and counted afterwards.
     ///
     /// # Errors
     /// An I/O error of the destination.
@@ -117,7 +117,7 @@ impl<'a> Output<'a> {
 }
 
 impl RowsArgs {
-    /// The file to which rows are appended: that of `--csv`, or a file next to that of `--parquet` during the run.
+    /// The file to which rows are appended: that of `--csv`, else a temporary file next to that of `--parquet`.
     pub fn file(&self) -> Option<(&'static str, PathBuf)> {
         match (&self.csv, &self.parquet) {
             (Some(csv), _) => (!is_stdout(csv)).then(|| ("--csv", csv.clone())),
@@ -157,7 +157,7 @@ impl RowsArgs {
         Ok(())
     }
 
-    /// Makes the rows with a function of their destination, then writes them as Parquet if that is wanted.
+    /// Calls `make` with the destination of the rows, then writes the rows as Parquet if requested.
     ///
     /// # Errors
     /// The error of the function, or a file that cannot be written.
@@ -202,7 +202,7 @@ fn write_parquet(path: &Path, rows: &Path, table: &Table<'_>) -> Result<(), CliE
     })
 }
 
-/// NOTE: [`RowsArgs::check`] has refused the flag.
+/// NOTE: never called, because [`RowsArgs::check`] refuses the flag in a build without Parquet.
 #[cfg(not(feature = "parquet"))]
 fn write_parquet(_path: &Path, _rows: &Path, _table: &Table<'_>) -> Result<(), CliError> {
     Ok(())

@@ -16,7 +16,7 @@ use serde_json::{Map, Value};
 
 use super::journal;
 
-/// Number of rows in a group, which is held in memory.
+/// Number of rows in a row group, which is held in memory.
 const GROUP: usize = 1 << 14;
 
 /// Writes the rows of a journal.

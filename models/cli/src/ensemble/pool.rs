@@ -1,7 +1,7 @@
 //! Parallel work whose results arrive in order.
 //!
-//! Threads take blocks of items as they become free; early results wait. The distance of threads from the first missing
-//! result is bounded, and thereby the number of waiting results.
+//! Free threads take the next block of items. Results that arrive early wait. The number of waiting results is bounded,
+//! because no thread takes a block that is too far ahead of the first missing result.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -9,10 +9,10 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// Number of blocks per thread that may be ahead.
+/// Number of blocks per thread that may be handed out ahead of the first missing result.
 const AHEAD: u64 = 8;
 
-/// Preferred number of items in a block, if every thread gets as many: runs abreast fill SIMD lanes.
+/// Smallest number of items in a block, if every thread gets as many: runs abreast fill SIMD lanes.
 const TOGETHER: u64 = 8;
 
 /// Division of the work.
@@ -25,7 +25,7 @@ pub struct Division {
 }
 
 impl Division {
-    /// Blocks of at most `largest` items, small enough that every thread gets many if there are enough items.
+    /// Divides the work into blocks of at most `largest` items, small enough that every thread gets many of them.
     pub fn new(items: u64, threads: u64, largest: u64) -> Self {
         let threads = threads.clamp(1, items.max(1));
         let least = items.div_ceil(threads).min(TOGETHER);
@@ -48,7 +48,7 @@ pub fn in_order<W, T: Send, E>(
 ) -> Result<(), E> {
     let gate = Gate::new(items.clone(), division);
     thread::scope(|scope| {
-        // Dropped at the end, also after an error, so that no thread waits for results to be taken.
+        // Dropped at the end, also after an error, so that no thread keeps waiting for results to be taken.
         let _closing = Closing(&gate);
         let (sender, receiver) = mpsc::channel();
         for _ in 0..division.threads {
@@ -103,11 +103,11 @@ struct Gate {
 }
 
 struct State {
-    /// The first item that was not handed out.
+    /// The first item that is not handed out yet.
     next: u64,
-    /// The first item whose result was not taken.
+    /// The first item whose result is not taken yet.
     taken: u64,
-    /// True once a thread, or the taker of results, has left.
+    /// True once a thread, or the taker of results, has left before all items were handed out.
     is_closed: bool,
 }
 
@@ -158,7 +158,7 @@ impl Gate {
     }
 }
 
-/// Ends all work when one thread leaves, after a panic or at the end of the items.
+/// Ends all work when a thread leaves before all items were handed out, as after a panic or an error.
 struct Closing<'a>(&'a Gate);
 
 impl Drop for Closing<'_> {

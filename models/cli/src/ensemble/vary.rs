@@ -1,4 +1,4 @@
-//! Varied quantities of members, as they are written in flags.
+//! Parser of the varied quantities in flags.
 
 use dalembert::describe::Description;
 use dalembert_driver::ensemble::{Quantity, Values};
@@ -17,12 +17,12 @@ pub fn find(place: &str, name: &str, description: &Description) -> Result<Quanti
     })
 }
 
-/// Number of members and their kind, as given by the flags.
+/// The flags `--members` and `--random`, which hold for all varied quantities.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
     /// Number of members, if given.
     pub members: Option<u64>,
-    /// True if the values are drawn.
+    /// True if the values are drawn at random.
     pub random: bool,
 }
 
@@ -51,7 +51,7 @@ fn parse_values(name: &str, text: &str, asked: Asked) -> Result<Values, CliError
     };
     if let Some((mean, deviation)) = text.split_once("+-") {
         if !asked.random {
-            return Err(refuse("A..B, or --random SEED for values that scatter"));
+            return Err(refuse("A..B, or --random SEED for a normal distribution"));
         }
         let (mean, deviation) = (number(mean)?, number(deviation)?);
         return match deviation >= 0.0 {

@@ -1,4 +1,4 @@
-//! Long-run densities: positions of a run at equally spaced times, counted in boxes.
+//! Long-run densities: counts of the positions of a run at equally spaced times in the boxes of a grid.
 //!
 //! For a set A in the plane of the declared view, `rho(A)` is the fraction of the times `k T` at which the position
 //! lies in A (W. Clark and A. Bloch, equation (27)).
@@ -14,7 +14,7 @@ use crate::plot::contour::Window;
 use crate::plot::{self, Drawn, heat};
 use crate::state_input::build_run;
 
-/// Makes the run and draws its density.
+/// Makes the run, counts its positions and draws their density.
 ///
 /// # Errors
 /// Invalid flags, a state that is refused, a model without a view of two coordinates with a region.
@@ -80,7 +80,7 @@ struct Census {
     half: u64,
     window: Window,
     boxes: usize,
-    /// Counts of both halves, row by row from the bottom.
+    /// Counts of the two halves of the times, row by row from the bottom.
     counts: [Vec<u32>; 2],
 }
 

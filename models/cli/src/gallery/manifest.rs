@@ -1,4 +1,4 @@
-//! Manifest of a gallery's pictures, for programs.
+//! Manifest of the pictures of a gallery as JSON.
 
 use std::io::{self, Write};
 

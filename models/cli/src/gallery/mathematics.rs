@@ -1,11 +1,11 @@
-//! Formulas of captions as MathML: `$mu = 5/2$`.
+//! Formulas of captions, such as `$mu = 5/2$`, as MathML.
 
 use std::fmt::Write as _;
 
 use super::page::escaped;
 use crate::symbols::Symbol;
 
-/// Text with its formulas, which stand between dollar signs.
+/// Typesets the formulas between dollar signs and escapes the text around them.
 pub fn typeset(text: &str) -> String {
     let mut page = String::new();
     for (place, part) in text.split('$').enumerate() {
@@ -17,7 +17,7 @@ pub fn typeset(text: &str) -> String {
     page
 }
 
-/// A formula of names, numbers, fractions of two of them, powers by numbers, and other signs.
+/// Typesets a formula: names, numbers, fractions of two of them, powers, and other signs.
 fn formula(text: &str) -> String {
     let tokens = tokens(text);
     let mut parts = String::new();
@@ -42,7 +42,7 @@ fn formula(text: &str) -> String {
     format!("<math>{parts}</math>")
 }
 
-/// Names and numbers whole, every other sign by itself.
+/// Splits a formula into names, numbers and single other signs.
 fn tokens(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     let mut is_open = false;

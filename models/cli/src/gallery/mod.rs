@@ -1,8 +1,9 @@
-//! Galleries: figures of models on one page, as made by `dalembert gallery`.
+//! Galleries: figures of models on one page, drawn by `dalembert gallery`.
 //!
 //! Every model has figures of its motion. A [`Catalogue`](crate::Catalogue) may add others, such as those of the papers
 //! its models come from: [`Catalogue::with_figures`](crate::Catalogue::with_figures). A picture is specified by flags
-//! of `simulate`, `map`, `orbit`, `connect`, `control` or `accuracy`, so that its caption can give the command that draws it.
+//! of `simulate`, `map`, `orbit`, `connect`, `control` or `accuracy`, so that its caption can give the command that
+//! draws it.
 
 mod density;
 mod manifest;
@@ -20,19 +21,20 @@ pub(crate) use standard::figure as standard_figure;
 /// Pictures under one caption.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// The model, by its name on the command line.
+    /// The name of the model on the command line.
     pub model: &'static str,
-    /// A word for the figure; file names consist of the model and this word.
+    /// A word for the figure; its file names begin with the model and this word.
     pub name: &'static str,
     /// Its title, one line.
     pub title: &'static str,
-    /// The heading of the page that it stands under. Headings come in the order of their first figures.
+    /// The heading of its chapter on the page. Chapters come in the order of their first figures.
     pub chapter: &'static str,
-    /// The panel that is shown in the first row of the page, if one is.
+    /// The index of the panel that the first row of the page shows, if any.
     pub highlight: Option<usize>,
-    /// Its content, with values chosen here because the source does not state them. Formulas stand between dollar signs.
+    /// Its description, with the values that were chosen because the source does not state them. Formulas stand between
+    /// dollar signs.
     pub caption: String,
-    /// The reproduced figure.
+    /// The figure of a source that it reproduces, if any.
     pub source: Option<&'static str>,
     /// Its pictures, in reading order.
     pub panels: Vec<Panel>,
@@ -41,7 +43,7 @@ pub struct Figure {
 /// One picture of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// A word for the picture, which ends its file name; empty for an only picture.
+    /// A word for the picture, which ends its file name; empty if the figure has one picture only.
     pub name: String,
     /// Its title, one line.
     pub title: String,
@@ -49,7 +51,7 @@ pub struct Panel {
     pub picture: Picture,
 }
 
-/// Content of a picture. Flags follow the model's name, without `--plot`; single quotes hold a flag with spaces together.
+/// Content of a picture. Flags follow the model's name and lack `--plot`; single quotes enclose a flag with spaces.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Picture {
     /// The picture that `simulate` draws with these flags.
@@ -64,13 +66,13 @@ pub enum Picture {
     Branch(String),
     /// The picture that `accuracy` draws with these flags; it contains measured times.
     Accuracy(String),
-    /// Positions of many runs at one time.
+    /// Positions of many runs at the same time.
     Starts(Starts),
     /// Long-run density of a run.
     Density(Density),
 }
 
-/// Runs that start near each other, with their positions in the declared view at one time.
+/// Runs that start near each other. The picture shows their positions in the declared view at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Starts {
     /// Flags of `simulate`, with `--until` for the time.

@@ -1,4 +1,4 @@
-//! A gallery as one self-contained page: embedded pictures, no scripts, light and dark.
+//! A gallery as one self-contained page with embedded pictures and without scripts, for light and dark mode.
 
 use std::fmt::Write as _;
 
@@ -44,8 +44,7 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
     page += "<h1>Gallery</h1>\n<p>Mechanical systems with constraints and impacts, declared with <b>dalembert</b>. \
              Each picture is followed by the command that draws it alone.";
     if plates.iter().any(|plate| plate.effort == Effort::Quick) {
-        page +=
-            " A quick gallery: densities from a fiftieth of the positions, nothing that is timed.";
+        page += " A quick gallery: densities use a fiftieth of the positions, and measured times are left out.";
     }
     page += "</p>\n";
     page += &highlights(&chapters);
@@ -69,10 +68,10 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
     page
 }
 
-/// A picture of a figure, made or not.
+/// A picture of a figure, with its drawing or the error.
 type Drawn<'a> = (&'a Plate<'a>, &'a Result<Print, CliError>);
 
-/// Chapters in the order of their first figures, each with its figures in order, each with its pictures.
+/// Chapters in the order of their first figures. Each has its figures in order, and each figure has its pictures.
 type Chapters<'a> = Vec<(&'a str, Vec<&'a [Drawn<'a>]>)>;
 
 fn chapters<'a>(drawn: &'a [Drawn<'a>]) -> Chapters<'a> {
@@ -195,7 +194,7 @@ fn panel(plate: &Plate<'_>, print: &Result<Print, CliError>) -> String {
     )
 }
 
-/// A picture with a text in its place.
+/// A picture with a text for screen readers.
 fn labelled(svg: &str, text: &str) -> String {
     let label = format!(
         "<svg role=\"img\" aria-label=\"{}\" ",
@@ -239,7 +238,7 @@ fn words(command: &str) -> String {
     groups.collect::<Vec<_>>().join(" ")
 }
 
-/// Text of a documentation comment, with backticks as code.
+/// Typesets the text of a documentation comment: backticks enclose code.
 fn documented(text: &str) -> String {
     let mut parts = text.split('`').map(escaped);
     let mut page = parts.next().unwrap_or_default();

@@ -12,16 +12,17 @@ use crate::entry::Entry;
 use crate::error::CliError;
 use crate::plot::Drawn;
 
-/// Effort spent on pictures of long runs.
+/// Effort spent on pictures that take long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
     /// The effort that the captions state.
     Full,
-    /// A fiftieth of the positions of densities, an eighth of the values along each axis of `--vary`, and no timed pictures.
+    /// A fiftieth of the positions of densities, an eighth of the values along each axis of `--vary`, and no timed
+    /// pictures.
     Quick,
 }
 
-/// A picture of a figure, to be made.
+/// A picture of a figure that is to be drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Plate<'a> {
     /// Its figure.
@@ -43,7 +44,7 @@ pub struct Print {
 }
 
 impl<'a> Plate<'a> {
-    /// The pictures of figures; a quick gallery has no timed pictures.
+    /// All pictures of the figures; timed ones only with full effort.
     pub fn all(figures: &'a [Figure], effort: Effort) -> Vec<Self> {
         let plates = figures.iter().flat_map(|figure| {
             figure.panels.iter().map(move |panel| Plate {
@@ -57,7 +58,7 @@ impl<'a> Plate<'a> {
             .collect()
     }
 
-    /// Its name: the file name without the ending.
+    /// Its name, which is the file name without the extension.
     pub fn name(&self) -> String {
         let Figure { model, name, .. } = self.figure;
         match self.panel.name.as_str() {
@@ -202,7 +203,7 @@ fn coarser(axis: &str) -> String {
     }
 }
 
-/// The words of a command line; quotes hold a word with spaces together.
+/// Splits a command line into words; single quotes enclose a word with spaces.
 fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     for (index, part) in line.split('\'').enumerate() {

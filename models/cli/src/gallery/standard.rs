@@ -1,4 +1,4 @@
-//! The figure of every model: its motion from the declared start.
+//! The standard figure of each model: its motion from the declared start.
 
 use dalembert::describe::Description;
 
@@ -8,8 +8,8 @@ use crate::names;
 /// The heading of these figures.
 pub const MOTIONS: &str = "Motions of the models";
 
-/// The motion of a model from its declared start: the declared view, or coordinates and velocities against time; the first
-/// coordinate with its velocity; the error of the energy.
+/// The motion of a model from its declared start. The pictures show the declared view (without one, coordinates and
+/// velocities against time), the phase portrait of the first coordinate, and the change of the energy.
 pub fn figure(description: &Description) -> Figure {
     let mut flags: Vec<(&str, String, String)> = Vec::new();
     let mut add = |name, title: &str, axes: String| flags.push((name, title.to_owned(), axes));
@@ -24,7 +24,7 @@ pub fn figure(description: &Description) -> Figure {
         add("phase", &title, format!("--axes {first},{velocity} "));
     }
     if !description.is_first_order {
-        let title = "Change of the energy, as a share of it";
+        let title = "Relative change of the energy";
         add("energy", title, "--axes t,energy_error ".to_owned());
     }
 
@@ -41,8 +41,8 @@ pub fn figure(description: &Description) -> Figure {
         title: "Motion from the declared start",
         chapter: MOTIONS,
         highlight: None,
-        caption: "Parameters and state are those that the model declares. Where the energy is kept, its change is \
-                  the error of the run."
+        caption: "Parameters and start are those of the declaration. If the energy is conserved, its change is the \
+                  error of the run."
             .to_owned(),
         source: None,
         panels: panels.collect(),

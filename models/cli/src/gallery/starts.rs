@@ -1,4 +1,4 @@
-//! Positions at one time of runs that start near each other, in the plane of the declared view.
+//! Runs that start near each other, as a cloud of their positions at one time in the plane of the declared view.
 
 use dalembert_driver::{AnyModel, Contact, Impact, OffConstraint, Piece, Watch};
 
@@ -90,7 +90,7 @@ impl Starts {
     }
 }
 
-/// A number in [0, 1) for each seed and counter, uniformly distributed.
+/// A uniformly distributed number in [0, 1), determined by seed and counter.
 ///
 /// # References
 /// The generator SplitMix64: G. Steele, D. Lea and C. Flood, Fast splittable pseudorandom number generators, 2014.

@@ -1,4 +1,4 @@
-//! One cell: its run, watched at its returns, and its result.
+//! One cell of a map: its run, which is watched at its returns, and its result.
 
 use std::collections::VecDeque;
 
@@ -12,17 +12,17 @@ use super::request::{Request, Returns};
 use crate::names;
 use dalembert_driver::ensemble::runner::{Runner, details};
 
-/// The outcome of a run that made all returns.
+/// Outcome of a run that made all requested returns.
 pub const RETURNED: &str = "returned";
 
-/// The outcome of a run that an expression ended.
+/// Outcome of a run that the condition of `--fail` ended.
 pub const FAILED: &str = "failed";
 
 /// Result of the run of a cell.
 pub struct Cell {
     /// The outcome.
     pub outcome: &'static str,
-    /// The surface at which the motion ended by its law.
+    /// The surface whose law `stop` ended the motion, if one did.
     pub stop: Option<&'static str>,
     /// Number of returns.
     pub returns: u64,
@@ -30,15 +30,15 @@ pub struct Cell {
     pub t: f64,
     /// The state after the last return if all were made, else at the end.
     pub end: Vec<f64>,
-    /// The points of the orbit that its returns repeat, the last return first; empty if they do not.
+    /// The points of the orbit that the returns repeat, the last return first; empty if they do not repeat.
     pub cycle: Vec<Vec<f64>>,
     /// The Lyapunov exponent; NaN if there is none.
     pub exponent: f64,
-    /// The expression of the colours at the end; NaN if there is none.
+    /// The value at the end of the expression that the colours show; NaN if they show none.
     pub value: f64,
-    /// The expressions that become columns, at the end.
+    /// The values at the end of the expressions of `--output`.
     pub outputs: Vec<f64>,
-    /// The expressions of the lines at the start.
+    /// The values at the start of the expressions of `--contour`.
     pub contours: Vec<f64>,
     /// Details of the outcome.
     pub reason: String,
@@ -113,8 +113,8 @@ fn finished(runner: &Runner<'_>, request: &Request, seen: Seen<'_>, ending: &End
     }
 }
 
-/// The Lyapunov exponent from the last return on, if it is asked for; the error explains why there is none. On an orbit
-/// of some period it is the mean over whole periods.
+/// The Lyapunov exponent from the last return on, if requested; the error explains why there is none. On an orbit it is
+/// the mean over whole periods.
 fn grown(
     runner: &Runner<'_>,
     returns: &Returns,
@@ -144,11 +144,11 @@ struct Seen<'a> {
     has_begun: bool,
     has_failed: bool,
     returns: u64,
-    /// The last returns, as many as two of the longest periods have.
+    /// The last returns: as many as two longest periods have.
     recent: VecDeque<Return>,
-    /// The last return.
+    /// The state after the last requested return.
     last: Option<Point>,
-    /// The time of the return before; NaN before the first.
+    /// The time of the previous return; NaN before the first.
     before: f64,
 }
 
@@ -199,7 +199,7 @@ impl Watch for Seen<'_> {
             return;
         }
         self.returns += 1;
-        // Only the last returns are compared.
+        // Only the returns of the last two longest periods are compared.
         let left = returns.count.saturating_sub(self.returns);
         if left < 2 * returns.period as u64 {
             self.recent.push_back(Return {

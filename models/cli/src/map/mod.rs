@@ -1,15 +1,15 @@
-//! Maps: a grid of runs, each with the class of its end.
+//! Maps: grids of runs, each run with the class of its end.
 //!
 //! | file | |
 //! |---|---|
 //! | `request` | the request for every run |
-//! | `cell` | one run, watched at its returns, and its result |
-//! | `orbits` | returns that repeat, and orbits numbered as cells meet them |
+//! | `cell` | the run of a cell, which is watched at its returns, and its result |
+//! | `orbits` | detection of returns that repeat, and the numbers of the orbits |
 //! | `table` | the columns, and the row of a cell |
-//! | `sums` | classes, orbits and pictures from the rows |
+//! | `sums` | classes, orbits and the data of the picture, from the rows |
 //!
 //! Members, threads and files are those of [`ensemble`](crate::ensemble). Orbits are numbered in the order of the
-//! cells, so that nothing depends on threads, and an interrupted map numbers them from its rows.
+//! cells. Therefore the numbers do not depend on threads, and an interrupted map recovers them from its rows.
 
 mod cell;
 mod orbits;
@@ -41,7 +41,7 @@ pub struct Plan<'a> {
     pub threads: u64,
     /// The table of the rows.
     pub table: Table<'a>,
-    /// True to keep the content of a picture.
+    /// True to keep the data of the picture.
     pub is_drawn: bool,
 }
 

@@ -1,12 +1,12 @@
-//! Returns that repeat, and the orbits of all cells.
+//! Detection of returns that repeat, and the orbits of all cells.
 
 use super::request::Components;
 
-/// Returns of one orbit in several cells may differ by this many times what counts as the same in one run: a run
-/// approaches its orbit as slowly as its multipliers are near 1.
+/// Factor on the tolerance of one run for returns of one orbit in several cells. It is large because a run approaches
+/// its orbit slowly if a multiplier is near 1.
 const APART: f64 = 1000.0;
 
-/// Largest number of orbits that are told apart.
+/// Largest number of orbits that are distinguished.
 const MOST: usize = 1000;
 
 /// A return to the surface.
@@ -14,12 +14,13 @@ const MOST: usize = 1000;
 pub struct Return {
     /// The state after it.
     pub state: Vec<f64>,
-    /// The time since the return before; NaN for the first.
+    /// The time since the previous return; NaN for the first.
     pub duration: f64,
 }
 
-/// The points of the orbit that the last of some returns repeat, the last return first; empty if they do not. Needs two
-/// periods of returns. Durations are compared too: where the motion depends on time, equal states are not enough.
+/// The points of the orbit that the last returns repeat, the last return first; empty if they do not repeat. A period
+/// is found if the returns contain it twice. Durations are compared too, because equal states do not suffice if the
+/// motion depends on time.
 pub fn cycle(recent: &[Return], longest: usize, components: &Components) -> Vec<Vec<f64>> {
     let last = |back: usize| &recent[recent.len() - 1 - back];
     let are_same = |one: &Return, other: &Return| {
@@ -36,18 +37,18 @@ pub fn cycle(recent: &[Return], longest: usize, components: &Components) -> Vec<
     }
 }
 
-/// An orbit that cells tend to.
+/// An orbit to which cells converge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
     /// Number of returns after which it closes.
     pub period: u64,
-    /// The last return of the first cell that tends to it.
+    /// The last return of the first cell that converges to it.
     pub point: Vec<f64>,
-    /// Number of cells that tend to it.
+    /// Number of cells that converge to it.
     pub cells: u64,
 }
 
-/// The orbits of all cells, in the order in which they are met.
+/// The orbits of all cells, in the order of their first cells.
 #[derive(Debug, Clone, Default)]
 pub struct Orbits(Vec<Orbit>);
 
@@ -57,8 +58,8 @@ impl Orbits {
         &self.0
     }
 
-    /// The number, from 1 on, of the orbit with these points; a new number if no cell has tended to it. 0 once too many
-    /// are known.
+    /// The number, counted from 1, of the orbit with these points. A new orbit gets the next number, or 0 if there are
+    /// too many orbits.
     pub fn number(&self, cycle: &[Vec<f64>], components: &Components) -> u64 {
         let is_same = |orbit: &Orbit| {
             orbit.period == cycle.len() as u64
@@ -73,7 +74,8 @@ impl Orbits {
         }
     }
 
-    /// Counts a cell that tends to the orbit of this number.
+    /// Counts a cell that converges to the orbit of this number, and adds the orbit if it is new. The number 0 is
+    /// ignored.
     pub fn count(&mut self, number: u64, period: u64, point: &[f64]) {
         let Some(index) = number.checked_sub(1) else {
             return;

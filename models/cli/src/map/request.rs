@@ -1,4 +1,4 @@
-//! Requests of a map for every run.
+//! The request of a map for every run.
 
 use dalembert::describe::{Description, Topology};
 use dalembert_driver::{Component, Point, Search};
@@ -10,19 +10,19 @@ use crate::names;
 
 /// Request of a map for every run.
 pub struct Request {
-    /// The returns, if there are any.
+    /// The requested returns, if any.
     pub returns: Option<Returns>,
-    /// The components of the start that are expressions.
+    /// The components of the start that are set to expressions.
     pub starts: Vec<(Component, Watched)>,
     /// The expression that ends a run.
     pub fail: Option<Watched>,
     /// Meaning of the colours.
     pub colours: Colours,
-    /// The expressions that become columns, with their names.
+    /// The expressions of `--output`, with their names.
     pub outputs: Vec<(String, Watched)>,
-    /// The lines over the map.
+    /// The expressions of `--contour`, which are drawn as lines over the map.
     pub contours: Vec<Watched>,
-    /// The columns of a picture of ends: those along x and along y.
+    /// The columns along x and y, if the picture shows a dot for each cell.
     pub plane: Option<[String; 2]>,
     /// The components of a state.
     pub components: Components,
@@ -31,7 +31,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// True if Lyapunov exponents are asked for.
+    /// True if Lyapunov exponents are requested.
     pub fn has_exponent(&self) -> bool {
         let returns = self.returns.as_ref();
         returns.is_some_and(|returns| returns.exponent.is_some())
@@ -44,13 +44,13 @@ pub struct Returns {
     pub count: u64,
     /// The index of the surface.
     pub surface: usize,
-    /// The longest period.
+    /// The longest period that is searched for, in returns.
     pub period: usize,
     /// The request of a Lyapunov exponent.
     pub exponent: Option<Search>,
 }
 
-/// An expression, which is an output of the model.
+/// An expression of a flag, which became an output of the model.
 pub struct Watched {
     /// The expression.
     pub expression: Expression,
@@ -83,7 +83,7 @@ pub enum Colours {
 }
 
 impl Colours {
-    /// The value of their expression at a point; NaN if there is none.
+    /// The value at a point of the expression that the colours show; NaN if they show none.
     pub fn value(&self, point: &Point) -> f64 {
         match self {
             Self::Value(watched) => watched.value(point),
@@ -96,7 +96,7 @@ impl Colours {
 pub struct Components {
     /// Their names.
     pub names: Vec<String>,
-    /// The comparison of each.
+    /// The comparison of each component, in the same order.
     kinds: Vec<Kind>,
     /// Number of coordinates.
     coordinates: usize,
@@ -113,7 +113,7 @@ enum Kind {
 }
 
 impl Components {
-    /// The components of a model, as the flags say.
+    /// The components of a model, without those of `--ignore` in comparisons.
     ///
     /// # Errors
     /// A name in `--ignore` that the model does not have.
@@ -156,13 +156,13 @@ impl Components {
         point.q.iter().chain(rates).copied().collect()
     }
 
-    /// True if two numbers are known and do not count as the same.
+    /// True if two numbers differ by more than the tolerance; false if one is NaN.
     pub fn differ(&self, first: f64, second: f64) -> bool {
         let scale = f64::max(1.0, f64::max(first.abs(), second.abs()));
         (first - second).abs() > self.near * scale
     }
 
-    /// True if two states differ by less than `factor` times what counts as the same.
+    /// True if no component of two states differs by more than `factor` times the tolerance.
     pub fn are_same(&self, first: &[f64], second: &[f64], factor: f64) -> bool {
         let pairs = first.iter().zip(second).zip(&self.kinds);
         pairs.into_iter().all(|((&first, &second), kind)| {
@@ -174,7 +174,7 @@ impl Components {
                     (first - second) - turn * ((first - second) / turn).round()
                 }
             };
-            // A component that the mode lacks is no number in both.
+            // A component that the mode lacks is NaN in both states.
             let scale = f64::max(1.0, f64::max(first.abs(), second.abs()));
             difference.abs() <= factor * self.near * scale || (first.is_nan() && second.is_nan())
         })

@@ -10,7 +10,7 @@ pub struct Sums {
     places: Places,
     /// Number of cells.
     pub cells: u64,
-    /// The classes in the order in which they are met, with their numbers of cells.
+    /// The classes in the order of their first cells, with their numbers of cells.
     pub classes: Vec<(String, u64)>,
     /// The orbits.
     pub orbits: Orbits,
@@ -18,26 +18,26 @@ pub struct Sums {
     pub returns: u64,
     /// Number of cells without a run.
     pub refused: u64,
-    /// The first reason for that.
+    /// The reason why the first of them has no run.
     pub reason: Option<String>,
-    /// Content of a picture.
+    /// The data of the picture, if one is drawn.
     pub drawn: Option<Cells>,
 }
 
-/// Content of a picture for each cell, in their order.
+/// The data of the picture for each cell, in the order of the cells.
 #[derive(Debug, Clone, Default)]
 pub struct Cells {
-    /// The index of its class.
+    /// The index of the class of each cell.
     pub classes: Vec<usize>,
-    /// The number of its colour.
+    /// The number that the colour of each cell shows; empty if colours show classes.
     pub numbers: Vec<f64>,
-    /// For each line, its expression at the start.
+    /// For each contour, the values of its expression at the starts of the cells.
     pub contours: Vec<Vec<f64>>,
-    /// Its place in a picture of ends.
+    /// The point of each cell on the axes of `--axes`; empty without that flag.
     pub places: Vec<[f64; 2]>,
 }
 
-/// Positions of values in a row.
+/// Indices of columns in a row.
 struct Places {
     class: usize,
     outcome: usize,
@@ -155,7 +155,8 @@ impl Sums {
         }
     }
 
-    /// The classes, orbits first in the order of their numbers, then periods, then the rest by their numbers of cells.
+    /// The indices of the classes: orbits by number, then periods by length, then the other classes from most to fewest
+    /// cells.
     pub fn sorted_classes(&self) -> Vec<usize> {
         let rank = |index: &usize| {
             let (name, cells) = &self.classes[*index];

@@ -50,7 +50,7 @@ pub fn columns(request: &Request, members: &Members) -> Columns {
     Columns::new(columns)
 }
 
-/// The row of a cell; its orbit has the number that is next.
+/// The row of a cell. If its orbit is new, it gets the next number.
 pub fn row(members: &Members, member: u64, cell: &Cell, request: &Request, orbits: &Orbits) -> Row {
     let orbit = match cell.cycle.is_empty() || request.is_bifurcating {
         true => 0,

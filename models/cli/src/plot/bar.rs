@@ -21,12 +21,12 @@ const STRIPES: usize = 64;
 pub struct Bar<'a> {
     /// The name of the numbers.
     pub name: &'a str,
-    /// The numbers of the first and the last colour.
+    /// The numbers that the first and the last colour show.
     pub range: [f64; 2],
 }
 
 impl Bar<'_> {
-    /// The place of a number between the first and the last colour; 0 and 1 beyond them.
+    /// The position of a number on the bar, from 0 to 1; numbers beyond the range count as its ends.
     pub fn share(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         ((value - low) / (high - low)).clamp(0.0, 1.0)
@@ -59,7 +59,7 @@ impl Head for Bar<'_> {
             .map_err(message)?;
         let at = |share: f64| left + share * (right - left);
         for index in 0..STRIPES {
-            // Each stripe extends below those to its right, which avoids visible seams.
+            // Each stripe extends to the right end, and later stripes cover it. This avoids visible seams.
             let share = index as f64 / STRIPES as f64;
             let corners = [(px(at(share)), px(4.0)), (px(right), px(18.0))];
             let fill = colour(share).filled();

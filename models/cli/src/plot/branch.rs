@@ -15,17 +15,17 @@ use crate::symbols;
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 720.0;
 
-/// Changes below this share of a value are rounding errors.
+/// Changes below this fraction of a value are rounding errors.
 const CONSTANT: f64 = 1e-9;
 
-/// Arcs in the order of the legend.
+/// Colours of arcs, in the order of the legend.
 const ARCS: [(Stability, RGBColor); 3] = [
     (Stability::Stable, PALETTE[0]),
     (Stability::Unstable, PALETTE[1]),
     (Stability::Neutral, PALETTE[6]),
 ];
 
-/// Bifurcations in the order of the legend.
+/// Label and index of the colour of each bifurcation, in the order of the legend.
 const MARKS: [(Bifurcation, &str, usize); 4] = [
     (Bifurcation::Fold, "fold", 4),
     (Bifurcation::Flip, "flip", 3),
@@ -38,12 +38,12 @@ const MARKS: [(Bifurcation, &str, usize); 4] = [
 pub enum Ordinate {
     /// The period.
     Period,
-    /// A quantity of the point of the section.
+    /// A quantity of the state at the section, before its event.
     Before(Quantity),
 }
 
 impl Ordinate {
-    /// The first coordinate or velocity that changes along a branch.
+    /// The first coordinate or velocity that changes along a branch; the period if none does.
     pub fn first(branch: &Branch, description: &Description) -> Self {
         let changes = |ordinate: &Self| {
             let values = branch.points.iter().map(|member| ordinate.value(member));
@@ -90,7 +90,7 @@ pub struct Chart<'a> {
     pub description: &'a Description,
     /// The branch.
     pub branch: &'a Branch,
-    /// Reasons for both ends.
+    /// Reasons why the branch ends, at its first and at its last point.
     pub ends: [String; 2],
 }
 
@@ -151,7 +151,7 @@ fn colour(stability: Stability) -> RGBColor {
     found.map_or(style::INK, |(_, colour)| *colour)
 }
 
-/// The words of a bifurcation, and the number of its colour.
+/// The label of a bifurcation, and the index of its colour.
 pub fn mark(bifurcation: Bifurcation) -> (&'static str, usize) {
     let found = MARKS.iter().find(|(known, ..)| *known == bifurcation);
     let (_, words, colour) = found.copied().unwrap_or(MARKS[0]);
@@ -163,12 +163,12 @@ impl Chart<'_> {
         [member.parameter, self.ordinate.value(member)]
     }
 
-    /// Arcs of one stability, each with the indices of its points; neighbours share an end.
+    /// The arcs of constant stability, each with the indices of its points. Neighbouring arcs share an end.
     fn arcs(&self) -> Vec<(Stability, std::ops::RangeInclusive<usize>)> {
         let points = &self.branch.points;
         let mut arcs: Vec<(Stability, std::ops::RangeInclusive<usize>)> = Vec::new();
         for (index, pair) in points.windows(2).enumerate() {
-            // At a bifurcation the stability is that of neither side.
+            // The stability of a bifurcation point differs from that of the arcs on both sides.
             let inside = pair.iter().find(|member| member.bifurcation.is_none());
             let stability = inside.unwrap_or(&pair[1]).stability;
             match arcs.last_mut() {
@@ -179,7 +179,7 @@ impl Chart<'_> {
         arcs
     }
 
-    /// The ends that are not those of the range: the place, and the reason.
+    /// The ends inside the range: kind, point and reason.
     fn open_ends(&self) -> impl Iterator<Item = (BranchEnd, [f64; 2], &str)> {
         let points = [self.branch.points.first(), self.branch.points.last()];
         let ends = self.branch.ends.iter().zip(points).zip(&self.ends);

@@ -1,6 +1,6 @@
 //! The sheet of a picture.
 //!
-//! The drawing library works in whole pixels, which shows as steps in a smooth curve. A sheet is therefore drawn
+//! The drawing library works in whole pixels, so smooth curves would show steps. A sheet is therefore drawn
 //! [`SUBPIXELS`] times as large, and the finished SVG is scaled to its intended size.
 
 use plotters::coord::Shift;
@@ -12,12 +12,12 @@ use super::style::{FAINT_INK, INK};
 /// Units of the drawing library per pixel of the picture.
 const SUBPIXELS: i32 = 10;
 
-/// Pixels in units of the drawing library.
+/// Converts pixels to units of the drawing library.
 pub fn px(pixels: f64) -> i32 {
     (pixels * f64::from(SUBPIXELS)).round() as i32
 }
 
-/// A line width in units of the drawing library.
+/// Converts a line width in pixels to units of the drawing library.
 pub fn stroke(pixels: f64) -> u32 {
     px(pixels).unsigned_abs().max(1)
 }
@@ -30,7 +30,7 @@ pub fn text(size: f64, colour: RGBColor) -> TextStyle<'static> {
     ("sans-serif", px(size)).into_font().color(&colour)
 }
 
-/// Approximate width of a text in pixels; no font is available for a measurement.
+/// Approximate width of a text in pixels. It is estimated, because no font is available.
 pub fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
@@ -41,8 +41,8 @@ pub const TITLE_HEIGHT: f64 = 54.0;
 /// Left edge of titles and legends, in pixels.
 pub const INDENT: f64 = 20.0;
 
-/// Width of dashed lines, in pixels; no other line has it. The drawing library writes every dash as a line of its own, so
-/// such lines are drawn whole, and [`sheet`] adds the dashes.
+/// Width of dashed lines, in pixels. No other line has this width. The drawing library would write every dash as a line
+/// of its own; therefore dashed lines are drawn as whole lines, and [`sheet`] adds the dashes.
 pub const DASHED: f64 = 0.9;
 
 /// Length of a dash and of the gap after it, in pixels.

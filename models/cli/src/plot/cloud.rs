@@ -20,7 +20,7 @@ pub struct Cloud<'a> {
     pub subtitle: &'a str,
     /// The points.
     pub points: &'a [[f64; 2]],
-    /// The central point of the scatter.
+    /// The point of the start that is not scattered.
     pub middle: Option<[f64; 2]>,
 }
 
@@ -36,7 +36,7 @@ pub fn draw(cloud: &Cloud<'_>) -> Result<String, String> {
             style::PATH,
             format!("scattered starts ({})", cloud.points.len()),
         ),
-        Item::new(Symbol::Ring, style::INK, "the start itself"),
+        Item::new(Symbol::Ring, style::INK, "unscattered start"),
     ];
     let labels = cloud.table.labels();
     let words = Words {

@@ -56,7 +56,7 @@ impl Window {
 pub struct Contour {
     /// Its corners; the last is joined to the first.
     pub points: Vec<[f64; 2]>,
-    /// True for a side, from this corner to the next, that runs along the rectangle instead of inside it.
+    /// For each corner, true if the side to the next corner runs along the edge of the rectangle.
     pub on_frame: Vec<bool>,
 }
 
@@ -73,7 +73,7 @@ impl Contour {
     }
 }
 
-/// A side of a grid square, by its lower left node.
+/// A side of a grid square, given by its left or lower node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Side {
     Horizontal(usize, usize),
@@ -102,7 +102,7 @@ pub fn contours(window: Window, cells: usize, function: impl Fn([f64; 2]) -> f64
         let mut sides = vec![first];
         while next != first {
             sides.push(next);
-            // Each side that changes sign starts one segment and ends one, so the chain closes.
+            // Each side on which the function changes sign starts one segment and ends one, so the chain closes.
             let Some(after) = following.remove(&next) else {
                 break;
             };
@@ -148,8 +148,8 @@ impl Grid {
             Side::Horizontal(column, row + 1),
             Side::Vertical(column, row),
         ];
-        // Counterclockwise, side k leads from corner k to corner k + 1. A segment starts on a side with a change from
-        // positive to negative, and ends on one with a change back.
+        // Counterclockwise, side k leads from corner k to corner k + 1. A segment starts on a side on which the
+        // function turns negative, and ends on a side on which it turns positive.
         let starts: Vec<usize> = (0..4)
             .filter(|&k| positive[k] && !positive[(k + 1) % 4])
             .collect();
@@ -159,8 +159,8 @@ impl Grid {
         let joined = corners.iter().sum::<f64>() > 0.0;
         let end_of = |start: usize| match ends.as_slice() {
             [end] => *end,
-            // A saddle: with a positive middle the segment cuts off the negative corner after `start`, otherwise
-            // the positive corner before it.
+            // A saddle. If the mean of the corners is positive, the segment cuts off the negative corner after `start`,
+            // otherwise the positive corner before it.
             _ if joined => (start + 1) % 4,
             _ => (start + 3) % 4,
         };
@@ -184,7 +184,7 @@ impl Grid {
         }
     }
 
-    /// The zero of the function on a side, by linear interpolation; true if the side touches the rectangle's rim.
+    /// The zero of the function on a side, by linear interpolation; true if one end of the side is an outermost node.
     fn crossing(&self, side: Side) -> ([f64; 2], bool) {
         let ((column, row), (i, j)) = match side {
             Side::Horizontal(column, row) => ((column, row), (1, 0)),

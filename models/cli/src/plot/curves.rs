@@ -13,11 +13,11 @@ const DOT: f64 = 1.8;
 
 /// A curve with its points.
 pub struct Curve {
-    /// Its words in the legend.
+    /// Its label in the legend.
     pub label: String,
-    /// Number of its colour.
+    /// Index of its colour in the palette.
     pub colour: usize,
-    /// Its stretches.
+    /// Its connected parts.
     pub stretches: Vec<Vec<[f64; 2]>>,
     /// Points in its colour. They do not extend the picture.
     pub points: Vec<[f64; 2]>,
@@ -31,7 +31,7 @@ pub struct Chart<'a> {
     pub subtitle: &'a str,
     /// The names of both axes.
     pub axes: [&'a str; 2],
-    /// Values along x.
+    /// Values along x that the picture must cover.
     pub values: &'a [f64],
     /// The curves.
     pub curves: Vec<Curve>,

@@ -79,8 +79,8 @@ struct Scale {
 }
 
 impl Scale {
-    /// A scale up to the largest density. If a few cells far exceed the others, up to the density that 199 of 200
-    /// non-empty cells do not exceed.
+    /// A scale that ends at the largest density. If a few cells far exceed the others, it ends at the density that 199
+    /// of 200 non-empty cells do not exceed.
     fn of(density: &Density, counts: &[u64]) -> Self {
         let all: u64 = counts.iter().sum();
         let unit = 1.0 / (all.max(1) as f64 * density.cell_area());
@@ -139,7 +139,7 @@ fn frame(chart: &mut Chart<'_, '_>, density: &Density) -> Result<(), String> {
     chart.draw_series([element]).map_err(message).map(drop)
 }
 
-/// The cells as SVG paths, one per colour; neighbours of the same colour along x form one rectangle.
+/// The cells as SVG paths, one per colour. Neighbours of the same colour along x form one rectangle.
 fn paths(chart: &Chart<'_, '_>, density: &Density, counts: &[u64], scale: &Scale) -> String {
     let [x, y] = &density.axes;
     let mut levels = vec![String::new(); LEVELS];
@@ -178,7 +178,7 @@ fn bar(area: &Area<'_>, scale: &Scale, [left, height]: [f64; 2]) -> Result<(), S
     let left = left + 18.0;
     let at = |x: f64, part: f64| (px(left + x), px(ABOVE + height * (1.0 - part)));
     for level in 0..LEVELS {
-        // Every stripe extends to the top and the next is painted over it, which avoids visible seams.
+        // Every stripe extends to the top, and the next one covers it. This avoids visible seams.
         let corners = [at(0.0, 1.0), at(BAR_WIDTH, level as f64 / LEVELS as f64)];
         area.draw(&Rectangle::new(corners, colour(level).filled()))
             .map_err(message)?;

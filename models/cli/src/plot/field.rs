@@ -11,16 +11,16 @@ use super::plane::{self, Chart, Plane, Words};
 use super::style;
 use dalembert_driver::padded;
 
-/// Fraction of the numbers up to the last colour; larger ones share it.
+/// Fraction of the numbers that the colour scale covers; larger numbers have the last colour.
 const SHOWN: f64 = 0.95;
 
 /// Largest number of impacts with a colour of its own.
 const MOST: usize = 12;
 
-/// A path over colours of numbers.
+/// Colour of a path over a map of numbers.
 const BRIGHT: RGBColor = RGBColor(255, 110, 60);
 
-/// Behind the ends of a path.
+/// Colour behind the marks at the ends of a path.
 const HALO: RGBColor = RGBColor(250, 250, 250);
 
 /// Meaning of the numbers.
@@ -28,11 +28,11 @@ const HALO: RGBColor = RGBColor(250, 250, 250);
 pub enum Meaning<'a> {
     /// A quantity of this name.
     Number(&'a str),
-    /// Numbers of impacts, of which a fraction is rounded.
+    /// Numbers of impacts; interpolated numbers are rounded.
     Impacts,
 }
 
-/// Stretches of a path between its jumps.
+/// The parts of a path between its jumps.
 pub type Stretches = Vec<Vec<[f64; 2]>>;
 
 /// Content of a picture.
@@ -45,11 +45,11 @@ pub struct Field<'a> {
     pub names: [String; 2],
     /// Its width, in pixels.
     pub width: f64,
-    /// The rectangle with the cells of all nodes.
+    /// The rectangle that the cells around all nodes cover.
     pub window: Window,
     /// Number of nodes along each axis.
     pub counts: [usize; 2],
-    /// A number for each node, those along the second axis first; NaN is unknown.
+    /// A number for each node; the index along the second axis changes fastest. NaN stands for an unknown number.
     pub values: &'a [f64],
     /// Their meaning.
     pub meaning: Meaning<'a>,

@@ -1,4 +1,4 @@
-//! A density on a table: boxes coloured by value.
+//! A density over the region of a view: boxes coloured by value.
 
 use super::bar::{Bar, palette};
 use super::contour::Window;
@@ -9,12 +9,12 @@ use super::{Table, image};
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 440.0;
 
-/// Fraction of the non-empty boxes below the value of the last colour; larger values share that colour.
+/// Fraction of the non-empty boxes that the colour scale covers; larger values have the last colour.
 const SHOWN: f64 = 0.995;
 
 /// A density to be drawn.
 pub struct Map<'a> {
-    /// The table under the density.
+    /// The region under the density.
     pub table: &'a Table<'a>,
     /// First line of the title.
     pub title: &'a str,
@@ -22,9 +22,9 @@ pub struct Map<'a> {
     pub subtitle: &'a str,
     /// The rectangle covered by the boxes.
     pub window: Window,
-    /// Boxes along each side.
+    /// Number of boxes along each side.
     pub boxes: usize,
-    /// Their values, row by row from below.
+    /// The densities of the boxes, row by row from below.
     pub densities: &'a [f64],
 }
 

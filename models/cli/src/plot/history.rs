@@ -1,5 +1,5 @@
-//! Quantities against time, with impacts as vertical lines. By default these are all coordinates, and the outputs in a
-//! second panel.
+//! Quantities against time, with impacts as vertical lines. By default one panel shows all coordinates and a second one
+//! the outputs.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;

@@ -1,4 +1,4 @@
-//! Small images with indexed colours, in the place of a rectangle of a picture.
+//! Small images with indexed colours, which replace a rectangle of a picture.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -24,13 +24,13 @@ pub fn draw_place(chart: &mut Chart<'_, '_>, window: Window) -> Result<(), Strin
     chart.draw_series([place]).map_err(message).map(drop)
 }
 
-/// Replaces the placeholder rectangle by the image, since the drawing library can only draw boxes one by one.
+/// Replaces the placeholder by the image. The drawing library itself could only draw boxes one by one.
 ///
 /// # Errors
 /// A picture without the placeholder.
 pub fn put(svg: &str, address: &str) -> Result<String, String> {
     let placed = put_image(svg, address);
-    placed.ok_or_else(|| "the image found no place".to_owned())
+    placed.ok_or_else(|| "the picture has no placeholder for the image".to_owned())
 }
 
 fn put_image(svg: &str, address: &str) -> Option<String> {

@@ -1,4 +1,4 @@
-//! A legend: entries that flow into as many lines as they need.
+//! A legend, whose entries wrap into as many lines as they need.
 
 use plotters::element::{Circle, PathElement, Rectangle};
 use plotters::style::{Color, RGBColor};
@@ -25,11 +25,11 @@ pub enum Symbol {
     Line,
     /// A thin vertical line.
     Tick,
-    /// An impact.
+    /// A filled circle: an impact, or a point.
     Dot,
-    /// The start.
+    /// A circle: the start.
     Ring,
-    /// The end.
+    /// A filled square: the end, or a class.
     Square,
 }
 

@@ -1,4 +1,4 @@
-//! Curves on two logarithmic axes, on which powers are straight lines, each with its fitted exponent.
+//! Curves on two logarithmic axes. Power laws are straight lines on them; each curve may show its fitted exponent.
 
 use plotters::element::{Circle, PathElement};
 use plotters::prelude::{ChartBuilder, IntoLogRange};
@@ -17,7 +17,7 @@ const HEIGHT: f64 = 300.0;
 const LABELS: f64 = 64.0;
 const EDGE: f64 = 14.0;
 
-/// Draws curves with common axes, each with its exponent.
+/// Draws curves with common axes, with the exponent of each in the legend.
 ///
 /// # Errors
 /// An error of the drawing library.
@@ -92,7 +92,7 @@ pub fn draw_labelled(
     })
 }
 
-/// The points with logarithms: those with positive coordinates.
+/// The points with positive finite coordinates, which have logarithms.
 fn drawable(curve: &Curve) -> Vec<[f64; 2]> {
     let exists = |point: &[f64; 2]| point.iter().all(|value| *value > 0.0 && value.is_finite());
     curve.points.iter().copied().filter(exists).collect()

@@ -1,4 +1,4 @@
-//! A map of cells: colours of classes or numbers, with axes, a legend and lines on top.
+//! A map of cells, coloured by class or by a number, with axes, a legend and contour lines on top.
 
 use plotters::style::RGBColor;
 
@@ -19,11 +19,11 @@ use dalembert_driver::padded;
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 720.0;
 
-/// Radius of the dot of a cell, in pixels, and the room around all dots as a share of their range.
+/// Radius of the dot of a cell, in pixels, and the margin around all dots as a fraction of their range.
 const DOT: f64 = 1.5;
 const DOTS_ROOM: f64 = 0.04;
 
-/// Fraction of the numbers beyond the first colour, and beyond the last.
+/// Fraction of the numbers below the colour scale, and fraction above it.
 const BEYOND: f64 = 0.005;
 
 /// Colours of classes, in the order of the legend.
@@ -31,14 +31,14 @@ const CLASSES: [RGBColor; 6] = [
     PALETTE[0], PALETTE[2], PALETTE[3], PALETTE[5], PALETTE[4], PALETTE[7],
 ];
 
-/// Colours of classes that have the same in every map.
+/// Classes that have the same colour in every map.
 const FIXED: [(&str, RGBColor); 3] = [
     ("failed at once", PALETTE[1]),
     ("failed", RGBColor(206, 210, 216)),
     ("unsettled", PALETTE[6]),
 ];
 
-/// Colours of lines.
+/// Colours of contour lines.
 const LINES: [RGBColor; 4] = [RGBColor(0, 160, 60), style::INK, PALETTE[3], PALETTE[4]];
 
 /// Largest number of classes with colours of their own.
@@ -61,13 +61,13 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The range of its cells, which extend by half of their distance around their values.
+    /// The range that the cells cover: each cell extends by half a step to both sides of its value.
     fn range(&self) -> [f64; 2] {
         let half = 0.5 * (self.ends[1] - self.ends[0]) / (self.count - 1) as f64;
         [self.ends[0] - half, self.ends[1] + half]
     }
 
-    /// The index of the quantity among the components of a state, if it is one.
+    /// The index of the quantity among the components of a state; `None` for a parameter.
     fn component(&self, request: &Request) -> Option<usize> {
         let components = &request.components;
         let index = match self.quantity {
@@ -91,7 +91,7 @@ pub struct Chart<'a> {
     pub request: &'a Request,
     /// Sums over all cells.
     pub sums: &'a Sums,
-    /// Results of each cell.
+    /// The data of each cell.
     pub cells: &'a Cells,
 }
 
@@ -148,13 +148,13 @@ pub fn draw(chart: &Chart<'_>) -> Result<String, String> {
 
 /// The colours of the cells.
 struct Painted<'a> {
-    /// The transparent colour, then the others.
+    /// The transparent colour, then the colours of classes or numbers.
     palette: Vec<RGBColor>,
-    /// For each cell the index of its colour, in the order of the cells.
+    /// The index of the colour of each cell, in the order of the cells.
     pixels: Vec<u8>,
-    /// The bar of the numbers.
+    /// The colour bar, if colours show numbers.
     bar: Option<Bar<'a>>,
-    /// The classes with their colours.
+    /// The legend of the classes.
     items: Vec<Item>,
 }
 
@@ -259,7 +259,8 @@ impl Chart<'_> {
         }
     }
 
-    /// Colours of numbers; a share of them at either end has the colour of the end.
+    /// Colours cells by numbers. The colour scale leaves out a fraction `beyond` of the numbers at either end; they
+    /// have the colour of that end.
     fn by_number<'s>(&'s self, name: &'s str, beyond: f64) -> Painted<'s> {
         let numbers = self.cells.numbers.iter().copied();
         let mut sorted: Vec<f64> = numbers.clone().filter(|value| value.is_finite()).collect();
@@ -287,7 +288,7 @@ impl Chart<'_> {
         }
     }
 
-    /// The bar and the legend, with the lines.
+    /// The colour bar and the legend, which includes the contour lines.
     fn head<'s>(&self, painted: &'s Painted<'_>, is_marked: bool) -> Top<'s> {
         let mut items = painted.items.clone();
         if is_marked {
@@ -304,7 +305,7 @@ impl Chart<'_> {
         }
     }
 
-    /// A return of each orbit in the plane of the map, if both axes are of the state.
+    /// One return of each orbit, if both axes are components of the state and there are not too many orbits.
     fn marks(&self) -> Vec<[f64; 2]> {
         let places: Vec<Option<usize>> = self
             .axes
@@ -331,7 +332,7 @@ impl Chart<'_> {
         }
     }
 
-    /// The lines on which an expression is 0, from its values at the cells; none in a strip.
+    /// The lines on which an expression is 0, from its values at the cells. A strip has none.
     fn lines(&self, values: &[f64]) -> Vec<super::contour::Contour> {
         let [x, y] = self.axes else {
             return Vec::new();
@@ -344,7 +345,7 @@ impl Chart<'_> {
         let place = |at: f64, axis: &Axis| {
             let share = (at - axis.ends[0]) / (axis.ends[1] - axis.ends[0]);
             let place = share.clamp(0.0, 1.0) * (axis.count - 1) as f64;
-            // Cells are met exactly; only between them is interpolated.
+            // Values at the cells are exact; only values between them are interpolated.
             let nearest = place.round();
             let place = if (place - nearest).abs() < 1e-9 {
                 nearest
@@ -371,7 +372,7 @@ fn class_colour(index: usize) -> RGBColor {
     RGBColor(lighter(r), lighter(g), lighter(b))
 }
 
-/// A colour bar over a legend.
+/// A colour bar above a legend.
 pub(super) struct Top<'a> {
     pub bar: Option<&'a Bar<'a>>,
     pub items: Vec<Item>,

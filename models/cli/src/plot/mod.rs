@@ -96,7 +96,7 @@ impl Picture<'_> {
     }
 }
 
-/// Largest value that can be drawn; the drawing library computes ranges and ticks in `f64`.
+/// Largest value that can be drawn. The drawing library computes ranges and ticks in `f64`, which must not overflow.
 const LARGEST: f64 = 1e200;
 
 /// Draws the picture.

@@ -1,5 +1,5 @@
-//! Several motions in one picture: a panel for each ordinate, a colour for each number of impacts, dots before the impacts, dashes
-//! across jumps, a ring at the start and a square at the end.
+//! Several motions in one picture, with a panel for each ordinate and a colour for each number of impacts. Dots mark
+//! the states before impacts, dashes the jumps, rings the starts and squares the ends.
 
 use plotters::element::PathElement;
 use plotters::prelude::ChartBuilder;
@@ -26,7 +26,7 @@ const ABOVE: f64 = 8.0;
 /// Tolerance in pixels for omitted points of a line.
 const NEAR: f64 = 0.12;
 
-/// The quantities of successive points: the abscissa, then the ordinates.
+/// Successive points, each with its quantities: the abscissa, then the ordinates.
 pub type Stretch = Vec<Vec<f64>>;
 
 /// A motion.
@@ -174,7 +174,7 @@ fn draw_panel(area: &Area<'_>, sheet: &Sheet<'_>, ordinate: usize) -> Result<(),
     Ok(())
 }
 
-/// The points of a line that are seen; `scale` is in pixels.
+/// The points of a line that remain after thinning; `scale` is in pixels per unit.
 fn line(points: &[[f64; 2]], scale: [f64; 2]) -> Vec<(f64, f64)> {
     let pixels: Vec<[f64; 2]> = points
         .iter()

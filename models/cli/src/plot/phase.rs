@@ -1,4 +1,4 @@
-//! Quantities against each other: phase portraits, momenta in their plane.
+//! Quantities against each other, such as phase portraits.
 
 use super::Picture;
 use super::contour::Window;
@@ -8,7 +8,7 @@ use super::quantity::Quantity;
 use super::style;
 use dalembert_driver::padded;
 
-/// Draws the ordinates over the abscissa, which is the first of the quantities.
+/// Draws the ordinates against the abscissa, which is the first of the quantities.
 ///
 /// # Errors
 /// An error of the drawing library.

@@ -35,7 +35,7 @@ const LABELS: [f64; 2] = [72.0, 48.0];
 /// A chart on a plane.
 pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
-/// The words of a picture.
+/// The texts of a picture, and the element above its plot.
 pub struct Words<'a> {
     /// First line of the title.
     pub title: &'a str,
@@ -47,7 +47,7 @@ pub struct Words<'a> {
     pub head: &'a dyn Head,
 }
 
-/// An element above a plot that explains it.
+/// An element above a plot that explains it, such as a legend or a colour bar.
 pub trait Head {
     /// Its height in pixels, in a picture of this width.
     fn height(&self, width: f64) -> f64;
@@ -79,7 +79,7 @@ pub struct Plane {
     width: f64,
     /// Size of the plot itself, in pixels.
     plot: (f64, f64),
-    /// False if the ordinate means nothing.
+    /// False if the y axis shows no quantity.
     has_ordinate: bool,
 }
 
@@ -112,7 +112,7 @@ impl Plane {
         }
     }
 
-    /// The window as a strip, whose ordinate means nothing.
+    /// The window as a strip, whose y axis shows no quantity.
     pub fn strip(window: Window, width: f64) -> Self {
         Self {
             window,
@@ -122,7 +122,7 @@ impl Plane {
         }
     }
 
-    /// Draws a sheet: title, element above the plot, objects behind the grid, grid and axes, objects in front.
+    /// Draws a sheet: title, element above the plot, objects behind the grid, grid and axes, objects in front of them.
     ///
     /// # Errors
     /// An error of the drawing library.
@@ -193,7 +193,7 @@ pub fn draw_axes(chart: &mut Chart<'_, '_>, names: [&str; 2]) -> Result<(), Stri
     draw_some_axes(chart, names, true)
 }
 
-/// Draws grid, axes and labels, without the ordinate unless `has_ordinate`.
+/// Draws grid, axes and labels; the y axis only if `has_ordinate`.
 fn draw_some_axes(
     chart: &mut Chart<'_, '_>,
     names: [&str; 2],
@@ -215,7 +215,7 @@ fn draw_some_axes(
         .map_err(message)
 }
 
-/// Draws dashed lines between pairs of points, where they are apart.
+/// Draws a dashed line between the points of each pair, unless they coincide or are not finite.
 ///
 /// # Errors
 /// An error of the drawing library.
@@ -267,7 +267,7 @@ pub fn ring([x, y]: [f64; 2]) -> Circle<(f64, f64), i32> {
     Circle::new((x, y), px(4.5), style::INK.stroke_width(stroke(1.6)))
 }
 
-/// The range of this half length about the middle of another range.
+/// A range with the middle of another range and the half length `half`.
 pub fn around(range: [f64; 2], half: f64) -> [f64; 2] {
     let middle = 0.5 * (range[0] + range[1]);
     [middle - half, middle + half]

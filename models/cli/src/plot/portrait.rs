@@ -1,4 +1,5 @@
-//! The declared view: the path in its plane, with equal scales, the region behind it and impacts on it.
+//! The declared view: the path in the plane of the view, with equal scales on both axes, the region behind it and the
+//! impacts on it.
 
 use dalembert::describe::ViewInfo;
 use plotters::element::{PathElement, Polygon};
@@ -69,7 +70,8 @@ fn extent(points: &[[f64; 2]]) -> Window {
     let x = padded(points.iter().map(|point| point[0]), 0.0);
     let y = padded(points.iter().map(|point| point[1]), 0.0);
     let tight = Window::around(points.iter().copied());
-    // A straight path along an axis takes the length of the other side, so that rounding noise is not magnified.
+    // The shorter side of a path along an axis is extended to half of the longer one, so that rounding errors are not
+    // magnified.
     let side = |range: [f64; 2]| range[1] - range[0];
     match tight.map(|tight| (side(tight.x), side(tight.y))) {
         Some((w, h)) if w > 0.0 && h < 1e-6 * w => Window {
@@ -138,7 +140,7 @@ fn strokes(contour: &Contour) -> Vec<Vec<(f64, f64)>> {
         let point = contour.points[index % contour.points.len()];
         (point[0], point[1])
     };
-    // Starts after a side on the frame, so that no stroke is cut in two.
+    // The first stroke starts after a side on the frame, so that no stroke is cut in two.
     let count = contour.points.len();
     let begin = (0..count)
         .find(|&index| contour.on_frame[index])

@@ -6,7 +6,7 @@ use dalembert_driver::Point;
 use crate::error::CliError;
 use crate::{names, symbols};
 
-/// One number of a state.
+/// A quantity of an axis: one number at each point of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// `t`
@@ -30,7 +30,7 @@ pub enum Quantity {
 const GROUPS: [&str; 4] = ["q", "qdot", "p", "outputs"];
 
 impl Quantity {
-    /// The value of the quantity; `start` is the energy at the start of the run.
+    /// The value of the quantity at a point; NaN if the point lacks it. `start` is the energy at the start of the run.
     pub fn value(self, t: f64, point: &Point, start: f64) -> f64 {
         let component = |values: &[f64], index: usize| values.get(index).copied();
         let value = match self {
@@ -60,7 +60,7 @@ impl Quantity {
         }
     }
 
-    /// Its symbol, for pictures.
+    /// Its label in pictures.
     pub fn label(self, description: &Description) -> String {
         match self {
             Self::EnergyError => "relative change of the energy".to_owned(),
@@ -116,10 +116,10 @@ pub fn check(flag: &str, text: Option<&str>, description: &Description) -> Resul
     text.map_or(Ok(()), |text| parse(flag, text, description).map(drop))
 }
 
-/// Parses one quantity of a single state.
+/// Parses one quantity of a single state; `None` for a name among `others`, which the flag accepts as well.
 ///
 /// # Errors
-/// An unknown name; `others` are names that the flag accepts besides.
+/// An unknown name.
 pub fn parse_one(
     flag: &str,
     name: &str,
@@ -136,7 +136,7 @@ pub fn parse_one(
     Ok(quantities.get(index).copied())
 }
 
-/// The quantities of a single state.
+/// The quantities of a single state: all except the time and the change of the energy.
 pub fn of_state(description: &Description) -> Vec<Quantity> {
     let of_runs = [Quantity::Time, Quantity::EnergyError];
     let mut quantities = everything(description);

@@ -1,4 +1,4 @@
-//! The declared region behind a path: the visible part of the plane, and the region's boundary in it.
+//! The declared region behind a path: the boundary of the region, and the part of the plane that a picture shows.
 
 use dalembert_driver::{AnyModel, Point};
 
@@ -13,13 +13,13 @@ pub const COARSE: usize = 48;
 /// Margin around the visible objects, as a fraction of their size.
 const ROOM: f64 = 0.06;
 
-/// Number of times that the window may grow, by half of its size on each side, before a region counts as unbounded.
+/// Number of times that the window grows, by half of its size on each side, before a region counts as unbounded.
 const GROWTHS: usize = 5;
 
-/// The region's function in the plane of two coordinates, positive where motion is allowed.
+/// The function of a region in the plane of two coordinates; it is positive where motion is allowed.
 pub struct Region<'a> {
     model: &'a dyn AnyModel,
-    /// The position that fixes the other coordinates.
+    /// The position that gives the values of the other coordinates.
     q: &'a [f64],
     plane: [usize; 2],
 }
@@ -72,8 +72,8 @@ impl<'a> Region<'a> {
         path.grown(ROOM)
     }
 
-    /// The bounding rectangle of the region, as far as a grid in a window resolves it; `None` if the region reaches the
-    /// rim of the window or lies outside.
+    /// The bounding rectangle of the region, to the resolution of a grid in a window; `None` if the region reaches the
+    /// edge of the window or lies outside.
     pub fn extent(&self, window: Window, cells: usize) -> Option<Window> {
         let contours = self.contours(window, cells);
         let inside = contours
@@ -95,8 +95,8 @@ impl<'a> Region<'a> {
         self.model.region(t, &q).unwrap_or(f64::NAN)
     }
 
-    /// True if the region depends on the coordinates of the plane only. The test compares the first and the last
-    /// instant, and two instants between with the other coordinates as they are at either end.
+    /// True if the region depends on the coordinates of the plane only. The test compares four points at the first and
+    /// the last time, and at two times between with the other coordinates of the first and of the last state.
     fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
         let points =
             [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));

@@ -5,8 +5,8 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::style::{RGBColor, WHITE};
 
-/// Colours that colour-blind people can distinguish (Okabe and Ito, only those that are readable on white), and a
-/// brown.
+/// Colours that colour-blind people can distinguish: those of Okabe and Ito that are readable on white, a dark grey and
+/// a brown.
 pub const PALETTE: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -36,7 +36,7 @@ pub const REGION: RGBColor = RGBColor(240, 244, 249);
 /// The region's boundary.
 pub const BOUNDARY: RGBColor = RGBColor(110, 120, 132);
 
-/// Colours of pictures, each with its replacement on a dark page.
+/// Colours of pictures, each with the colour that replaces it on a dark page.
 pub const DARK: [(RGBColor, RGBColor); 11] = [
     (WHITE, RGBColor(22, 24, 27)),
     (INK, RGBColor(220, 221, 224)),
@@ -64,7 +64,7 @@ pub fn curve(index: usize) -> RGBColor {
     RGBColor(lighter(r), lighter(g), lighter(b))
 }
 
-/// The colour of a surface's impacts by its index; the first colour is reserved for the path.
+/// The colour of the impacts on a surface, by the index of the surface. The first colour is reserved for the path.
 pub const fn surface(index: usize) -> RGBColor {
     PALETTE[1 + index % (PALETTE.len() - 1)]
 }
@@ -79,7 +79,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis of this range with labels at multiples of 1, 2 or 5 powers of ten, about `target` of them.
+    /// An axis of this range with about `target` labels, at multiples of 1, 2 or 5 times a power of ten.
     pub fn new(range: [f64; 2], target: usize) -> Self {
         let length = range[1] - range[0];
         let raw = length / target.max(1) as f64;
@@ -101,11 +101,11 @@ impl Axis {
             .collect()
     }
 
-    /// The label of a value: as many decimals as the step needs, or an exponent instead of many decimals.
+    /// The label of a value, with as many decimals as the step needs, or with an exponent instead of many decimals.
     pub fn label(&self, value: f64) -> String {
         let largest = self.range[0].abs().max(self.range[1].abs());
         let decimals = (-self.step.log10()).ceil().max(0.0) as usize;
-        // Rounding errors turn a tick at zero into a tiny number.
+        // Rounding errors turn a label at zero into a tiny number.
         let value = if value.abs() < 1e-9 * largest {
             0.0
         } else {
@@ -119,7 +119,7 @@ impl Axis {
     }
 }
 
-/// Replaces the labels that the drawing library would choose.
+/// Gives the drawing library the labels of this axis in place of its own.
 impl Ranged for Axis {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
@@ -148,7 +148,7 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
-/// `2.5e-7`: at most five significant digits.
+/// A number with an exponent and at most five significant digits: `2.5e-7`.
 fn shortest_exponent(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     if rounded == 0.0 {

@@ -1,4 +1,4 @@
-//! The region of a model's view as a table under other objects, without a run.
+//! The region of a model's view as a background for other objects than the path of a run.
 
 use dalembert_driver::AnyModel;
 
@@ -7,11 +7,11 @@ use super::plane::Plane;
 use super::region::{COARSE, FINE, Region};
 use crate::symbols;
 
-/// Half the side of the first square of the search for the rim, and the largest number of doublings.
+/// Half the side of the first square in the search for the boundary of the region, and the largest number of doublings.
 const LEAST: f64 = 1e-6;
 const DOUBLINGS: i32 = 60;
 
-/// Margin around a table, as a fraction of its size.
+/// Margin around the region, as a fraction of its size.
 const ROOM: f64 = 0.06;
 
 /// The region of a view, as a background.
@@ -45,7 +45,7 @@ impl Table<'_> {
         (0..DOUBLINGS)
             .find_map(|power| region.extent(square(LEAST * 2f64.powi(power)), COARSE))
             .and_then(|near| region.extent(near.grown(ROOM), FINE))
-            .ok_or_else(|| "the region of the view has no rim all around".to_owned())
+            .ok_or_else(|| "the region of the view is not bounded".to_owned())
     }
 
     /// The plane of the region, in a picture of this width, and the region's boundary.

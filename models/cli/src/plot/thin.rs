@@ -61,7 +61,8 @@ mod tests {
         assert!(thinned(&[], 1.0).is_empty());
     }
 
-    /// The work is proportional to the number of points: each is examined at most once per kept point of its stretch.
+    /// The work is proportional to the number of points, because each is examined at most once per kept point of its
+    /// stretch.
     #[test]
     fn a_curve_that_swings_to_and_fro_many_times_is_thinned_at_once() {
         let swings = 50_000_u32;

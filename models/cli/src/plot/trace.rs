@@ -1,4 +1,4 @@
-//! The curve of a picture: points along a run, dense at bends, with both sides of every impact.
+//! The curve of a picture: points along a run, closer together where the curve bends, with both sides of every impact.
 
 use dalembert_driver::{Piece, Point};
 
@@ -10,7 +10,7 @@ const INTERVALS: usize = 12;
 /// Largest number of halvings of an interval.
 const DEPTH: u32 = 8;
 
-/// Number of points from which steps are no longer subdivided; at most twice as many are kept.
+/// Number of points beyond which steps are no longer divided. At most about twice as many points are kept.
 const MANY: usize = 100_000;
 
 /// An interval is halved while the distance of its midpoint from its chord exceeds this fraction of the curve's extent.
@@ -19,7 +19,7 @@ const FLATNESS: f64 = 3e-4;
 /// Components of the points of a curve.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
-    /// The declared view's point in the plane.
+    /// The point in the plane of the declared view.
     View,
     /// All coordinates, then all outputs.
     Coordinates,
@@ -39,8 +39,8 @@ impl Source {
         }
     }
 
-    /// True if states inside a step add to the curve. Energies alone do not need them: inside a step they only show
-    /// errors of dense output.
+    /// True if states inside a step add to the curve. They do not for energies alone: inside a step, energies only show
+    /// errors of the dense output.
     fn looks_inside(&self) -> bool {
         match self {
             Self::View | Self::Coordinates => true,
@@ -63,7 +63,7 @@ impl Source {
 #[derive(Debug)]
 pub struct Trace {
     source: Source,
-    /// The energy at the start, after the first point.
+    /// The energy at the start; `None` before the first point.
     start: Option<f64>,
     points: Vec<Mark>,
     /// Least and greatest value so far, per component.
@@ -77,7 +77,8 @@ pub struct Mark {
     pub t: f64,
     /// The values of the components at that time.
     pub values: Vec<f64>,
-    /// True for one side of an impact or an end; such points are always kept.
+    /// True for either side of an impact, for an event of a contact and for an end of the run. Thinning keeps such
+    /// points.
     pub corner: bool,
 }
 
@@ -104,7 +105,7 @@ impl Trace {
         &self.source
     }
 
-    /// The points in order of time; none has an infinite or undefined value.
+    /// The points in order of time. All their values are finite.
     pub fn points(&self) -> &[Mark] {
         &self.points
     }
@@ -145,7 +146,7 @@ impl Trace {
         self.thin();
     }
 
-    /// Adds one side of an impact, or an end of the run.
+    /// Adds one side of an impact, an event of a contact, or an end of the run.
     pub fn corner(&mut self, t: f64, point: &Point) {
         let mark = Mark {
             corner: true,
@@ -164,7 +165,7 @@ impl Trace {
         }
     }
 
-    /// Adds points between two points, as far as the curve bends.
+    /// Adds points between two points until the curve between neighbours is flat.
     fn refine(&mut self, piece: &dyn Piece, left: &Mark, right: &Mark, depth: u32) {
         let t = 0.5 * (left.t + right.t);
         if depth == 0 || t <= left.t || t >= right.t {
@@ -187,7 +188,7 @@ impl Trace {
             .enumerate()
             .filter(|(index, _)| self.source.is_smooth(*index))
             .all(|(_, (((left, right), middle), [low, high]))| {
-                // Comparison with NaN is false, so an undefined value counts as flat: subdivision would not define it.
+                // A comparison with NaN is false, so an undefined value counts as flat. Subdivision would not define it.
                 let deviation = (middle - 0.5 * (left + right)).abs();
                 let bent = deviation > FLATNESS * (high - low);
                 !bent
@@ -213,7 +214,7 @@ impl Trace {
         }
     }
 
-    /// Removes every other point if there are too many; corners are kept.
+    /// Removes every other point, except corners, if there are too many.
     fn thin(&mut self) {
         if self.points.len() < 2 * MANY {
             return;

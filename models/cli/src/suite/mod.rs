@@ -1,8 +1,8 @@
-//! Suites of hard cases, as run by `dalembert stability`: each has a correct result, which is a closed form, an exact
-//! count or a class of outcome, and a bound on its measured error.
+//! Suites of hard cases, which `dalembert stability` runs. Each case has a correct result (a closed form, an exact
+//! count or a class of outcome) and a bound on its measured error.
 //!
-//! A suite is a list of [`Case`]s, handed to [`Catalogue::with_suite`](crate::Catalogue::with_suite). A case measures
-//! by filling a [`Report`]; [`examine`] runs it under every [`Setting`] that its [`Run`] asks for.
+//! A suite is a list of [`Case`]s for [`Catalogue::with_suite`](crate::Catalogue::with_suite). A case writes its
+//! measurements into a [`Report`]. [`examine`] runs it under every [`Setting`] that its [`Run`] requests.
 
 mod report;
 
@@ -25,8 +25,8 @@ pub struct Case {
     pub bound: &'static str,
     /// True if it takes so long that it runs only on request.
     pub nightly: bool,
-    /// The reason for which it cannot hold yet. A case with such a reason that holds is reported as a failure, so that
-    /// the reason is removed.
+    /// The reason why it cannot hold yet. If such a case holds, it is reported as a failure, so that the reason is
+    /// removed.
     pub pending: Option<&'static str>,
     /// The measurement.
     pub run: Run,
@@ -50,7 +50,7 @@ impl Case {
         ..Self::QUICK
     };
 
-    /// True if one of these integrators measures it, or if it needs none.
+    /// True if one of these integrators measures it, or if it does not depend on the integrator.
     pub fn is_measured_by(&self, integrators: &[Integrator]) -> bool {
         match self.run {
             Run::Chosen(chosen, _) => chosen.iter().any(|one| integrators.contains(one)),
@@ -58,7 +58,7 @@ impl Case {
         }
     }
 
-    /// The section it belongs to: the letter of its number.
+    /// Its section: the letter of its number.
     pub fn section(&self) -> &'static str {
         self.id.get(..1).unwrap_or_default()
     }
@@ -67,16 +67,16 @@ impl Case {
 /// Kind of measurement.
 #[derive(Debug, Clone, Copy)]
 pub enum Run {
-    /// Not at all: [`Case::pending`] says why.
+    /// Not measured; [`Case::pending`] gives the reason.
     Absent,
-    /// Once; nothing is integrated, or the case chooses its integrators itself.
+    /// Measured once: the case integrates nothing, or chooses its integrators itself.
     Once(fn(&mut Report)),
-    /// By every integrator, with steps of any length.
+    /// Measured by every integrator, with steps of any length.
     Integrators(fn(Setting, &mut Report)),
-    /// By these integrators only, otherwise like [`Run::Integrators`].
+    /// Measured by these integrators only, otherwise like [`Run::Integrators`].
     Chosen(&'static [Integrator], fn(Setting, &mut Report)),
-    /// By every integrator: with steps of any length, with steps of at most each of [`FORCED_STEPS`], and with the
-    /// dense output read in every step. The class of the outcome must be the same in all settings.
+    /// Measured by every integrator: with steps of any length, with steps of at most each of [`FORCED_STEPS`], and with
+    /// the dense output read in every step. The class of the outcome must be the same in all settings.
     Steps(fn(Setting, &mut Report)),
 }
 
@@ -115,7 +115,7 @@ impl Setting {
 }
 
 impl Run {
-    /// The settings under which it is measured; for [`Run::Once`] one, which is ignored.
+    /// The settings under which it is measured. [`Run::Once`] gets one setting, which it ignores.
     fn settings(&self, integrators: &[Integrator]) -> Vec<Setting> {
         let free = integrators.iter().copied().map(Setting::free);
         match self {
@@ -142,7 +142,7 @@ impl Run {
     }
 }
 
-/// A setting, the same setting with its dense output read, and with forced steps.
+/// A setting, the same with the dense output read, and the same with forced steps.
 fn forced(free: Setting) -> Vec<Setting> {
     let dense = Setting {
         dense: true,
@@ -184,7 +184,7 @@ pub struct Finding {
     pub case: Case,
     /// The verdict.
     pub verdict: Verdict,
-    /// The measurement closest to its bound, or the reason for which there is none.
+    /// The measurement that is closest to its bound or exceeds it most, or the reason why nothing was measured.
     pub measured: String,
     /// The setting of that measurement.
     pub setting: Option<Setting>,
@@ -225,7 +225,7 @@ pub fn examine(case: &Case, integrators: &[Integrator]) -> Finding {
     }
 }
 
-/// True if all reports hold; and the worst measurement of all with its setting.
+/// True if all reports hold with the same classes of outcome; the worst measurement; and its setting.
 fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
     let worst = reports
         .iter()

@@ -1,4 +1,4 @@
-//! Measurements of a case: errors against bounds, counts, classes of outcome, curves.
+//! Measurements of a case: errors against bounds, exact values, classes of outcome, and curves.
 
 use std::fmt::Debug;
 
@@ -11,7 +11,7 @@ pub struct Check {
     pub what: String,
     /// The result and the expected value, in words.
     pub words: String,
-    /// The error divided by the allowed error; infinite if there is no number. Values up to 1 pass.
+    /// The error divided by the allowed error; infinite if the error is NaN. Values up to 1 pass.
     pub share: f64,
 }
 
@@ -102,7 +102,7 @@ impl Report {
 
     /// The check closest to failing, or the worst failure.
     pub(super) fn worst(&self) -> Option<&Check> {
-        // The first of equal checks, at which a failure begins.
+        // The first of equal checks is taken, because a failure begins there.
         let checks = self.checks.iter().rev();
         checks.max_by(|a, b| a.share.total_cmp(&b.share))
     }

@@ -4,7 +4,7 @@ use dalembert_cli::gallery::{Figure, Panel, Picture};
 
 use super::{chapters, simulated};
 
-/// The abbreviated action, the integral of the momentum along the way.
+/// The flags of the abbreviated action, the integral of the momentum along the path.
 const ALONG_THE_WAY: &str = "--output 'W = integral(momentum(x)*dot(x))' --axes x,W";
 
 /// All figures, in the order of the thesis.
@@ -24,10 +24,11 @@ fn bouncing_ball() -> Figure {
         title: "Every motion from one point to another in a given time",
         chapter: chapters::VARIATIONS,
         highlight: Some(0),
-        caption: "A ball with $m = g = 1$ goes from $x = 0$ to $x = 0.2$ in time 5, with no more than three impacts: once without an \
-                  impact, twice with each other number, rising and falling at the end. The dots are conjugate points of other \
-                  starts. They lie on the bounds of what k impacts reach, $x = g*t^2/(8*k*(k + 1))$, where both motions become \
-                  one; the motions that touch a bound before their end are not least of action."
+        caption: "A ball with $m = g = 1$ goes from $x = 0$ to $x = 0.2$ in time 5 with at most three impacts: once \
+                  without an impact, and twice with each other number, rising or falling at the end. The dots are \
+                  conjugate points of other starts. They lie on the boundary of the region that k impacts reach, $x = \
+                  g*t^2/(8*k*(k + 1))$, where both motions coincide. A motion that touches a boundary before its end \
+                  does not have least action."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 8.1"),
         panels: vec![
@@ -39,7 +40,7 @@ fn bouncing_ball() -> Figure {
 
 fn action() -> Figure {
     let section = |name: &str, time: f64| {
-        // Starts with no more than five impacts until then, and those that rise for the first time.
+        // Initial speeds from just above `t/12`, with five impacts until `t`, to motions without an impact.
         let (slow, fast) = (time / 12.0 + 0.001, 0.5 * time + 0.45);
         let flags = format!(
             "--vary x_dot={slow:.3}..{fast:.3}:960 --set m=1 --initial x=0 --until {time} --returns 100 --class returns \
@@ -57,10 +58,12 @@ fn action() -> Figure {
         title: "The action of all motions from one point",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "Where a ball with $m = g = 1$ from $x = 0$ is at three times, and the action of its motion, for all speeds at the start with \
-                  no more than five impacts. Colours are numbers of impacts. The action has several values, because several motions lead \
-                  to one place. Branches join at corners on the left, where an impact happens at that time, and at cusps on the right, \
-                  where $x = g*t^2/(8*k*(k + 1))$ is the farthest place that k impacts reach. The thesis draws the whole surface in its Figure 8.2."
+        caption: "The position at three times of a ball with $m = g = 1$ that starts at $x = 0$, and the action of its \
+                  motion, for all initial speeds with at most five impacts. Colours show the number of impacts. The \
+                  action has several values, because several motions lead to the same position. Branches join at \
+                  corners on the left, where an impact happens at that time, and at cusps on the right, where $x = \
+                  g*t^2/(8*k*(k + 1))$ is the farthest position that k impacts reach. The thesis shows the whole \
+                  surface in its Figure 8.2."
             .to_owned(),
         source: Some("W. Clark, thesis, Figs. 8.2 and 8.3"),
         panels: vec![section("early", 2.0), section("middle", 3.5), section("late", 5.0)],
@@ -105,9 +108,10 @@ fn nested() -> Figure {
         title: "The hybrid foliation of a bouncing ball, and the action along a leaf",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "Left: the levels of the energy with $m = g = 1$ are nested parabolas; an impact leads from the lower end of each to its upper end. \
-                  Right: the integral of $p*d(x)$ along the leaf of energy 1, over five flights. The ball is the hybrid oscillator: glued at \
-                  the impacts the leaves are circles, and every flight adds the area $4*sqrt(2)/3$ between the leaf and the floor."
+        caption: "Left: the levels of the energy with $m = g = 1$ are nested parabolas; an impact leads from the lower \
+                  end of each to its upper end. Right: the integral of $p*d(x)$ along the leaf of energy 1, over five \
+                  flights. The ball is a hybrid oscillator: if the impact joins both ends of each leaf, the leaves are \
+                  circles. Every flight adds the area $4*sqrt(2)/3$ between the leaf and the floor."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 8.5"),
         panels: vec![

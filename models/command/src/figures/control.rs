@@ -40,15 +40,16 @@ fn weak_forces() -> Figure {
         title: "A force too weak to hold a ball brings it to a height",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "Paths of least cost from six heights, found by dynamic programming, with $m = 2$, $g = 1$, $T = 5$ and a force between \
-                  -1 and 1, half the weight: the ball can rise by bounces alone. On the left the height 1 at the end counts a hundred times \
-                  as much as on the right, $alpha = 1000$ and $alpha = 10$; the thesis lets the force cost nothing there, which does not determine \
-                  it. The grid has 41 by 41 nodes, 9 forces and 60 steps, in which the force is held."
+        caption: "Paths of least cost from six heights, by dynamic programming, with $m = 2$, $g = 1$ and $T = 5$. The \
+                  force lies between -1 and 1, half of the weight, so the ball rises only by bounces. In the left \
+                  picture the height 1 at the end has a hundred times the weight of the right one: $alpha = 1000$ and \
+                  $alpha = 10$. In the thesis the force of the left picture costs nothing, so it is not determined. \
+                  The grid has 41 by 41 nodes, 9 forces and 60 steps; the force is constant in each step."
             .to_owned(),
         source: Some("W. Clark, thesis, Figs. 9.1 and 9.2"),
         panels: vec![
-            panel("free", "The height counts", paths("--set alpha=1000 ")),
-            panel("dear", "The force counts too", paths("")),
+            panel("free", "Large weight of the height", paths("--set alpha=1000 ")),
+            panel("dear", "Small weight of the height", paths("")),
         ],
     }
 }
@@ -58,10 +59,13 @@ fn displacement() -> Figure {
     Figure {
         model: "controlled_ball",
         name: "displacement",
-        title: "A motion with a jump, and one beside it",
+        title: "A motion with a jump, and a neighbouring motion",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "Two paths of least cost from rest, at the heights 2 and 1.85, with $m = 2$, $g = 1$, $T = 5$ and $alpha = 10$. At the impact the momentum                   changes its sign. The neighbouring motion has its impact earlier: a variation moves the time of a jump as well as the states on both                   sides, so the costate there satisfies two conditions, one for the states and one for the time."
+        caption: "Two paths of least cost from rest at the heights 2 and 1.85, with $m = 2$, $g = 1$, $T = 5$ and \
+                  $alpha = 10$. The momentum changes its sign at the impact. The neighbouring motion has its impact \
+                  earlier: a variation changes the time of a jump as well as the states on both sides. Therefore the \
+                  costate satisfies two conditions there, one for the states and one for the time."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.3"),
         panels: vec![panel("", "", paths)],
@@ -76,12 +80,13 @@ fn least_cost() -> Figure {
     Figure {
         model: "controlled_ball",
         name: "least",
-        title: "The least cost that is left",
+        title: "The least cost to the end",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "The least cost from a height x and a momentum y to the end at $T = 5$, by dynamic programming, with $m = 2$, $g = 1$, \
-                  $alpha = 10$ and forces from -4 to 4. The earlier, the more folds: dark valleys are motions that need almost no force with \
-                  one number of impacts. White: every motion leaves the grid. The line is the path from rest at 1/2."
+        caption: "The least cost from a height x and a momentum y to the end at $T = 5$, by dynamic programming, with \
+                  $m = 2$, $g = 1$, $alpha = 10$ and forces from -4 to 4. At earlier times the cost has more folds. \
+                  Dark valleys are motions that need almost no force with one number of impacts. From white states \
+                  every motion leaves the grid. The line is the path from rest at 1/2."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.5"),
         panels: vec![
@@ -103,13 +108,14 @@ fn sections() -> Figure {
     Figure {
         model: "controlled_ball",
         name: "sections",
-        title: "Every cost that is left, at one height",
+        title: "The costs of all extremals from one height",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "The costs of all extremals found from the height $x = 1/2$ with a momentum y to the end at $T = 5$, with $m = 2$, $g = 1$ and \
-                  $alpha = 10$. The cost has many values, the more the earlier; the line is the least of them, the section of the figure before. Colours are numbers \
-                  of impacts, with no more than two until the end, and than one in its last second. The thesis shows what comes backwards from \
-                  $x = 0.9$ to 1.1 and $y = -4$ to 4 at the end; here extremals to all ends are shown."
+        caption: "The costs of all extremals that were found from the height $x = 1/2$ with a momentum y to the end at \
+                  $T = 5$, with $m = 2$, $g = 1$ and $alpha = 10$. At earlier times the cost has more values. The line \
+                  is the least of them, a section of the figure before. Colours show the number of impacts: at most \
+                  two, and at most one in the last second. The thesis shows the motions that arrive between $x = 0.9$ \
+                  and 1.1 with $y = -4$ to 4; here the ends are free."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.5, right column"),
         panels: vec![
@@ -124,12 +130,13 @@ fn impacts() -> Figure {
     Figure {
         model: "controlled_ball",
         name: "impacts",
-        title: "The number of impacts that costs least",
+        title: "The number of impacts of the best motion",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "The number of impacts of the best motion from a height x and a momentum y at $t = 0$, with $m = 2$, $g = 1$, $T = 5$ and \
-                  $alpha = 10$. From rest at 1/2 two impacts are best, at 2 one is; a ball at rest near the floor takes more. Numbers are interpolated \
-                  on the grid, so that bounds of regions are known to about a node."
+        caption: "The number of impacts of the best motion from a height x and a momentum y at $t = 0$, with $m = 2$, \
+                  $g = 1$, $T = 5$ and $alpha = 10$. From rest at 1/2 two impacts are best, from rest at 2 one impact \
+                  is; a ball at rest near the floor takes more. Numbers are interpolated on the grid, so the \
+                  boundaries of regions are accurate to about one node."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.6"),
         panels: vec![panel("", "", format!("{STRONG} --show impacts --path x=0.5 --path x=2"))],
@@ -155,10 +162,11 @@ fn restitution() -> Figure {
         title: "Impacts that lose energy still save force",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "Extremals from rest at height 1 to rest at height 1 in time 5, with $m = 2$ and $g = 1$. The cheapest with one impact costs \
-                  3.4667, 3.4923, 3.5841 and 3.7537 for the coefficients 1, 0.9, 0.8 and 0.7; to hold the ball costs $m^2*g^2*T/2 = 10$. \
-                  With two impacts the costs are 0.2743, 0.3695, 0.6877 and 1.2648. \
-                  The first picture has the costs of all extremals found over the coefficient."
+        caption: "Extremals from rest at height 1 to rest at height 1 in time 5, with $m = 2$ and $g = 1$. With one \
+                  impact the least costs are 3.4667, 3.4923, 3.5841 and 3.7537 for the coefficients 1, 0.9, 0.8 and \
+                  0.7. To hold the ball costs $m^2*g^2*T/2 = 10$. With two impacts the costs are 0.2743, 0.3695, \
+                  0.6877 and 1.2648. The first picture shows the costs of all extremals that were found against the \
+                  coefficient."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.7"),
         panels: [curve]
@@ -175,9 +183,11 @@ fn controlled_ball() -> Figure {
         title: "The least force that brings a ball to a height",
         chapter: chapters::VARIATIONS,
         highlight: None,
-        caption: "Extremals of the integral of $u^2/2$ and of $10*(x - 1)^2$ at the end, with $m = 2$, $g = 1$, $T = 5$, and no more than two \
-                  impacts. The force is linear between impacts. From a height of 1/2 two impacts are cheapest, from 2 one is: costs \
-                  0.2106 and 0.0363; on a grid of 41 by 41 nodes and 60 steps, in which the force is held, the same paths cost 0.2310 and 0.0370. With given ends the ball is held for a cost of 10, and thrown down for 3.4667."
+        caption: "Extremals of the integral of $u^2/2$ plus $10*(x - 1)^2$ at the end, with $m = 2$, $g = 1$, $T = 5$, \
+                  and at most two impacts. The force is linear in time between impacts. From a height of 1/2 two \
+                  impacts are cheapest, from 2 one impact is; the costs are 0.2106 and 0.0363. On a grid of 41 by 41 \
+                  nodes and 60 steps of constant force the same paths cost 0.2310 and 0.0370. With fixed ends it costs \
+                  10 to hold the ball, and 3.4667 to throw it down."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 9.4"),
         panels: vec![

@@ -4,7 +4,7 @@ use dalembert_cli::gallery::{Density, Figure, Panel, Picture};
 
 use super::chapters;
 
-/// The paper takes a million positions, one per unit of time, after discarding a thousand.
+/// As in the paper: a million positions, one per unit of time, after a thousand discarded ones.
 const EVERY: f64 = 1.0;
 const POSITIONS: u64 = 1_000_000;
 const DISCARDED: u64 = 1000;
@@ -39,14 +39,14 @@ pub fn of_the_sleigh() -> Figure {
     Figure {
         model: "chaplygin_sleigh",
         name: "density",
-        title: "Where the sleigh is in the long run",
+        title: "Long-run density of the sleigh",
         chapter: chapters::DENSITIES,
         highlight: Some(0),
-        caption: "The share of $10^6$ positions, one in a unit of time, in each of 100 by 100 boxes, per unit of area; \
-                  the first 1000 positions are left out. Rows differ in the half axis of the table along y, columns \
-                  in the length of the sleigh. The total variation between the first and the second half tells how \
-                  far a picture has settled: 0.07 is what chance leaves. The paper does not state its parameters; \
-                  those here are the model's own."
+        caption: "The fraction of $10^6$ positions, one per unit of time, in each of 100 by 100 boxes, divided by the \
+                  area of a box. The first 1000 positions are left out. Rows differ in the half axis of the table \
+                  along y, columns in the length of the sleigh. The total variation between the first and the second \
+                  half shows how far a picture has converged; chance alone leaves 0.07. The paper does not state its \
+                  parameters; these are the model's own."
             .to_owned(),
         source: Some("W. Clark and A. Bloch, Fig. 7"),
         panels: panels.collect(),
@@ -65,14 +65,14 @@ pub fn of_the_disk() -> Figure {
     Figure {
         model: "rolling_disk",
         name: "density",
-        title: "Where the disk is in the long run",
+        title: "Long-run density of the disk",
         chapter: chapters::DENSITIES,
         highlight: None,
-        caption: "The share of $10^6$ positions, one in a unit of time, in each of 200 by 200 boxes, per unit of area, \
-                  for several half axes of the table along x; the first 1000 positions are left out. The total \
-                  variation between the first and the second half tells how far a picture has settled: 0.14 is what \
-                  chance leaves. The paper does not state its half axes; on the circle of the last picture the \
-                  motion is regular."
+        caption: "The fraction of $10^6$ positions, one per unit of time, in each of 200 by 200 boxes, divided by the \
+                  area of a box, for several half axes of the table along x. The first 1000 positions are left out. \
+                  The total variation between the first and the second half shows how far a picture has converged; \
+                  chance alone leaves 0.14. The paper does not state its half axes. On the circle of the last picture \
+                  the motion is regular."
             .to_owned(),
         source: Some("W. Clark and A. Bloch, Fig. 8"),
         panels: panels.into(),

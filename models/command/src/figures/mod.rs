@@ -1,7 +1,7 @@
-//! Reproductions of figures from the papers that the models come from; `dalembert gallery` shows them besides the
-//! motion of every model.
+//! Reproductions of figures from the papers in which the models appear. `dalembert gallery` shows them before the motion
+//! of every model.
 //!
-//! The papers do not state every parameter; captions name the values chosen here.
+//! The papers do not state every parameter; the captions give the values that were chosen here.
 
 mod chapters;
 mod connections;
@@ -15,7 +15,7 @@ mod zeno;
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
-/// Width of a picture of which three or four stand side by side.
+/// Flags for the width of pictures of which three or four stand side by side.
 const THIRD: &str = "--plot-width 480";
 const QUARTER: &str = "--plot-width 400";
 

@@ -11,8 +11,9 @@ pub fn flips() -> Figure {
         title: "Starts at rest from which the lower arm turns over",
         chapter: chapters::CHAOS,
         highlight: Some(0),
-        caption: "Each cell is a start at rest. Its colour tells whether the lower arm passes the upright position within 20 units of time. \
-                  Inside of the line $2*cos(theta1) + cos(theta2) = 1$ the energy does not suffice. Near the boundary neighbouring starts differ."
+        caption: "Each cell is a start at rest. Its colour shows if the lower arm passes the upright position within \
+                  20 units of time. Inside the line $2*cos(theta1) + cos(theta2) = 1$ the energy does not suffice. \
+                  Near the boundary neighbouring starts have different results."
             .to_owned(),
         source: None,
         panels: vec![Panel {

@@ -21,11 +21,11 @@ fn paths() -> Figure {
         title: "The first 20 impacts, elastic and plastic",
         chapter: chapters::BILLIARDS,
         highlight: None,
-        caption: "The path of the point of contact on a circular (half axis 0.2) and an elliptical table (0.15). \
-                  Elastic impacts on the circle keep an order that they lose on the ellipse. Plastic is the \
-                  nonholonomic plastic law, the one that the thesis derives for the disk. On the circle its impacts \
-                  come to graze: after 14 the disk runs on a circle that touches the rim and meets it no more within \
-                  the tolerance; so that picture ends by time."
+        caption: "The path of the point of contact on a circular table (half axis 0.2) and on an elliptical one \
+                  (0.15). Elastic impacts on the circle keep an order that is lost on the ellipse. The plastic law is \
+                  the nonholonomic plastic one, which the thesis derives for the disk. On the circle its impacts tend \
+                  to grazing: after 14 of them the disk runs on a circle that touches the rim, and has no further \
+                  impact within the tolerance. Therefore that picture ends at a given time."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.2"),
         panels: vec![
@@ -73,8 +73,9 @@ fn starts() -> Figure {
         title: "100 starts near each other at various times",
         chapter: chapters::BILLIARDS,
         highlight: Some(7),
-        caption: "Where the points of contact of 100 disks are that start as in Fig. 6.2 but for $theta_dot$ and $phi_dot$, which are scattered evenly by at most 0.005 rad/s; elastic impacts. On the ellipse \
-                  nearby motions are soon all over the table. The thesis does not state its times."
+        caption: "The points of contact of 100 disks that start as in Fig. 6.2, except that $theta_dot$ and $phi_dot$ \
+                  are scattered evenly by at most 0.005 rad/s. Impacts are elastic. On the ellipse nearby motions soon \
+                  spread over the whole table. The thesis does not state its times."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 6.3"),
         panels: circle.into_iter().chain(ellipse).collect(),
@@ -113,9 +114,9 @@ fn momenta() -> Figure {
         title: "The nonholonomic momentum from impact to impact",
         chapter: chapters::BILLIARDS,
         highlight: None,
-        caption: "The momenta are constant between impacts, and energy keeps them on an ellipse, here with a chord \
-                  for every impact. On the circular table they have period 2, on a slightly elliptical one nearly \
-                  so, and on the elliptical one their order is lost. The momenta are those of the declared \
+        caption: "The momenta are constant between impacts, and the conserved energy keeps them on an ellipse. Every \
+                  chord is an impact. On the circular table the momenta have period 2, on the slightly elliptical one \
+                  nearly so, and on the elliptical one their order is lost. The momenta are those of the declared \
                   coordinates on the constraints, $p_theta = I*theta_dot$ and $p_phi = J*phi_dot$. The thesis does not \
                   state its slightly elliptical table."
             .to_owned(),

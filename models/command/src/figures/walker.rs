@@ -1,10 +1,11 @@
-//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4, 4.5, 10.1 and 10.2), and gaits that double their period.
+//! Gaits and falls of a walker with foot slip (W. Clark, thesis, Figures 4.4, 4.5, 10.1 and 10.2), and gaits that
+//! double their period.
 
 use dalembert_cli::gallery::{Figure, Panel, Picture};
 
 use super::chapters;
 
-/// The thesis calls a walk periodic after fifty steps, and a fall what passes the horizontal.
+/// As in the thesis, a walk counts as periodic after fifty steps, and a walker falls when its leg passes the horizontal.
 const WALK: &str = "--returns 50 --fail 'theta > pi/2' --tol 1e-7";
 
 pub fn figures() -> Vec<Figure> {
@@ -40,11 +41,12 @@ fn gaits() -> Figure {
         title: "Slopes and steps for which a walker finds a gait",
         chapter: chapters::WALKERS,
         highlight: None,
-        caption: "Colours show the mean growth of a small deviation per step in powers of e, the logarithm of the largest \
-                  multiplier of the gait; white are walkers that fall within 50 steps. Each begins with the gait of a foot \
-                  that does not slip, as in Appendix A of the thesis, with $mu = 5/2$. Longer steps lead faster to the gait. \
-                  The thesis does not state its axes, and its equations have a wrong sign in the centripetal term: that \
-                  short steps lead to falls where friction is large (small $eps$) is not so with the right one."
+        caption: "Colours show the mean logarithm of the growth of a small deviation per step, which is the logarithm \
+                  of the largest multiplier of the gait. White cells are walkers that fall within 50 steps. Each \
+                  walker begins with the gait of a foot that does not slip, as in Appendix A of the thesis, with $mu = \
+                  5/2$. Longer steps lead faster to the gait. The thesis does not state its axes, and its equations \
+                  have a wrong sign in the centripetal term. With the right sign, short steps do not lead to falls if \
+                  friction is large (small $eps$)."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 4.4"),
         panels: vec![panel("friction", "0.1"), panel("slip", "2")],
@@ -55,14 +57,15 @@ fn basin() -> Figure {
     Figure {
         model: "dimensionless_walker",
         name: "basin",
-        title: "Starts from which a walker walks on, and from which it falls",
+        title: "Starts from which a walker keeps walking or falls",
         chapter: chapters::WALKERS,
         highlight: Some(0),
-        caption: "The blue starts lead to the gait, whose return is the dot; from the others the walker falls before its \
-                  first step. $mu = 5/2$, $eps = 1/2$, $alpha = delta = 0.4$. The line is where the stable plane of the upright \
-                  equilibrium, with eigenvalues 0.688755, -0.478938 and -2.747673, meets the starts: the thesis takes it \
-                  for the boundary, and it is one near the equilibrium. With the right sign of the centripetal term no \
-                  walker falls after its first step, and the tongues of the thesis do not appear."
+        caption: "The blue starts lead to the gait, whose return is the dot. From the other starts the walker falls \
+                  before its first step. The parameters are $mu = 5/2$, $eps = 1/2$ and $alpha = delta = 0.4$. On the \
+                  line the starts lie in the stable plane of the upright equilibrium, which has the eigenvalues \
+                  0.688755, -0.478938 and -2.747673. The thesis takes this line for the boundary; it is the boundary \
+                  near the equilibrium. With the right sign of the centripetal term no walker falls after its first \
+                  step, and the tongues of the thesis do not appear."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 4.5"),
         panels: vec![mapped(
@@ -82,10 +85,10 @@ fn mathieu() -> Figure {
         title: "Tongues of Mathieu's equation",
         chapter: chapters::TONGUES,
         highlight: None,
-        caption: "Growth of solutions of $dot(dot(x)) + (delta + eps*cos(t))*x = 0$ per period in powers of e, the logarithm of the largest \
-                  multiplier of $x = 0$; dark is stable. Tongues of instability begin at $delta = 1/4$ and 1. The lines are the series of the \
-                  bounds of the first one to the third order in $eps$. The thesis sets the stable starts \
-                  of the walker beside it, the figure of its Fig. 4.5 above."
+        caption: "Growth of the solutions of $dot(dot(x)) + (delta + eps*cos(t))*x = 0$ per period: the logarithm of \
+                  the largest multiplier of $x = 0$. Dark cells are stable. Tongues of instability begin at $delta = \
+                  1/4$ and 1. The lines are the boundaries of the first tongue, as series to third order in $eps$. The \
+                  thesis shows the stable starts of the walker beside it, which are those of its Fig. 4.5 above."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 10.1, right"),
         panels: vec![mapped(
@@ -110,13 +113,14 @@ fn fixed_start() -> Figure {
     Figure {
         model: "dimensionless_walker",
         name: "tongues",
-        title: "Slopes and steps for which a walker walks on from one start",
+        title: "Slopes and steps for which a walker keeps walking from one start",
         chapter: chapters::TONGUES,
         highlight: None,
-        caption: "The walker with $mu = 5/2$ and $eps = 1/2$ after a step with $xi = -1$, $eta = 0$. Colours show the growth of a small deviation \
-                  per step in powers of e, white are walkers that fall within 50 steps. The bound is one line: steps that are too long for the \
-                  slope lead to falls. The thesis finds tongues of stability there, with a wrong sign of the centripetal term in its equations and without its \
-                  axes and parameters."
+        caption: "The walker with $mu = 5/2$ and $eps = 1/2$ after a step with $xi = -1$, $eta = 0$. Colours show the \
+                  mean logarithm of the growth of a small deviation per step; white cells are walkers that fall within \
+                  50 steps. The boundary is one line: steps that are too long for the slope lead to falls. The thesis \
+                  finds tongues of stability, with a wrong sign of the centripetal term in its equations. It states \
+                  neither its axes nor its parameters."
             .to_owned(),
         source: Some("W. Clark, thesis, Fig. 10.2"),
         panels: vec![
@@ -138,9 +142,9 @@ fn doubling() -> Figure {
         title: "Gaits of the simplest walker over the slope",
         chapter: chapters::WALKERS,
         highlight: None,
-        caption: "Every point is a gait: the angle of the stance leg before the heel strikes. The long gait loses its stability at a \
-                  slope of $0.015088$, where a multiplier passes $-1$, to a gait of two unlike steps; that doubles its period at \
-                  0.017669."
+        caption: "Every point is a gait: the angle of the stance leg before the heel strikes. The long gait becomes \
+                  unstable at a slope of $0.015088$, where a multiplier passes $-1$. A gait of two different steps \
+                  branches off there; its period doubles at 0.017669."
             .to_owned(),
         source: Some("M. Garcia et al., J. Biomech. Eng. 120 (1998)"),
         panels: vec![

@@ -19,9 +19,9 @@ pub fn figures() -> Vec<Figure> {
         title: "Work and precision of the integrators",
         chapter: chapters::COST,
         highlight: (model == "double_pendulum").then_some(0),
-        caption: "Time on this machine against the measured error of the positions, for every integrator over \
-                  tolerances or steps; rings mark the fastest of a decade. Times are measured: of all pictures only \
-                  this kind differs from one gallery to the next."
+        caption: "Time on this machine against the measured error of the positions, for every integrator at several \
+                  tolerances or steps. Rings mark the fastest case of each decade. Only these pictures differ from one \
+                  gallery to the next, because their times are measured."
             .to_owned(),
         source: None,
         panels: vec![Panel {

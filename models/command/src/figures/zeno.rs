@@ -15,9 +15,9 @@ pub fn bouncing_ball() -> Figure {
         title: "Impacts that accumulate",
         chapter: chapters::DENSITIES,
         highlight: None,
-        caption: "A ball with $m = g = 1$ and restitution $3/4$. From height 1 its impacts accumulate at t = 7 sqrt(2) = \
-                  9.899.., which ends the run; position and energy go to 0. The paper's fourth picture, the \
-                  infinitesimal volume over time, is a step of 9/16 at each impact, as that of the energy."
+        caption: "A ball with $m = g = 1$ and restitution $3/4$. Its impacts from height 1 accumulate at t = 7 sqrt(2) \
+                  = 9.899.., where the run ends; position and energy tend to 0. The fourth picture of the paper, the \
+                  infinitesimal volume against time, decreases at each impact by the factor 9/16, like the energy."
             .to_owned(),
         source: Some("W. Clark and A. Bloch, Fig. 1"),
         panels: vec![

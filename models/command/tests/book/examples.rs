@@ -1,4 +1,4 @@
-//! The first example of every help text: it runs, and succeeds.
+//! The first example of every help text runs and succeeds.
 
 use crate::reference::{commands, help};
 use crate::session::Session;

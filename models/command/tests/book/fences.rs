@@ -1,6 +1,6 @@
 //! Fenced blocks of a page.
 
-/// A fenced block: the words behind the ticks, the text, the line of the fence.
+/// A fenced block: the words after the ticks, the text, and the line of the fence.
 pub struct Fence<'a> {
     pub line: usize,
     pub words: Vec<&'a str>,

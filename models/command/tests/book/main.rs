@@ -1,4 +1,5 @@
-//! The book under `docs/`, and the README: their commands run and print what the pages show, their models load, their pictures are those that the commands draw.
+//! The book under `docs/` and the README: commands run and print the shown text, models load, and the stored pictures
+//! are those that the commands draw.
 //!
 //! Blocks of the pages that are tested:
 //!
@@ -7,9 +8,9 @@
 //! | `` ```dal `` | a declaration that loads |
 //! | `` ```dal NAME.dal `` | the same, saved under this name for the commands below |
 //! | `` ```dal NAME.dal refused `` | a declaration that is refused |
-//! | `` ```console `` | commands after `$ `, each with its output; a line `..` stands for any lines, ` ..` at the end of one for its rest |
+//! | `` ```console `` | commands after `$ `, each with its output; a line `..` stands for any lines, ` ..` at the end of a line for its rest |
 //! | `` ```console fails `` | the same with an exit status other than 0 |
-//! | `` ```sh `` | lines that begin with `cargo run --release -- ` are run, but for the gallery, which `tests/gallery.rs` draws |
+//! | `` ```sh `` | lines that begin with `cargo run --release -- ` are run, except for the gallery, which `tests/gallery.rs` draws |
 //!
 //! `ACCEPT=1` stores pictures and the page of the command line anew.
 
@@ -24,7 +25,7 @@ mod session;
 use fences::Fence;
 use session::Session;
 
-/// Runs the blocks of a page from top to bottom; gives what is wrong.
+/// Runs the blocks of a page from top to bottom, and returns the mistakes.
 fn mistakes(page: &str, text: &str) -> Vec<String> {
     let mut session = Session::begin(&page.replace('/', "-"));
     let mut found = Vec::new();

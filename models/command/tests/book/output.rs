@@ -1,14 +1,14 @@
-//! Comparison of a printed text with the one that a page shows.
+//! Comparison of a printed text with the text that a page shows.
 
-/// Largest relative difference of two numbers that count as the same: digits beyond depend on the machine.
+/// Largest relative difference of two numbers that count as the same, because further digits depend on the machine.
 const RELATIVE: f64 = 1e-6;
 /// Two numbers below this are rounding errors, and count as the same.
 const ROUNDING: f64 = 1e-8;
 
-/// The first line of the page that the output does not have.
+/// Compares an output with the text of a page, in which a line `..` stands for any lines.
 ///
 /// # Errors
-/// The line that was expected, and the line in its place.
+/// The first expected line that the output lacks, with the output; or a line that the page does not show.
 pub fn compare(expected: &str, actual: &str) -> Result<(), String> {
     let mut lines = actual.lines().map(str::trim_end);
     let mut skipping = false;

@@ -22,7 +22,8 @@ pub fn text(page: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The pictures of a page, with their lines: those that a command of the page draws are kept in a folder `pictures`.
+/// The pictures that the commands of a page draw, with their lines. Pictures in a folder `images` are not drawn by a
+/// command.
 pub fn pictures(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = text.lines().enumerate();
     lines.filter_map(|(index, line)| {
@@ -32,7 +33,7 @@ pub fn pictures(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// The place of a file that a page names.
+/// The path of a file that a page names.
 pub fn target(page: &str, path: &str) -> PathBuf {
     let mut place = folder();
     let named = Path::new(page).parent().map(|parent| parent.join(path));

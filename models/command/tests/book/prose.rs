@@ -1,4 +1,4 @@
-//! The prose of the book: short sentences, and no phrase that must be read twice.
+//! The prose of the book has short sentences and none of the listed phrases.
 
 use crate::pages;
 
@@ -22,10 +22,10 @@ const ODD: [&str; 15] = [
 ];
 /// Beginnings of a paragraph that hide its subject.
 const OPENINGS: [&str; 4] = ["What ", "Whether ", "How ", "Of "];
-/// Words of the longest sentence.
+/// Largest number of words in a sentence.
 const LONGEST: usize = 36;
 
-/// Beginnings of the names of the pages that are examined.
+/// Beginnings of the paths of the pages that are examined.
 const BOOK: [&str; 12] = [
     "introduction",
     "start",
@@ -60,7 +60,7 @@ fn sentences(page: &str) -> Vec<String> {
     parts.map(|text| text.trim().to_owned()).collect()
 }
 
-/// Words of a sentence; code and formulas are one each.
+/// Number of words of a sentence; code and formulas count as one word each.
 fn length(sentence: &str) -> usize {
     let mut words = 0;
     for (index, part) in sentence.split(['`', '$']).enumerate() {

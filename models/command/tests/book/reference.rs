@@ -12,7 +12,7 @@ The texts below are printed by `dalembert --help` and `dalembert COMMAND --help`
 A test compares this page with them; `ACCEPT=1 cargo test -p dalembert-command --test book` writes it anew.
 ";
 
-/// Help text of a command, or of the whole.
+/// Help text of a command, or of the whole program without one.
 pub fn help(command: Option<&str>) -> String {
     let mut program = Command::new(PROGRAM);
     let done = program.args(command).arg("--help").output();
@@ -20,7 +20,7 @@ pub fn help(command: Option<&str>) -> String {
     String::from_utf8(printed).expect("text")
 }
 
-/// Names of the commands, from the help of the whole.
+/// Names of the commands, from the help text of the program.
 pub fn commands(overview: &str) -> Vec<&str> {
     let (_, list) = overview.split_once("Commands:\n").expect("commands");
     let list = list.split("\n\n").next().unwrap_or_default();

@@ -9,7 +9,7 @@ use crate::output;
 /// The command under test.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_dalembert");
 
-/// A folder of its own for a page; it goes with the session.
+/// The folder of one page. It is removed with the session.
 pub struct Session {
     folder: PathBuf,
 }
@@ -26,7 +26,7 @@ impl Session {
         Self { folder }
     }
 
-    /// Saves a declaration and loads it: it must be accepted or refused.
+    /// Saves a declaration and loads it. It must be accepted, or refused if `accepted` is false.
     pub fn load(&mut self, name: &str, text: &str, accepted: bool) -> Result<(), String> {
         fs::write(self.folder.join(name), text).map_err(|error| error.to_string())?;
         let (status, output) = self.run(&format!("dalembert check {name}"))?;
@@ -37,7 +37,7 @@ impl Session {
         }
     }
 
-    /// Runs commands and compares their output with the one that stands below each.
+    /// Runs commands and compares the output of each with the text below it.
     pub fn commands(&mut self, text: &str, succeed: bool) -> Result<(), String> {
         for (command, expected) in split(text) {
             let (status, output) = self.run(&command)?;
@@ -52,7 +52,7 @@ impl Session {
         Ok(())
     }
 
-    /// Runs the commands that a block makes cargo run.
+    /// Runs the `cargo run` commands of a block by the command under test.
     pub fn cargo_commands(&mut self, text: &str) -> Result<(), String> {
         let commands = text
             .lines()
@@ -66,7 +66,7 @@ impl Session {
         Ok(())
     }
 
-    /// Status and output of a command line, messages among it.
+    /// Runs a command line; returns its status, and its output with its messages.
     fn run(&self, command: &str) -> Result<(i32, String), String> {
         let programs = Path::new(PROGRAM).parent().map(Path::display);
         let programs = programs.map_or_else(String::new, |folder| folder.to_string());
@@ -81,7 +81,8 @@ impl Session {
         Ok((done.status.code().unwrap_or(-1), output))
     }
 
-    /// Compares a stored picture with the one of the same name that a command drew: title, axes and legend are the same.
+    /// Compares the texts of a stored picture (title, axes, legend) with those of the picture that a command drew under
+    /// the same name.
     pub fn compare_picture(&self, stored: &Path) -> Result<(), String> {
         let name = stored.file_name().unwrap_or_default();
         let drawn = fs::read_to_string(self.folder.join(name))
@@ -102,7 +103,7 @@ impl Drop for Session {
     }
 }
 
-/// Commands of a block, each with the lines below it.
+/// The commands of a block, each with the lines below it.
 pub fn split(text: &str) -> Vec<(String, String)> {
     let mut commands: Vec<(String, String)> = Vec::new();
     let mut continued = false;
@@ -125,7 +126,7 @@ pub fn split(text: &str) -> Vec<(String, String)> {
     commands
 }
 
-/// The texts of a picture, a line each.
+/// The texts of a picture, one per line.
 fn labels(picture: &str) -> String {
     let texts = picture.split("<text").skip(1);
     let texts = texts.filter_map(|text| text.split_once('>')?.1.split_once('<'));

@@ -1,4 +1,4 @@
-//! The shipped command inside of a test.
+//! Runs the shipped command inside a test.
 
 use dalembert_cli::{Exit, Streams};
 
@@ -12,7 +12,7 @@ pub struct Done {
     pub errors: String,
 }
 
-/// Runs a command line with this standard input. Words are separated by blanks; single quotes hold a word with blanks together.
+/// Runs a command line with this standard input. Words are separated by spaces; single quotes enclose a word with spaces.
 pub fn run_on(input: &str, line: &str) -> Done {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {

@@ -1,4 +1,4 @@
-//! `check --bendixson`: the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems, as far as they are decided.
+//! `check --bendixson`: decides the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems where it can.
 
 use std::io::Write;
 
@@ -92,7 +92,7 @@ fn write_text(
     Ok(())
 }
 
-/// A mode in words, where there are several.
+/// ` into MODE`; empty for a model without modes.
 fn mode_name(modes: &[&str], mode: usize) -> String {
     modes
         .get(mode)

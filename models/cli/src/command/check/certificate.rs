@@ -1,4 +1,4 @@
-//! The certificate of a model as JSON: the objects of its claims and the grounds of the verdicts.
+//! The certificate of a model as JSON: the expressions of its claims and the grounds of the verdicts.
 
 use std::io::{self, Write};
 

@@ -9,7 +9,7 @@ use crate::plot::film;
 use crate::plot::paths::{self, Path, Sheet};
 use crate::plot::quantity::{self, Quantity};
 
-/// The picture of all motions.
+/// The picture of the motions that were found.
 ///
 /// # Errors
 /// A motion that cannot be repeated, or an error of the drawing library.

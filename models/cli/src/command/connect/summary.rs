@@ -86,7 +86,7 @@ fn search(finished: &Finished<'_>) -> String {
     )
 }
 
-/// Reasons for which the search is not exhaustive.
+/// Reasons why the search is not exhaustive.
 fn doubt(finished: &Finished<'_>) -> String {
     let connected = &finished.connected;
     let faster = match connected.is_bounded {

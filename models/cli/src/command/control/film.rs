@@ -1,4 +1,4 @@
-//! Pictures and tables along extremals, whose runs are repeated.
+//! Pictures of extremals, and rows along one of them. The runs of the extremals are repeated for both.
 
 use dalembert_driver::{
     Contact, Extremal, Impact, OffConstraint, Origin, Piece, Point, Rates, Watch,
@@ -11,7 +11,7 @@ use crate::plot::film;
 use crate::plot::paths::{self, Path, Sheet};
 use crate::plot::quantity;
 
-/// The picture of all extremals.
+/// The picture of the extremals that were found.
 ///
 /// # Errors
 /// An extremal that cannot be repeated, or an error of the drawing library.

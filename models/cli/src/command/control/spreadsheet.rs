@@ -1,4 +1,4 @@
-//! Extremals as CSV: one row for each, and the motion of one of them.
+//! Extremals as CSV: one row for each, and the motion along one of them.
 
 use std::io::{self, Write};
 
@@ -8,8 +8,8 @@ use super::Finished;
 use super::summary::verdict;
 use crate::{names, table};
 
-/// Writes a row for each extremal: number of impacts, cost, terminal cost, costate at the start, state and costate at the end,
-/// H*, residual, second-order test; then lists, with spaces between: times and surfaces of the impacts.
+/// Writes a row for each extremal: number of impacts, cost, terminal cost, costate at the start, state and costate at
+/// the end, H*, residual, second-order test. Then come lists, separated by spaces: times and surfaces of the impacts.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     table::write_rows(output, |writer| {
         writer.write_record(header(finished))?;

@@ -45,7 +45,8 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     document.end()
 }
 
-/// Writes the density. Counts are rows of the grid, from the lowest second coordinate on.
+/// Writes the density. Each row of counts is a row of the grid; the first row has the lowest values of the second
+/// quantity.
 fn write_density(
     document: &mut Document<'_>,
     density: &Density,

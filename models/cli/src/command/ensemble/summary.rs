@@ -123,7 +123,7 @@ fn time(finished: &Finished<'_>) -> String {
     text
 }
 
-/// `1/16`, .. `1/2`, `all`.
+/// A fraction of the states in words: `1/16`, .. `1/2`, `all`.
 fn part(part: f64) -> String {
     match (1.0 / part).round() {
         1.0 => "all".to_owned(),
@@ -187,7 +187,7 @@ fn write_density(
     }
     writeln!(
         output,
-        "  independent: what as many states that do not depend on each other would show; more says that the density has not \
+        "  independent: mean distance for as many independent states; a larger distance means that the density has not \
          converged"
     )
 }

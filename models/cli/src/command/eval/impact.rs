@@ -1,4 +1,4 @@
-//! Effects of impacts on one surface on a state.
+//! Effect of the impact laws of one surface on a state.
 
 use dalembert::law::Law;
 use dalembert::{Fault, StateError};
@@ -16,8 +16,8 @@ pub struct Moment<'m> {
     pub collected: &'m Collected,
 }
 
-/// Evaluates gap, gap rate and laws of a surface. If the surface has instantaneous constraints, the laws act at the
-/// state that also satisfies these, which is included.
+/// Evaluates gap, gap rate and laws of a surface. If the surface has instantaneous constraints, an impulse first makes
+/// the state satisfy them: the result contains that state as `focused`, and the laws act on it.
 pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &[Law]) -> Value {
     let description = model.description();
     let surface = description.surfaces[index].name;
@@ -54,8 +54,9 @@ pub fn evaluate(model: &dyn AnyModel, moment: &Moment<'_>, index: usize, laws: &
     fields.into()
 }
 
-/// Evaluates the laws of one surface, and a declared reset after the impulsive laws. If no impulse exists (its gradient
-/// may vanish away from the surface), the result says so; the state is still valid.
+/// Evaluates the laws of one surface: the impulsive laws, then a declared reset. Where no impulse exists (the gradient
+/// of the gap may vanish away from the surface), the result contains the error in place of the laws; the state is still
+/// valid.
 fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws: &[Law]) -> Value {
     let (t, state, collected) = (moment.t, moment.state, moment.collected);
     let description = model.description();
@@ -66,7 +67,7 @@ fn evaluate_laws(model: &dyn AnyModel, moment: &Moment<'_>, surface: usize, laws
     match collected.contact(name) {
         Some(contact) => {
             for &law in laws {
-                // Instantaneous constraints alone may reverse the motion.
+                // The instantaneous constraints alone may make the gap rate positive; then no law acts.
                 let is_left = is_rough && contact.gap_rate >= 0.0;
                 let after = match is_left {
                     true => state.to_vec(),

@@ -1,4 +1,4 @@
-//! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, where `p` may replace `qdot`, and numbers are
+//! Reads states: a JSON array of `{"q": [..], "qdot": [..], "t": 0}`, where `p` may replace `qdot`. Values are JSON
 //! numbers or decimal strings. A first-order system takes `q` alone; a model with inputs also takes `inputs: [..]`.
 
 use std::fs::File;
@@ -25,10 +25,10 @@ pub struct Given {
     pub inputs: Vec<f64>,
 }
 
-/// Largest input, in bytes: states are kept in memory, where they take several times as much.
+/// Largest input, in bytes. States are kept in memory, where they take several times as much.
 const MOST: u64 = 1 << 28;
 
-/// Reads all states from the file, or from `stdin` without one.
+/// Reads all states from the file, or from `stdin` if no file is given or the path is `-`.
 ///
 /// # Errors
 /// [`CliError::File`] if the input cannot be read, [`CliError::Input`] if it is not an array of states,
@@ -79,7 +79,7 @@ pub fn read(
         .collect()
 }
 
-/// Reads at most one byte more than is allowed.
+/// Reads at most one byte more than the limit, so that a longer input is noticed.
 fn read_bytes(input: &mut dyn Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input.take(MOST + 1).read_to_end(&mut bytes)?;
@@ -166,7 +166,7 @@ fn number(place: &str, value: &Value) -> Result<f64, CliError> {
         CliError::value(
             place,
             value.to_string(),
-            "a finite number, or one in a string",
+            "a finite number, or a string that contains one",
         )
     })
 }

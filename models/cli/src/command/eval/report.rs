@@ -9,7 +9,8 @@ use serde_json::{Map, Value};
 
 use crate::json;
 
-/// All reported quantities of one state. Names that begin with `impacts.` are data of a surface's contact.
+/// All reported quantities of one state. Quantities whose names begin with `impacts.` belong to the contact with a
+/// surface.
 #[derive(Default)]
 pub struct Collected {
     values: Map<String, Value>,
@@ -38,7 +39,7 @@ impl Collected {
         std::mem::take(&mut self.values)
     }
 
-    /// A scalar of a surface's contact.
+    /// A scalar of the contact with a surface.
     pub fn contact_scalar(&self, surface: &str, name: &str) -> Option<f64> {
         self.contact_scalars
             .get(&format!("impacts.{surface}.{name}"))

@@ -7,7 +7,7 @@ use crate::error::counted;
 use crate::map::Orbit;
 use crate::names;
 
-/// Number of orbits that are listed.
+/// Largest number of orbits that are listed.
 const TOLD: usize = 8;
 
 /// Writes the summary.
@@ -96,7 +96,7 @@ pub fn classes(finished: &Finished<'_>) -> String {
     told.collect::<Vec<_>>().join("; ")
 }
 
-/// `period 1, after it xi = .., eta = ..`
+/// `period 1, back at xi = .., eta = ..`
 fn point(finished: &Finished<'_>, orbit: &Orbit) -> String {
     let names = finished.request.components.names.iter();
     let values = names.zip(&orbit.point);

@@ -1,5 +1,5 @@
-//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a
-//! picture; and the curves of its bifurcations over two parameters.
+//! `orbit --continue`: a branch of periodic orbits over a parameter, as a table, as a document and as a picture. With a
+//! second parameter, also the curves of its bifurcations in the plane of both.
 
 mod curves;
 mod document;
@@ -56,7 +56,8 @@ pub fn run(
     )
 }
 
-/// Writes the files of `--csv`, `--json` and `--plot`, and the summary unless one of them is the standard output.
+/// Writes the files of `--csv`, `--json` and `--plot`, and the summary unless the table or the document is the standard
+/// output.
 fn write(
     args: &OrbitArgs,
     [csv, json, plot]: [Option<Sink>; 3],
@@ -78,7 +79,7 @@ fn write(
         let svg = svg.map_err(|reason| CliError::picture(&args.branch.plot, reason))?;
         sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
     }
-    // Without a branch there is no table, but a reason.
+    // Without a branch no table is written, so the summary with the reason may go to the standard output.
     let table = args.branch.csv.as_deref().filter(|_| branch.is_some());
     let mut outputs = [table, args.json.as_deref()].into_iter().flatten();
     if !outputs.any(is_stdout) {

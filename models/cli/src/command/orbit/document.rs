@@ -39,7 +39,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
     document.end()
 }
 
-/// Opens the document of a search with its request.
+/// Opens the document of a search and writes the request.
 pub(super) fn begin<'a, T>(
     output: &'a mut dyn Write,
     finished: &Finished<'_, T>,
@@ -53,7 +53,7 @@ pub(super) fn begin<'a, T>(
     Ok(document)
 }
 
-/// Writes why no orbit was found, and closes the document.
+/// Writes the reason why no orbit was found, and closes the document.
 pub(super) fn end_missed<T>(
     mut document: Document<'_>,
     finished: &Finished<'_, T>,

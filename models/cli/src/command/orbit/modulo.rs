@@ -8,13 +8,13 @@ use crate::args::OrbitArgs;
 use crate::error::CliError;
 use crate::names;
 
-/// Change of a coordinate in a return that is no rounding, in units of the coordinate or of 1.
+/// Smallest change of a coordinate in one return that counts as drift, relative to values above 1.
 const DRIFT: f64 = 1e-6;
 
-/// Largest number of coordinates of which all sums are tried.
+/// Largest number of drifting coordinates for which all sums of their fields are tried.
 const TOGETHER: u32 = 6;
 
-/// Coordinates that change from return to return although nothing depends on them.
+/// Coordinates that change from return to return although the motion does not depend on them.
 pub(super) struct Drift {
     /// Names and changes in the first return.
     pub changes: Vec<(String, f64)>,
@@ -25,7 +25,7 @@ pub(super) struct Drift {
 /// The symmetries of the flag, if it is given.
 ///
 /// # Errors
-/// A field that is not a proved symmetry; fields that are no group; a field that depends on the parameter of
+/// A field that is not a proved symmetry; fields that do not generate a group; a field that depends on the parameter of
 /// `--continue`.
 pub(super) fn group(
     model: &dyn AnyModel,
@@ -54,7 +54,7 @@ pub(super) fn group(
         .map_err(|error| CliError::Modulo(error.to_string()))
 }
 
-/// The fields of a list, proved to be symmetries at the model's values of its parameters.
+/// Proves that the listed fields are symmetries at the model's parameter values, and returns them.
 fn proved(
     model: &dyn AnyModel,
     args: &OrbitArgs,
@@ -73,7 +73,7 @@ fn proved(
     symmetries(&description.source, scene, fields, &values)
 }
 
-/// A symmetry in the order of the model's coordinates.
+/// A symmetry with its coefficients in the order of the model's coordinates.
 fn generator(model: &dyn AnyModel, field: &Symmetry) -> Generator {
     let names: Vec<&str> = names::coordinates(model.description()).collect();
     let places: Vec<Option<usize>> = names
@@ -98,8 +98,8 @@ fn generator(model: &dyn AnyModel, field: &Symmetry) -> Generator {
     }
 }
 
-/// The coordinates that drift in the first return of a search that did not converge, if fields of theirs are proved to
-/// be symmetries.
+/// The coordinates that drift in the first return of a search that did not converge, if translations along them are
+/// proved symmetries.
 pub(super) fn drift(
     model: &dyn AnyModel,
     args: &OrbitArgs,
@@ -107,7 +107,7 @@ pub(super) fn drift(
     search: &Search,
     missed: &OrbitError,
 ) -> Option<Drift> {
-    // A search that follows a drift may end anywhere.
+    // A drift may make the search fail with any of the other errors.
     if matches!(missed, OrbitError::DependsOnTime) || search.modulo.is_some() {
         return None;
     }
@@ -129,7 +129,7 @@ pub(super) fn drift(
         }
     }
     if fields.is_empty() && !description.modes.is_empty() && drifting.len() <= TOGETHER as usize {
-        // Coordinates of other modes move along with those of this one.
+        // The coordinates of other modes drift together with those of this one, so every sum contains their fields.
         let absent = (0..names.len()).filter(|index| first.q[*index].is_nan());
         let absent: Vec<String> = absent.map(|index| field(&index)).collect();
         let sums = 1..1_usize << drifting.len();

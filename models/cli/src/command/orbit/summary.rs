@@ -49,7 +49,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
     momenta(output, finished)
 }
 
-/// Names the multipliers 1 that belong to momenta of the symmetries.
+/// Names the multipliers 1 that conserved momenta of the symmetries cause.
 fn momenta(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result<()> {
     let symmetries = finished.search.modulo.iter();
     let mut kept = symmetries
@@ -92,7 +92,7 @@ pub(super) fn section<T>(finished: &Finished<'_, T>) -> String {
     format!("{surface}, {}", counted(search.returns as usize, "return"))
 }
 
-/// Writes why no orbit was found.
+/// Writes the reason why no orbit was found.
 pub(super) fn tell_missed<T>(
     output: &mut dyn Write,
     finished: &Finished<'_, T>,
@@ -147,7 +147,7 @@ fn state(description: &Description, point: &Point) -> String {
     parts.join(", ")
 }
 
-/// A complex number with parts in this notation.
+/// A complex number; `number` formats its parts.
 pub(super) fn complex([re, im]: [f64; 2], number: impl Fn(f64) -> String) -> String {
     match im {
         0.0 => number(re),

@@ -105,7 +105,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>, rows: &Rows) -> io
     document.end()
 }
 
-/// The measured error, or the reason for which there is none.
+/// The measured error, or the reason why it is not verified.
 fn error(verified: &Verified) -> Value {
     match verified {
         Verified::Measured { error, floor } => json!({
@@ -124,7 +124,7 @@ fn error(verified: &Verified) -> Value {
     }
 }
 
-/// The end: `kind` and `t`, the details of the kind, and the last state.
+/// The end of the run: its `kind` and `t`, details of the kind, and the last state.
 fn ended(finished: &Finished<'_>) -> Value {
     let ending = &finished.ending;
     let mut ended = Map::new();

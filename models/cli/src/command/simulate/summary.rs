@@ -62,7 +62,7 @@ pub fn ended(description: &Description, ending: &Ending) -> String {
     )
 }
 
-/// The measured error with the accuracy of the reference, or the reason for which there is none.
+/// The measured error with the accuracy of the reference, or the reason why it is not verified.
 fn error(verified: &Verified) -> String {
     match verified {
         Verified::Measured { error, floor } if error <= floor => {

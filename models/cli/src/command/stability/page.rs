@@ -20,7 +20,7 @@ pub fn page(findings: &[Finding]) -> Result<String, String> {
          <style>{STYLE}</style></head><body>\n<h1>Hard cases</h1>\n<p>{}</p>\n",
         totals(findings)
     );
-    page += "<table><thead><tr><th>Case</th><th>What is right</th><th>Bound</th><th>Measured</th><th>Verdict</th></tr></thead>\n<tbody>\n";
+    page += "<table><thead><tr><th>Case</th><th>Right result</th><th>Bound</th><th>Measured</th><th>Verdict</th></tr></thead>\n<tbody>\n";
     for finding in findings {
         page += &row(finding);
     }
@@ -59,7 +59,7 @@ fn row(finding: &Finding) -> String {
     )
 }
 
-/// Figures of the curves: curves of all settings with the same axes share a figure.
+/// Figures of the curves. Curves with the same axes share a figure, across all settings.
 fn figures(finding: &Finding) -> Result<String, String> {
     let mut groups: Vec<([&str; 2], Vec<Curve>)> = Vec::new();
     for (setting, report) in &finding.reports {

@@ -29,8 +29,8 @@ struct Finished {
 /// Carries out `control --dp`.
 ///
 /// # Errors
-/// Invalid flags, a model for which there is no grid, a file that cannot be written. Paths that leave the grid are no error but
-/// [`Exit::Other`].
+/// Invalid flags, a model whose state or inputs do not fit a grid, a file that cannot be written. A path that leaves
+/// the grid is not an error but [`Exit::Other`].
 pub fn run(
     models: &[Entry],
     args: &ControlArgs,

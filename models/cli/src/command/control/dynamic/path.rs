@@ -1,4 +1,4 @@
-//! A path of least cost: a motion whose input is chosen in each step by the least cost after it.
+//! A path of least cost: a motion whose input minimises, in each step, the cost of the step plus the least cost after it.
 
 use dalembert_driver::{Extremal, Hit, Landing, Layer, choose};
 
@@ -23,17 +23,17 @@ pub struct Moment {
 
 /// The cheapest extremal from the start of a path.
 pub enum Compared {
-    /// There was no comparison yet.
+    /// Not compared yet.
     Not,
     /// The extremal.
     Best(Box<Extremal>),
-    /// There is none, for this reason.
+    /// None was found, for this reason.
     None(String),
 }
 
 /// A path.
 pub struct Path {
-    /// The least cost of its start by the grid.
+    /// The least cost from its start, interpolated on the grid.
     pub expected: f64,
     /// Both ends of each step.
     pub moments: Vec<Moment>,
@@ -119,10 +119,11 @@ impl Path {
     }
 }
 
-/// The best input of a state and its motion: the one between the inputs of the grid, unless the best of those is better. `None`
-/// if it leaves the grid.
+/// The best input at a state, with its motion over the step: the interpolated input, or the best input of the grid if
+/// that costs less. `None` if both motions leave the grid.
 ///
-/// Margins between nodes have errors, so that a motion along an edge that cannot be left any more may have a negative one and stay.
+/// Interpolated margins have errors: a motion along an edge of the grid may have a negative margin and still stay on
+/// the grid. Therefore the states decide, not the margins.
 fn step(
     problem: &Problem,
     after: &Layer,

@@ -89,7 +89,8 @@ fn draw_paths(
     })
 }
 
-/// The moments of a path in stretches between its impacts, with both sides of them.
+/// The moments of a path, divided at its impacts. The states before and after an impact belong to the stretches on
+/// either side.
 fn stretches(path: &Path) -> Vec<Vec<Moment>> {
     let mut stretches = Vec::new();
     let mut stretch = Vec::new();

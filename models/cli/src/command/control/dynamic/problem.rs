@@ -1,4 +1,4 @@
-//! The problem: the model of state, held input and cost, the grid, the steps.
+//! The problem of dynamic programming: the first-order model of state, held input and cost, the grid, and the steps.
 
 use dalembert::Tolerance;
 use dalembert::describe::Description;
@@ -46,7 +46,7 @@ pub struct Problem {
     pub model: Box<dyn AnyModel>,
     /// The scene of the declared model.
     pub scene: String,
-    /// True if a motion over a step is the same at all times.
+    /// True if the motions over a step do not depend on its start time.
     pub is_autonomous: bool,
     /// The nodes.
     pub lattice: Lattice,
@@ -56,7 +56,7 @@ pub struct Problem {
     pub steps: usize,
     /// The time of the end.
     pub time: f64,
-    /// The numbers of impacts of extremals that paths are compared with.
+    /// The value of --impacts: numbers of impacts of the extremals with which paths are compared.
     pub impacts: String,
     /// Number of threads.
     pub threads: u64,
@@ -67,7 +67,7 @@ impl Problem {
     /// The problem of the flags.
     ///
     /// # Errors
-    /// A model with another number of components or inputs, an invalid grid, refused parameters.
+    /// A model that does not have two components and one input, an invalid grid, refused parameters.
     pub fn of(models: &[Entry], args: &ControlArgs) -> Result<Self, CliError> {
         let loaded = super::super::held(models, args)?;
         let entries = vec![loaded.entry];
@@ -119,7 +119,7 @@ impl Problem {
             let expected = format!("at most {VALUES} values: nodes times steps");
             return Err(CliError::value("--steps", self.steps.to_string(), expected));
         }
-        // Without states, only what belongs to the model is refused.
+        // A call without states reports only refusals of the model itself.
         match self.model.legs(&self.leg(0, &[]), &[]) {
             Ok(Some(_)) => Ok(()),
             Ok(None) => Err(CliError::Invariable {
@@ -155,7 +155,7 @@ impl Problem {
         (0..axis.count).map(|index| axis.value(index)).collect()
     }
 
-    /// The input at a place between its values.
+    /// The input at a fractional index between its values.
     pub fn input(&self, place: f64) -> f64 {
         let axis = self.inputs;
         let [low, high] = axis.ends;
@@ -211,7 +211,7 @@ impl Problem {
     }
 }
 
-/// The end of a motion as far as the choice of an input needs it.
+/// The part of a motion over a step on which the choice of the input depends: its end, its cost, its impacts.
 pub fn moved(landing: Result<&Landing, &Unlanded>) -> Move {
     match landing {
         Ok(landing) => Move {

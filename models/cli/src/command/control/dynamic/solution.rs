@@ -1,4 +1,4 @@
-//! The least cost at all nodes, backwards in time; threads share the nodes.
+//! The least cost at all nodes, computed backwards in time. Threads share the nodes.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -13,22 +13,22 @@ use crate::progress::Stages;
 /// Largest number of nodes that a thread takes at once.
 const BLOCK: u64 = 64;
 
-/// The least cost, and what is known at one time besides.
+/// The least cost at all times, and the best inputs and impacts at one of them.
 pub struct Solution {
     /// The least costs at the start of each step, and at the end.
     pub layers: Vec<Layer>,
     /// The step whose nodes are shown.
     pub step: usize,
-    /// The best input at its nodes.
+    /// The best input at each node at the start of this step.
     pub inputs: Vec<f64>,
-    /// The number of impacts of the best motion from its nodes, interpolated.
+    /// The number of impacts of the best motion from each node at the start of this step, interpolated.
     pub impacts: Vec<f64>,
-    /// Number of motions over a step that were made, and of those that do not get to its end.
+    /// Number of computed motions over a step, and number of those among them that do not reach its end.
     pub motions: [usize; 2],
 }
 
 impl Solution {
-    /// Solves a problem; the nodes at the time `shown` are kept.
+    /// Solves a problem. Inputs and impacts are kept for the step nearest to the time `shown`; default 0.
     ///
     /// # Errors
     /// A time outside of the steps.
@@ -75,14 +75,15 @@ impl Solution {
         Ok(solution)
     }
 
-    /// Number of nodes from which a motion stays on the grid from the first time on.
+    /// Number of nodes from which some motion stays on the grid from the start to the end.
     pub fn known(&self) -> usize {
         let layer = &self.layers[0];
         let nodes = 0..layer.costs.len();
         nodes.filter(|node| !layer.cost(*node).is_nan()).count()
     }
 
-    /// Least cost, best input and number of impacts of a node at the time that is shown; NaN where every motion leaves the grid.
+    /// Least cost, best input and number of impacts of a node at the time that is shown; NaN where every motion leaves
+    /// the grid.
     pub fn shown(&self, node: usize) -> [f64; 3] {
         let layer = &self.layers[self.step];
         let cost = layer.cost(node);
@@ -126,7 +127,7 @@ fn motions(problem: &Problem, step: usize) -> Vec<Move> {
     shared(problem, || builder.built().ok(), work).concat()
 }
 
-/// A step backwards: the choices at the nodes, and the numbers of impacts from there on.
+/// A step backwards: the choices at the nodes, and the numbers of impacts from the start of the step on.
 fn backwards(
     problem: &Problem,
     moves: &[Move],

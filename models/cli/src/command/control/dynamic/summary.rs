@@ -20,7 +20,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished) -> io::Result<(
     let motions = counted(motions, "motion");
     writeln!(
         output,
-        "  motions     {motions} over a step, {lost} of them do not get to its end"
+        "  motions     {motions} over a step, {lost} of them do not reach its end"
     )?;
     let nodes = counted(problem.lattice.count(), "node");
     writeln!(

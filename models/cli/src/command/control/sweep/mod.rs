@@ -25,7 +25,7 @@ const MOST: u64 = 100_000;
 
 /// The searches for all values.
 struct Sweep<'a> {
-    /// The first-order model of the extremals, with the parameters of the flags, without that of `--vary`.
+    /// The first-order model of the extremals. It has the parameters of the flags except that of `--vary`.
     model: &'a dyn AnyModel,
     scene: &'a str,
     name: String,
@@ -47,7 +47,7 @@ impl Sweep<'_> {
         members.filter_map(|member| Some((member.value, member.found.as_ref().ok()?)))
     }
 
-    /// Least and largest number of impacts that were asked for.
+    /// Range of the requested numbers of impacts.
     fn impacts(&self) -> std::ops::RangeInclusive<usize> {
         let mut asked = self.made().map(|(_, finished)| finished.task.impacts);
         let [least, most] = asked.next().unwrap_or([0, 0]);
@@ -60,7 +60,7 @@ impl Sweep<'_> {
             .flat_map(|(_, finished)| &finished.controlled.extremals)
     }
 
-    /// Their numbers by their number of impacts.
+    /// The counts of extremals by number of impacts.
     fn counted(&self) -> String {
         super::summary::counted(self.extremals())
     }
@@ -68,7 +68,7 @@ impl Sweep<'_> {
 
 /// The extremal of least cost with this number of impacts.
 fn cheapest<'a>(finished: &'a Finished<'_>, impacts: usize) -> Option<&'a Extremal> {
-    // They are sorted by their cost.
+    // The extremals are sorted by cost.
     let mut extremals = finished.controlled.extremals.iter();
     extremals.find(|extremal| extremal.kicks.len() == impacts)
 }
@@ -76,7 +76,7 @@ fn cheapest<'a>(finished: &'a Finished<'_>, impacts: usize) -> Option<&'a Extrem
 /// Carries out `control --vary`.
 ///
 /// # Errors
-/// The errors of `control`; those of single values are told in the results, unless no value has a search.
+/// The errors of `control`. Errors at single values are part of the results, unless every value has an error.
 pub(super) fn run(
     models: &[Entry],
     args: &ControlArgs,
@@ -156,7 +156,7 @@ fn varied(
     Ok((name.clone(), quantity, values.collect()))
 }
 
-/// Makes the searches, on several threads. The results do not depend on their number.
+/// Makes the searches on several threads. The results do not depend on the number of threads.
 fn search<'a>(
     entries: &[Entry],
     args: &'a ControlArgs,

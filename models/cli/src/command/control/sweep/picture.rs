@@ -1,4 +1,5 @@
-//! Costs of extremals over a varied quantity: a line of the least for each number of impacts, dots for all.
+//! Costs of extremals over a varied quantity: for each number of impacts a line of the least cost, and dots for all
+//! extremals.
 
 use super::summary::subtitle;
 use super::{Sweep, cheapest};
@@ -31,7 +32,8 @@ pub(super) fn draw(sweep: &Sweep<'_>, args: &ControlArgs) -> Result<String, CliE
     curves::draw(&chart).map_err(|reason| CliError::picture(&args.plot, reason))
 }
 
-/// The costs with this number of impacts. The line of the least is broken where a value has none.
+/// The costs of the extremals with this number of impacts. The line of the least cost is broken at values without such
+/// an extremal.
 fn curve(sweep: &Sweep<'_>, impacts: usize) -> Curve {
     let mut stretches = vec![Vec::new()];
     for member in &sweep.members {

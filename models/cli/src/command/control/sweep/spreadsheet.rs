@@ -1,4 +1,4 @@
-//! Extremals over a varied quantity as CSV: the columns of a single search, after the value.
+//! Extremals over a varied quantity as CSV: the varied value, then the columns of a single search.
 
 use std::io::{self, Write};
 

@@ -9,7 +9,7 @@ use super::Followed;
 use crate::names;
 use crate::table::write_rows;
 
-/// Writes the table: the points of the branch, or with a second parameter those of the curves of its bifurcations.
+/// Writes the table: the points of the branch or, with a second parameter, the points of the bifurcation curves.
 ///
 /// # Errors
 /// An I/O error of the stream.
@@ -85,7 +85,7 @@ pub fn components(description: &Description) -> Vec<String> {
     components
 }
 
-/// The values of these components.
+/// The values of the [`components`] at a point.
 pub fn values(description: &Description, point: &Point) -> Vec<f64> {
     let mut values = point.q.clone();
     if !description.is_first_order {

@@ -1,4 +1,5 @@
-//! Certified motion as one JSON document. A range is an array of its two ends, which parse to the same numbers.
+//! Certified motion as one JSON document. A range is an array of its two ends, written so that they parse to the same
+//! doubles.
 
 use std::io::{self, Write};
 

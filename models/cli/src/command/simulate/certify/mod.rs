@@ -15,7 +15,7 @@ use crate::sink::Sink;
 use crate::state_input::{build_run, initial_state_with};
 use crate::{Streams, run_request};
 
-/// Certified motion that has ended.
+/// Finished certification: its request and its results.
 struct Enclosed<'a> {
     model: &'a dyn AnyModel,
     scene: &'a str,

@@ -1,4 +1,5 @@
-//! Certified motion in a few lines of text, and the reason for the loss of certification in the model's names.
+//! Certified motion in a few lines of text. If the certification ends early, the text gives the reason in the model's
+//! names.
 
 use std::io::{self, Write};
 
@@ -79,7 +80,7 @@ fn rows(enclosed: &Enclosed<'_>) -> Vec<(String, Interval)> {
         .collect()
 }
 
-/// Both ends of a range, which parse to the same numbers, and its width.
+/// Both ends of a range, written so that they parse to the same doubles, and its width.
 fn range(range: Interval) -> String {
     let Interval { lo, hi } = range;
     format!("[{lo:?}, {hi:?}] (width {:.1e})", range.width())
@@ -89,7 +90,7 @@ fn range(range: Interval) -> String {
 const NARROWER: &str =
     "a smaller --until, narrower ranges of --certify-within, or a start away from the event";
 
-/// The time up to which motion is certified, and the reason for the end of certification.
+/// The time up to which the motion is certified, and the reason why the certification ends there.
 pub(super) fn text(description: &Description, lost: &Lost) -> String {
     let reason = reason(description, lost.reason);
     format!("certified up to t = {} and no further: {reason}", lost.t)

@@ -10,7 +10,8 @@ use crate::{names, scalar};
 
 const FLAG: &str = "--certify-within";
 
-/// Largest absolute value of a factor of an end, and of its inverse.
+/// Largest absolute value of a factor in an end, and of its reciprocal: products of four such factors neither overflow
+/// nor vanish.
 const LARGEST: f64 = 1e30;
 
 /// Ranges by the kind of their quantities.
@@ -98,7 +99,7 @@ impl Within {
         Ok(())
     }
 
-    /// Sets the start to the middles of the ranges; the constraints determine the components that are not given.
+    /// Sets the start to the middles of the ranges. The constraints determine the components that are not given.
     ///
     /// # Errors
     /// Ranges of velocities together with momenta.
@@ -121,7 +122,7 @@ impl Within {
     }
 }
 
-/// Parses `LO..HI`; ends that are not doubles are moved outward.
+/// Parses `LO..HI`. Ends that are not doubles are moved outward.
 fn range(name: &str, text: &str) -> Result<Interval, CliError> {
     let ends = || {
         let (lo, hi) = text.split_once("..")?;
@@ -135,7 +136,7 @@ fn range(name: &str, text: &str) -> Result<Interval, CliError> {
     })
 }
 
-/// Parses the number of an end, and moves it outward as far as rounding may have moved it inward.
+/// Parses an end, and moves it outward by a bound of its rounding error.
 fn end(text: &str, further: fn(f64) -> f64) -> Option<f64> {
     let text = text.trim();
     let value = scalar::parse(text).ok()?;

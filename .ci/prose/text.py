@@ -1,0 +1,49 @@
+"""Copies the prose of files into a folder, line for line: Markdown without code, comments of Rust and Python without code in them.
+
+    text.py FOLDER FILE..
+"""
+
+import itertools
+import re
+import sys
+from pathlib import Path
+
+#: Code within a line, formulas and addresses.
+INLINE = re.compile(r"`[^`]*`|\$[^$]+\$|<[^<>]*>|https?://\S+")
+
+#: A comment at the end of a line or on a line by itself.
+COMMENT = {".rs": re.compile(r"^\s*//[/!]?( .*)?$"), ".py": re.compile(r"^\s*#[: ](.*)$")}
+
+FENCE = re.compile(r"^\s*(```|~~~)")
+
+
+def prose(lines: list[str], ending: str) -> list[str]:
+    """The prose of each line; a full stop for one that has none, so that what stands around code does not seem repeated."""
+    codes = itertools.count()
+    found, inside = [], False
+    for line in lines:
+        text = line
+        if ending in COMMENT:
+            comment = COMMENT[ending].match(line)
+            text = (comment.group(1) or "").strip() if comment else ""
+        if FENCE.match(text):
+            inside = not inside
+            text = ""
+        elif inside or text.startswith("    "):
+            text = ""
+        found.append(INLINE.sub(lambda _: f"code{next(codes)}", text) or ".")
+    return found
+
+
+def main() -> None:
+    folder, files = Path(sys.argv[1]), sys.argv[2:]
+    for name in files:
+        path = Path(name)
+        to = folder / name
+        to = to.with_name(f"{to.name}.md")
+        to.parent.mkdir(parents=True, exist_ok=True)
+        lines = path.read_text(encoding="utf-8").splitlines()
+        to.write_text("\n".join(prose(lines, path.suffix)) + "\n", encoding="utf-8")
+
+
+main()
