@@ -1,8 +1,8 @@
-//! Proofs that an expression is not 0 anywhere in a box: enclosures by intervals, on parts of the box until all are decided.
+//! Proofs that an expression has no zero in a box. Intervals enclose it on parts of the box until all are decided.
 //!
-//! Lines are boxes from minus to plus infinity: boxes are halved in `x/(1+|x|)`, in which every line has length 2. Where a
-//! derivative keeps its sign, the ends in its direction decide. This settles polynomials far out, where terms enclosed one
-//! by one seem to cancel.
+//! A box may be unbounded. Boxes are halved in the variable `x/(1+|x|)`, in which the whole line has length 2. Where a
+//! derivative keeps its sign, the values at both ends in its direction bound the expression. Horner's rule decides
+//! polynomials far out, where terms that are enclosed one by one seem to cancel.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
@@ -12,7 +12,7 @@ use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// Boxes that are looked at.
+/// Largest number of boxes that are examined.
 const BOXES: usize = 4096;
 
 /// Ranges of symbols; all others are all real numbers.
@@ -25,12 +25,13 @@ pub enum Zeros {
     None,
     /// A zero between two points at which the signs differ, or at a point.
     Between(Vec<(SymbolId, f64)>, Vec<(SymbolId, f64)>),
-    /// Undecided: a part of the box in which neither was shown.
+    /// Undecided: a part of the box in which neither was proved.
     Open(Domain),
 }
 
 impl Pool {
-    /// The ranges of expressions over a box; `None` where one may have no value.
+    /// The ranges of expressions over a box, by index of the expression; `None` where one may have no value. `order` is
+    /// [`Pool::reachable`] of some roots.
     pub fn enclose(&self, order: &[ExprId], domain: &Domain) -> Vec<Option<Interval>> {
         let mut ranges = vec![None; order.last().map_or(0, |id| id.index() + 1)];
         for id in order {
@@ -76,7 +77,7 @@ impl Pool {
         }
     }
 
-    /// The range of a sum once more, by Horner's rule in every base of powers without bounds: the largest power then decides.
+    /// Narrows the range of a sum by Horner's rule in every unbounded base: the largest power then decides.
     fn far_out(
         &self,
         constant: &Rational,

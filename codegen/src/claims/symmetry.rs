@@ -21,7 +21,7 @@ use super::gauge;
 use super::sample::{Sample, sample, state_on_d, uses};
 use crate::model::Model;
 
-/// True if the flow of a field is shown to keep the Lagrangian itself.
+/// True if the flow of a field is proved to keep the Lagrangian itself.
 pub(crate) fn keeps_lagrangian(model: &mut Model, field: &[ExprId], seed: u64) -> bool {
     let kept = kept(model, field);
     evidence(model, &kept, seed).shows_that_it_vanishes()
@@ -72,7 +72,7 @@ pub(crate) fn check_symmetry(
     (Verdict::Proved(certificate), remarks)
 }
 
-/// The verdict of changes that are proved together, or of the first that is not.
+/// The verdict on several changes: their common proof, or the verdict on the first change that is not proved to vanish.
 fn verdict(together: Result<Certificate, Verdict>) -> Verdict {
     match together {
         Ok(certificate) => Verdict::Proved(certificate),
@@ -104,7 +104,7 @@ pub(super) fn check_forces(
     verdict(proved_together(model, &changes, seed))
 }
 
-/// The verdict on a symmetry of a first-order system: its flow takes motions to motions where both fields commute.
+/// The verdict on a symmetry of a first-order system: its flow maps motions to motions if both fields commute.
 fn check_commuting(
     model: &mut Model,
     dynamics: &Dynamics,
@@ -151,7 +151,7 @@ fn jump(model: &mut Model, field: &[ExprId]) -> Option<Verdict> {
     Some(Verdict::Undecided(text))
 }
 
-/// The certificate that all changes vanish, or the verdict on the first that is not shown to.
+/// The certificate that all changes vanish, or the verdict on the first change that is not proved to vanish.
 fn proved_together(
     model: &Model,
     changes: &[Change<'_>],
@@ -210,7 +210,7 @@ fn of_constraints<'d>(
     changes
 }
 
-/// The change of each force at velocities in D, up to what vanishes.
+/// The change of each force at velocities in D, without components that vanish.
 fn of_forces<'d>(
     model: &mut Model,
     dynamics: &'d Dynamics,
@@ -243,9 +243,11 @@ fn of_forces<'d>(
     changes
 }
 
-/// The certificates of a symmetry of the Lagrangian itself, and of one that changes it by a total derivative.
+/// Proved statement on a symmetry of the Lagrangian itself.
 const KEPT: &str = "its flow keeps the Lagrangian and the constraints";
+/// Proved statement on a symmetry of a first-order system.
 const RATES: &str = "its flow keeps the rates";
+/// Proved statement on a symmetry up to a total derivative.
 const GAUGE: &str =
     "its flow changes the Lagrangian by a total time derivative and keeps the constraints";
 
@@ -258,7 +260,7 @@ enum Subject {
     Rates,
 }
 
-/// The rate of something along a flow.
+/// The rate of a quantity along a flow.
 struct Change<'d> {
     rate: ExprId,
     name: String,

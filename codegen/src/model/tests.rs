@@ -1,4 +1,4 @@
-//! Models that are right, and what is said of those that are not.
+//! Models that are accepted, and the remarks on them.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 

@@ -7,7 +7,7 @@ use super::request::Asked;
 use super::{Item, Report, ReportError, Section};
 use crate::mechanics::bracket::{Bracket, FunctionOnD, derive_bracket};
 
-/// Brackets that are derived of functions.
+/// Kind of a bracket of functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BracketKind {
     /// `{f, g}`
@@ -30,7 +30,7 @@ impl BracketKind {
 /// `x, momentum(x)`.
 ///
 /// # Errors
-/// [`ReportError`]: a function that is not one, a number of them that does not fit, a model that has no bracket.
+/// [`ReportError`]: an invalid function, a wrong number of functions, or a model without a bracket.
 pub fn bracket(
     source: &str,
     part: Option<&str>,

@@ -19,7 +19,7 @@ use dalembert_codegen::tables;
 /// Input of every emitter of the whole.
 struct Whole<'a> {
     graph: &'a ModeGraph,
-    /// Its tables.
+    /// The tables of the whole.
     known: tables::Whole<'a>,
     /// Contexts of each mode: that of its own form, then that of the global form where the two differ.
     contexts: Vec<Vec<Context<'a>>>,

@@ -1,4 +1,4 @@
-//! The types: the parameters with the mode that a run begins in, and the module of indices with the modes.
+//! The types: the struct of the parameters and the start mode, and the module of indices and modes.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -163,8 +163,8 @@ fn emit_mode(whole: &Whole<'_>, mode: &model::Mode, context: &crate::Context<'_>
     }
 }
 
-/// The visibility of the model as it is written in the module beside it: a mode names the model in its interface, and may
-/// not be seen from farther away.
+/// The visibility of the model, written for the module of indices beside it. The interface of a mode names the model,
+/// so a mode cannot be more visible.
 fn inner_visibility(written: &str) -> TokenStream {
     match written.replace(' ', "").as_str() {
         "" => quote!(pub(super)),

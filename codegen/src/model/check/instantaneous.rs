@@ -82,7 +82,7 @@ pub(super) fn check_independent(
     }
 }
 
-/// An error at an instantaneous constraint that keeps the gap.
+/// An error at an instantaneous constraint that determines the gap rate.
 fn refuse_blocking(resolver: &mut Resolver<'_>, surface: &Surface, constraint: &Constraint) {
     let (name, blocking) = (&surface.name.display, &constraint.name.display);
     let law = surface.law.name();

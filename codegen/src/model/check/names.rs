@@ -81,7 +81,7 @@ impl Names {
 }
 
 impl Resolver<'_> {
-    /// The members that a declaration declares, each with what its index stands for.
+    /// The members of a declaration, each with a scope that holds the value of its index.
     pub(in crate::model) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
         self.members_within(declared, &Scope::default())
     }

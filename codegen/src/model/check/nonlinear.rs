@@ -52,7 +52,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
     }
 }
 
-/// Remarks on their forces.
+/// Remarks on the forces of such constraints.
 pub(super) fn notes(constraints: &[Constraint]) -> impl Iterator<Item = String> + '_ {
     let nonlinear = constraints
         .iter()

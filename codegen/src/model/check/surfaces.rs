@@ -78,7 +78,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
 }
 
 impl Resolver<'_> {
-    /// The side that is greater minus the other.
+    /// The greater side minus the other side.
     pub(super) fn difference(
         &mut self,
         comparison: &Comparison,
