@@ -6,7 +6,7 @@ use dalembert_cli::Streams;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 
 dalembert::model! {
-    /// A skate between walls: something of everything that a command line can ask for.
+    /// A skate between walls, with most declarations that flags of the command line can name.
     pub Skate {
         coordinates { x; y in (-10, 10); theta: angle; }
         parameters { m > 0 = 1; I > 0 = 0.1; e in [0, 1] = 0.5; k[2] >= 0 = [1, 2]; }

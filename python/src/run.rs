@@ -68,7 +68,7 @@ pub struct NativeRun {
     stop: Option<Stop>,
 }
 
-/// Columns that become arrays where they are first asked for.
+/// Columns that become arrays at their first use.
 struct Lazy<C, T> {
     columns: Mutex<Option<C>>,
     made: PyOnceLock<Py<T>>,
@@ -256,7 +256,7 @@ impl NativeRun {
         self.ending.warnings.clone()
     }
 
-    /// The form, the integrator, the tolerance and the step that was kept.
+    /// The form, the integrator, the tolerance and the fixed step, if there is one.
     #[getter]
     fn settings(&self) -> (&'static str, &'static str, f64, Option<f64>) {
         let settings = &self.course.settings;
@@ -324,7 +324,8 @@ impl NativeRun {
         Ok(matrix.transpose()?.unbind())
     }
 
-    /// States at these times, in order, by the same run once more; with `before`, those before impacts.
+    /// States at these times, in order, from a repetition of the run. With `before`, states at impacts are those before
+    /// them.
     fn at(
         &self,
         py: Python<'_>,

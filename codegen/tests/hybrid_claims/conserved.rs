@@ -93,7 +93,7 @@ fn what_the_motion_keeps_and_changes() {
     }
 }
 
-/// A quantity that is kept has no state that shows it, but one at which a reader sees its parts cancel.
+/// A conserved quantity has no counterexample. The message shows a state at which the parts of its rate cancel.
 #[test]
 fn parts_that_cancel_are_shown() {
     // m g dot(y) and -m g dot(y); a harmonic motion beside it; a speed without parts.
@@ -217,7 +217,7 @@ fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
         &format!("not conserved under wall: {}", along("1")),
         True,
     );
-    // A stop of the direction alone does not.
+    // A wall for the direction alone keeps the momentum.
     let stop = disk("stop: 1/2 - cos(phi) >= 0;");
     check(
         &stop,

@@ -42,8 +42,8 @@ fn a_straight_wall_keeps_what_runs_along_it() {
     );
 }
 
-/// The rotation of a disk and its place is a symmetry that is not in D: a round table keeps it, and its momentum jumps all the same, as
-/// that of the impulse within D.
+/// The rotation of a disk together with its place is a symmetry that is not in D. A round table keeps the symmetry. Its
+/// momentum still jumps, because the impulse acts within D.
 #[test]
 fn a_disk_on_a_round_table_keeps_its_symmetry() {
     let table = |tb: &str| {

@@ -1,4 +1,5 @@
-//! Numbers of the sources, by differences of motions through impacts, with the claims that say the same for all states.
+//! Numbers of the sources, checked by differences of motions through impacts, with claims that prove them at all
+//! states.
 
 use dalembert_texts::TEXTS;
 
@@ -10,7 +11,7 @@ use crate::systems::ball;
 /// Parameters of the walker: mass against inertia, falling against friction, slope, half the angle between the legs.
 const WALKER: [f64; 4] = [2.5, 0.5, 0.4, 0.4];
 
-/// Rates of the dimensionless walker, with the integral of their divergence for a fourth component.
+/// Rates of the dimensionless walker, with the integral of their divergence as a fourth component.
 fn walking(z: &[f64]) -> State {
     let [mu, eps, alpha, _] = WALKER;
     let (sin, cos) = z[0].sin_cos();
@@ -120,8 +121,8 @@ fn gradient_of_rim() -> [f64; 2] {
 
 /// W. Clark, thesis, (7.11): off D an elastic impact multiplies `omega^n` by `(2 dh(pi_D qdot) - dh(qdot))/dh(qdot)`. On D that is 1.
 ///
-/// The formula is proved for all states. Its known value is that of differences of motions at one state: its gradient is solved from known components, its
-/// momenta are decimals of one digit.
+/// The claim proves the formula for all states. Differences of motions check its value at one state, whose gradient is
+/// solved from known components and whose momenta are decimals of one digit.
 #[test]
 fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
     let claim = |factor: &str| format!("density under wall: factor = {factor}");
@@ -176,7 +177,7 @@ fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
         after: &motion,
         densities: [&one, &one],
     };
-    // The state a moment before the impact: the motion runs back with its momenta reversed.
+    // The state a moment before the impact: the motion runs backwards in time.
     let back = |z: &[f64]| -> State { motion(z).iter().map(|rate| -rate).collect() };
     let hit = [0.0, 0.0, 0.0, 0.6, 1.2, -0.2, 0.4, 0.1];
     let early = crate::differences::run(&back, &hit, 0.1);

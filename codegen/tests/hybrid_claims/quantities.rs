@@ -104,7 +104,8 @@ fn what_it_changes_is_refuted_at_a_state() {
     );
 }
 
-/// The elastic reflection where the step of the potential is too high: it turns the normal momentum, and keeps the energy.
+/// Where the step of the potential is too high, an elastic reflection reverses the normal momentum and keeps the
+/// energy.
 #[test]
 fn reflections_count_too() {
     let same = media("(dot(x)^2 + dot(y)^2)/2", "(dot(x)^2 + dot(y)^2)/2 - V*y^2");
@@ -112,7 +113,7 @@ fn reflections_count_too() {
     check(&same, &kept("rightward", "x*momentum(y)"), True);
 }
 
-/// A map that keeps what it should on one side of `dot(y) = 0` alone.
+/// A map that keeps `dot(y)` on one side of `dot(y) = 0` only.
 #[test]
 fn branches_of_resets_are_all_looked_at() {
     for map in ["abs(dot(y))", "sqrt(dot(y)^2)"] {

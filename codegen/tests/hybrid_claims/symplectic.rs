@@ -165,7 +165,7 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
     ] {
         check(&declaration, CLAIM, True);
     }
-    // Neither is integrable without the other.
+    // `slope` is integrable only together with `stop`.
     let both = "pub Both { coordinates { x; y; z; w; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2 - z*w;
         constraints { slope: dot(z) = x*dot(y); stop: dot(y) = 0; } CLAIM }";
     check(both, CLAIM, True);
@@ -270,7 +270,7 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     let changed = "back: far -> near when x >= 1 => reset { y = y + z; dot(s) = 0; };";
     check(&step("", "3", changed), CLAIM, True);
     check(&step("", "dot(y)", changed), CLAIM, across);
-    // A third one behind them, with the potential near its entrance.
+    // A third mode behind them, with a potential near its entrance.
     let third = |potential: &str, z: &str| {
         let on = "on: far -> third when y <= -1 => reset { dot(z) = 0; };";
         let mode = format!(

@@ -10,7 +10,7 @@ use super::entry_length;
 
 const FORM: &str = "=> LAW, instantaneous { name: dot(y) = 0; }";
 
-/// Reads what stands behind the comma after a law; nothing if there is none.
+/// Reads the constraints behind the comma after a law; none without a comma.
 pub(super) fn equations(
     cursor: &mut Cursor<'_>,
     spec: &mut Spec,
