@@ -1,4 +1,5 @@
-//! Generator of dalembert: a declared model in, straight-line programs out. `dalembert-emit` writes them as Rust, `dalembert-jit` runs them.
+//! Generator of dalembert: makes straight-line programs of a declared model. `dalembert-emit` writes them as Rust,
+//! `dalembert-jit` runs them.
 //!
 //! ```text
 //! TokenStream --spec::parse--> Spec --model::check--> Model --mechanics::derive--> Derivation
@@ -141,7 +142,7 @@ pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnosti
 /// [`mechanics::control`]. The scene `None` is the model itself.
 ///
 /// # Errors
-/// Same as [`compile`]; a declaration for which no maximum principle is derived.
+/// Same as [`compile`], and the first declaration for which no maximum principle is derived.
 pub fn compile_control(
     spec: &spec::Spec,
     scene: Option<&str>,

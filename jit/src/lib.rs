@@ -10,8 +10,7 @@
 //! | `form.rs` | forms: tables, and functions that execute programs |
 //! | `machine.rs` | a machine with registers: executes a function over any kind of number |
 //! | `series.rs` | power series over any kind of number |
-//! | `native/` | functions and series over doubles as machine code for x86-64 with AVX and for aarch64; other
-//! processors use the two files above, 2 to 10 times slower |
+//! | `native/` | functions and series over doubles as machine code for x86-64 with AVX and for aarch64; other processors use the two files above, 2 to 10 times slower |
 //!
 //! Refusals and proofs are those of `model!`. Results are those of the code that `model!` writes, to the bit.
 //!
@@ -86,9 +85,8 @@ pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refuse
     })
 }
 
-/// The extremals of a model with a cost, in one of its scenes or, with `None`, of the model itself, as a first-order
-/// model:
-/// [`compile_control`](codegen::compile_control).
+/// The extremals of a model with a cost as a first-order model: [`compile_control`](codegen::compile_control). `scene`
+/// names a scene of the model; `None` is the model itself.
 ///
 /// # Errors
 /// Every mistake of the first stage that found any, in the model or in its extremals.
@@ -113,8 +111,8 @@ pub struct LoadedHeld {
     pub is_autonomous: bool,
 }
 
-/// A model with a cost whose inputs are held, in one of its scenes or, with `None`, itself, as a first-order model:
-/// [`compile_held`](codegen::compile_held). Models with modes are left out.
+/// A model with a cost whose inputs are held, as a first-order model: [`compile_held`](codegen::compile_held). `scene`
+/// names a scene of the model; `None` is the model itself. Models with modes are left out.
 ///
 /// # Errors
 /// Same as [`load_control`].

@@ -293,7 +293,8 @@ impl<'a, L: Numbers> Course<'a, L> {
         &self.kept[self.series.histories[&history]]
     }
 
-    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which compute many sums side by side.
+    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which compute many sums
+    // side by side.
     fn middle(&self, a: &[L; LENGTH], b: &[L; LENGTH]) -> L {
         let k = self.k;
         if self.series.is_large {

@@ -25,7 +25,7 @@ pub fn model(input: TokenStream) -> TokenStream {
     dalembert_emit::expand(input.into()).into()
 }
 
-/// Declares the models of a file, whose path begins at the folder of the crate: `dalembert::model_file!("src/disk.dal")`.
+/// Declares the models of a file: `dalembert::model_file!("src/disk.dal")`. The path begins at the folder of the crate.
 ///
 /// The file holds the text between the braces of [`model!`], for one model or for several. The command line runs the
 /// same file. The crate is built again when the file changes.

@@ -125,7 +125,7 @@ fn time([a, b]: [f64; 2], node: usize) -> f64 {
     }
 }
 
-/// Decides whether the ends of a cell show its changes of sign.
+/// Decides whether the ends of a cell show its sign changes.
 fn judge(values: &[f64; NODES]) -> Judgement {
     if values.iter().all(|value| !value.is_finite()) {
         return Judgement::Decided;
@@ -179,7 +179,8 @@ fn derivative(series: &[f64; NODES]) -> [f64; NODES] {
     slope
 }
 
-/// The zero between two times at which the function has different signs: false position, with halvings where it is slow.
+/// The zero between two times at which the function has different signs: false position, with bisection every third
+/// step.
 fn locate<E>(
     [mut a, mut b]: [f64; 2],
     [mut low, mut high]: [f64; 2],

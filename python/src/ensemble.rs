@@ -236,7 +236,7 @@ impl NativeEnsemble {
         })
     }
 
-    /// Runs members until the last, or until the time is over.
+    /// Runs members until the end of the range, or until the time is over; at least one block.
     fn made(&self, members: Range<u64>, seconds: f64) -> PyResult<Unit> {
         let mut runner = Runner::new(self.shared()).map_err(refused)?;
         let numbers = self

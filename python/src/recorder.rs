@@ -124,7 +124,7 @@ struct Recorder<'a> {
     modes: &'a [ModeInfo],
     times: Times<'a>,
     taken: usize,
-    /// True if only samples are wanted: the run ends after the last.
+    /// True if only samples are requested: the run ends after the last sample.
     only_samples: bool,
     side: Side,
     events: Events,

@@ -15,7 +15,7 @@ use crate::rational::Rational;
 /// Largest number of boxes that are examined.
 const BOXES: usize = 4096;
 
-/// Ranges of symbols; all others are all real numbers.
+/// Ranges of symbols. Every other symbol may be any real number.
 pub type Domain = Vec<(SymbolId, Interval)>;
 
 /// The answer of [`Pool::zeros_on`].
@@ -170,7 +170,7 @@ impl Pool {
     }
 }
 
-/// `sum of c_k x^k`, nested.
+/// `sum of c_k x^k`, by Horner's rule.
 fn nested(powers: &BTreeMap<i64, Interval>, x: Interval) -> Option<Interval> {
     let mut falling = powers.iter().rev();
     let (mut power, mut sum) = falling.next().map(|(power, range)| (*power, *range))?;
@@ -283,7 +283,7 @@ fn squeezed(x: f64) -> f64 {
     }
 }
 
-/// A number inside, halfway in `x/(1+|x|)`.
+/// A number inside of the range, halfway in `x/(1+|x|)`.
 fn middle(range: Interval) -> f64 {
     let place = f64::midpoint(squeezed(range.lo), squeezed(range.hi));
     let x = place / (1.0 - place.abs());

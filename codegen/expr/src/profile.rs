@@ -78,8 +78,8 @@ impl Pool {
             let exact_turn =
                 (coefficient * &Rational::from(12)).is_integer() && residue == Residue::Circular;
             if *term == self.pi() && exact_turn {
-                // NOTE: only sqrt(2) and sqrt(3) enter. A field automorphism exchanges their signs, so either root
-                // serves.
+                // NOTE: only sqrt(2) and sqrt(3) enter. A field automorphism exchanges their signs: either root is
+                // right.
                 continue;
             }
             profile.denominator = common(profile.denominator, coefficient);

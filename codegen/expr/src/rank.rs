@@ -15,7 +15,7 @@ pub struct RankReport {
     pub rank: usize,
     /// The rows that do not depend on earlier rows, in order.
     pub independent_rows: Vec<usize>,
-    /// Every other row, with the earlier independent rows that it combines with coefficients other than 0; a row of zeros has none.
+    /// Every other row, with the earlier independent rows that it is a combination of; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
     /// Pivot column of each independent row, in the same order: the first in which the row differs from the
     /// combinations of the rows before it.

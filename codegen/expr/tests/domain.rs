@@ -1,4 +1,4 @@
-//! Random expressions: a built expression has the value of the expression as written, and is undefined where that is undefined.
+//! Random expressions: a built expression has the value of the written expression, and is undefined where that one is.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 

@@ -32,8 +32,8 @@ pub(super) struct Hull {
     pub(super) basis: Vec<usize>,
     /// The first element that is independent as a pair but not as a vector.
     pub(super) obstruction: Option<usize>,
-    /// False if the order of the series was too small to finish: no bracket leads out of the hull, or an obstruction
-    /// was found.
+    /// True if no bracket leads out of the hull, or if an obstruction ended the closure (see [`Until`]). False if the
+    /// order of the series was too small to finish.
     pub(super) is_closed: bool,
 }
 

@@ -232,7 +232,7 @@ impl Vanishing for Balance<'_> {
         let motion = self.dynamics.motion(&model.pool, point, None)?;
         let (value, _) = self.quantity.terms(model, &motion, point)?;
         let rate = rate_scale(&self.quantity, model, &motion, point) / value.abs();
-        // The divergence is a combination of velocities whose coefficients have cancelled before.
+        // The coefficients of the velocities in the divergence may have cancelled: they count as numbers of size 1.
         let velocity = motion
             .qdot
             .iter()

@@ -119,7 +119,8 @@ fn known(
     }
 }
 
-/// True if the change of the energy is a constant and a diagonal quadratic form of the velocities, none of them positive.
+/// True if the change of the energy is a constant plus a diagonal quadratic form of the velocities, and neither is
+/// positive anywhere.
 fn is_never_positive_gain(
     model: &mut Model,
     around: &Surroundings<'_>,

@@ -71,7 +71,8 @@ pub(super) fn size_text(pool: &Pool, factor: ExprId) -> String {
     }
 }
 
-/// `left / right`. If `right` depends on the symbols, the quotient of their slopes in a symbol, if it is constant.
+/// `left / right`. If `right` depends on the symbols, this is the quotient of the slopes in one symbol; `None` unless
+/// that quotient is free of the symbols.
 fn quotient(pool: &mut Pool, left: ExprId, right: ExprId, symbols: &[SymbolId]) -> Option<ExprId> {
     if !pool.depends_on_any(right, symbols) {
         return Some(pool.div(left, right));

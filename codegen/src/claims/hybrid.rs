@@ -1,4 +1,5 @@
-//! Changes of a volume `f mu_C` at surfaces: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`] or [`super::passage`].
+//! Changes of a volume `f mu_C` at surfaces. It is kept if `f+ J = f-`, where J is the Jacobian of [`super::wall`] or
+//! [`super::passage`].
 
 use std::cmp::Ordering;
 

@@ -16,7 +16,7 @@ use super::polynomial::roots;
 use super::problem::Problem;
 use crate::model::Model;
 
-/// Degrees of the polynomials tried.
+/// Largest degree of the polynomials that are tried.
 const DEGREE: usize = 3;
 /// Number of points beyond the number of coefficients.
 const SURPLUS: usize = 2;
@@ -198,7 +198,7 @@ pub(super) const PRIME: usize = 1;
 /// Turns the seed of a point into that of another configuration: the fractional digits of the square root of 5.
 const OTHER: u64 = 0x3c6e_f372_fe94_f82b;
 
-/// Points that determine a polynomial of a degree.
+/// Number of points that determine a polynomial of a degree.
 fn needed(parameters: usize, degree: usize) -> usize {
     let monomials = (1..=parameters).fold(1, |count, k| count * (degree + k) / k);
     monomials + SURPLUS

@@ -31,7 +31,7 @@ const COMPONENTS: usize = 32;
 const AT_NONLINEAR: &str =
     "resets beside constraints that are not linear in the velocities are not examined";
 
-/// A form as it is stated, with momenta that have names.
+/// A form as stated; it may name momenta.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stated<'f> {
     pub(super) form: &'f ExteriorForm,

@@ -1,5 +1,5 @@
-//! Lie derivative of a form along the motion: `L_X (c df_1 ^ .. ^ df_k) = X(c) df_1 ^ .. ^ df_k + c d(X f_1) ^ .. ^ df_k + ..`, on
-//! vectors of constant time.
+//! Lie derivative of a form along the motion, on vectors of constant time:
+//! `L_X (c df_1 ^ .. ^ df_k) = X(c) df_1 ^ .. ^ df_k + c d(X f_1) ^ .. ^ df_k + ..`
 //!
 //! The motion is defined on the whole space. It keeps `eta^a(qdot) + eta^a_0`, so the derivative and the restriction to
 //! D commute.

@@ -1,4 +1,4 @@
-//! Linear systems over series: the pivots are the values at the point of expansion.
+//! Linear systems over series. Pivots are chosen by the values at the point of expansion.
 
 use dalembert_expr::{Arithmetic, Jets, Series};
 

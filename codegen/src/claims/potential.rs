@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(text, "1/2*ln(det m) - z - k*z - ln|z|");
     }
 
-    /// The logarithm of a sum that cancels has a value nowhere: the search would find no point.
+    /// The logarithm of a sum that cancels has no value anywhere: the search would find no point.
     #[test]
     fn a_sum_that_cancels_is_no_candidate() {
         let source = "Pair { coordinates { x; y; z; }

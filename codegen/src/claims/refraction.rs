@@ -5,7 +5,8 @@
 //! H+(p+) = H-(p) - c d_t h         c^2 k/2 + c b + E = 0,   E = H+(p) - H-(p),   b + k c = -sqrt(b^2 - 2 k E)
 //! ```
 //!
-//! Where the root is not real the motion is reflected by the elastic law. J. Cortes and A. M. Vinogradov (2006), Definition 4.14.
+//! Where the root is not real the motion is reflected by the elastic law. J. Cortes and A. M. Vinogradov (2006),
+//! Definition 4.14.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Jets, Rational, Series};
 

@@ -9,7 +9,8 @@
 //! totally plastic          eps = -rho G/dh(pi_D grad h)
 //! ```
 //!
-//! Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous constraints come before the law ([`super::focusing`]).
+//! Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous constraints come before the law
+//! ([`super::focusing`]).
 //!
 //! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
 //! through the surface, `-G+/G-`. The determinant is `-G+/G-` too, except for `elastic` and `restitution e` with affine
@@ -36,7 +37,8 @@ const STEPS: usize = 4;
 /// An impact surface with the expressions of its map.
 #[derive(Debug)]
 pub(super) struct Wall {
-    /// Metric (N N), forms of the constraints and of the K instantaneous ones ((M + K) N), dh (N), psi_0 (K), d_t h, coefficient.
+    /// Metric (N N), forms of the constraints and of the K instantaneous constraints ((M + K) N), dh (N), psi_0 (K),
+    /// d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,
     /// The map of a reset or of a transition.

@@ -52,8 +52,7 @@ pub struct Derivation {
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
     pub constraints: Vec<ConstraintForm>,
-    /// True if the constraints are linear in the velocities and their forms are not known to be independent at every
-    /// state.
+    /// True if constraints that are linear in the velocities are not known to be independent at every state.
     pub can_lose_rank: bool,
     /// True if the rates may have features that are narrow compared with the length of a step.
     pub can_be_narrow: bool,

@@ -1,4 +1,4 @@
-//! The degree of an expression in some of its symbols, and linear expressions taken apart.
+//! The degree of an expression in some of its symbols, and the coefficients of linear expressions.
 
 use dalembert_expr::{Assumption, ExprId, Node, Pool, Rational, SymbolId, Verdict};
 

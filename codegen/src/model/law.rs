@@ -144,8 +144,8 @@ impl Model {
         (0..self.surfaces.len()).filter(acts).collect()
     }
 
-    /// Law of a surface as declared, with the names of its instantaneous constraints: `newton(e), instantaneous {
-    /// no_slip }`.
+    /// Law of a surface as declared, with the names of its instantaneous constraints:
+    /// `newton(e), instantaneous { no_slip }`.
     pub fn law_text(&self, surface: usize) -> String {
         let Surface {
             law,

@@ -51,8 +51,7 @@ impl Extras {
 }
 
 impl Model {
-    /// The model of the scene with this index: only the forces, surfaces and extras of the scene, and the claims about
-    /// it.
+    /// The model of the scene with this index: its forces, surfaces and extras, and the claims about it.
     pub fn in_scene(&self, index: usize) -> Self {
         let scene = &self.scenes[index];
         let Parts {

@@ -26,8 +26,8 @@ impl BracketKind {
     }
 }
 
-/// The bracket of functions of a model, of one of its scenes or modes. The functions are a list in the language of claims:
-/// `x, momentum(x)`.
+/// The bracket of functions of a model, or of one of its scenes or modes. The functions are a list in the language of
+/// claims: `x, momentum(x)`.
 ///
 /// # Errors
 /// [`ReportError`]: an invalid function, a wrong number of functions, or a model without a bracket.

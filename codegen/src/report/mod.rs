@@ -8,8 +8,7 @@
 //! | `mod.rs` | the types of a report, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
-//! | `request.rs`, `bracket.rs`, `group.rs` | requests in the words of a claim: brackets of functions, reduction by a
-//! group |
+//! | `request.rs`, `bracket.rs`, `group.rs` | requests in the words of a claim: brackets of functions, reduction by a group |
 //! | `control.rs` | the maximum principle of a model with a cost |
 //! | `modulo.rs` | symmetries for orbits that close up to a group |
 //! | `planar` | hypotheses of the Poincare-Bendixson theorem |

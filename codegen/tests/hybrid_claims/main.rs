@@ -12,8 +12,7 @@
 //! | `values.rs` | numbers of a model at a state |
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `symmetries.rs` | symmetries of motion, surfaces and their maps together; of first-order systems |
-//! | `qualified.rs`, `momenta.rs` | remarks on impacts in proofs of densities, and in proofs of symmetries on their
-//! momenta |
+//! | `qualified.rs`, `momenta.rs` | remarks on impacts in proofs of densities, and in proofs of symmetries on their momenta |
 //! | `stops.rs` | surfaces at which the motion ends |
 //! | `numbers.rs` | numbers of the sources: returns of a walker, an impact off D, the matrix of a ball |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |

@@ -107,7 +107,7 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// The constraint forces of a homogeneous ball and of a straight groove are 0, and the form on D is kept; walls change it on D.
+/// The constraint forces of a homogeneous ball and of a straight groove are 0. The form on D is kept; walls change it.
 #[test]
 fn constraints_without_forces_keep_the_form_on_d() {
     check(BALL, CLAIM, True);
@@ -326,8 +326,8 @@ fn states_of_more_dimensions_may_keep_the_form() {
     check(narrow, CLAIM, False("`go`"));
 }
 
-/// Along `dot(x)^2 + dot(y)^2 = v^2` the rate is `2 g dot(x)/v^2` on `partial(y)` and `partial(dot(x))`, from `lambda = m g dot(y)/(2 v^2)` and
-/// `-2 dot(y) dlambda - 2 lambda ddot(y)`.
+/// Along `dot(x)^2 + dot(y)^2 = v^2` the rate on `partial(y)` and `partial(dot(x))` is `2 g dot(x)/v^2`, from
+/// `lambda = m g dot(y)/(2 v^2)` and `-2 dot(y) dlambda - 2 lambda ddot(y)`.
 #[test]
 fn constraints_that_are_not_linear_change_the_form() {
     let speed = |weight: &str, rest: &str| {

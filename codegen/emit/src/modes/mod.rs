@@ -1,4 +1,5 @@
-//! A model with modes: a type for each mode, as for scenes, and one for the whole, which asks the kernels of the present mode.
+//! Code of a model with modes: a type for each mode, as for scenes, and a type for the whole, which calls the kernels
+//! of the present mode.
 
 mod describe;
 mod types;

@@ -35,7 +35,7 @@ pub(super) fn emit_struct(whole: &Whole<'_>) -> TokenStream {
         #[derive(Debug, Clone, Copy, PartialEq)]
         #visibility struct #type_name {
             #fields
-            /// The mode that states made of positions and velocities are in: where a run begins.
+            /// The mode in which a run begins. States made of positions and velocities are states of this mode.
             pub mode: #module::Mode,
         }
         #default
@@ -52,7 +52,7 @@ pub(super) fn first_mode(whole: &Whole<'_>) -> TokenStream {
 fn documentation(whole: &Whole<'_>) -> Vec<String> {
     let mut lines = whole.model().documentation.clone();
     lines.push(String::new());
-    lines.push(" Modes, each with the order of its state; the state of the whole is that of the present mode, zeros, and the \
+    lines.push(" Modes, each with the order of its state. The state of the whole is the state of the present mode, zeros, and the \
                 number of the mode:".to_owned());
     lines.push(String::new());
     for (mode, context) in whole.graph.modes.iter().zip(whole.mode_contexts()) {

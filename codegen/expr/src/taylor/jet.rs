@@ -1,8 +1,7 @@
 //! Truncated series: products, powers, functions.
 //!
 //! A series is the list of its coefficients, by monomial. Missing coefficients at the end are 0; 0 is the empty list.
-//! With
-//! the Euler operator `E = sum x_v d_v`, which multiplies the part of degree d by d, every function satisfies a
+//! The Euler operator `E = sum x_v d_v` multiplies the part of degree d by d. With it, every function satisfies a
 //! linear recurrence by degree: `E(exp u) = exp(u) E(u)`, `u E(u^r) = r u^r E(u)`, `E(sin u) = cos(u) E(u)`.
 
 use super::arithmetic::Arithmetic;

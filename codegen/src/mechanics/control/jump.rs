@@ -1,7 +1,6 @@
 //! The costate after an impact: `p+ = a + eps w` with `a = p.Delta_*^{-1}` and `w = dh.Delta_*^{-1}`.
 //!
-//! If inputs do not act along `w`, `H*` is linear in `eps` at the state after the impact: `H*+ = H*(a) + eps w.f+`, so
-//! that
+//! If inputs do not act along `w`, `H*` is linear in `eps` at the state after the impact, `H*+ = H*(a) + eps w.f+`, and
 //! `eps = (H*- - H*(a) + a.d_t Delta)/(w.(f+ - d_t Delta) + d_t h)`.
 
 use dalembert_expr::{Assumption, ExprId, Pool, SymbolId, Verdict};

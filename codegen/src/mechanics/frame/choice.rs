@@ -1,8 +1,9 @@
 //! A frame that is regular at every configuration, found from the constraint forms alone.
 //!
 //! A velocity can be made dependent if it occurs in only one of the constraints still to be solved, with a coefficient
-//! that is never zero. Otherwise two velocities that occur in only one constraint serve, if the sum of the squares of
-//! their coefficients is never zero: a knife edge `-sin(theta) dx + cos(theta) dy` leaves the velocity along it,
+//! that is never zero. Otherwise a pair of velocities that occur in only one constraint is used, if the sum of the
+//! squares of their coefficients is never zero: a knife edge `-sin(theta) dx + cos(theta) dy` leaves the velocity along
+//! it,
 //! `cos(theta) dx + sin(theta) dy`.
 
 use dalembert_expr::{ExprId, Pool};

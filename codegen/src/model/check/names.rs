@@ -6,7 +6,7 @@ use super::super::symbols::member_name;
 use crate::diagnostics::Location;
 use crate::spec::{Declared, Index, Scalar, Word};
 
-/// The names of a section in the order in which they are met.
+/// The names of a section in the order in which they are read.
 pub(super) struct Names {
     noun: &'static str,
     met: Vec<(Name, Location)>,

@@ -1,6 +1,6 @@
-//! Takes constant factors out of products and multiplies them with each other first. `x (c y)` becomes `c (x y)` if `x
-//! y` is computed anyway: that saves a sum in every order. `a (b x)` becomes `(a b) x`: its coefficients are known
-//! earlier.
+//! Takes constant factors out of products and multiplies them with each other first. `x (c y)` becomes `c (x y)` if the
+//! product `x y` is computed anyway: that saves a sum in every order. `a (b x)` becomes `(a b) x`: its coefficients are
+//! known earlier.
 
 use std::collections::HashSet;
 
