@@ -102,7 +102,7 @@ impl NativeModel {
     /// The model for the driver.
     pub(crate) fn build(&self) -> Box<dyn AnyModel> {
         let mut model = of_form(Arc::clone(&self.form).into(), Code::Loaded)
-            .expect("room, as where it was loaded");
+            .expect("the form fits, as it did when it was loaded");
         for (index, value) in self.values.iter().enumerate() {
             model.set_parameter(index, *value);
         }

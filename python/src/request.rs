@@ -115,7 +115,7 @@ impl Request<'_> {
             return match period {
                 None => Ok(None),
                 Some(_) => Err(refused(
-                    "period: it is that of inputs which are functions, and there are none",
+                    "period: it belongs to inputs that are functions, and there are none",
                 )),
             };
         };
@@ -342,7 +342,7 @@ fn law(name: &str, coefficient: Option<f64>) -> PyResult<Law> {
     match (expected, found) {
         (None, Some(law)) => Ok(law),
         (expected, _) => Err(refused(format!(
-            "law: `{name}` is not accepted so; expected {}",
+            "law: `{name}` is not accepted in this form; expected {}",
             expected.unwrap_or_default()
         ))),
     }

@@ -285,7 +285,7 @@ impl NativeRun {
         let description = self.model.describe();
         if self.course.steering.is_some() {
             return Err(error::refused(
-                "jacobian: nothing is known of the derivatives of inputs that are functions",
+                "jacobian: the derivatives of inputs that are functions are not known",
             ));
         }
         let variables = wrt.iter().map(|name| Variable::find(description, name));

@@ -26,7 +26,7 @@ pub(super) fn corollaries(
     let mut found = Vec::new();
     if !model.surfaces.is_empty() {
         found.push(
-            "impacts accumulate for almost no start: the volume is smooth, and impulses vanish with the gap rate; motion that grazes is taken to go on"
+            "impacts accumulate for almost no start: the volume is smooth, and impulses vanish with the gap rate; grazing motion is assumed to go on"
                 .to_owned(),
         );
     }
@@ -37,7 +37,7 @@ pub(super) fn corollaries(
         let bounds = match bounds.is_empty() {
             true => "all coordinates are angles".to_owned(),
             false => format!(
-                "coordinates that are no angles are bounded by {}",
+                "coordinates that are not angles are bounded by {}",
                 bounds.join(", ")
             ),
         };

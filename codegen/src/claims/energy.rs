@@ -39,7 +39,7 @@ pub(super) fn check_not_increasing(
     {
         return proved(
             &name,
-            "its change is a quadratic form of velocities without positive parts",
+            "its change is a quadratic form of velocities without positive terms",
         );
     }
     let mut looked_for = |wanted| {
@@ -61,7 +61,7 @@ pub(super) fn check_not_increasing(
     };
     match found.verdict(true, wording, around.seed) {
         Verdict::Undecided(_) => Verdict::Undecided(format!(
-            "no state was found at which the energy grows at `{name}`, nor a reason why there is none"
+            "no state was found at which the energy grows at `{name}`, and no proof that there is none"
         )),
         verdict => verdict,
     }
@@ -92,7 +92,7 @@ fn known(
         return None;
     }
     match declared.law {
-        Law::Elastic => Some("an elastic impact keeps it, and a projection takes of it"),
+        Law::Elastic => Some("an elastic impact keeps it, and a projection reduces it"),
         Law::Restitution(e) | Law::Newton(e) => {
             let ranges = model
                 .pool

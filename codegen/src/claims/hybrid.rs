@@ -195,7 +195,7 @@ pub(super) fn change_at(
             }
         }
     } else if is_transition {
-        let text = "what it does is not looked at: the mode that it leads to is not at hand";
+        let text = "its effect is not examined: the mode that it leads to is not available";
         return Err(Unknown::Open(text.to_owned()));
     }
     let solution = wall.solution();

@@ -41,7 +41,7 @@ pub(super) fn check_conserved_under(
     let is_seen = changes.is_seen();
     match changes.together(holds).verdict(holds, wording, around.seed) {
         Verdict::Undecided(_) if !is_seen => Verdict::Undecided(format!(
-            "parts of `{name}` may be out of sight: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
+            "parts of `{name}` may be missed: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
              leading coefficient is never 0"
         )),
         verdict => verdict,
@@ -116,7 +116,7 @@ pub(super) fn changes_at(
             after.ok_or_else(|| format!("`{written}` is not known behind `{name}`"))?
         }
         None if enters.is_some() => {
-            return Err(format!("the mode that `{name}` leads to is not at hand"));
+            return Err(format!("the mode that `{name}` leads to is not available"));
         }
         None => value,
     };

@@ -146,12 +146,12 @@ fn check_kept(
     for surface in model.acting_surfaces() {
         let name = model.surfaces[surface].name.display.clone();
         if model.is_nonlinear() {
-            let text = format!("what `{name}` does is not known: {AT_NONLINEAR}");
+            let text = format!("the effect of `{name}` is not known: {AT_NONLINEAR}");
             return Verdict::Undecided(text);
         }
         let verdict = match kept_at_surface(model, around, tangents, stated, surface) {
             Verdict::Undecided(reason) => {
-                Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
+                Verdict::Undecided(format!("the effect of `{name}` is not known: {reason}"))
             }
             decided => decided,
         };
@@ -180,7 +180,7 @@ fn vanishes(
     };
     if form.degree > tangents.dimension() {
         return refuted(format!(
-            "`{written}` is of degree {}, and states have {} dimensions: it is 0, and nothing is claimed of it",
+            "`{written}` is of degree {}, and states have {} dimensions: it is 0, and the claim says nothing",
             form.degree,
             tangents.dimension()
         ));
@@ -189,7 +189,7 @@ fn vanishes(
     question.part = Part::All(around.seed);
     match evidence(model, &question, around.seed).shows_that_it_vanishes() {
         true => refuted(format!(
-            "`{written}` is 0 at all states, and nothing is claimed of it"
+            "`{written}` is 0 at all states, and the claim says nothing"
         )),
         false => None,
     }
@@ -219,7 +219,7 @@ pub(super) fn kept_by_motion(
     if matches!(verdict, Verdict::Proved(_)) {
         let places = discontinuities(model, around, form);
         if let Some(place) = places {
-            let text = format!("its rate is 0 wherever it has one, but it may jump {place}");
+            let text = format!("its rate is 0 wherever it exists, but it may jump {place}");
             return Verdict::Undecided(text);
         }
     }
@@ -267,7 +267,7 @@ pub(super) fn kept_at_surface(
     }
     match &wall.passage {
         None if enters.is_some() => {
-            return Verdict::Undecided("the mode that it leads to is not at hand".to_owned());
+            return Verdict::Undecided("the mode that it leads to is not available".to_owned());
         }
         Some(passage) if passage.open == Some(Open::Refraction) => {
             return Verdict::Undecided(Open::Refraction.text());
@@ -333,7 +333,7 @@ fn behind_contacts(
             "no state was found that shows a change, and a proof needs the sign of the acceleration of its gap at all states behind it: the motion may go on freely or be held"
         }
         false => {
-            "no state was found that shows a change, and a proof needs a law that turns the rate of its gap round at all states: the motion behind it may still approach it"
+            "no state was found that shows a change, and a proof needs a law that reverses the rate of its gap at all states: the motion behind it may still approach it"
         }
     };
     Verdict::Undecided(text.to_owned())

@@ -226,7 +226,7 @@ pub(super) fn check_behind(
         _ => "these are not known to be integrable or not",
     };
     Some(Verdict::Undecided(format!(
-        "it carries vectors along one leaf across those of the constraints behind it, and {why}"
+        "it carries vectors along one leaf across the leaves of the constraints behind it, and {why}"
     )))
 }
 

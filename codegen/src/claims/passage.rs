@@ -89,8 +89,8 @@ impl Open {
                 format!("it leads from states of {before} dimensions to states of {after}")
             }
             Self::Positions => "positions after it depend on velocities".to_owned(),
-            Self::Coordinates => "both modes have other numbers of coordinates".to_owned(),
-            Self::Refraction => "refraction within constraints is not examined; state what is behind it by `reset { .. }` where that is known".to_owned(),
+            Self::Coordinates => "the modes have different numbers of coordinates".to_owned(),
+            Self::Refraction => "refraction within constraints is not examined; declare the state behind it by `reset { .. }` if it is known".to_owned(),
             Self::Size => format!("more than {} coordinates are not examined", LARGEST - 1),
         }
     }

@@ -147,7 +147,7 @@ fn jump(model: &mut Model, field: &[ExprId]) -> Option<Verdict> {
     let place = field
         .iter()
         .find_map(|expr| possible_jump(model, *expr, &[], &mut |_, _| false))?;
-    let text = format!("where it is smooth it is one, but it may jump {place}");
+    let text = format!("it is a symmetry where it is smooth, but it may jump {place}");
     Some(Verdict::Undecided(text))
 }
 
@@ -424,7 +424,7 @@ fn momentum_equation(model: &mut Model, field: &[ExprId], gauge: Option<ExprId>)
         (false, false) => "not horizontal; ",
     };
     let name = match lost {
-        Some(_) => "its momentum, less what the Lagrangian gains,",
+        Some(_) => "its momentum, less the gain of the Lagrangian,",
         None => "its momentum",
     };
     if terms.is_empty() {

@@ -41,7 +41,7 @@ impl fmt::Display for Undecided {
             ),
             Self::Nonlinear => write!(
                 f,
-                "claims are examined where constraints are linear in the velocities"
+                "claims are examined only where constraints are linear in the velocities"
             ),
             Self::Depth(depth) => write!(
                 f,
@@ -57,18 +57,18 @@ impl fmt::Display for Undecided {
             ),
             Self::Branches => write!(
                 f,
-                "roots and absolute values have more combinations of signs than are gone through"
+                "roots and absolute values have more combinations of signs than are examined"
             ),
             Self::Chance => write!(
                 f,
                 "with so many roots and such degrees, values at random points modulo 61-bit primes leave too large a chance of error"
             ),
             Self::Relations(atoms) if atoms.is_empty() => {
-                write!(f, "values at real points do not confirm what residues say")
+                write!(f, "values at real points do not confirm the residues")
             }
             Self::Relations(atoms) => write!(
                 f,
-                "values at real points do not confirm what residues say, as these may be related: {}",
+                "values at real points do not confirm the residues, as these may be related: {}",
                 atoms.join(", ")
             ),
         }

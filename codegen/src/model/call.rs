@@ -295,7 +295,7 @@ impl<'s> Resolver<'s> {
     /// `partial(x)`, in a claim of symmetry.
     fn partial(&mut self, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
         if self.partials.is_empty() {
-            let help = "`symmetry: partial(theta);` in `claims` is where it belongs";
+            let help = "write `symmetry: partial(theta);` in `claims`";
             return self.refuse(name.at, "`partial` is not known here", help);
         }
         let [argument] = arguments else {

@@ -227,12 +227,12 @@ fn transitions_lead_from_leaves_to_leaves() {
     check(
         &step("x*z", "dot(x)"),
         CLAIM,
-        Open("across those of the constraints behind it"),
+        Open("across the leaves of the constraints behind it"),
     );
     check(
         &step("x*z", "x - y + 1e-9*dot(x)"),
         CLAIM,
-        Open("across those"),
+        Open("across the leaves"),
     );
     let mixed = "pub Mixed { coordinates { x; y; z; turn; } constraints { roll: dot(y) = x*dot(turn); shelf: dot(z) = 0; }
         lagrangian = (dot(x)^2 + dot(z)^2 + (dot(y) - x*dot(turn))^2 + dot(turn)^2)/2 - z*x; CLAIM }";
@@ -259,7 +259,7 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     check(&step("", "dot(y)", ""), CLAIM, True);
     check(&step(&wall("x"), "dot(y)", ""), CLAIM, True);
     // The wall turns dz/dt = dot(y) into a part of the form: leaves of the shelf keep it, other vectors do not.
-    let across = Open("across those of the constraints behind it");
+    let across = Open("across the leaves of the constraints behind it");
     check(&step(&wall("x + z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + 1e-9*z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + z"), "y", ""), CLAIM, across);
@@ -311,7 +311,7 @@ fn states_of_more_dimensions_may_keep_the_form() {
         held.replace("dot(z)^2)/2", "dot(z)^2)/2 - x*z")
     };
     check(&shelf("3"), CLAIM, True);
-    let across = Open("across those of the constraints behind it");
+    let across = Open("across the leaves of the constraints behind it");
     check(&shelf("dot(x)"), CLAIM, across);
     check(&shelf("3 + 1e-9*dot(x)"), CLAIM, across);
     // Constraints that are not linear in the velocities have no leaves that are known.

@@ -258,7 +258,7 @@ impl Allocation {
             (Some(register), _) => Operand::Register(register),
             (None, Some(Home::Fixed(operand))) => operand,
             (None, Some(Home::Spilled(place))) => Operand::Memory(place),
-            (None, None) => unreachable!("a value is somewhere as long as it is needed"),
+            (None, None) => unreachable!("a needed value has a register or a place"),
         }
     }
 

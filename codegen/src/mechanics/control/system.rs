@@ -248,7 +248,7 @@ fn refused(surface: &Surface) -> Uncontrolled {
         return Uncontrolled::at(surface.item, text, help);
     }
     let text = format!(
-        "the law of `{}` is not invertible: the costate after the impact does not follow from that before",
+        "the law of `{}` is not invertible: the costate after the impact does not follow from the costate before",
         surface.name.display
     );
     let help = "use `elastic`, `restitution(e)` or `newton(e)` with e > 0, or an invertible reset";

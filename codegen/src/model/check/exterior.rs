@@ -211,7 +211,7 @@ impl Resolver<'_> {
                     product.wedge(&mut self.pool, &form)
                 }
                 (Operator::Times, None) => {
-                    let text = format!("`{factor}` is a form, and so is what is multiplied by it");
+                    let text = format!("`{factor}` is a form, and so is the factor before it");
                     return self.refuse(factor.at, text, WEDGE);
                 }
                 (Operator::Over, Some(function)) => {

@@ -88,7 +88,7 @@ fn refuse_blocking(resolver: &mut Resolver<'_>, surface: &Surface, constraint: &
     let law = surface.law.name();
     let at = resolver.spec.location(constraint.item);
     let text =
-        format!("`{blocking}` leaves nothing to `{law}`: it settles how `{name}` is approached");
+        format!("`{blocking}` leaves nothing to `{law}`: it determines the gap rate of `{name}`");
     let help = "leave it out; `impact_plastic` stops the motion across a surface";
     resolver.refuse::<()>(at, text, help);
 }

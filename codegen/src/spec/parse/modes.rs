@@ -32,7 +32,7 @@ const SHARED: [(&str, &str); 5] = [
     ("cost", "declare the model of one mode by itself"),
     (
         "scenes",
-        "leave them out: what a scene would leave out, a mode need not declare",
+        "leave them out: a mode declares only the parts that it uses",
     ),
 ];
 
