@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn every_target_takes_what_is_meant_for_it() {
+    fn every_target_takes_valid_input() {
         declaration(b"P { coordinates { x; } lagrangian = dot(x)^2; }");
         states(br#"[{"q": [0, 0, 0.2], "qdot": [0.98, "0.199", 0.1], "t": 1e308}]"#);
         arguments(b"--set\nm=2\n--law\nwall=elastic");

@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_file_is_said() {
+    fn mistakes_in_a_file_are_reported() {
         let unknown = expanded(
             "unknown.dal",
             "Ball { coordinates { x; } lagrangian = dot(x)^2 - k*x; }",

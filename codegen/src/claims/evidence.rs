@@ -528,7 +528,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_enclosure_confirms_keeps_a_proof_from_being_made() {
+    fn a_difference_without_enclosure_prevents_a_proof() {
         let mut model = model("0");
         let terms = binomial(&mut model, &Rational::ZERO);
         let question = Sum { terms, size: 0.0 };

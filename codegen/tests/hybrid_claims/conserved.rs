@@ -26,7 +26,7 @@ fn all(kind: &str, cases: &[(&str, &str, Expected)]) {
 }
 
 #[test]
-fn what_the_motion_keeps_and_changes() {
+fn quantities_along_the_motion() {
     let disk = disk("");
     let kept = [
         (FALL, "energy"),
@@ -107,7 +107,7 @@ fn parts_that_cancel_are_shown() {
 }
 
 #[test]
-fn what_impulses_and_resets_keep_and_change() {
+fn quantities_under_impulses_and_resets() {
     let damped = ball("restitution(c)");
     let kept = [
         (WALLS, "wall", "energy"),

@@ -12,7 +12,7 @@ fn forced(force: &str) -> String {
 }
 
 #[test]
-fn what_keeps_the_form_is_proved() {
+fn maps_and_forces_that_keep_the_form_are_proved() {
     check(&ball("elastic"), CLAIM, True);
     check(&ball("newton(1)"), CLAIM, True);
     check(&ball("reset { dot(x) = -dot(x); }"), CLAIM, True);
@@ -49,7 +49,7 @@ fn what_keeps_the_form_is_proved() {
 }
 
 #[test]
-fn what_does_not_is_refuted_at_a_point() {
+fn maps_and_forces_that_change_the_form_are_refuted_at_a_point() {
     check(&ball("restitution(c)"), CLAIM, Shown("Jacobian", 0.49));
     check(&ball("impact_plastic"), CLAIM, Shown("Jacobian", 0.0));
     check(
@@ -172,7 +172,7 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
 }
 
 #[test]
-fn leaves_are_not_kept_by_losses_forces_and_what_is_not_integrable() {
+fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
     // On the circle the form on these vectors is -1 at x = 0, times the factor of the area.
     let wall = |law: &str| bead("1", &format!("impacts {{ wall: x >= 0 => {law}; }}"));
     let after = "the form on partial(x), partial(dot(x)) after";

@@ -119,7 +119,7 @@ impl Written {
 }
 
 #[test]
-fn random_code_gives_what_it_says() {
+fn random_code_gives_the_values_of_its_operations() {
     let mut random = Random(7);
     let inputs: [f64; INPUTS] = core::array::from_fn(|i| 0.3 + 0.17 * i as f64);
     for round in 0..2000 {

@@ -82,7 +82,7 @@ fn a_start_lies_in_front_of_every_wall() {
 }
 
 #[test]
-fn rates_are_taken_of_what_changes() {
+fn rates_are_taken_of_variable_quantities() {
     let message = "which depends neither on coordinates nor on `t`\nhelp: parameters, inputs and numbers have no rate";
     refused_in("outputs { o: «dot(m)»; }", message);
     refused_in("constraints { c: d(x) = «d(k*m)»; }", message);

@@ -133,7 +133,7 @@ fn references_name_one_mode() {
 
 /// Consequences of a mistake elsewhere are not reported.
 #[test]
-fn consequences_are_not_told() {
+fn consequences_are_not_reported() {
     refused_hopper(
         "const M «=»; modes { leg[i in 1..=M] { } } transitions { go: leg[1] -> leg[2] when x >= 0; }",
         "expected an expression",
