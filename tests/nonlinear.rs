@@ -412,7 +412,8 @@ fn refused(declarations: &str) -> String {
 
 #[test]
 fn quantities_are_examined_and_what_needs_linear_constraints_is_refused() {
-    let open = "is undecided: claims are examined where constraints are linear in the velocities";
+    let open =
+        "is undecided: claims are examined only where constraints are linear in the velocities";
     for (claim, reason) in [
         (
             "not conserved: energy;",

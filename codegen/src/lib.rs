@@ -1,4 +1,5 @@
-//! Generator of dalembert: a declared model in, straight-line programs out. `dalembert-emit` writes them as Rust, `dalembert-jit` runs them.
+//! Generator of dalembert: makes straight-line programs of a declared model. `dalembert-emit` writes them as Rust,
+//! `dalembert-jit` runs them.
 //!
 //! ```text
 //! TokenStream --spec::parse--> Spec --model::check--> Model --mechanics::derive--> Derivation
@@ -6,8 +7,9 @@
 //!     --program::lower--> Program
 //! ```
 //!
-//! Each stage takes the previous type and returns a new one. The first two can fail, with every mistake of the
-//! stage at once, at the user's tokens; so can the claims. The others cannot.
+//! Each stage takes the previous type and returns a new one. The first two and the claims can fail, with every mistake
+//! of the stage at once, at the user's tokens. Between the other stages, a model is refused if its algebra or its code
+//! is too large, or if a reset leaves the constraints.
 
 #![forbid(unsafe_code)]
 
@@ -23,7 +25,8 @@ pub mod tables;
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// The tokens of each model of a text: what stands up to a block in braces, and the block. What is left behind the last one is one more.
+/// The tokens of each model of a text. A model ends with its block in braces. Tokens behind the last block form one
+/// more model.
 pub fn models_of(tokens: TokenStream) -> Vec<TokenStream> {
     let mut models: Vec<Vec<TokenTree>> = Vec::new();
     let mut open = Vec::new();
@@ -95,14 +98,14 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// Says what became of the claims where a person reads of the model.
+    /// Adds the findings to the notes of the model.
     pub fn note_findings(&mut self) {
         let findings = self.findings.iter().map(claims::Finding::note);
         self.model.notes.extend(findings);
     }
 }
 
-/// All stages of a model in one piece.
+/// All stages of a model without modes.
 ///
 /// # Errors
 /// Every mistake of the first stage that found any.
@@ -110,12 +113,12 @@ pub fn compile(input: TokenStream) -> Result<Compiled, diagnostics::Diagnostics>
     compile_within(input, spec::STEPS)
 }
 
-/// Same as [`compile`], with this budget for the algebra.
+/// Same as [`compile`], with a budget of steps for the algebra.
 fn compile_within(input: TokenStream, steps: u64) -> Result<Compiled, diagnostics::Diagnostics> {
     compile_spec(&spec::parse(input)?, steps)
 }
 
-/// All stages of what was written, with a budget for the algebra.
+/// All stages of a parsed model, with a budget of steps for the algebra.
 ///
 /// # Errors
 /// Same as [`compile`].
@@ -139,7 +142,7 @@ pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnosti
 /// [`mechanics::control`]. The scene `None` is the model itself.
 ///
 /// # Errors
-/// Same as [`compile`]; a declaration for which no maximum principle is derived.
+/// Same as [`compile`], and the first declaration for which no maximum principle is derived.
 pub fn compile_control(
     spec: &spec::Spec,
     scene: Option<&str>,
@@ -230,7 +233,7 @@ fn compile_checked(
     refuse_claims(spec, &findings)?;
     let programs = program::lower(&model, &derivation, volume.as_ref());
     refuse_oversize(spec, &programs)?;
-    // What is printed of an accepted model may take as long as it does.
+    // An accepted model is printed without a budget.
     model.pool.lift_budget();
     Ok(Compiled {
         model,
@@ -241,7 +244,7 @@ fn compile_checked(
     })
 }
 
-/// Refuses a model whose algebra was given up: what was derived then is not what was declared.
+/// Refuses a model whose algebra was given up: the derived equations are then wrong.
 fn refuse_exhausted(
     spec: &spec::Spec,
     model: &model::Model,
@@ -285,7 +288,7 @@ fn refuse_claims(
     diagnostics.finish(())
 }
 
-/// Refuses a model whose code no compiler would finish in reasonable time, rather than handing it over.
+/// Refuses a model whose code no compiler would finish in reasonable time.
 fn refuse_oversize(
     spec: &spec::Spec,
     programs: &program::Lowered,
@@ -321,7 +324,7 @@ mod tests {
             claims { density: none; }
         }";
 
-    /// Wherever the algebra is given up, every stage still ends, and says that it was.
+    /// Every stage ends and reports it, wherever the algebra is given up.
     #[test]
     fn algebra_may_be_given_up_anywhere() {
         let compile = |steps| {

@@ -6,7 +6,7 @@ use dalembert_cli::Streams;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 
 dalembert::model! {
-    /// A skate between walls: something of everything that a command line can ask for.
+    /// A skate between walls, with most declarations that flags of the command line can name.
     pub Skate {
         coordinates { x; y in (-10, 10); theta: angle; }
         parameters { m > 0 = 1; I > 0 = 0.1; e in [0, 1] = 0.5; k[2] >= 0 = [1, 2]; }
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn every_target_takes_what_is_meant_for_it() {
+    fn every_target_takes_valid_input() {
         declaration(b"P { coordinates { x; } lagrangian = dot(x)^2; }");
         states(br#"[{"q": [0, 0, 0.2], "qdot": [0.98, "0.199", 0.1], "t": 1e308}]"#);
         arguments(b"--set\nm=2\n--law\nwall=elastic");

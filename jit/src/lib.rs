@@ -8,10 +8,10 @@
 //! |---|---|
 //! | `source.rs` | models of a text, and mistakes in it with their lines |
 //! | `feedback.rs` | texts whose inputs follow laws |
-//! | `form.rs` | forms, of tables and of what executes programs |
-//! | `machine.rs` | a function over any kind of number, by a machine with registers |
+//! | `form.rs` | forms: tables, and functions that execute programs |
+//! | `machine.rs` | a machine with registers: executes a function over any kind of number |
 //! | `series.rs` | power series over any kind of number |
-//! | `native/` | both over doubles, as machine code of x86-64 with AVX and of aarch64; elsewhere the two above do it, 2 to 10 times slower |
+//! | `native/` | functions and series over doubles as machine code for x86-64 with AVX and for aarch64; other processors use the two files above, 2 to 10 times slower |
 //!
 //! Refusals and proofs are those of `model!`. Results are those of the code that `model!` writes, to the bit.
 //!
@@ -72,7 +72,7 @@ pub struct Loaded {
 /// The models of a text, in its order. `name` is that of the file, for messages.
 ///
 /// # Errors
-/// Every mistake of the first stage that found any, in whatever model.
+/// Every mistake of the first stage that found any, in any of the models.
 pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
     load_by(name, text, build)
 }
@@ -88,11 +88,11 @@ pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refuse
     })
 }
 
-/// The extremals of a model with a cost, in a scene or, with `None`, of the model itself, as a first-order model:
-/// [`compile_control`](codegen::compile_control).
+/// The extremals of a model with a cost as a first-order model: [`compile_control`](codegen::compile_control). `scene`
+/// names a scene of the model; `None` is the model itself.
 ///
 /// # Errors
-/// Every mistake of the first stage that found any, in the model or in what is derived of it.
+/// Every mistake of the first stage that found any, in the model or in its extremals.
 pub fn load_control(name: &str, text: &str, scene: Option<&str>) -> Result<Vec<Loaded>, Refused> {
     load_by(name, text, |declaration| match declaration {
         Declaration::Model(spec) => {
@@ -114,8 +114,8 @@ pub struct LoadedHeld {
     pub is_autonomous: bool,
 }
 
-/// A model with a cost whose inputs are held, in a scene or, with `None`, the model itself, as a first-order model:
-/// [`compile_held`](codegen::compile_held). Models with modes are left out.
+/// A model with a cost whose inputs are held, as a first-order model: [`compile_held`](codegen::compile_held). `scene`
+/// names a scene of the model; `None` is the model itself. Models with modes are left out.
 ///
 /// # Errors
 /// Same as [`load_control`].
@@ -145,14 +145,14 @@ fn load_by<T: Send>(
     in_thread(|| load_here(name, text, &build))
 }
 
-/// Does work in a thread of its own: with it goes the copy of the text that `proc_macro2` keeps for places, and its stack
-/// has room for the deepest nesting that is accepted.
+/// Does work in a thread of its own. The copy of the text that `proc_macro2` keeps for places is freed with the thread, and
+/// its stack is large enough for the deepest nesting that is accepted.
 fn in_thread<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
     thread::scope(|scope| {
         let thread = thread::Builder::new().stack_size(STACK);
         match thread.spawn_scoped(scope, &work) {
             Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
-            // No other thread can be had.
+            // No thread could be started.
             Err(_) => work(),
         }
     })

@@ -18,7 +18,7 @@ use crate::machine::{Code, Constant};
 /// The series of a motion and of gaps along it.
 #[derive(Debug)]
 pub(crate) struct Series {
-    /// Order 0.
+    /// The function that gives order 0.
     pub(crate) begin: Arc<Code>,
     /// Sources of order 0, by value.
     pub(crate) firsts: Vec<First>,
@@ -30,7 +30,7 @@ pub(crate) struct Series {
     /// The kept coefficients.
     pub(crate) histories: BTreeMap<History, usize>,
     pub(crate) is_large: bool,
-    /// Count of numbers that are known at the beginning.
+    /// Number of values that are known at order 0.
     known: usize,
 }
 
@@ -117,12 +117,12 @@ impl Series {
         }
     }
 
-    /// Count of numbers that are known at the beginning.
+    /// Number of values that are known at order 0.
     pub(crate) fn known(&self) -> usize {
         self.known
     }
 
-    /// Writes the numbers that the series begins with.
+    /// Writes the values that are known at order 0.
     pub(crate) fn begin<L: Numbers>(
         &self,
         parameters: &[L],
@@ -222,7 +222,7 @@ impl<'a, L: Numbers> Course<'a, L> {
         }
     }
 
-    /// Computes order `k` of everything; the order `k` of the components is known.
+    /// Computes order `k` of all values, given order `k` of the components.
     fn advance(&mut self, k: usize, components: &[L]) {
         self.k = k;
         for (value, step) in &self.series.steps {
@@ -293,7 +293,8 @@ impl<'a, L: Numbers> Course<'a, L> {
         &self.kept[self.series.histories[&history]]
     }
 
-    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which compute many sums side by side.
+    // NOTE: the order of additions is that of `jet::middles`, `jet::halves` and `jet::short`, which compute many sums
+    // side by side.
     fn middle(&self, a: &[L; LENGTH], b: &[L; LENGTH]) -> L {
         let k = self.k;
         if self.series.is_large {

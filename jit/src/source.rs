@@ -1,4 +1,4 @@
-//! The models of a text, and what is wrong with it, by line and column.
+//! The models of a text, and its mistakes by line and column.
 
 use std::fmt;
 
@@ -17,15 +17,15 @@ pub struct Refused {
 /// A mistake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mistake {
-    /// Mistake, and advice.
+    /// Description of the mistake, and advice.
     pub message: String,
     /// The line, from 1 on.
     pub line: usize,
     /// The first column, from 1 on, in characters.
     pub column: usize,
-    /// Columns that are wrong in this line.
+    /// Number of columns in this line that belong to the mistake.
     pub width: usize,
-    /// The state that refutes a claim, where one does.
+    /// The state that refutes a claim, if there is one.
     pub counterexample: Option<Counterexample>,
 }
 
@@ -120,7 +120,7 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// The tokens of each model: what stands up to a block in braces, and the block.
+/// The tokens of each model, up to its block in braces.
 pub(crate) fn models(refused: &mut Refused) -> Result<Vec<TokenStream>, Refused> {
     let tokens: TokenStream = match refused.text.parse() {
         Ok(tokens) => tokens,

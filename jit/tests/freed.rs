@@ -13,13 +13,13 @@ use dalembert::{Instance, Scene, Simulation, System, VectorField};
 /// Models that are loaded and dropped before memory is measured.
 const FIRST: usize = 50;
 
-/// The least memory that a leaked model takes: that of the smallest form, in bytes.
+/// Least memory of a leaked model, in bytes: that of the smallest form.
 const LEAST: usize = 20 << 10;
 
-/// Tests that run alone, as memory is that of the process.
+/// Lock of the tests, which must run one at a time: memory is measured for the whole process.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// A small model. Its parameter and a number in it have no other model's name and value.
+/// A small model. The name of its parameter and its numbers differ from those of all other models.
 fn text(number: usize) -> String {
     format!(
         "Ball {{

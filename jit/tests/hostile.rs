@@ -1,4 +1,4 @@
-//! Texts that somebody broke: each is loaded or refused in bounded time, without a panic, and what is refused can be shown.
+//! Broken texts. Each is loaded or refused in bounded time, without a panic. Every refusal can be printed.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use dalembert::erased::Erased;
 use dalembert::{Instance, System};
 
-/// Longer than any text here takes, on a machine with other work.
+/// Time limit for a text, generous enough for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Models of several kinds, none of which takes long: impacts, constraints, modes, resets, fields.
@@ -144,7 +144,7 @@ fn load_broken_texts(count: usize, seed: u64) {
     );
 }
 
-/// A model that was loaded all the same has a start, or says why not.
+/// Evaluates the declared start of a loaded model. The start may be refused.
 fn begin(form: &dalembert::erased::Form) {
     let Some(system) = Erased::<32>::of(form) else {
         return;

@@ -6,7 +6,7 @@ use proc_macro::TokenStream;
 
 /// Declares a mechanical system and generates its simulator.
 ///
-/// The language, with an example of every declaration, is described in `docs/language.md`. What is generated: a
+/// The language, with an example of every declaration, is described in `docs/language.md`. The macro generates a
 /// type with the parameters as public fields, and implementations of the traits in `dalembert::contract`.
 ///
 /// ```ignore
@@ -25,10 +25,10 @@ pub fn model(input: TokenStream) -> TokenStream {
     dalembert_emit::expand(input.into()).into()
 }
 
-/// Declares the models of a file, whose path begins at the folder of the crate: `dalembert::model_file!("src/disk.dal")`.
+/// Declares the models of a file: `dalembert::model_file!("src/disk.dal")`. The path begins at the folder of the crate.
 ///
-/// The file holds the text between the braces of [`model!`], for one model or for several; the command line runs it as it
-/// is. The crate is built again when the file changes.
+/// The file holds the text between the braces of [`model!`], for one model or for several. The command line runs the
+/// same file. The crate is built again when the file changes.
 #[proc_macro]
 pub fn model_file(input: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();

@@ -1,7 +1,7 @@
-//! Changes of the sign of a function of time, by Chebyshev series on cells.
+//! Sign changes of a function of time, by Chebyshev series on cells.
 //!
-//! On a cell the function is sampled at the extrema of a Chebyshev polynomial. A cell whose series stays away from 0, or whose
-//! derivative does, is decided; any other is halved.
+//! On a cell the function is sampled at the extrema of a Chebyshev polynomial. A cell is decided if the series or its
+//! derivative has no zero there. Any other cell is halved.
 
 /// The degree of the series.
 const DEGREE: usize = 8;
@@ -9,15 +9,15 @@ const DEGREE: usize = 8;
 /// Samples of a cell.
 const NODES: usize = DEGREE + 1;
 
-/// Halvings of a step, and cells of a step, beyond which the signs at the ends of a cell decide.
+/// Halvings of a step beyond which the signs at the ends of a cell decide.
 const DEEPEST: u32 = 40;
+/// Cells of a step beyond which the signs at the ends of a cell decide.
 const CELLS: u32 = 400;
 
-/// Part of the largest value of a function so far below which its value counts as 0: what rounding leaves of a state on a
-/// surface.
+/// Fraction of the largest value so far below which a value counts as 0: a state on a surface has rounding errors.
 const NOISE: f64 = 1e-13;
 
-/// A change of the sign.
+/// A sign change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Zero {
     pub t: f64,
@@ -35,7 +35,7 @@ pub(crate) struct Sign {
 
 /// Judgement on a cell.
 enum Judgement {
-    /// At most one change of the sign, shown by the values at the ends.
+    /// There is at most one sign change, and the values at the ends show it.
     Decided,
     Open,
 }
@@ -46,7 +46,7 @@ impl Sign {
         self.last = 0.0;
     }
 
-    /// The changes of the sign in a step from `span[0]` to `span[1]`, in order.
+    /// The sign changes in a step from `span[0]` to `span[1]`, in order.
     ///
     /// # Errors
     /// The error of the function.
@@ -77,7 +77,7 @@ impl Sign {
         Ok(zeros)
     }
 
-    /// The sign of a value; 0 for what may be rounding.
+    /// The sign of a value; 0 if the value may be rounding.
     fn of(&self, value: f64) -> f64 {
         match value.abs() > NOISE * self.scale {
             true => value.signum(),
@@ -85,7 +85,7 @@ impl Sign {
         }
     }
 
-    /// Passes a cell with at most one change of the sign.
+    /// Passes a cell with at most one sign change.
     fn pass<E>(
         &mut self,
         [a, b]: [f64; 2],
@@ -125,7 +125,7 @@ fn time([a, b]: [f64; 2], node: usize) -> f64 {
     }
 }
 
-/// Decides whether the ends of a cell show its changes of sign.
+/// Decides whether the ends of a cell show its sign changes.
 fn judge(values: &[f64; NODES]) -> Judgement {
     if values.iter().all(|value| !value.is_finite()) {
         return Judgement::Decided;
@@ -179,7 +179,8 @@ fn derivative(series: &[f64; NODES]) -> [f64; NODES] {
     slope
 }
 
-/// The zero between two times at which the function has different signs: false position, with halvings where it is slow.
+/// The zero between two times at which the function has different signs: false position, with bisection every third
+/// step.
 fn locate<E>(
     [mut a, mut b]: [f64; 2],
     [mut low, mut high]: [f64; 2],

@@ -19,13 +19,13 @@ use crate::error::{self, refused};
 use crate::model::NativeModel;
 use crate::request::{Given, Request};
 
-/// Time between two looks at the signals of the process.
+/// Time between two checks for signals of the process.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Largest number of members that are made side by side.
+/// Number of members that the runner takes at once, for integrators that run them side by side.
 const BLOCK: u64 = 64;
 
-/// Members of an ensemble: quantities with values of each, or with rows of all.
+/// Members of an ensemble: quantities with the values of each, or with rows of values of all of them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Varied<'py> {
@@ -33,12 +33,13 @@ pub struct Varied<'py> {
     values: Vec<(String, String, Vec<f64>)>,
     seed: Option<u64>,
     count: u64,
-    /// Rows of values one after the other, and the member of the first.
+    /// Rows of values, one after the other.
     rows: Option<PyReadonlyArray1<'py, f64>>,
+    /// Index of the member of the first row.
     first: u64,
 }
 
-/// Axes of a density, with the range of each, and times of the states.
+/// Axes of a density with their ranges and numbers of bins, and times of the states.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Counted {
@@ -47,7 +48,8 @@ pub struct Counted {
     discard: f64,
 }
 
-/// Part of the states of a density, their number, and the distances of its halves by time, by members and if independent.
+/// Fraction of the states of a density, their number, and the distances between halves of the states: split by time,
+/// split by members, and expected for independent states.
 type Checked = (f64, u64, f64, f64, f64);
 
 /// An ensemble of runs of a model.
@@ -92,7 +94,7 @@ struct Unit {
 
 #[pymethods]
 impl NativeEnsemble {
-    /// An ensemble; nothing is run but a few members for ranges of a density that are not given.
+    /// An ensemble. Only a few members run here, to find ranges of a density that are not given.
     #[new]
     fn new(
         py: Python<'_>,
@@ -155,12 +157,13 @@ impl NativeEnsemble {
             .collect()
     }
 
-    /// Ends all runs that are under way, with an error.
+    /// Ends all running calls of `run` with an error.
     fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Runs members from `first` on, up to `last` or for this time: the number of members, their rows and their sums.
+    /// Runs members from `first` on, until `last` (exclusive) or until the time is over. Returns their number, rows and
+    /// sums.
     fn run<'py>(
         &self,
         py: Python<'py>,
@@ -175,7 +178,7 @@ impl NativeEnsemble {
         Ok(dict)
     }
 
-    /// Convergence of a density from the counts of all members: part, states, distances of halves.
+    /// Convergence of a density from the counts of all members: fraction, states, distances between halves.
     fn convergence(&self, counts: &[u8]) -> PyResult<Vec<Checked>> {
         let checkpoints = convergence(&self.read(counts)?).into_iter();
         Ok(checkpoints
@@ -186,7 +189,8 @@ impl NativeEnsemble {
             .collect())
     }
 
-    /// States in each cell, the first axis running fastest, and states outside of them, from the counts of all members.
+    /// States in each cell, the first axis running fastest, and states outside of all cells, from the counts of all
+    /// members.
     fn states(&self, counts: &[u8]) -> PyResult<(Vec<u64>, u64)> {
         let counts = self.read(counts)?;
         Ok((counts.total(), counts.outside()))
@@ -232,7 +236,7 @@ impl NativeEnsemble {
         })
     }
 
-    /// Runs members until the last, or until the time is over.
+    /// Runs members until the end of the range, or until the time is over; at least one block.
     fn made(&self, members: Range<u64>, seconds: f64) -> PyResult<Unit> {
         let mut runner = Runner::new(self.shared()).map_err(refused)?;
         let numbers = self
@@ -326,7 +330,7 @@ impl Unit {
     }
 }
 
-/// The members that are meant, of a model.
+/// The requested members of a model.
 fn members(model: &dyn AnyModel, varied: &Varied<'_>) -> PyResult<Members> {
     let description = model.description();
     let mut named = Vec::new();

@@ -18,7 +18,7 @@ pub(crate) const ADVICE: Advice = Advice {
          off_constraint=\"project\" (allowed positions near by) or off_constraint=\"keep\" (as it is)",
 };
 
-/// The exception of this name in `dalembert._errors`, made of these arguments.
+/// The exception of this name in `dalembert._errors`, with these arguments.
 fn exception<'py>(
     py: Python<'py>,
     name: &str,
@@ -34,12 +34,12 @@ fn exception<'py>(
     }
 }
 
-/// A parameter, a state or a run that is refused.
+/// The exception for a refused parameter, state or run.
 pub(crate) fn refused(text: impl Display) -> PyErr {
     Python::attach(|py| exception(py, "RequestError", (text.to_string(),)))
 }
 
-/// A text that is refused.
+/// The exception for a refused text.
 pub(crate) fn model_error(py: Python<'_>, refused: &Refused) -> PyErr {
     let mistakes: PyResult<Vec<_>> = refused
         .mistakes()
@@ -75,7 +75,7 @@ pub(crate) fn named<'py>(py: Python<'py>, pairs: &[(String, f64)]) -> PyResult<B
     Ok(dict)
 }
 
-/// Reason for which a state is refused.
+/// The exception for a refused state, with the reason.
 pub(crate) fn state(description: &Description, error: &StateError) -> PyErr {
     let StateError::Parameter(error) = error else {
         return refused(words::state_text(description, error, &ADVICE));
@@ -89,7 +89,7 @@ pub(crate) fn state(description: &Description, error: &StateError) -> PyErr {
     })
 }
 
-/// Reason for which a run has no derivatives.
+/// The exception for a run without derivatives, with the reason.
 pub(crate) fn variation(description: &Description, error: &VariationError) -> PyErr {
     let surface = |index: usize| names::surfaces(description).nth(index).unwrap_or_default();
     let text = match *error {
@@ -121,7 +121,7 @@ pub(crate) fn variation(description: &Description, error: &VariationError) -> Py
     refused(format!("jacobian: {text}"))
 }
 
-/// Reason for which a run does not begin.
+/// The exception for a run that does not begin, with the reason.
 pub(crate) fn run(model: &dyn AnyModel, refusal: &Refusal) -> PyErr {
     match refusal {
         Refusal::State(error) => state(model.description(), error),

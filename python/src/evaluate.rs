@@ -1,4 +1,4 @@
-//! Everything that is derived at a state.
+//! Evaluation of all derived quantities at a state.
 
 use dalembert::describe::Report;
 use dalembert_driver::{OffConstraint, Origin, Rates};
@@ -56,7 +56,7 @@ pub(crate) fn evaluate<'py>(
     }
 }
 
-/// Takes a report as a dictionary.
+/// Collects a report in a dictionary.
 struct Collected<'py> {
     py: Python<'py>,
     dict: Bound<'py, PyDict>,

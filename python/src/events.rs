@@ -11,8 +11,8 @@ use crate::cells::Sign;
 use crate::error::refused;
 use crate::model::NativeModel;
 
-/// An event, as `dalembert/_events.py` hands it on: a function of Python or else the next expression; a direction; true if the
-/// run ends there.
+/// An event, as `dalembert/_events.py` hands it on: a Python function, or `None` for the next expression; a direction;
+/// true if it ends the run.
 pub(crate) type Wanted = (Option<Py<PyAny>>, i32, bool);
 
 /// Functions of the user that are called during a run.
@@ -26,7 +26,7 @@ pub(crate) struct Calls {
     pub progress: Option<Py<PyAny>>,
 }
 
-/// A change of the sign of an event.
+/// A sign change of an event.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Crossing {
     pub t: f64,
@@ -41,11 +41,11 @@ enum Function {
     Python(Py<PyAny>),
 }
 
-/// Events that a run watches: functions with directions, and true for each that ends it.
+/// Events that a run watches: functions with directions, and true for each event that ends the run.
 #[derive(Default)]
 pub(crate) struct Watched<'a> {
     events: Vec<(Function, i32, bool)>,
-    /// The model whose outputs the expressions are.
+    /// The model whose last outputs are the expressions.
     model: Option<&'a NativeModel>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Watched<'a> {
     }
 }
 
-/// The events of a run that goes on.
+/// The events of a run in progress.
 pub(crate) struct Events {
     events: Vec<(Function, i32, bool)>,
     signs: Vec<Sign>,
@@ -97,7 +97,7 @@ impl Events {
         self.signs.iter_mut().for_each(Sign::jump);
     }
 
-    /// The changes of sign along a stretch of smooth motion, in order of time.
+    /// The sign changes along a stretch of smooth motion, in order of time.
     pub(crate) fn follow(&mut self, piece: &dyn Piece) -> PyResult<Vec<Crossing>> {
         let (start, end) = piece.span();
         if self.events.is_empty() || start >= end {
@@ -123,7 +123,7 @@ impl Events {
         Ok(found)
     }
 
-    /// Takes the watched model to the mode of a state.
+    /// Sets the watched model to the mode of a state.
     fn enter(&mut self, point: &Point) {
         let Some((model, name)) = self.model.as_mut().zip(point.mode) else {
             return;
@@ -135,7 +135,7 @@ impl Events {
     }
 }
 
-/// States of a step that were asked for, with the outputs of the watched model.
+/// Requested states of a step, with the outputs of the watched model.
 struct States<'a> {
     piece: &'a dyn Piece,
     model: Option<&'a dyn AnyModel>,

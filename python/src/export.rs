@@ -1,4 +1,4 @@
-//! Models for other languages: a header of C, and functions as plain data.
+//! Models for other languages: a C header, and functions as plain data.
 
 use dalembert_codegen::export::{self, Line, Operand, Part, Routine, Takes};
 use pyo3::IntoPyObjectExt;
@@ -14,13 +14,13 @@ fn parts(py: Python<'_>, source: &str, scene: Option<&str>) -> PyResult<Vec<Part
     found.ok_or_else(|| refused(format!("unknown scene `{}`", scene.unwrap_or("all"))))
 }
 
-/// A header of C99.
+/// A C99 header.
 #[pyfunction]
 pub fn to_c(py: Python<'_>, source: &str, scene: Option<&str>) -> PyResult<String> {
     Ok(export::header(&parts(py, source, scene)?))
 }
 
-/// The functions of a model, as lines: of each part a dictionary.
+/// The functions of a model as lines: one dictionary for each part.
 #[pyfunction]
 pub fn lines<'py>(
     py: Python<'py>,
@@ -47,7 +47,7 @@ fn dictionary<'py>(py: Python<'py>, part: &Part) -> PyResult<Bound<'py, PyDict>>
     Ok(dict)
 }
 
-/// True for a function of the state, its lines, its results, and what they are.
+/// A tuple: true for a function of the state, its lines, its results, and their description.
 fn function<'py>(py: Python<'py>, routine: &Routine) -> PyResult<Bound<'py, PyAny>> {
     let lines: PyResult<Vec<_>> = routine.lines.lines.iter().map(|it| line(py, it)).collect();
     let outputs: PyResult<Vec<_>> = routine

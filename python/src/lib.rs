@@ -1,4 +1,4 @@
-//! The extension module `dalembert._native`: what the Python package calls.
+//! The extension module `dalembert._native` of the Python package.
 //!
 //! | file | job |
 //! |---|---|
@@ -6,11 +6,11 @@
 //! | `model.rs` | models: texts to forms, values of parameters, descriptions |
 //! | `request.rs` | the arguments of a run, as settings and state of the driver |
 //! | `recorder.rs` | samples, impacts and contacts of a run as columns of numbers; signals |
-//! | `events.rs`, `cells.rs` | events and callbacks of the user; changes of the sign of a function |
+//! | `events.rs`, `cells.rs` | events and callbacks of the user; sign changes of a function |
 //! | `export.rs` | models for other languages |
 //! | `run.rs` | runs that have ended, as arrays |
 //! | `ensemble.rs` | rows and sums of members of an ensemble |
-//! | `evaluate.rs` | everything that is derived at a state |
+//! | `evaluate.rs` | all derived quantities at a state |
 //! | `report.rs` | derivations and verdicts |
 //!
 //! Names, defaults and documentation that users see are those of the Python files beside it.

@@ -20,15 +20,16 @@ use crate::{error, recorder};
 #[pyclass(frozen, module = "dalembert._native")]
 #[derive(Clone)]
 pub struct NativeModel {
-    /// The models of the text, and the place of this one.
+    /// The models of the text.
     models: Arc<[Loaded]>,
+    /// Index of this model among them.
     place: usize,
     pub(crate) form: Arc<Form>,
     pub(crate) values: Vec<f64>,
     pub(crate) mode: usize,
 }
 
-/// Positions, velocities, which of them were declared, and the end.
+/// Positions, velocities, marks of the declared positions and of the declared velocities, and the end time.
 type Initial = (Vec<f64>, Vec<f64>, Vec<bool>, Vec<bool>, Option<f64>);
 
 /// Texts whose models are in use, without and with claims.
@@ -116,7 +117,7 @@ impl NativeModel {
     /// The model for the driver.
     pub(crate) fn build(&self) -> Box<dyn AnyModel> {
         let mut model = of_form(Arc::clone(&self.form).into(), Code::Loaded)
-            .expect("room, as where it was loaded");
+            .expect("the form fits, as it did when it was loaded");
         for (index, value) in self.values.iter().enumerate() {
             model.set_parameter(index, *value);
         }
@@ -169,7 +170,7 @@ impl NativeModel {
         Ok(changed)
     }
 
-    /// The same model with inputs that are held.
+    /// The same model with constant values for some inputs.
     fn with_inputs(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
         let mut changed = self.clone();
         for (name, value) in values {
@@ -270,12 +271,12 @@ impl NativeModel {
         (start.q, start.qdot, start.placed, start.named, start.until)
     }
 
-    /// Makes a run.
+    /// Runs the model.
     fn simulate(&self, py: Python<'_>, request: Request) -> PyResult<NativeRun> {
         recorder::simulate(py, self, request)
     }
 
-    /// Everything that is derived at a state.
+    /// All derived quantities at a state.
     fn evaluate<'py>(&self, py: Python<'py>, at: At) -> PyResult<Bound<'py, PyDict>> {
         evaluate::evaluate(py, self, &at)
     }

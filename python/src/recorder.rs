@@ -1,4 +1,4 @@
-//! Samples, impacts and contacts of a run as columns of numbers, and the signals that come meanwhile.
+//! Samples, impacts and contacts of a run as columns of numbers, and signals during the run.
 
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
@@ -16,10 +16,10 @@ use crate::model::NativeModel;
 use crate::request::{Course, Request, Steering};
 use crate::run::NativeRun;
 
-/// The time between two looks at the signals of the process.
+/// Time between two checks for signals of the process.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Steps between two looks at the clock.
+/// Number of steps between two checks of the clock.
 const STEPS: u32 = 64;
 
 /// States, one after the other; vectors row after row.
@@ -43,8 +43,9 @@ pub(crate) struct Impacts {
     pub before: Columns,
     pub after: Columns,
     pub surfaces: Vec<i64>,
-    /// Which were at the same time as another, and which so light that rounding may have decided them.
+    /// True for an impact at the same time as another one.
     pub simultaneous: Vec<bool>,
+    /// True for an impact so light that rounding may have decided it.
     pub grazing: Vec<bool>,
 }
 
@@ -105,7 +106,7 @@ impl Columns {
 pub(crate) enum Times<'a> {
     /// Equally spaced.
     Grid(Grid),
-    /// These.
+    /// A list of times.
     Listed(&'a [f64]),
 }
 
@@ -123,7 +124,7 @@ struct Recorder<'a> {
     modes: &'a [ModeInfo],
     times: Times<'a>,
     taken: usize,
-    /// True if only samples are wanted: the run ends after the last.
+    /// True if only samples are requested: the run ends after the last sample.
     only_samples: bool,
     side: Side,
     events: Events,
@@ -141,7 +142,7 @@ pub(crate) enum Side {
     After,
 }
 
-/// Looks at the signals of the process from time to time.
+/// Checks for signals of the process from time to time.
 pub(crate) struct Signals {
     last: Instant,
     steps: u32,
@@ -157,7 +158,7 @@ impl Signals {
         }
     }
 
-    /// Looks after a step; true if it was time to.
+    /// Checks for signals after a step; true if a check was due.
     pub(crate) fn look(&mut self) -> bool {
         self.steps = (self.steps + 1) % STEPS;
         if self.steps != 0 || self.last.elapsed() < PATIENCE {
@@ -168,7 +169,7 @@ impl Signals {
         true
     }
 
-    /// Keeps the first error, and gives the value.
+    /// Keeps the first error. Returns the value, or the default in its place.
     fn take<T: Default>(&mut self, result: PyResult<T>) -> T {
         result.unwrap_or_else(|error| {
             self.interrupt.get_or_insert(error);
@@ -198,8 +199,8 @@ impl Recorder<'_> {
         self.record
     }
 
-    /// Takes the samples of a stretch up to a time. Its last instant is left to the next one, unless states before impacts
-    /// are wanted.
+    /// Takes the samples of a stretch up to a time. Its last instant is left to the next stretch, unless states before
+    /// impacts are requested.
     fn take_samples(&mut self, piece: &dyn Piece, end: f64) {
         while let Some(time) = self.next_time() {
             if time > end || (time == end && self.side == Side::After) {
@@ -209,7 +210,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// Takes the events of a stretch. One that ends the run is the last.
+    /// Takes the events of a stretch, up to an event that ends the run.
     fn take_events(&mut self, piece: &dyn Piece) {
         let found = self.events.follow(piece);
         for crossing in self.signals.take(found) {
@@ -289,7 +290,7 @@ impl Watch for Recorder<'_> {
     }
 }
 
-/// Makes a run of a model.
+/// Runs a model.
 pub(crate) fn simulate(
     py: Python<'_>,
     model: &NativeModel,
@@ -314,7 +315,7 @@ pub(crate) fn simulate(
     };
     let ends_by_impacts = course.settings.impacts.is_some() && !course.has_end;
     if listed.is_none() && grid.count > 0 && ends_by_impacts {
-        // The end is not known beforehand: runs are deterministic, and the same one is made twice.
+        // The end is not known before the run. Runs are deterministic, so the same run is made twice.
         let nothing = Times::Grid(Grid { count: 0, ..grid });
         grid.end = record(py, model, &course, Samples::of(nothing))?.1.t;
     }
@@ -362,10 +363,10 @@ fn check_times(times: &[f64], until: f64) -> PyResult<()> {
     }
 }
 
-/// The samples that are wanted.
+/// Requested samples.
 struct Samples<'a> {
     times: Times<'a>,
-    /// True if nothing else is.
+    /// True if nothing else is requested.
     only: bool,
     side: Side,
 }

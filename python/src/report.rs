@@ -14,7 +14,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::error::{named, refused};
 
-/// The derivation of a model from its source, and those of its scenes: of each a dictionary.
+/// The derivations of a model and of its scenes, from its source: one dictionary each.
 #[pyfunction]
 pub fn derive<'py>(py: Python<'py>, source: &str, claims: bool) -> PyResult<Bound<'py, PyList>> {
     let derived = py.detach(|| {
@@ -95,7 +95,7 @@ fn tree<'py>(py: Python<'py>, node: &Tree) -> PyResult<Bound<'py, PyAny>> {
     }
 }
 
-/// The doc comments of a declaration's parts by their names.
+/// The doc comments of coordinates and parameters, by name.
 #[pyfunction]
 pub fn documentation(source: &str) -> PyResult<BTreeMap<String, String>> {
     let tokens = source

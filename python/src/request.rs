@@ -43,12 +43,13 @@ pub struct Request<'py> {
     on_step: Option<Py<PyAny>>,
     on_event: Option<Py<PyAny>>,
     on_progress: Option<Py<PyAny>>,
-    /// All inputs as a function of `t`, `q` and `qdot`, and the time for which its values are held.
+    /// All inputs as a function of `t`, `q` and `qdot`.
     control: Option<Py<PyAny>>,
+    /// Time for which the values of that function are held.
     period: Option<f64>,
 }
 
-/// The start that a request gives, in part or as a whole.
+/// The start of a request, in part or as a whole.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Given {
@@ -58,7 +59,7 @@ pub(crate) struct Given {
     p: Option<Vec<f64>>,
 }
 
-/// A run that can be made, again and again with the same result.
+/// A run that can be repeated with the same result.
 #[derive(Clone)]
 pub(crate) struct Course {
     pub origin: Origin,
@@ -85,7 +86,7 @@ impl Request<'_> {
         }
     }
 
-    /// The run that is meant, of a model.
+    /// The requested run of a model.
     pub(crate) fn course(&mut self, model: &dyn AnyModel) -> PyResult<Course> {
         let policy = self.off_constraint()?;
         let origin = self.start.beginning(model)?.settle(model, policy);
@@ -98,7 +99,7 @@ impl Request<'_> {
         })
     }
 
-    /// The start that is given.
+    /// The given start.
     pub(crate) fn start(&self) -> Given {
         self.start.clone()
     }
@@ -114,7 +115,7 @@ impl Request<'_> {
             return match period {
                 None => Ok(None),
                 Some(_) => Err(refused(
-                    "period: it is that of inputs which are functions, and there are none",
+                    "period: it belongs to inputs that are functions, and there are none",
                 )),
             };
         };
@@ -341,7 +342,7 @@ fn law(name: &str, coefficient: Option<f64>) -> PyResult<Law> {
     match (expected, found) {
         (None, Some(law)) => Ok(law),
         (expected, _) => Err(refused(format!(
-            "law: `{name}` is not accepted so; expected {}",
+            "law: `{name}` is not accepted in this form; expected {}",
             expected.unwrap_or_default()
         ))),
     }

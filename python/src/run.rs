@@ -68,7 +68,7 @@ pub struct NativeRun {
     stop: Option<Stop>,
 }
 
-/// Columns that become arrays where they are first asked for.
+/// Columns that become arrays at their first use.
 struct Lazy<C, T> {
     columns: Mutex<Option<C>>,
     made: PyOnceLock<Py<T>>,
@@ -256,7 +256,7 @@ impl NativeRun {
         self.ending.warnings.clone()
     }
 
-    /// The form, the integrator, the tolerance and the step that was kept.
+    /// The form, the integrator, the tolerance and the fixed step, if there is one.
     #[getter]
     fn settings(&self) -> (&'static str, &'static str, f64, Option<f64>) {
         let settings = &self.course.settings;
@@ -285,7 +285,7 @@ impl NativeRun {
         let description = self.model.describe();
         if self.course.steering.is_some() {
             return Err(error::refused(
-                "jacobian: nothing is known of the derivatives of inputs that are functions",
+                "jacobian: the derivatives of inputs that are functions are not known",
             ));
         }
         let variables = wrt.iter().map(|name| Variable::find(description, name));
@@ -324,7 +324,8 @@ impl NativeRun {
         Ok(matrix.transpose()?.unbind())
     }
 
-    /// States at these times, in order, by the same run once more; with `before`, those before impacts.
+    /// States at these times, in order, from a repetition of the run. With `before`, states at impacts are those before
+    /// them.
     fn at(
         &self,
         py: Python<'_>,

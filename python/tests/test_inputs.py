@@ -76,7 +76,7 @@ def test_an_impact_within_a_period_changes_no_input(cart):
 def test_the_run_is_made_again(cart, period):
     run = cart.simulate(inputs={"u": lambda t, q, qdot: math.cos(3 * t)}, period=period, until=3)
     np.testing.assert_array_equal(run(run.t)["x"], run["x"])
-    with pytest.raises(RequestError, match="jacobian: nothing is known of the derivatives of inputs that are functions"):
+    with pytest.raises(RequestError, match="jacobian: the derivatives of inputs that are functions are not known"):
         run.jacobian(["x"])
 
 
@@ -130,7 +130,7 @@ def test_errors_of_inputs_are_raised(cart):
 
 @pytest.mark.parametrize(("arguments", "words"), [
     ({"inputs": {"v": abs}}, "unknown input `v`\n  accepted: u, w"),
-    ({"inputs": {"u": 1}, "period": 0.1}, "period: it is that of inputs which are functions"),
+    ({"inputs": {"u": 1}, "period": 0.1}, "period: it belongs to inputs that are functions"),
     ({"inputs": {"u": lambda t, q, qdot: 0}, "period": 0}, "period: 0 is not accepted; expected a positive number"),
     ({"inputs": {"u": lambda t, q, qdot: 0}, "integrator": "taylor"}, "integrator: inputs that are functions need dop853"),
 ])

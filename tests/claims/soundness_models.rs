@@ -26,7 +26,7 @@ fn every_component_of_a_surface_counts() {
     at(
         "x*y >= 0",
         "conserved under w: dot(x)^2",
-        Undecided("parts of `w` may be out of sight"),
+        Undecided("parts of `w` may be missed"),
     );
     at(
         "(x - 1)*(x - 2) >= 0",

@@ -8,7 +8,7 @@ use super::constants::{Constant, Record};
 use super::{Context, parameters, scene};
 use dalembert_codegen::program::Form;
 
-/// `impl Documented`, and `impl Emitted` with all that is constant of the form.
+/// `impl Documented`, and `impl Emitted` with the constants of the form.
 pub(super) fn emit_documented(context: &Context<'_>, base: Option<&Context<'_>>) -> TokenStream {
     let (type_name, global_name) = (&context.names.type_name, &context.names.global);
     let model = context.form.model;
@@ -106,7 +106,7 @@ pub(super) fn emitted(type_name: &TokenStream, constant: &str) -> TokenStream {
     quote!(<#type_name as ::dalembert::declaration::Emitted>::#constant)
 }
 
-/// The statement that sets one of the parameters at these places.
+/// The statement that sets parameter `index` to `value`; `places` are the fields of the parameters, in order.
 pub(super) fn emit_set(places: &[TokenStream]) -> TokenStream {
     let set = places
         .iter()
@@ -120,7 +120,7 @@ pub(super) fn emit_set(places: &[TokenStream]) -> TokenStream {
     }
 }
 
-/// `impl Scene`: the effects of everything that is used.
+/// `impl Scene`: the effects that the model needs.
 pub(super) fn emit_scene(context: &Context<'_>) -> TokenStream {
     let type_name = &context.names.type_name;
     let (mut types, mut values) = (Vec::new(), Vec::new());

@@ -77,7 +77,7 @@ impl File {
                     .for_each(|error| self.refuse(&mut diagnostics, error.message())),
             }
         }
-        // The crate is built again where the file changes.
+        // Cargo builds the crate again when the file changes.
         let path = self.path.to_string_lossy();
         items.extend(quote!(
             const _: &[u8] = ::core::include_bytes!(#path);
@@ -88,7 +88,7 @@ impl File {
     fn expand_one(&self, model: TokenStream, is_one: bool) -> Result<TokenStream, Diagnostics> {
         let mut declaration = dalembert_codegen::read(model)?;
         if is_one {
-            // NOTE: tokens of a text have no places of their own inside of a macro, where a declaration is read back from.
+            // NOTE: inside of a macro, tokens of a text have no positions: the source cannot be read back from them.
             let source = self.text.trim().to_owned();
             match &mut declaration {
                 Declaration::Model(spec) => spec.source = source,
@@ -101,7 +101,7 @@ impl File {
         crate::expand_declaration(declaration)
     }
 
-    /// A mistake in the file. Its place is not known inside of a macro; the command line shows it.
+    /// Reports a mistake in the file. Its place is not known inside of a macro; the command line shows it.
     fn refuse(&self, diagnostics: &mut Diagnostics, message: &str) {
         let file = self.path.display();
         let text = format!("{message}\nnote: in {file}; `dalembert check {file}` shows the place");
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_file_is_said() {
+    fn mistakes_in_a_file_are_reported() {
         let unknown = expanded(
             "unknown.dal",
             "Ball { coordinates { x; } lagrangian = dot(x)^2 - k*x; }",

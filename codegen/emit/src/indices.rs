@@ -9,7 +9,7 @@ use dalembert_codegen::model::{Model, Name, Surface};
 /// A declared name with its doc comment.
 pub(super) type Entry<'a> = (&'a Name, &'a [String]);
 
-/// The module, with one inside for each kind of declared names, and the types of the scenes.
+/// The module of indices: a submodule for each kind of declared name, and the types of the scenes.
 pub(super) fn emit_indices(context: &Context<'_>, scenes: &[Vec<Context<'_>>]) -> TokenStream {
     let model = context.form.model;
     let lists = emit_lists(model);
@@ -94,7 +94,7 @@ pub(super) fn emit_entries<'a>(
     quote!(#[doc = #title] pub mod #module { #(#constants)* })
 }
 
-/// The index of a name, or those of a family in the order of its members, wherever they were declared.
+/// The index of a name, or the indices of a family in the order of its members. Members may be declared in any order.
 fn emit_constant(first: usize, entries: &[Entry<'_>]) -> TokenStream {
     let (name, _) = entries[first];
     let constant = Ident::new(&name.field, Span::call_site());
@@ -112,7 +112,7 @@ fn emit_constant(first: usize, entries: &[Entry<'_>]) -> TokenStream {
     }
 }
 
-/// Documentation of the members, each text once; the name where none was written.
+/// Documentation of the members, each text once; the name if there is none.
 fn documentation(indices: &[usize], entries: &[Entry<'_>]) -> TokenStream {
     let mut texts: Vec<&[String]> = Vec::new();
     for index in indices {

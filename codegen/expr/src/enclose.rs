@@ -1,8 +1,8 @@
-//! Proofs that an expression is not 0 anywhere in a box: enclosures by intervals, on parts of the box until all are decided.
+//! Proofs that an expression has no zero in a box. Intervals enclose it on parts of the box until all are decided.
 //!
-//! Lines are boxes from minus to plus infinity: boxes are halved in `x/(1+|x|)`, in which every line has length 2. Where a
-//! derivative keeps its sign, the ends in its direction decide. This settles polynomials far out, where terms enclosed one
-//! by one seem to cancel.
+//! A box may be unbounded. Boxes are halved in the variable `x/(1+|x|)`, in which the whole line has length 2. Where a
+//! derivative keeps its sign, the values at both ends in its direction bound the expression. Horner's rule decides
+//! polynomials far out, where terms that are enclosed one by one seem to cancel.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
@@ -12,10 +12,10 @@ use crate::node::{ExprId, Node, SymbolId};
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// Boxes that are looked at.
+/// Largest number of boxes that are examined.
 const BOXES: usize = 4096;
 
-/// Ranges of symbols; all others are all real numbers.
+/// Ranges of symbols. Every other symbol may be any real number.
 pub type Domain = Vec<(SymbolId, Interval)>;
 
 /// The answer of [`Pool::zeros_on`].
@@ -25,12 +25,13 @@ pub enum Zeros {
     None,
     /// A zero between two points at which the signs differ, or at a point.
     Between(Vec<(SymbolId, f64)>, Vec<(SymbolId, f64)>),
-    /// Undecided: a part of the box in which neither was shown.
+    /// Undecided: a part of the box in which neither was proved.
     Open(Domain),
 }
 
 impl Pool {
-    /// The ranges of expressions over a box; `None` where one may have no value.
+    /// The ranges of expressions over a box, by index of the expression; `None` where one may have no value. `order` is
+    /// [`Pool::reachable`] of some roots.
     pub fn enclose(&self, order: &[ExprId], domain: &Domain) -> Vec<Option<Interval>> {
         let mut ranges = vec![None; order.last().map_or(0, |id| id.index() + 1)];
         for id in order {
@@ -76,7 +77,7 @@ impl Pool {
         }
     }
 
-    /// The range of a sum once more, by Horner's rule in every base of powers without bounds: the largest power then decides.
+    /// Narrows the range of a sum by Horner's rule in every unbounded base: the largest power then decides.
     fn far_out(
         &self,
         constant: &Rational,
@@ -169,7 +170,7 @@ impl Pool {
     }
 }
 
-/// `sum of c_k x^k`, nested.
+/// `sum of c_k x^k`, by Horner's rule.
 fn nested(powers: &BTreeMap<i64, Interval>, x: Interval) -> Option<Interval> {
     let mut falling = powers.iter().rev();
     let (mut power, mut sum) = falling.next().map(|(power, range)| (*power, *range))?;
@@ -282,7 +283,7 @@ fn squeezed(x: f64) -> f64 {
     }
 }
 
-/// A number inside, halfway in `x/(1+|x|)`.
+/// A number inside of the range, halfway in `x/(1+|x|)`.
 fn middle(range: Interval) -> f64 {
     let place = f64::midpoint(squeezed(range.lo), squeezed(range.hi));
     let x = place / (1.0 - place.abs());

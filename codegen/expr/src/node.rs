@@ -1,13 +1,13 @@
-//! Nodes of expressions: their types, and the names of nodes and symbols.
+//! Nodes of expressions: their types, and the identifiers of nodes and symbols.
 
 use crate::function::Function;
 use crate::rational::Rational;
 
-/// Names a symbol of a [`Pool`](crate::Pool).
+/// Identifier of a symbol of a [`Pool`](crate::Pool).
 #[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
 pub struct SymbolId(u32);
 
-/// Names an expression of a [`Pool`](crate::Pool); operands come before their users.
+/// Identifier of an expression of a [`Pool`](crate::Pool). Operands have smaller identifiers than their users.
 #[derive(Copy, Clone, Eq, PartialEq, Ord, PartialOrd, Hash, Debug)]
 pub struct ExprId(u32);
 
@@ -89,7 +89,7 @@ impl Node {
         }
     }
 
-    /// Visits the numbers that stand in the node itself.
+    /// Visits the numbers stored in the node itself.
     fn for_each_number(&self, mut visit: impl FnMut(&Rational)) {
         match self {
             Self::Number(value) => visit(value),
@@ -102,14 +102,14 @@ impl Node {
         }
     }
 
-    /// The bits of the longest number that stands in the node itself.
+    /// The bits of the longest number stored in the node itself.
     pub(crate) fn number_bits(&self) -> u64 {
         let mut bits = 0;
         self.for_each_number(|number| bits = bits.max(number.bits()));
         bits
     }
 
-    /// Steps of a pool's budget that making the node takes.
+    /// Steps of the pool's budget that the creation of the node costs.
     pub(crate) fn steps(&self) -> u64 {
         let mut steps = 1;
         self.for_each_operand(|_| steps += 1);

@@ -78,7 +78,8 @@ impl Pool {
             let exact_turn =
                 (coefficient * &Rational::from(12)).is_integer() && residue == Residue::Circular;
             if *term == self.pi() && exact_turn {
-                // NOTE: only sqrt(2) and sqrt(3) enter; which root is taken is settled by their field automorphism.
+                // NOTE: only sqrt(2) and sqrt(3) enter. A field automorphism exchanges their signs: either root is
+                // right.
                 continue;
             }
             profile.denominator = common(profile.denominator, coefficient);
@@ -127,7 +128,7 @@ impl Pool {
         }
     }
 
-    /// Base angles and exponentials have degrees (2, 2) and 2; multiples multiply them.
+    /// A base angle has the degrees (2, 2), a base exponential the degree 2. A multiple multiplies them.
     fn degree_of_call(&self, function: Function, argument: ExprId, denominator: f64) -> (f64, f64) {
         if !function.residue().has_base() {
             return (1.0, 0.0);

@@ -1,7 +1,7 @@
 //! The generic rank of a matrix of expressions, by elimination modulo primes at random points.
 //!
-//! The rank at a point never exceeds the generic rank, so the best of a few points is taken; it is too small with
-//! chance `degree / p` per point.
+//! The rank at a point never exceeds the generic rank, so the largest of a few points is taken. At one point it is too
+//! small with a probability of at most `degree / p`.
 
 use crate::field::Modulus;
 use crate::node::ExprId;
@@ -15,7 +15,7 @@ pub struct RankReport {
     pub rank: usize,
     /// The rows that do not depend on earlier rows, in order.
     pub independent_rows: Vec<usize>,
-    /// Every other row, with the earlier independent rows that it combines with coefficients other than 0; a row of zeros has none.
+    /// Every other row, with the earlier independent rows that it is a combination of; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
     /// Pivot column of each independent row, in the same order: the first in which the row differs from the
     /// combinations of the rows before it.
@@ -25,7 +25,8 @@ pub struct RankReport {
     pub decided: bool,
 }
 
-/// Numbers of points, without roots and with roots. A hidden sign of a root may make rows dependent at a point.
+/// Numbers of points, without and with roots in the entries. The unknown sign of a root may make rows dependent at a
+/// point.
 const SAMPLES: (usize, usize) = (3, 24);
 const REAL_SAMPLES: u64 = 12;
 
@@ -71,8 +72,8 @@ impl Pool {
     }
 }
 
-/// The report of higher rank; of two that agree in rank, the one that names more dependencies, as a coefficient may
-/// vanish at one point.
+/// The report of higher rank. Of two reports of equal rank, the one with more dependencies: a coefficient may vanish at
+/// one point.
 fn better(a: Option<RankReport>, b: Option<RankReport>) -> Option<RankReport> {
     let weight = |report: &RankReport| {
         let named: usize = report.dependencies.iter().map(|(_, rows)| rows.len()).sum();
@@ -94,14 +95,14 @@ fn undecided() -> RankReport {
     }
 }
 
-/// An echelon row: its entries, and the combination of original rows that it is.
+/// An echelon row: its entries, and its coefficients in the original rows.
 struct EchelonRow {
     pivot: usize,
     entries: Vec<u64>,
     combination: Vec<u64>,
 }
 
-/// Eliminates row by row: the remainder of a row after the rows before it is independent of them, or 0.
+/// Gaussian elimination, row by row. The remainder of a row is 0 or independent of the rows before it.
 fn eliminate(field: Modulus, rows: &[Vec<ExprId>], values: Vec<u64>) -> RankReport {
     let mut report = undecided();
     let mut echelon: Vec<EchelonRow> = Vec::new();

@@ -6,8 +6,8 @@ use crate::rational::Rational;
 
 /// Sums up to this length are spliced into an enclosing sum.
 ///
-/// NOTE: splicing finds cancellation, but a chain of `n` sums, each adding one term to the last, would otherwise
-/// take `n^2` room.
+/// NOTE: splicing finds cancellation. Without the limit, a chain of `n` sums, each one term longer than the last, would
+/// take memory of order `n^2`.
 const SPLICE_LIMIT: usize = 256;
 
 /// A sum in the making; terms in any order, repeated or not.
@@ -98,7 +98,7 @@ impl Pool {
             Node::Sum { constant, terms } if terms.len() <= SPLICE_LIMIT => {
                 linear.constant = &linear.constant + &(scale * constant);
                 for (coefficient, term) in terms {
-                    // A term that is a sum again is a primitive one below its coefficient: the depth is two.
+                    // A term that is itself a sum is primitive, so the recursion is two levels deep.
                     self.splice(linear, &(scale * coefficient), *term);
                 }
             }
@@ -160,8 +160,8 @@ impl Pool {
     }
 }
 
-/// The common factor of all coefficients, with the sign of the first that is not 0. It is 1 where it does not fit
-/// machine words: sharing multiples of such sums is given up.
+/// The common factor of all coefficients, with the sign of the first that is not 0. It is 1 if it does not fit machine
+/// words: multiples of such sums are not shared.
 fn content(constant: &Rational, terms: &[(Rational, ExprId)]) -> Rational {
     let coefficients = terms.iter().map(|(coefficient, _)| coefficient);
     let mut proper = coefficients

@@ -1,4 +1,4 @@
-//! Random expressions: a built expression has the value of the expression as written, and is undefined where that is undefined.
+//! Random expressions: a built expression has the value of the written expression, and is undefined where that one is.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 
@@ -144,7 +144,7 @@ fn built_value(pool: &Pool, id: ExprId, point: &[f64]) -> Option<f64> {
         .then(|| *values.last().unwrap())
 }
 
-/// True if the value is sensitive to rounding: it changes by much, appears or disappears, when the point moves by little.
+/// True if the value is sensitive to rounding: it changes a lot, appears or disappears when the point moves a little.
 ///
 /// Coordinates that are 0 stay: the behaviour there is the subject of the test.
 fn is_fragile(written: &Written, point: &[f64]) -> bool {

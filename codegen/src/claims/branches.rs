@@ -1,6 +1,6 @@
 //! Constraints that are not linear in the velocities, solved for one velocity each: `a v^2 + b v + c = 0`.
 //!
-//! The states on D are those of both roots. What vanishes at all of them vanishes for each choice of roots.
+//! The states on D are those of both roots. A sum that vanishes on D vanishes for each choice of roots.
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, Pool, Rational, SymbolId, Verdict as Zero,
@@ -10,7 +10,7 @@ use super::dynamics::Number;
 use crate::mechanics::Derivation;
 use crate::model::Model;
 
-/// Constraints whose combinations of roots are gone through.
+/// Largest number of nonlinear constraints whose combinations of roots are examined.
 const MOST: usize = 4;
 
 /// A constraint with the velocity that it is solved for, and its coefficients `c`, `b`, `a`, evaluated where that

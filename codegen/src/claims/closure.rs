@@ -1,8 +1,8 @@
 //! Closure of the demands under brackets: the rank of the distribution's hull, with and without the demands.
 //!
-//! `[(X, c), (Y, d)] = ([X, Y], X(d) - Y(c))`. A local density exists iff closing the pairs leaves the rank of the
-//! vector parts unchanged: then the demands are those of a function on every leaf (Frobenius). Only brackets of
-//! generators with elements that raised the rank of the pairs in the step before need be looked at.
+//! `[(X, c), (Y, d)] = ([X, Y], X(d) - Y(c))`. A local density exists iff the closed set of pairs has the rank of its
+//! vector parts: the demands are then those of a function on every leaf (Frobenius). Only brackets of generators with
+//! elements that raised the rank of the pairs in the previous step can be new.
 
 use dalembert_expr::{Arithmetic, Jets, Modulus};
 
@@ -20,7 +20,7 @@ pub(super) enum Origin {
 /// The hull of a set of generators at a point.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Hull {
-    /// The rank of the vector parts after each depth, the generators alone first.
+    /// The rank of the vector parts at each depth of brackets, beginning with the generators alone.
     pub(super) growth: Vec<usize>,
     /// The rank of the vector parts.
     pub(super) rank: usize,
@@ -32,7 +32,8 @@ pub(super) struct Hull {
     pub(super) basis: Vec<usize>,
     /// The first element that is independent as a pair but not as a vector.
     pub(super) obstruction: Option<usize>,
-    /// True if no bracket leads out of it; else the order of the series was too small to go on.
+    /// True if no bracket leads out of the hull, or if an obstruction ended the closure (see [`Until`]). False if the
+    /// order of the series was too small to finish.
     pub(super) is_closed: bool,
 }
 
@@ -53,7 +54,7 @@ impl Echelon {
         }
     }
 
-    /// True if the row is independent of those before; if so it is kept.
+    /// Keeps a row that is independent of the rows before it; false if it depends on them.
     fn push(&mut self, row: &[u64]) -> bool {
         let mut row = row[..self.width].to_vec();
         for (pivot, known) in &self.rows {
@@ -77,7 +78,7 @@ impl Echelon {
     }
 }
 
-/// Closure of a hull.
+/// End of the closure of a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Until {
     /// No bracket leads out of the hull.

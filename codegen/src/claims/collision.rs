@@ -35,13 +35,13 @@ pub(super) trait AtImpact {
         true
     }
 
-    /// True if a state, given in ranges, is certain to be one that is asked about.
+    /// True if a state, given in ranges, certainly belongs to the question.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         let _ = (model, point);
         true
     }
 
-    /// The size of what the terms were computed from.
+    /// Size of the quantities from which the terms are computed.
     fn scale(&self, model: &Model, point: &mut RealPoint, after: &[f64]) -> Option<f64>;
 
     /// Names and values for a message, given the terms and their sum.
@@ -121,7 +121,7 @@ pub(super) fn after_and_before<P: ExpansionPoint>(
     Some([new, old])
 }
 
-/// A question at one place.
+/// A question at one place of the surface.
 struct Collision<'c, Q> {
     wall: &'c Wall,
     dynamics: &'c Dynamics,

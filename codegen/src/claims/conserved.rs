@@ -54,7 +54,7 @@ pub(super) fn check_conserved(
         && matches!(verdict, Verdict::Proved(_))
         && let Some(place) = jumps.find_map(|place| place)
     {
-        let text = format!("its rate is 0 wherever it has one, but it may jump {place}");
+        let text = format!("its rate is 0 wherever it exists, but it may jump {place}");
         return Verdict::Undecided(text);
     }
     verdict

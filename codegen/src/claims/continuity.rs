@@ -1,4 +1,4 @@
-//! Jumps of a quantity whose rate is 0 wherever it has one: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))` at `x = pi`.
+//! Jumps of a quantity whose rate is 0 wherever it exists: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))` at `x = pi`.
 //!
 //! Along a motion, which is analytic, a quantity made of sums, products, quotients, sines, cosines and exponentials is
 //! meromorphic, so that a rate of 0 makes it constant. Roots, absolute values, logarithms and inverse functions choose a
@@ -10,8 +10,8 @@ use dalembert_expr::{ExprId, Function, Node, Pool};
 
 use crate::model::Model;
 
-/// Places where `value` may jump, in words. `is_constant` tells whether an expression is constant along every motion.
-/// The motion has no equations where one of `singular` is 0.
+/// A place where `value` may jump, in words; `None` if it cannot jump. `is_constant` tells whether an expression is
+/// constant along every motion. The motion has no equations where one of `singular` is 0.
 pub(super) fn possible_jump(
     model: &mut Model,
     value: ExprId,

@@ -1,8 +1,9 @@
-//! Consequences of a volume that motion and impacts keep, with their hypotheses, and of one that they do not.
+//! Consequences of an invariant volume, with their hypotheses, and of a volume that is not invariant.
 //!
-//! Impacts accumulate for almost no start where the volume is smooth and each impulse vanishes with the gap rate (W. Clark, thesis, Theorem
-//! VII.17). Almost every start comes back arbitrarily near where energy levels are compact besides (Theorem VII.21): the energy is kept, and
-//! surfaces bound all coordinates that are no angles.
+//! If the volume is smooth and each impulse vanishes with the gap rate, impacts accumulate for almost no start (W.
+//! Clark, thesis, Theorem VII.17). If energy levels are compact as well, almost every start comes back arbitrarily near
+//! (Theorem VII.21). They are compact if the energy is conserved and surfaces bound all coordinates that are not
+//! angles.
 
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
 
@@ -25,7 +26,7 @@ pub(super) fn corollaries(
     let mut found = Vec::new();
     if !model.surfaces.is_empty() {
         found.push(
-            "impacts accumulate for almost no start: the volume is smooth, and impulses vanish with the gap rate; motion that grazes is taken to go on"
+            "impacts accumulate for almost no start: the volume is smooth, and impulses vanish with the gap rate; grazing motion is assumed to go on"
                 .to_owned(),
         );
     }
@@ -36,7 +37,7 @@ pub(super) fn corollaries(
         let bounds = match bounds.is_empty() {
             true => "all coordinates are angles".to_owned(),
             false => format!(
-                "coordinates that are no angles are bounded by {}",
+                "coordinates that are not angles are bounded by {}",
                 bounds.join(", ")
             ),
         };
@@ -83,7 +84,7 @@ fn is_smooth(model: &Model, density: &Density) -> bool {
     density.is_found || density.value.is_some_and(is_positive)
 }
 
-/// True if every surface has a law whose impulse is a multiple of the gap rate, which is 0 at the end of the surface.
+/// True if the law of every surface has an impulse proportional to the gap rate, which is 0 in a grazing impact.
 fn impulses_vanish(model: &Model) -> bool {
     let is_linear = |model: &Model| {
         let mut affine = model.constraints.iter().map(|constraint| constraint.affine);
@@ -120,7 +121,7 @@ fn keeps_energy(model: &mut Model, around: &Surroundings<'_>) -> bool {
         && (0..model.surfaces.len()).all(|surface| keeps(model, surface))
 }
 
-/// The surfaces that bound the coordinates that are no angles; `None` if one of these is not known to be bounded.
+/// The surfaces that bound the coordinates that are not angles; `None` if one of these coordinates may be unbounded.
 fn bounded(model: &mut Model) -> Option<Vec<String>> {
     let coordinates = model.coordinates.clone();
     let is_open = |coordinate: &&crate::model::Coordinate| {
@@ -154,7 +155,8 @@ fn bounded(model: &mut Model) -> Option<Vec<String>> {
         .then_some(names)
 }
 
-/// The lines that a gap which is not negative bounds, from below and from above: it falls in them as a square does, or is linear in a single one.
+/// The coordinates that `gap >= 0` bounds, each with flags for a lower and an upper bound. The gap is quadratic in them
+/// with negative coefficients and without mixed terms, or linear in a single one.
 fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, bool, bool)> {
     let used = (0..lines.len()).filter(|i| pool.depends_on(gap, lines[*i]));
     let used: Vec<usize> = used.collect();
@@ -189,7 +191,7 @@ fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, boo
     used.into_iter().map(|i| (i, true, true)).collect()
 }
 
-/// True if an expression is a number, or made of numbers and symbols that have a sign: parameters.
+/// True if an expression consists of numbers and of symbols with an assumption, which are parameters.
 fn is_parameter(pool: &Pool, id: ExprId) -> bool {
     let assumed =
         |symbol: &SymbolId| pool.symbol_assumption(*symbol) != dalembert_expr::Assumption::None;

@@ -1,4 +1,4 @@
-//! `density = e`: is `e mu_C` invariant? With `qdot = X_0 + u^i X_i`, the rate of `ln e` along the motion must be
+//! `density = e`: `e mu_C` is invariant. With `qdot = X_0 + u^i X_i`, the rate of `ln e` along the motion must be
 //! `c_0 + u^i c_i` (see [`super::frame`]), which is minus the divergence of the motion with respect to `mu_C`.
 //!
 //! A factor `abs(l)^s` counts as `l^s` where `l` is not 0: its logarithmic derivative is the same.
@@ -16,7 +16,7 @@ use super::frame::frame;
 use super::problem::Problem;
 use crate::model::Model;
 
-/// Relative sum below which rate and divergence are printed as equal.
+/// Relative size of the sum below which rate and divergence look alike in a message.
 const ALIKE: f64 = 1e-9;
 
 /// The verdict on `density = value`; `written` is the value as written.
@@ -232,7 +232,7 @@ impl Vanishing for Balance<'_> {
         let motion = self.dynamics.motion(&model.pool, point, None)?;
         let (value, _) = self.quantity.terms(model, &motion, point)?;
         let rate = rate_scale(&self.quantity, model, &motion, point) / value.abs();
-        // The divergence is a combination of velocities whose coefficients have cancelled before.
+        // The coefficients of the velocities in the divergence may have cancelled: they count as numbers of size 1.
         let velocity = motion
             .qdot
             .iter()

@@ -1,11 +1,12 @@
-//! `energy under s: not increasing`: is the energy after an impact at most that before it (Carnot)?
+//! `energy under s: not increasing`: the energy after an impact is at most the energy before it (Carnot).
 //!
 //! ```text
 //! walls that stand still, linear constraints   H+ - H- = -(2 - c) c G^2/(2 dh(pi_D grad h)),  G+ = (1 - c) G
 //! ```
 //!
-//! It is not positive for c between 0 and 2. A projection on linear constraints takes energy away, and a refraction keeps it. All other
-//! maps are looked at as functions of the state: equal energies, a quadratic form without positive entries, or a state with more energy.
+//! The change is not positive for c between 0 and 2. A projection onto linear constraints takes energy away, and a
+//! refraction keeps it. All other maps are examined as functions of the state: the energies are equal, their difference
+//! is a quadratic form without positive entries, or a state with more energy is found.
 //! J. Cortes and A. M. Vinogradov (2006), Theorem 5.7.
 
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
@@ -38,7 +39,7 @@ pub(super) fn check_not_increasing(
     {
         return proved(
             &name,
-            "its change is a quadratic form of velocities without positive parts",
+            "its change is a quadratic form of velocities without positive terms",
         );
     }
     let mut looked_for = |wanted| {
@@ -60,7 +61,7 @@ pub(super) fn check_not_increasing(
     };
     match found.verdict(true, wording, around.seed) {
         Verdict::Undecided(_) => Verdict::Undecided(format!(
-            "no state was found at which the energy grows at `{name}`, nor a reason why there is none"
+            "no state was found at which the energy grows at `{name}`, and no proof that there is none"
         )),
         verdict => verdict,
     }
@@ -73,7 +74,7 @@ fn proved(name: &str, reason: &str) -> Verdict {
     ))
 }
 
-/// Why the energy does not grow, where the law says so.
+/// Reason for which the energy does not grow, if the law implies it.
 fn known(
     model: &Model,
     around: &Surroundings<'_>,
@@ -91,7 +92,7 @@ fn known(
         return None;
     }
     match declared.law {
-        Law::Elastic => Some("an elastic impact keeps it, and a projection takes of it"),
+        Law::Elastic => Some("an elastic impact keeps it, and a projection reduces it"),
         Law::Restitution(e) | Law::Newton(e) => {
             let ranges = model
                 .pool
@@ -118,7 +119,8 @@ fn known(
     }
 }
 
-/// True if the change of the energy is a constant and a diagonal quadratic form of the velocities, none of them positive.
+/// True if the change of the energy is a constant plus a diagonal quadratic form of the velocities, and neither is
+/// positive anywhere.
 fn is_never_positive_gain(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -160,7 +162,7 @@ fn is_never_positive_gain(
     let slopes = parts.into_iter().skip(1).zip(metric);
     let mut ratios: Vec<ExprId> = constant.into_iter().collect();
     for (part, mass) in slopes {
-        // Relative to the mass, of which only the sign counts.
+        // The quotient by a positive mass has the same sign and may be simpler.
         let ratio = model.pool.div(part, mass);
         let ratio = model.pool.multiply_out(ratio);
         let is_heavy = model.pool.sign(mass) == Sign::Positive;

@@ -1,4 +1,4 @@
-//! Evidence on whether something vanishes at all states: residues at random states, and values at real states.
+//! Evidence on whether a quantity vanishes at all states: residues at random states, and values at real states.
 
 use dalembert_expr::{
     Arithmetic, BallPoint, Branches, Covered, EnclosedPoint, ExpansionPoint, ExprId, ModularPoint,
@@ -12,9 +12,9 @@ use super::sample::{self, Sample};
 use super::undecided::{LARGEST_CHANCE, Undecided};
 use crate::model::Model;
 
-/// Number of random states at which a sum must vanish, and of those of each branch if there are several.
+/// Number of random states at which a sum must vanish, and number on each branch if there are several.
 const STATES: (usize, usize) = (12, 3);
-/// Real states that are tried.
+/// Number of real states that are tried.
 const WITNESSES: usize = 48;
 /// Number of states at which a sum is enclosed with more digits, whatever its value in doubles.
 const ENCLOSED: usize = 12;
@@ -25,7 +25,7 @@ const VISIBLE: f64 = 1e-10;
 const SUSPECT: f64 = 1e-6;
 /// A sum below this part of its scale has lost digits that a message shows.
 const VISIBLE_DIGITS: f64 = 1e-3;
-/// Numbers below it have digits that are out of the range of doubles.
+/// Size below which a number has digits outside of the range of doubles.
 const LEAST: f64 = 1e-200;
 
 /// A sum of terms at states that may vanish identically.
@@ -81,7 +81,7 @@ pub(super) trait Vanishing {
         Some(point)
     }
 
-    /// Values that show at a real state that terms add up to 0, if there is anything to see.
+    /// Values that illustrate at a real state that the terms cancel; none if there is nothing to show.
     fn balance(&self, model: &Model, terms: &[f64]) -> Vec<(String, f64)> {
         let _ = (model, terms);
         Vec::new()
@@ -93,7 +93,7 @@ pub(super) trait Vanishing {
 
 /// Evidence from residues and real numbers about a quantity that is claimed to vanish.
 pub(super) struct Evidence {
-    /// True if all residues are 0, with the primes; `None` if there were too few.
+    /// True if all residues are 0; `None` if there were too few.
     pub(super) vanishes: Option<bool>,
     /// The number of random points.
     pub(super) points: usize,
@@ -103,9 +103,9 @@ pub(super) struct Evidence {
     pub(super) error: f64,
     /// A certified real state at which a reader can follow that terms cancel.
     pub(super) balance: Option<(Sample, Vec<(String, f64)>)>,
-    /// A real point at which an enclosure excludes 0, with what is shown there.
+    /// A real point at which an enclosure excludes 0, with the values to show there.
     pub(super) witness: Option<(Sample, Vec<(String, f64)>)>,
-    /// True if it has a value at any of the real points tried.
+    /// True if the quantity has a value at any of the real points tried.
     pub(super) is_real: bool,
     /// True if doubles are far from 0 at a point where no enclosure excludes 0.
     pub(super) is_suspect: bool,
@@ -113,7 +113,7 @@ pub(super) struct Evidence {
     pub(super) open: Undecided,
 }
 
-/// The two answers to a claim that something vanishes, or does not.
+/// The two answers to a claim that a quantity vanishes, or does not.
 #[derive(Debug, Default)]
 pub(super) struct Wording {
     /// Sentence if the quantity vanishes.
@@ -125,7 +125,7 @@ pub(super) struct Wording {
 }
 
 impl Evidence {
-    /// The evidence on two parts of the states together.
+    /// Combines the evidence on two parts of the states.
     pub(super) fn and(mut self, other: Self) -> Self {
         self.primes.extend(&other.primes);
         self.primes.sort_unstable();
@@ -227,7 +227,7 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     let mut primes = Vec::new();
     let residues = residues(model, question, &roots, &profile, seed, &mut primes);
     let accident = chance_of_accident(model, profile.degree);
-    // Zeros that may be accidents show nothing.
+    // Zeros that may be accidental prove nothing.
     let residues = residues.and_then(|(covered, branches)| {
         let error = covered.error(&branches, accident);
         match !covered.holds || error <= LARGEST_CHANCE {
@@ -260,7 +260,7 @@ pub(super) fn evidence(model: &Model, question: &impl Vanishing, seed: u64) -> E
     }
 }
 
-/// Answer of states of all branches modulo primes to whether a sum vanishes, with the primes. An error if a branch
+/// Tests modulo primes whether a sum vanishes at states of all branches. Collects the primes. An error if a branch
 /// cannot be sampled.
 fn residues(
     model: &Model,
@@ -296,18 +296,19 @@ enum Search {
 /// Observations at real points.
 #[derive(Default)]
 struct Real {
-    /// A point at which terms are seen to cancel.
+    /// A point that illustrates that terms cancel, and the values to show there.
     balance: Option<(Sample, Vec<(String, f64)>)>,
     /// A point where the sum is certainly not 0, and the values to show there.
     witness: Option<(Sample, Vec<(String, f64)>)>,
-    /// True if it has a value at any.
+    /// True if the sum has a value at any point.
     is_real: bool,
-    /// True if doubles are far from 0 at a point that is not certain.
+    /// True if doubles are far from 0 at a point where no enclosure excludes 0.
     is_suspect: bool,
 }
 
-/// The degree of a rate over the prime (Schwartz, Zippel): the saddle system of acceleration
-/// and multipliers has N + M rows whose entries have the degree of the profile, over as many denominators.
+/// Bound of the chance of an accidental zero: the degree of a rate over the prime (Schwartz, Zippel). The saddle system
+/// of acceleration and multipliers has N + M rows whose entries have the degree of the profile, over as many
+/// denominators.
 fn chance_of_accident(model: &Model, degree: f64) -> f64 {
     let sizes = (2 * model.coordinates.len() + model.constraints.len()) as f64;
     let degree = 64.0 * sizes.powi(3) * degree.max(1.0);
@@ -323,7 +324,7 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         let Some((sample, point)) = question.sample(model, attempt) else {
             continue;
         };
-        // Questions about impacts move their point.
+        // Questions about impacts change their point.
         let Some(terms) = question.terms(model, &mut point.clone()) else {
             continue;
         };
@@ -343,7 +344,7 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
         let sum: f64 = terms.iter().sum();
         let size = if is_regular(sum) { sum.abs() } else { 0.0 };
         let found = if size > VISIBLE_DIGITS * scale {
-            // Doubles show all digits of what is certain.
+            // The doubles have enough digits for a message.
             let with_doubles = |_| (terms.clone(), sum);
             let found = place.difference::<EnclosedPoint>(question);
             let found = found.or_else(|| place.difference::<BallPoint>(question));
@@ -363,7 +364,7 @@ fn real_evidence(model: &Model, question: &impl Vanishing, search: Search) -> Re
     seen
 }
 
-/// True if a real point is certified to be next to a state that is asked about: one that meets a wall, say.
+/// True if a real point is certified to be next to a state of the question, for example one that meets a wall.
 fn is_state(model: &Model, question: &impl Vanishing, point: &RealPoint) -> bool {
     let with_doubles: Option<EnclosedPoint> = question.enclosed(model, point);
     let with_balls = || -> Option<BallPoint> { question.enclosed(model, point) };
@@ -374,7 +375,7 @@ fn is_state(model: &Model, question: &impl Vanishing, point: &RealPoint) -> bool
 struct Place<'p> {
     model: &'p Model,
     point: RealPoint,
-    /// Symbols on which only the rest of the Lagrangian may depend, with values.
+    /// Symbols that the question does not use, with values. The Lagrangian may depend on them.
     others: Vec<(SymbolId, f64)>,
 }
 
@@ -392,7 +393,7 @@ impl<'p> Place<'p> {
         }
     }
 
-    /// The terms of a sum and the sum at the state, where an enclosure shows that it is not 0.
+    /// The terms of a sum and the sum at the state, if an enclosure proves that the sum is not 0.
     fn difference<P: RangePoint>(&self, question: &impl Vanishing) -> Option<(Vec<f64>, f64)> {
         let mut state: P = question.enclosed(self.model, &self.point)?;
         let field = state.field();
@@ -400,7 +401,7 @@ impl<'p> Place<'p> {
         let add = |sum, term: &Number<P>| field.add(sum, *term);
         let sum = terms.iter().fold(field.integer(0), add);
         P::sign(sum)?;
-        // An exact default is next to its double.
+        // An exact default value lies within rounding of its double.
         for (symbol, value) in &self.others {
             let range = state.symbol(&self.model.pool, *symbol);
             state.set_symbol(*symbol, P::widened(range, f64::EPSILON * value.abs()));
@@ -476,7 +477,7 @@ mod tests {
         crate::compile(tokens).expect("a model").model
     }
 
-    /// `(x + y)^2 - x^2 - 2 x y - y^2` and a part of `y`.
+    /// `(x + y)^2 - x^2 - 2 x y - y^2 + part y`
     fn binomial(model: &mut Model, part: &Rational) -> Vec<ExprId> {
         let [x, y] = [0, 1].map(|i| model.pool.variable(model.coordinates[i].q));
         let square = |model: &mut Model, of: ExprId| model.pool.pow(of, Rational::from(2));
@@ -497,7 +498,7 @@ mod tests {
     fn rounding_is_never_counted() {
         let mut model = model("0");
         let terms = binomial(&mut model, &Rational::ZERO);
-        // A size for which every rounding of doubles would be clear.
+        // With size 0, every rounding error of doubles would count as a difference.
         let question = Sum { terms, size: 0.0 };
         let rounded = (0..WITNESSES).filter(|attempt| {
             let (_, mut point) = question.sample(&model, *attempt).expect("a sample");
@@ -527,7 +528,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_enclosure_confirms_keeps_a_proof_from_being_made() {
+    fn a_difference_without_enclosure_prevents_a_proof() {
         let mut model = model("0");
         let terms = binomial(&mut model, &Rational::ZERO);
         let question = Sum { terms, size: 0.0 };
@@ -543,7 +544,7 @@ mod tests {
 
     #[test]
     fn states_without_a_lagrangian_show_nothing() {
-        // Its derivatives have values where it has none.
+        // The derivatives of `ln(x)` have values where `ln(x)` has none.
         let mut model = model("ln(x)");
         let x = model.pool.variable(model.coordinates[0].q);
         let size = model.pool.call(dalembert_expr::Function::Abs, x);

@@ -7,7 +7,7 @@ use super::potential::factor_text;
 use crate::mechanics::inverse::determinant;
 use crate::model::Model;
 
-/// Rows of determinants that are expanded.
+/// Largest number of rows of an expanded determinant.
 const LARGEST: usize = 6;
 
 /// The factor of `mu_C`, up to its sign; `None` where there are constraints, or where no closed form is found.
@@ -71,7 +71,8 @@ pub(super) fn size_text(pool: &Pool, factor: ExprId) -> String {
     }
 }
 
-/// `left / right`, as a quotient of slopes where both are linear in a symbol.
+/// `left / right`. If `right` depends on the symbols, this is the quotient of the slopes in one symbol; `None` unless
+/// that quotient is free of the symbols.
 fn quotient(pool: &mut Pool, left: ExprId, right: ExprId, symbols: &[SymbolId]) -> Option<ExprId> {
     if !pool.depends_on_any(right, symbols) {
         return Some(pool.div(left, right));

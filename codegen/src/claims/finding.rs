@@ -16,7 +16,7 @@ pub struct Finding {
     pub is_assumed: bool,
     /// Place of the declaration.
     pub item: ItemId,
-    /// True if it holds.
+    /// The verdict on the claim.
     pub verdict: Verdict,
     /// Further results: a momentum equation, the effect of impacts on the volume.
     pub remarks: Vec<String>,
@@ -33,7 +33,7 @@ pub struct ClosedForm {
     pub dependent: Vec<usize>,
 }
 
-/// True if a claim holds.
+/// Verdict on a claim.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
     /// The claim holds.
@@ -51,13 +51,13 @@ pub struct Certificate {
     pub shown: String,
     /// Random points at which it was tested.
     pub points: usize,
-    /// The primes modulo which.
+    /// The primes of these points.
     pub primes: Vec<u64>,
     /// Upper bound of the probability that it is wrong; 0 for a proof without chance.
     pub error: f64,
     /// The seed of the points.
     pub seed: u64,
-    /// A state that shows it, where one does.
+    /// A state that proves the statement, if one does.
     pub at: Option<Sample>,
 }
 
@@ -84,7 +84,7 @@ impl Certificate {
     }
 }
 
-/// Reason for which a claim fails, at a point that can be followed by hand.
+/// Reason for which a claim fails, with a point at which it can be checked by hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {
     /// Violated statement, in words.
@@ -98,7 +98,7 @@ pub struct Witness {
 }
 
 impl Finding {
-    /// True if the build goes on.
+    /// True if the finding lets the build continue.
     pub fn is_accepted(&self) -> bool {
         match &self.verdict {
             Verdict::Proved(_) => true,

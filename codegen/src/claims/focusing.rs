@@ -4,8 +4,9 @@
 //! qdot' = qdot - W^b m_ba (0, psi(qdot) + psi_0)^a,   W = g^-1 (eta, psi),   m^ab = (eta, psi)^a(W^b)
 //! ```
 //!
-//! The law acts with `pi_D'` for `pi_D` where the projection leaves the motion approaching. Where `psi(pi_D grad h) = 0` it leaves the
-//! gap rate as it was, and every impact is one of the law. J. Cortes and A. M. Vinogradov (2006), 4.2.
+//! If the motion still approaches after the projection, the law acts, with `pi_D'` in place of `pi_D`. Where
+//! `psi(pi_D grad h) = 0` the projection keeps the gap rate, and the law acts in every impact. J. Cortes and
+//! A. M. Vinogradov (2006), 4.2.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint};
 
@@ -55,5 +56,5 @@ pub(super) fn leaves_gap_rate(
             .shows_that_it_vanishes()
 }
 
-/// The reason for which impacts that the projection may turn are left open.
+/// Reason for which impacts stay open if the projection may turn the motion away from the surface.
 pub(super) const TURNED: &str = "its instantaneous constraints change the gap rate";

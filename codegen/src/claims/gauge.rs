@@ -1,4 +1,4 @@
-//! Total time derivatives: a flow that changes the Lagrangian by one keeps the equations of motion.
+//! Total time derivatives: a flow that changes the Lagrangian by such a derivative keeps the equations of motion.
 //!
 //! `R(q, qdot, t)` is `df/dt` for a function `f(q, t)`, near every configuration, iff its Euler-Lagrange expressions vanish at all positions,
 //! velocities and accelerations:
@@ -12,7 +12,7 @@ use dalembert_expr::{ExprId, Node, Pool, Rational, SymbolId, Verdict as Zero};
 
 use crate::model::Model;
 
-/// Expressions, each with its name, that all vanish iff a function of positions, velocities and time is a total derivative.
+/// Expressions, each with its name. All of them vanish iff `rate` is a total derivative.
 pub(super) fn conditions(model: &mut Model, rate: ExprId) -> Vec<(String, ExprId)> {
     let coordinates: Vec<(String, SymbolId, SymbolId)> = model
         .coordinates
@@ -43,7 +43,7 @@ pub(super) fn conditions(model: &mut Model, rate: ExprId) -> Vec<(String, ExprId
     conditions
 }
 
-/// The function of positions and time that has a total derivative as its rate, if it is a polynomial.
+/// The function of positions and time with this total derivative, if it is a polynomial.
 pub(super) fn antiderivative(model: &mut Model, rate: ExprId) -> Option<ExprId> {
     let mut variables = vec![model.time];
     let mut rest = rate;

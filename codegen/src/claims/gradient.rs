@@ -1,5 +1,5 @@
-//! Gradient of `ln` of a density without closed form: `beta` with `beta(Z) = c` for elements `(Z, c)` of the hull that
-//! span, as steps. Its line integrals are the logarithm.
+//! Gradient of the logarithm of a density without closed form: `beta` with `beta(Z) = c` for spanning elements `(Z, c)`
+//! of the hull, as steps. Its line integrals are the logarithm of the density.
 
 use std::cell::RefCell;
 
@@ -19,7 +19,7 @@ pub struct Gradient {
     pub trace: Trace,
     /// N vectors that span, N components each.
     pub vectors: Vec<Vec<Step>>,
-    /// The product of the gradient with each.
+    /// The product of the gradient with each vector.
     pub demands: Vec<Step>,
 }
 

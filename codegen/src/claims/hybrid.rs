@@ -1,4 +1,5 @@
-//! Changes of a volume `f mu_C` at surfaces: it is kept if `f+ J = f-`, J the Jacobian of [`super::wall`] or [`super::passage`].
+//! Changes of a volume `f mu_C` at surfaces. It is kept if `f+ J = f-`, where J is the Jacobian of [`super::wall`] or
+//! [`super::passage`].
 
 use std::cmp::Ordering;
 
@@ -24,9 +25,9 @@ use crate::model::{Law, Model};
 pub(super) struct Density {
     /// Its value; `None` for a function of the position that is not written out.
     pub(super) value: Option<ExprId>,
-    /// Its text, where it was stated.
+    /// Its text, if the model states it.
     pub(super) written: Option<String>,
-    /// True if the tool found it; that of another mode is then unknown up to a factor.
+    /// True if it was derived. The density of another mode is then known only up to a factor.
     pub(super) is_found: bool,
 }
 
@@ -119,13 +120,13 @@ fn effect(
     }
 }
 
-/// Why a change of a volume is not one that is computed.
+/// Reason for which the change of a volume is not computed.
 pub(super) enum Unknown {
-    /// It is 0, as instantaneous constraints map states on a line to one.
+    /// The volume is mapped to 0: instantaneous constraints map all states on a line to one.
     Vanishes,
-    /// There is none.
+    /// The dimensions before and after differ: no volume is kept.
     Dimensions(usize, usize),
-    /// It is not known.
+    /// The change is not known, for this reason.
     Open(String),
 }
 
@@ -194,7 +195,7 @@ pub(super) fn change_at(
             }
         }
     } else if is_transition {
-        let text = "what it does is not looked at: the mode that it leads to is not at hand";
+        let text = "its effect is not examined: the mode that it leads to is not available";
         return Err(Unknown::Open(text.to_owned()));
     }
     let solution = wall.solution();
@@ -210,7 +211,7 @@ pub(super) fn change_at(
     Ok((wall, found))
 }
 
-/// True if the densities of both sides of a transition are 1, or that of the other mode is stated.
+/// True if the density of this mode is 1, and the other mode states a density or keeps `mu_C`.
 fn has_plain_densities(
     model: &Model,
     around: &Surroundings<'_>,
@@ -242,7 +243,7 @@ fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
     found.is_some_and(|(potential, _)| potential.terms.is_empty())
 }
 
-/// The Jacobian of a law in words.
+/// The effect of a law on `mu_C`, in words.
 pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
     const RHO: &str = "rho = dh(pi_D grad h)/dh(grad h)";
     const RATES: &str = "G the gap rate before and after";
@@ -350,7 +351,7 @@ impl AtImpact for Change<'_> {
             .collect()
     }
 
-    /// `(f+ J)^2 - (E f-)^2`: sizes are compared, and squares do not depend on the branch of an absolute value.
+    /// `(f+ J)^2 - (E f-)^2` with the claimed factor E. Squares compare absolute values without their branches.
     fn terms<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -372,7 +373,8 @@ impl AtImpact for Change<'_> {
         Some(vec![square(after), field.neg(square(before))])
     }
 
-    /// A motion that slides is another matter, see [`super::sliding`]; where it may, a factor that is not 0 has to be that of a motion that goes on.
+    /// True if the motion crosses the surface: sliding motion is examined in [`super::sliding`]. Where the motion may
+    /// slide, the Jacobian must be positive, or of unknown sign beside a claimed volume that is not 0.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         if !may_slide(self.wall) {
             return true;

@@ -16,17 +16,17 @@ use super::polynomial::roots;
 use super::problem::Problem;
 use crate::model::Model;
 
-/// Degrees of the polynomials tried.
+/// Largest degree of the polynomials that are tried.
 const DEGREE: usize = 3;
-/// Points beyond the number of coefficients.
+/// Number of points beyond the number of coefficients.
 const SURPLUS: usize = 2;
 /// Number of parameters that a condition may relate.
 const RELATED: usize = 3;
 /// Number of parameters up to which conditions are sought.
 const PARAMETERS: usize = 6;
 
-/// Polynomials, each once. `trials` is the number of values of delta that may still be computed; `None` if it did not
-/// suffice.
+/// The polynomials, each once. `trials` is the number of values of delta that may still be computed; `None` if it did
+/// not suffice.
 pub(super) fn hypersurfaces(
     model: &mut Model,
     problem: &Problem,
@@ -81,7 +81,7 @@ impl Search<'_> {
     /// Points of a hypersurface, and the parameters that it relates.
     #[expect(
         clippy::option_option,
-        reason = "no hypersurface is not the end of the trials"
+        reason = "the outer `None` is the end of the trials, the inner one the absence of a hypersurface"
     )]
     fn points(
         &self,
@@ -157,12 +157,12 @@ impl Search<'_> {
         point.value(symbol, self.column.pool.symbol_assumption(symbol))
     }
 
-    /// Parameters that cannot change alone, including the one whose roots are sought.
+    /// Parameters that cannot change alone without loss of the density, and the one whose roots are sought.
     fn related(&self, point: &ModularPoint, seed: u64) -> Vec<SymbolId> {
         let field = point.modulus();
         let cannot_change = |symbol: &SymbolId| {
             let mut changed = point.clone();
-            // By a square factor: what is positive stays so.
+            // A square factor keeps positive values positive.
             changed.set(
                 *symbol,
                 field.mul(self.value(point, *symbol), field.integer(9)),
@@ -198,7 +198,7 @@ pub(super) const PRIME: usize = 1;
 /// Turns the seed of a point into that of another configuration: the fractional digits of the square root of 5.
 const OTHER: u64 = 0x3c6e_f372_fe94_f82b;
 
-/// Points that determine a polynomial of a degree.
+/// Number of points that determine a polynomial of a degree.
 fn needed(parameters: usize, degree: usize) -> usize {
     let monomials = (1..=parameters).fold(1, |count, k| count * (degree + k) / k);
     monomials + SURPLUS

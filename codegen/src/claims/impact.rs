@@ -41,7 +41,7 @@ pub(super) fn check_conserved_under(
     let is_seen = changes.is_seen();
     match changes.together(holds).verdict(holds, wording, around.seed) {
         Verdict::Undecided(_) if !is_seen => Verdict::Undecided(format!(
-            "parts of `{name}` may be out of sight: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
+            "parts of `{name}` may be missed: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
              leading coefficient is never 0"
         )),
         verdict => verdict,
@@ -51,9 +51,9 @@ pub(super) fn check_conserved_under(
 /// Changes of a quantity that are sought at real states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wanted {
-    /// All.
+    /// Every change.
     Any,
-    /// Steps by which it grows.
+    /// Increases of the quantity.
     Growth,
 }
 
@@ -71,7 +71,7 @@ impl Changes {
         self.is_solved || !self.found.is_real
     }
 
-    /// Evidence on all changes. A change by a reflection shows nothing, because its existence at a state is not known.
+    /// Evidence on all changes. A change by a reflection at a state proves nothing: the reflection may not occur there.
     pub(super) fn together(self, holds: bool) -> Evidence {
         match self.reflected {
             Some(reflected) if holds => {
@@ -90,7 +90,7 @@ impl Changes {
 /// The evidence on whether a quantity, which may name `energy` and momenta, is the same before and after an impact.
 ///
 /// # Errors
-/// Reason for which nothing is known of it.
+/// The reason for which the change is unknown.
 pub(super) fn changes_at(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -116,7 +116,7 @@ pub(super) fn changes_at(
             after.ok_or_else(|| format!("`{written}` is not known behind `{name}`"))?
         }
         None if enters.is_some() => {
-            return Err(format!("the mode that `{name}` leads to is not at hand"));
+            return Err(format!("the mode that `{name}` leads to is not available"));
         }
         None => value,
     };
@@ -144,18 +144,18 @@ struct Jump<'j> {
     value: ExprId,
     /// Value after the impact.
     after: ExprId,
-    /// True if that quantity is written in the velocities after the impact instead of those before it.
+    /// True if `after` is written in the velocities after the impact instead of those before it.
     is_computed: bool,
     /// Derivatives with respect to the velocities.
     slopes: Vec<ExprId>,
-    /// The same by the coordinates.
+    /// Derivatives with respect to the coordinates.
     by_position: Vec<(SymbolId, ExprId)>,
     written: &'j str,
     wanted: Wanted,
 }
 
 impl<'j> Jump<'j> {
-    /// The change on the surface, where one of its coordinates follows from the others.
+    /// The change on the surface, with a coordinate eliminated if the surface can be solved for it.
     fn of(
         model: &mut Model,
         wall: &Wall,
@@ -190,7 +190,7 @@ impl<'j> Jump<'j> {
 }
 
 impl Jump<'_> {
-    /// Relative change of the value with the position, which solves an equation up to rounding.
+    /// Sensitivity of the value to the position, which satisfies the equation of the surface only up to rounding.
     fn slope_by_position(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let slopes: Vec<ExprId> = self.by_position.iter().map(|(_, slope)| *slope).collect();
         let values = point.values(&model.pool, &model.pool.reachable(&slopes))?;

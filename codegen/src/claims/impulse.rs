@@ -1,4 +1,4 @@
-//! The map of an impulse on series of velocities, as [`super::wall`] and [`super::focusing`] write it.
+//! The map of an impulse on series of velocities: the equations of [`super::wall`] and [`super::focusing`].
 
 use dalembert_expr::{Arithmetic, Jets, Series};
 
@@ -10,9 +10,11 @@ pub(super) struct Parts<A: Arithmetic> {
     pub(super) metric: Matrix<A>,
     /// `eta`, then `psi`.
     pub(super) forms: Matrix<A>,
+    /// `dh`
     pub(super) slope: Vec<Series<A>>,
     /// `psi_0`
     pub(super) affine: Vec<Series<A>>,
+    /// `d_t h`
     pub(super) rate: Series<A>,
     pub(super) coefficient: Series<A>,
 }
@@ -40,7 +42,7 @@ impl<A: Arithmetic> Parts<A> {
         projected(jets, &self.metric, &self.forms, &lost, velocity)
     }
 
-    /// The velocities after an impulse of a law.
+    /// The velocities after an impulse of a law; `None` if the law has no impulse.
     pub(super) fn struck(
         &self,
         jets: &Jets<'_, A>,

@@ -1,9 +1,10 @@
-//! `integrable: f, g, ..`: as many functions as D has dimensions, each conserved by the motion and by all that happens at surfaces, in
-//! involution, and with differentials that are independent at almost all states.
+//! `integrable: f, g, ..`: as many functions as D has dimensions, each conserved by the motion and at every surface, in
+//! involution, with differentials that are independent at almost all states.
 //!
-//! Without constraints and forces, where nothing depends on time, these are the hypotheses of the theorem of Liouville and Arnold. What
-//! a surface keeps of each function it keeps of their common levels (W. Clark, thesis, VIII.6). Otherwise the claim says no more than what
-//! is listed: forces have no part in the bracket, and with constraints it is almost Poisson.
+//! Without constraints, forces and dependence on time, these are the hypotheses of the theorem of Liouville and Arnold.
+//! A surface that keeps each function keeps their common level sets (W. Clark, thesis, VIII.6). Otherwise the claim
+//! says no more than the listed properties: forces do not enter the bracket, and with constraints the bracket is almost
+//! Poisson.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Sign};
 
@@ -85,7 +86,7 @@ fn of_surface(model: &Model, surface: usize, verdict: Verdict) -> Verdict {
     Verdict::Refuted(Witness { help, ..witness })
 }
 
-/// The verdict on `df_1 ^ .. ^ df_k` being different from 0 at almost all states: one component at one state shows it.
+/// The verdict on `df_1 ^ .. ^ df_k != 0` at almost all states: one component that is not 0 at one state proves it.
 fn are_independent(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -134,9 +135,10 @@ fn are_independent(
     Verdict::Undecided(format!("whether they are independent: {open}"))
 }
 
-/// True if a function is one analytic function on all its states: what is different from 0 at one of them is so at almost all.
+/// True if a function is a single analytic function on its states: if it is not 0 at one state, it is not 0 at almost
+/// all.
 ///
-/// Roots and logarithms of what is positive everywhere have no branches.
+/// Roots and logarithms of functions that are positive everywhere have no branches.
 fn is_analytic(pool: &Pool, function: ExprId) -> bool {
     let is_positive = |id: ExprId| pool.sign(id) == Sign::Positive;
     pool.reachable(&[function])
@@ -185,7 +187,7 @@ fn dependent(model: &Model, question: &Lie<'_>, functions: &[Named<'_>]) -> Witn
 
 /// Factors, the largest of them 1, with which rows add up to 0; `None` if they are independent.
 fn relation(rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
-    /// The part of a row's size that rounding leaves of it.
+    /// Fraction of the size of a row below which its remainder counts as rounding.
     const ROUNDING: f64 = 1e-9;
     let size = |row: &[f64]| {
         row.iter()

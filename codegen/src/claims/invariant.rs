@@ -1,7 +1,7 @@
-//! `invariant: FORM`: do the motion and all that happens at surfaces keep a differential form on D?
+//! `invariant: FORM`: the motion and all events at surfaces keep a differential form on D.
 //!
-//! Forms are looked at on vectors of one time: `L_X w = 0` along the motion ([`super::lie`]), and `w+ = w` on vectors that the motion
-//! through a surface carries along ([`super::carried`]).
+//! Forms are evaluated on vectors of constant time: `L_X w = 0` along the motion ([`super::lie`]), and `w+ = w` on
+//! vectors that are transported across a surface ([`super::carried`]).
 
 use dalembert_expr::{ExprId, RealPoint};
 
@@ -23,7 +23,7 @@ use super::undecided::Undecided;
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
-/// Real states at which the largest components are looked for, and components that are looked at one by one.
+/// Number of real states at which the largest components are sought, and number of components examined one by one.
 const STATES: usize = 12;
 const COMPONENTS: usize = 32;
 
@@ -31,12 +31,12 @@ const COMPONENTS: usize = 32;
 const AT_NONLINEAR: &str =
     "resets beside constraints that are not linear in the velocities are not examined";
 
-/// A form as it is stated, with momenta that have names.
+/// A form as stated; it may name momenta.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stated<'f> {
     pub(super) form: &'f ExteriorForm,
     pub(super) written: &'f str,
-    /// True if that of another mode is its symplectic form, not the one of the same names.
+    /// True if the form of another mode is the symplectic form of that mode, not the form with the same names.
     pub(super) is_symplectic: bool,
 }
 
@@ -63,7 +63,7 @@ pub(super) fn check_invariant(
     }
 }
 
-/// The verdict beside constraints that are not linear in the velocities, on each part of D.
+/// The verdict for constraints that are not linear in the velocities, on each part of D.
 pub(super) fn check_on_parts(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -94,7 +94,7 @@ pub(super) fn check_on_parts(
             return refuted;
         }
     }
-    // A form that is 0 on one part of D alone says something of the others.
+    // A form that is 0 on some parts of D is a claim about the others.
     match nothing.len() == parts.len() {
         true => nothing.swap_remove(0),
         false => together.verdict(),
@@ -146,12 +146,12 @@ fn check_kept(
     for surface in model.acting_surfaces() {
         let name = model.surfaces[surface].name.display.clone();
         if model.is_nonlinear() {
-            let text = format!("what `{name}` does is not known: {AT_NONLINEAR}");
+            let text = format!("the effect of `{name}` is not known: {AT_NONLINEAR}");
             return Verdict::Undecided(text);
         }
         let verdict = match kept_at_surface(model, around, tangents, stated, surface) {
             Verdict::Undecided(reason) => {
-                Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
+                Verdict::Undecided(format!("the effect of `{name}` is not known: {reason}"))
             }
             decided => decided,
         };
@@ -163,7 +163,7 @@ fn check_kept(
     together.verdict()
 }
 
-/// The verdict on a form that is 0 at all states, of which nothing is claimed.
+/// Refutes a claim on a form that is 0 at all states: it claims nothing. `None` for other forms.
 fn vanishes(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -180,7 +180,7 @@ fn vanishes(
     };
     if form.degree > tangents.dimension() {
         return refuted(format!(
-            "`{written}` is of degree {}, and states have {} dimensions: it is 0, and nothing is claimed of it",
+            "`{written}` is of degree {}, and states have {} dimensions: it is 0, and the claim says nothing",
             form.degree,
             tangents.dimension()
         ));
@@ -189,7 +189,7 @@ fn vanishes(
     question.part = Part::All(around.seed);
     match evidence(model, &question, around.seed).shows_that_it_vanishes() {
         true => refuted(format!(
-            "`{written}` is 0 at all states, and nothing is claimed of it"
+            "`{written}` is 0 at all states, and the claim says nothing"
         )),
         false => None,
     }
@@ -219,14 +219,14 @@ pub(super) fn kept_by_motion(
     if matches!(verdict, Verdict::Proved(_)) {
         let places = discontinuities(model, around, form);
         if let Some(place) = places {
-            let text = format!("its rate is 0 wherever it has one, but it may jump {place}");
+            let text = format!("its rate is 0 wherever it exists, but it may jump {place}");
             return Verdict::Undecided(text);
         }
     }
     verdict
 }
 
-/// Places where the form may jump along a motion, in words.
+/// A place where the form may jump along a motion, in words.
 fn discontinuities(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -247,7 +247,7 @@ fn discontinuities(
         .find_map(|part| jump(model, around.dynamics, part, around.seed))
 }
 
-/// The verdict on what happens at a surface.
+/// The verdict on the map at a surface.
 pub(super) fn kept_at_surface(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -267,7 +267,7 @@ pub(super) fn kept_at_surface(
     }
     match &wall.passage {
         None if enters.is_some() => {
-            return Verdict::Undecided("the mode that it leads to is not at hand".to_owned());
+            return Verdict::Undecided("the mode that it leads to is not available".to_owned());
         }
         Some(passage) if passage.open == Some(Open::Refraction) => {
             return Verdict::Undecided(Open::Refraction.text());
@@ -282,7 +282,7 @@ pub(super) fn kept_at_surface(
         match kept_at_wall(model, around, tangents, stated, (surface, &wall, None)) {
             Verdict::Proved(part) => all.rest_on(&part),
             Verdict::Undecided(reason) => return Verdict::Undecided(reason),
-            // It is not known where there is a reflection.
+            // The states at which the motion is reflected are not known.
             Verdict::Refuted(_) => {
                 let text = "a reflection there would change it";
                 return Verdict::Undecided(text.to_owned());
@@ -293,7 +293,7 @@ pub(super) fn kept_at_surface(
     if !contacts.is_empty() {
         let is_volume = stated.form.degree == tangents.dimension();
         return match verdict {
-            // Fewer dimensions have no volume, whatever the motion does then.
+            // States of fewer dimensions have no volume, whatever the motion does afterwards.
             Verdict::Refuted(_) if is_volume && loses_volumes(model, surface) => verdict,
             _ => behind_contacts(model, around, tangents, stated, (surface, &wall), contacts),
         };
@@ -305,7 +305,7 @@ pub(super) fn kept_at_surface(
     verdict
 }
 
-/// The verdict on a surface behind which the motion may be held or go on: a state that shows a change says which.
+/// The verdict on a surface behind which the motion may be held or go on freely. A witness names the motion.
 fn behind_contacts(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -333,13 +333,13 @@ fn behind_contacts(
             "no state was found that shows a change, and a proof needs the sign of the acceleration of its gap at all states behind it: the motion may go on freely or be held"
         }
         false => {
-            "no state was found that shows a change, and a proof needs a law that turns the rate of its gap round at all states: the motion behind it may still approach it"
+            "no state was found that shows a change, and a proof needs a law that reverses the rate of its gap at all states: the motion behind it may still approach it"
         }
     };
     Verdict::Undecided(text.to_owned())
 }
 
-/// The verdict on what a wall does, with the motion behind it that its law leaves.
+/// The verdict on the map of a wall, with the motion behind it that the law gives.
 fn kept_at_wall(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -352,11 +352,11 @@ fn kept_at_wall(
 
 /// The motion behind a wall.
 enum After {
-    /// The one that the law leaves.
+    /// The motion that the law gives.
     Law,
-    /// One of two.
+    /// Free or held motion.
     Contact(Contact),
-    /// Any: of vectors along the wall the law alone decides.
+    /// Either motion: for vectors along the wall, the law alone decides.
     Any,
 }
 
@@ -421,7 +421,7 @@ fn on(names: &[String], part: &Part) -> String {
     }
 }
 
-/// Components of a form or of its derivative, those first that are largest at real states.
+/// Components of a form or of its derivative, the largest at real states first.
 pub(super) fn ranked_at_states(model: &Model, question: &Lie<'_>) -> Vec<Vec<usize>> {
     let (dimension, degree) = question.sizes();
     let each = choices(dimension, degree);
@@ -434,7 +434,7 @@ pub(super) fn ranked_at_states(model: &Model, question: &Lie<'_>) -> Vec<Vec<usi
     })
 }
 
-/// Components, those first that are largest at real states.
+/// Components, the largest at real states first.
 fn ranked(
     (dimension, degree): (usize, usize),
     mut at: impl FnMut(usize) -> Option<(Vec<f64>, f64)>,

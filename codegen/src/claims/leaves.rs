@@ -1,10 +1,11 @@
-//! Leaves of integrable constraints: are there any, and do surfaces take vectors along them to such vectors?
+//! Leaves of integrable constraints: their existence, and surfaces that map vectors along leaves to such vectors.
 //!
 //! ```text
 //! w^a = eta^a + eta^a_0 dt      dw^a(X, Y) = 0 for all fields X, Y of Q x R that all w^a annihilate (Frobenius)
 //! ```
 //!
-//! A leaf at one time has the vectors with `eta^a(v) = 0`. The motion on it is that of the Lagrangian on the leaf, and keeps its symplectic form.
+//! The vectors along a leaf at one time have `eta^a(v) = 0`. The motion on a leaf is that of the Lagrangian restricted
+//! to it, and keeps its symplectic form.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Pool, RealPoint, SymbolId};
 
@@ -59,7 +60,7 @@ pub(super) fn are_integrable(model: &mut Model, dynamics: &Dynamics, seed: u64) 
     }
 }
 
-/// A proof by random weights.
+/// A proof by random weights, with their chance of error.
 fn with_chance(proof: Certificate) -> Certificate {
     Certificate {
         error: proof.error + CHANCE,
@@ -80,7 +81,7 @@ pub(super) fn curl(pool: &mut Pool, form: &[ExprId], variables: &[SymbolId]) -> 
         .collect()
 }
 
-/// `dw^a` on pairs of fields that are annihilated, all with random weights.
+/// The values of `dw^a` on pairs of annihilated fields, summed with random weights.
 struct Involutive<'i> {
     dynamics: &'i Dynamics,
     curls: &'i [Vec<Vec<ExprId>>],
@@ -183,8 +184,9 @@ impl Entered {
     }
 }
 
-/// The verdict on what a surface carries vectors to: where the constraints of the mode behind it are integrable, that need keep the form on its leaves
-/// only, unless it `keeps_all`. `None` where nothing is asked.
+/// The verdict on the vectors behind a surface; `None` if nothing is to be proved. If the constraints of the mode
+/// behind it are integrable, that mode may keep the form on its leaves only. The surface must then map vectors along
+/// leaves to such vectors, or the mode must keep the form on all vectors (`keeps_all`).
 pub(super) fn check_behind(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -205,7 +207,7 @@ pub(super) fn check_behind(
     }
     let mut behind = Entered::of(enters, entered.unwrap_or(model).clone());
     let integrable = are_integrable(&mut behind.model, &behind.dynamics, around.seed);
-    // Without leaves the form there is one on all states.
+    // Without leaves, the form of that mode is examined on all vectors.
     if matches!(integrable, Verdict::Refuted(_)) {
         return None;
     }
@@ -224,11 +226,11 @@ pub(super) fn check_behind(
         _ => "these are not known to be integrable or not",
     };
     Some(Verdict::Undecided(format!(
-        "it carries vectors along one leaf across those of the constraints behind it, and {why}"
+        "it carries vectors along one leaf across the leaves of the constraints behind it, and {why}"
     )))
 }
 
-/// The verdict on whether a surface carries vectors to such along leaves of the constraints behind it.
+/// The verdict on whether a surface maps vectors to vectors along leaves of the constraints behind it.
 fn lands_along(
     model: &mut Model,
     around: &Surroundings<'_>,

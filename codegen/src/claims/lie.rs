@@ -1,7 +1,8 @@
-//! Lie derivative of a form along the motion: `L_X (c df_1 ^ .. ^ df_k) = X(c) df_1 ^ .. ^ df_k + c d(X f_1) ^ .. ^ df_k + ..`, on
-//! vectors of one time.
+//! Lie derivative of a form along the motion, on vectors of constant time:
+//! `L_X (c df_1 ^ .. ^ df_k) = X(c) df_1 ^ .. ^ df_k + c d(X f_1) ^ .. ^ df_k + ..`
 //!
-//! The motion is that of the whole space: it keeps `eta^a(qdot) + eta^a_0`, so that derivatives and restriction to D commute.
+//! The motion is defined on the whole space. It keeps `eta^a(qdot) + eta^a_0`, so the derivative and the restriction to
+//! D commute.
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, RealPoint, Reals, Series, SymbolId,
@@ -19,7 +20,7 @@ pub(super) struct Lie<'l> {
     form: &'l ExteriorForm,
     expansions: Expansions,
     rates: Option<Vec<ExprId>>,
-    /// True if the form itself is meant.
+    /// True for a question about the form itself, false for its derivative.
     is_form: bool,
     pub(super) part: Part,
     pub(super) shown: String,
@@ -66,7 +67,7 @@ impl<'l> Lie<'l> {
         }
     }
 
-    /// The same about the form itself.
+    /// The same question about the form itself.
     pub(super) fn of_form(self) -> Self {
         Self {
             is_form: true,
@@ -103,7 +104,7 @@ impl<'l> Lie<'l> {
         Some(motion)
     }
 
-    /// The products that the form or its derivative is the sum of.
+    /// The products whose sum is the form or its derivative.
     pub(super) fn products<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -153,7 +154,7 @@ impl<'l> Lie<'l> {
         Some(products)
     }
 
-    /// Size of what the derivative adds up at a real state: rates of large functions may cancel.
+    /// Size of the terms of the derivative at a real state: rates of large functions may cancel.
     fn ingredients(&self, model: &Model, point: &mut RealPoint) -> Option<f64> {
         let values = RealPoint::values(point, &model.pool, &model.pool.reachable(&self.roots()))?;
         let expansions = &self.expansions;

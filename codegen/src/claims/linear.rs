@@ -1,4 +1,4 @@
-//! Linear systems over series: the pivots are the values at the point of expansion.
+//! Linear systems over series. Pivots are chosen by the values at the point of expansion.
 
 use dalembert_expr::{Arithmetic, Jets, Series};
 
@@ -96,7 +96,7 @@ pub(super) fn dot<A: Arithmetic>(
     jets.dot(a.iter().map(Vec::as_slice).zip(b.iter().map(Vec::as_slice)))
 }
 
-/// Rows become columns.
+/// The transpose of a matrix.
 pub(super) fn transpose<T: Clone>(rows: &[Vec<T>]) -> Vec<Vec<T>> {
     let columns = rows.first().map_or(0, Vec::len);
     (0..columns)

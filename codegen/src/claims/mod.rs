@@ -1,33 +1,33 @@
-//! Stage 3b, prove or refute: what a model's author claims about it.
+//! Stage 3b, prove or refute: the claims of a model.
 //!
 //! | file | job |
 //! |---|---|
-//! | `problem.rs`, `contraction.rs` | what an invariant density depends on; what forces do to volumes |
+//! | `problem.rs`, `contraction.rs` | the input of the search for a density; the divergence that forces add |
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
-//! | `exactness.rs` | does a local density exist? |
-//! | `potential.rs`, `fit.rs`, `global.rs`, `growth.rs`, `reflection.rs`, `regularity.rs`, `smoothness.rs`, `leaf.rs` | the density in closed form; is it single-valued, and regular? |
-//! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume with that density, or with an integral for it, as it is lowered |
+//! | `exactness.rs` | existence of a local density |
+//! | `potential.rs`, `fit.rs`, `global.rs`, `growth.rs`, `reflection.rs`, `regularity.rs`, `smoothness.rs`, `leaf.rs` | the density in closed form; its periods and its regularity |
+//! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume as it is lowered, with a density in closed form or an integral for it |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `hypersurfaces.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
-//! | `alternatives.rs` | both of these in words |
+//! | `alternatives.rs` | conditions and densities that depend on velocities, in words |
 //! | `defaults.rs` | claims at the declared values of parameters |
 //! | `geometry.rs`, `dynamics.rs`, `branches.rs` | frame and theta, and the motion on D, at a point |
-//! | `evidence.rs`, `continuity.rs` | does something vanish at all states? may it jump all the same? |
+//! | `evidence.rs`, `continuity.rs` | evidence that a quantity vanishes at all states; places where a quantity may jump |
 //! | `existence.rs`, `density.rs`, `conserved.rs`, `impact.rs`, `symmetry.rs` | the verdict on each kind of claim |
 //! | `equivariance.rs` | symmetries of motion, surfaces and their maps together |
 //! | `gauge.rs` | total derivatives that a symmetry may add to the Lagrangian |
 //! | `wall.rs`, `impulse.rs`, `focusing.rs`, `passage.rs`, `refraction.rs`, `side.rs` | the map of an impact, of a reset, of a transition; the modes on both sides of it |
-//! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `sliding.rs`, `landing.rs` | what vanishes at impacts; what they do to a volume, in closed form too, and where it slides; do resets keep the constraints? |
+//! | `collision.rs`, `hybrid.rs`, `factor.rs`, `minors.rs`, `sliding.rs`, `landing.rs` | evidence at impacts; the change of a volume, also in closed form and with sliding; resets that keep the constraints |
 //! | `kept.rs`, `symplectic.rs`, `energy.rs`, `bounds.rs`, `jumps.rs` | motion and impacts together: volumes, the symplectic form, energy, momenta |
-//! | `expansion.rs`, `lie.rs`, `carried.rs`, `contact.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of one time, along the motion and through surfaces, where it may be held behind them; on leaves of integrable constraints |
-//! | `involution.rs`, `integrable.rs` | brackets of functions; conserved functions that are enough of them |
+//! | `expansion.rs`, `lie.rs`, `carried.rs`, `contact.rs`, `invariant.rs`, `leaves.rs` | forms on vectors of constant time: along the motion, across surfaces, with motion held behind them, on leaves of integrable constraints |
+//! | `involution.rs`, `integrable.rs` | brackets of functions; as many conserved functions in involution as D has dimensions |
 //! | `together.rs` | several proofs that are needed together |
-//! | `corollaries.rs` | consequences of a volume that is kept |
-//! | `obstruction.rs`, `sample.rs` | points that a person can follow |
+//! | `corollaries.rs` | consequences of an invariant volume |
+//! | `obstruction.rs`, `sample.rs` | points for a check by hand |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
-//! Decisions are taken modulo 61-bit primes at random points. Values in double precision say where to look for a point that shows something;
-//! it counts once it is enclosed.
+//! Decisions are taken modulo 61-bit primes at random points. Values in double precision find points that may prove a
+//! statement. Such a point counts only if an enclosure confirms it.
 
 mod alternatives;
 mod ansatz;

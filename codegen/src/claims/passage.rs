@@ -1,4 +1,4 @@
-//! The map of a reset or of a transition, and what it does to the volumes of both sides.
+//! The map of a reset or of a transition, and its effect on volumes.
 //!
 //! ```text
 //! q+ = psi(t, q)   qdot+ = w(t, q, qdot)      mu_C = det g/|det A_dep| dq du, u the independent velocities
@@ -29,22 +29,25 @@ use crate::model::Model;
 pub(super) struct Passage {
     /// The mode that is left.
     pub(super) before: Side,
-    /// The mode that is entered, at the state after the passage; its velocities are those after it only where they were declared.
+    /// The mode that is entered, at the positions after the passage. Its expressions contain the velocities after the
+    /// passage if these are declared, otherwise the velocities of the point.
     pub(super) after: Side,
     /// Positions after it.
     pub(super) positions: Vec<ExprId>,
     /// Velocities after it.
     pub(super) velocities: Velocities,
-    /// The derivatives of the positions by the coordinates, and by time.
+    /// The derivatives of the positions by the coordinates.
     slopes: Vec<Vec<ExprId>>,
+    /// The derivatives of the positions by time.
     rates: Vec<ExprId>,
     /// `dh` and `d_t h`.
     gap: (Vec<ExprId>, ExprId),
     qdot: Vec<SymbolId>,
-    /// True if another mode is entered; true if nothing was declared of the state there.
+    /// True if another mode is entered.
     leads_to_another_mode: bool,
+    /// True if a transition declares no map: the state stays.
     is_kept: bool,
-    /// Why nothing is known of volumes, if nothing is.
+    /// Reason for which the change of volumes is not known, if it is not known.
     pub(super) open: Option<Open>,
 }
 
@@ -54,28 +57,28 @@ type AffineRow<A> = (Vec<Series<A>>, Series<A>);
 /// The velocities after a passage.
 #[derive(Debug)]
 pub(super) enum Velocities {
-    /// Declared ones, with their derivatives by the velocities before.
+    /// Declared velocities, with their derivatives by the velocities before.
     Declared(Vec<ExprId>, Vec<Vec<ExprId>>),
-    /// Those of a first-order system, which follow from the positions.
+    /// The velocities of a first-order system, which follow from the positions.
     Rates,
-    /// The nearest ones that satisfy the constraints of the mode.
+    /// The nearest velocities that satisfy the constraints of the mode.
     Nearest,
-    /// Those of a refraction, or of a reflection where there is none.
+    /// The velocities after a refraction, or after a reflection where there is no refraction.
     Refracted,
 }
 
 /// Reasons why the change of a volume is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Open {
-    /// States of other dimensions: no volume of one is one of the other.
+    /// The dimensions of the states before and after it differ: they have no common volume.
     Dimensions(usize, usize),
     /// Positions after it depend on velocities.
     Positions,
-    /// Both modes have as many dimensions in another number of coordinates.
+    /// The dimensions agree, but the numbers of coordinates differ.
     Coordinates,
     /// A refraction within constraints.
     Refraction,
-    /// More coordinates than determinants are expanded of.
+    /// There are more coordinates than an expanded determinant may have rows.
     Size,
 }
 
@@ -86,15 +89,16 @@ impl Open {
                 format!("it leads from states of {before} dimensions to states of {after}")
             }
             Self::Positions => "positions after it depend on velocities".to_owned(),
-            Self::Coordinates => "both modes have other numbers of coordinates".to_owned(),
-            Self::Refraction => "refraction within constraints is not examined; state what is behind it by `reset { .. }` where that is known".to_owned(),
+            Self::Coordinates => "the modes have different numbers of coordinates".to_owned(),
+            Self::Refraction => "refraction within constraints is not examined; declare the state behind it by `reset { .. }` if it is known".to_owned(),
             Self::Size => format!("more than {} coordinates are not examined", LARGEST - 1),
         }
     }
 }
 
 impl Passage {
-    /// The reset of a surface, or its transition into one of the modes `others`; `None` if it is neither, or the mode is not at hand.
+    /// The reset of a surface, or its transition into one of the modes `others`. `None` if it has neither, or the mode
+    /// is not in `others`.
     pub(super) fn of(
         model: &mut Model,
         derivation: &Derivation,
@@ -221,7 +225,7 @@ impl Passage {
         }
     }
 
-    /// Gives the mode that is left this density, and that which is entered too where both are one.
+    /// Sets the density of the mode that is left, and of the mode that is entered if both are the same mode.
     pub(super) fn weigh(&mut self, model: &mut Model, density: ExprId) {
         self.before.density = density;
         if self.leads_to_another_mode {
@@ -239,7 +243,7 @@ impl Passage {
         self.after.density = model.pool.substitute(density, &replacements);
     }
 
-    /// Replaces a coordinate by its value on the surface, in all that is evaluated.
+    /// Replaces a coordinate by its value on the surface, in all expressions.
     pub(super) fn restrict(&mut self, pool: &mut Pool, solution: (SymbolId, ExprId)) {
         let solution = [solution];
         for side in [&mut self.before, &mut self.after] {
@@ -257,8 +261,9 @@ impl Passage {
         self.gap.1 = pool.substitute(self.gap.1, &solution);
     }
 
-    /// A quantity, with `energy` and momenta by name, at the state after the passage, of the mode that is entered where it is another one. Where velocities
-    /// after it were not declared, it is one of those of the point.
+    /// A quantity, which may name `energy` and momenta, in the mode that is entered, at the state after the passage. If
+    /// the velocities after it are computed, it is a function of the velocities of the point. `None` if that mode lacks
+    /// it.
     pub(super) fn quantity_after(
         &self,
         model: &mut Model,
@@ -291,12 +296,12 @@ impl Passage {
         self.gap.clone()
     }
 
-    /// True if the Lagrangian changes and mechanics says how the motion goes on.
+    /// True if the Lagrangian changes and the law of refraction gives the velocities.
     pub(super) fn is_refracted(&self) -> bool {
         matches!(self.velocities, Velocities::Refracted)
     }
 
-    /// True if the velocities after it are computed, not written out.
+    /// True if the velocities after it are computed, not written out as expressions.
     pub(super) fn computes_velocities(&self) -> bool {
         matches!(self.velocities, Velocities::Nearest | Velocities::Refracted)
     }
@@ -307,12 +312,12 @@ impl Passage {
         pairs.all(|(after, coordinate)| matches!(model.pool.node(*after), Node::Symbol(symbol) if *symbol == coordinate.q))
     }
 
-    /// True if the state of a first-order system stays while the mode changes: where the motion then comes back it slides.
+    /// True if a first-order system changes its mode and keeps its state. Where the motion then comes back, it slides.
     pub(super) fn may_slide(&self) -> bool {
         self.is_kept && self.before.rates.is_some()
     }
 
-    /// Everything that the velocities after it are made of.
+    /// The expressions on which the velocities after it depend.
     pub(super) fn velocity_roots(&self) -> Vec<ExprId> {
         let of_metric = |side: &Side| side.metric.iter().flatten().copied().collect::<Vec<_>>();
         match &self.velocities {
@@ -332,7 +337,7 @@ impl Passage {
         }
     }
 
-    /// Everything that volumes depend on.
+    /// The expressions on which the change of volumes depends.
     pub(super) fn roots(&self) -> Vec<ExprId> {
         let mut roots = self.velocity_roots();
         roots.extend(self.before.roots().chain(self.after.roots()));
@@ -437,7 +442,8 @@ impl Passage {
         Some((0..n).map(row).collect())
     }
 
-    /// By how much `mu_C` is multiplied. Its sign is that of the gap rates alone where the state stays; else it has no meaning.
+    /// The factor of `mu_C`; `None` at a singular point, or if the change is not known. Its sign is that of the ratio
+    /// of the gap rates where the state stays; otherwise the sign has no meaning.
     pub(super) fn jacobian<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -553,7 +559,7 @@ fn derivatives(pool: &mut Pool, values: &[ExprId], symbols: &[SymbolId]) -> Vec<
     values.iter().map(&mut row).collect()
 }
 
-/// Declared velocities with their derivatives; those of a first-order system are none.
+/// Declared velocities with their derivatives; [`Velocities::Rates`] for a first-order system.
 fn declared(model: &mut Model, after: &Side, velocities: Vec<ExprId>) -> Velocities {
     if after.rates.is_some() {
         return Velocities::Rates;

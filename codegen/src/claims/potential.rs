@@ -5,7 +5,7 @@ use dalembert_expr::{ExprId, Function, Node, Pool, Rational, SymbolId, Verdict};
 use super::problem::Problem;
 use crate::model::{Coordinate, Topology};
 
-/// Candidates of each kind.
+/// Largest number of candidates of each kind.
 const CANDIDATES: usize = 40;
 
 /// A summand of the logarithm of a density, without its coefficient.
@@ -92,10 +92,10 @@ impl Candidates {
         };
         let calls = chosen(|node| matches!(node, Node::Call(..)));
         let sums = chosen(|node| matches!(node, Node::Sum { .. }));
-        // The logarithm of an exponential is among the plain ones.
+        // The logarithm of an exponential is among the plain terms.
         let is_exponential = |id: &ExprId| matches!(pool.node(*id), Node::Call(Function::Exp, _));
         let arguments = calls.iter().filter(|id| !is_exponential(id)).chain(&sums);
-        // A sum may cancel: its logarithm would have a value nowhere, and the others with it.
+        // A sum may cancel. Its logarithm would have no value anywhere, so no point would remain for the other terms.
         let is_zero = |id: &ExprId| pool.zero_test(*id) == Verdict::Proved;
         for id in arguments.chain(&lines).filter(|id| !is_zero(id)) {
             let kind = match pool.sign(*id).is_nonzero() {
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(text, "1/2*ln(det m) - z - k*z - ln|z|");
     }
 
-    /// The logarithm of a sum that cancels has a value nowhere: the search would find no point.
+    /// The logarithm of a sum that cancels has no value anywhere: the search would find no point.
     #[test]
     fn a_sum_that_cancels_is_no_candidate() {
         let source = "Pair { coordinates { x; y; z; }

@@ -1,4 +1,4 @@
-//! Periods that are 0 by symmetry: exact where a converged sum would only be small.
+//! Periods that are 0 by symmetry. The proof is exact; a converged sum would only be small.
 //!
 //! Let `beta` be the closed form with `beta(X_i) = c_i`, and the circle of an angle a loop. The growth of `G` along it
 //! does not depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by a part
@@ -18,7 +18,7 @@ use crate::model::{Model, Topology};
 
 /// Points at which an identity must hold, without roots and with them.
 const POINTS: (usize, usize) = (3, 64);
-/// Maps that are tried.
+/// Largest number of maps that are tried.
 const MAPS: usize = 64;
 
 /// Twelfths of pi in a circle.
@@ -36,7 +36,7 @@ const REFLECTED: Move = Move::new(0, true);
 const SUPPLEMENT: Move = Move::new(12, true);
 const OPPOSITE: Move = Move::new(12, false);
 
-/// Moves of the angle of a loop whose images are not gone through.
+/// Moves of the angle of a loop, if its images are not summed.
 const ALONE: &[Move] = &[
     STAYS,
     REFLECTED,
@@ -57,7 +57,7 @@ impl Move {
     }
 }
 
-/// Moves of coordinates, each by itself.
+/// A map that moves each of these coordinates by itself.
 type Map = Vec<(SymbolId, Move)>;
 
 /// True if the growth of `G` along the circle of a coordinate is 0 by a symmetry that fixes every coordinate at whose
@@ -74,7 +74,7 @@ pub(super) fn has_no_period(
     let Ok(points) = sample_points(&model.pool, &roots, &profile, seed) else {
         return false;
     };
-    // An image may have other signs in absolute values than its point. Those of hidden squares occur at random.
+    // Signs inside absolute values may differ between a point and its image. Signs of hidden squares occur at random.
     let branches = branches_of(&model.pool, &roots, &profile, &points);
     if !branches.is_some_and(|branches| branches.is_single()) {
         return false;
@@ -112,7 +112,7 @@ impl Circle<'_> {
     fn cancels(&self, turns: &[Move], moves: &[Move], count: usize) -> bool {
         let (model, problem) = (self.model, self.problem);
         let mut points = self.points.clone();
-        // Points with the sums there; more of them as maps get on.
+        // Points with the sums there, found as the maps need them.
         let mut known: Vec<(ModularPoint, u64)> = Vec::new();
         let maps = maps(model, problem, (self.angle, moves), self.cuts);
         maps.iter().any(|map| {
@@ -155,7 +155,7 @@ fn turns(denominator: i64) -> Vec<Move> {
         .collect()
 }
 
-/// The maps that move the angle by one of some moves and each of the other coordinates on which anything depends.
+/// The maps: one of `moves` for the angle, and a move for each other coordinate on which the problem depends.
 fn maps(
     model: &Model,
     problem: &Problem,

@@ -5,14 +5,16 @@
 //! H+(p+) = H-(p) - c d_t h         c^2 k/2 + c b + E = 0,   E = H+(p) - H-(p),   b + k c = -sqrt(b^2 - 2 k E)
 //! ```
 //!
-//! Where the root is not real the motion is reflected by the elastic law. J. Cortes and A. M. Vinogradov (2006), Definition 4.14.
+//! Where the root is not real the motion is reflected by the elastic law. J. Cortes and A. M. Vinogradov (2006),
+//! Definition 4.14.
 
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, Jets, Rational, Series};
 
 use super::linear::{dot, solve};
 use super::side::Side;
 
-/// The velocities after a refraction as series, given the series of expressions and of the velocities before it; `None` where there is none.
+/// The velocities after a refraction as series, given the series of expressions and of the velocities before it. `None`
+/// where there is no refraction.
 pub(super) fn refracted<P: ExpansionPoint>(
     jets: &Jets<'_, P::Field>,
     point: &P,
@@ -33,7 +35,7 @@ pub(super) fn refracted<P: ExpansionPoint>(
         jets.add(&kinetic, &series(side.potential))
     };
     let slope = all(slope);
-    // The momenta before without the velocity-linear terms after, and dh, both raised by the metric after.
+    // The momenta before minus the linear terms after, and dh. The metric after raises the indices of both.
     let shifts = before.linear.iter().zip(&after.linear);
     let shifts = shifts.map(|(before, after)| jets.sub(&series(*before), &series(*after)));
     let momenta = lowered(before, velocity).into_iter().zip(shifts);

@@ -22,11 +22,11 @@ pub(super) struct Side {
     pub(super) linear: Vec<ExprId>,
     /// `V`
     pub(super) potential: ExprId,
-    /// The density of the volume that is looked at, 1 if there is none.
+    /// The density of the examined volume, 1 if there is none.
     pub(super) density: ExprId,
 }
 
-/// Coordinates of the states over a position: independent velocities, and how all velocities follow from them.
+/// Coordinates of the states over a position: independent velocities, and all velocities as functions of them.
 pub(super) struct Chart<A: Arithmetic> {
     /// The velocities that are coordinates.
     pub(super) independent: Vec<usize>,
@@ -66,7 +66,7 @@ impl Side {
             .collect()
     }
 
-    /// The same with other expressions in this order.
+    /// The same side with other expressions in this order.
     fn with(&self, expressions: Vec<ExprId>) -> Self {
         let mut expressions = expressions.into_iter();
         let mut take = |row: &Vec<ExprId>| expressions.by_ref().take(row.len()).collect::<Vec<_>>();
@@ -91,7 +91,7 @@ impl Side {
         self.with(replaced)
     }
 
-    /// Another mode at the state with these positions and velocities; `None` if it has a symbol that this one has not.
+    /// Another mode at the state with these positions and velocities; `None` if it has a symbol that this mode lacks.
     pub(super) fn of_mode(
         model: &mut Model,
         entered: &Model,
@@ -182,8 +182,8 @@ impl Side {
     }
 }
 
-/// A quantity of a mode, in terms of which `energy` and momenta may occur, as that of another mode at the state with these positions
-/// and velocities; `None` if it is not known there.
+/// A quantity, which may name `energy` and momenta, in another mode at the state with these positions and velocities.
+/// `None` if it is not known in that mode.
 pub(super) fn quantity_of_mode(
     model: &mut Model,
     entered: &Model,
@@ -195,7 +195,7 @@ pub(super) fn quantity_of_mode(
     Some(imported(model, &entered, (q, qdot), &[there])?[0])
 }
 
-/// The quantity of another mode that goes by the names of one of this mode, written out; `None` if it lacks one of them.
+/// The quantity with the same names in another mode, written out; `None` if that mode lacks one of the names.
 pub(super) fn named_in(model: &Model, entered: &mut Model, quantity: ExprId) -> Option<ExprId> {
     let mut known = vec![
         (model.time, entered.time),
@@ -223,8 +223,8 @@ pub(super) fn named_in(model: &Model, entered: &mut Model, quantity: ExprId) -> 
     Some(explicit(entered, there))
 }
 
-/// Expressions of another mode as those of this one, where that mode is at the state with these positions and velocities; `None` if they have a
-/// symbol that this mode has not.
+/// Expressions of another mode as expressions of this mode, with that mode at the state with these positions and
+/// velocities. `None` if they contain a symbol that this mode lacks.
 pub(super) fn imported(
     model: &mut Model,
     entered: &Model,

@@ -1,10 +1,11 @@
-//! Sliding along a surface between fields of first order: where the motion comes back to it from the other side, and volumes become 0.
+//! Sliding along a surface between first-order modes: the motion comes back to it from the other side, and volumes
+//! become 0.
 //!
 //! ```text
 //! J = G+/G-      G- < 0 on the way to the surface; the motion slides where G+ > 0
 //! ```
 //!
-//! Densities have no part in it: their signs are not those of the gap rates.
+//! Densities do not enter: their signs are not those of the gap rates.
 
 use std::cmp::Ordering;
 
@@ -21,7 +22,7 @@ use super::passage::Passage;
 use super::wall::Wall;
 use crate::model::Model;
 
-/// The reason for which it is open whether the motion goes on.
+/// Reason for a claim to stay open if the motion may slide.
 pub(super) const MAY_SLIDE: &str =
     "the motion may slide along it, and the rate of its gap is not known to be negative behind it";
 
@@ -30,8 +31,8 @@ pub(super) fn may_slide(wall: &Wall) -> bool {
     wall.passage.as_ref().is_some_and(Passage::may_slide)
 }
 
-/// The verdict on a factor of a volume that a surface has where the motion goes on: where it slides the factor is 0. The factor, and the density before,
-/// are `claimed`.
+/// Adapts the verdict on the factor of a volume, which holds where the motion crosses the surface: where it slides, the
+/// factor is 0. `claimed` holds the claimed factor and the density before.
 pub(super) fn unless_it_slides(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -61,7 +62,8 @@ pub(super) fn unless_it_slides(
     }
 }
 
-/// True if the motion of the mode that is entered is certified not to come back to the surface: by its gap rate, its product with that before, or their ratio.
+/// True if the motion in the mode that is entered is certified not to come back to the surface: by its gap rate, by the
+/// product with the gap rate before, or by their ratio.
 pub(super) fn always_goes_on(model: &mut Model, wall: &Wall) -> bool {
     let Some(passage) = &wall.passage else {
         return true;
@@ -86,7 +88,7 @@ pub(super) fn always_goes_on(model: &mut Model, wall: &Wall) -> bool {
         || closed_form(model, passage).is_some_and(|ratio| is_never_negative(model, ratio))
 }
 
-/// The question whether the motion slides anywhere where a factor is claimed that is not 0.
+/// The question whether the motion slides at a state at which the claimed factor is not 0.
 struct Slides<'s> {
     wall: &'s Wall,
     claimed: Vec<ExprId>,

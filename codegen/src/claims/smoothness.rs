@@ -13,9 +13,9 @@ use crate::model::Model;
 /// Reason for which a declaration that is not smooth leaves the question open.
 pub(super) const HOLES: &str = "G was found in no closed form, and G may grow along loops around configurations where the declaration is singular";
 
-/// Points of each branch.
+/// Number of points of each branch.
 const SAMPLES: usize = 3;
-/// Minors of the constraint forms that are written out.
+/// Largest number of minors of the constraint forms that are written out.
 const MOST_MINORS: usize = 64;
 
 /// Components of which certain values may be left out of Q; `None` if other configurations may be left out. Expressions
@@ -149,7 +149,7 @@ fn choices(columns: usize, count: usize) -> Option<Vec<Vec<usize>>> {
             longer.extend((first..columns).map(|column| [choice.as_slice(), &[column]].concat()));
         }
         choices = longer;
-        // Early choices leave no room for the rest: each has at most `columns` of them.
+        // Not every partial choice can be completed, so the limit on them is larger by the number of columns.
         if choices.len() > MOST_MINORS * columns {
             return None;
         }

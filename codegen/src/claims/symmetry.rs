@@ -7,8 +7,8 @@
 //! momentum  J = xi^i dL/dqdot^i,   d(J - f)/dt = lambda_a eta^a(xi) + F(xi)
 //! ```
 //!
-//! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2). `f(q, t)` is 0 where the flow keeps
-//! the Lagrangian itself, see [`super::gauge`] elsewhere.
+//! The momentum of a horizontal symmetry, `eta^a(xi) = 0`, is conserved (W. Clark, thesis, 3.3.4 and 5.2). If the flow
+//! keeps the Lagrangian itself, `f(q, t)` is 0; otherwise see [`super::gauge`].
 
 use dalembert_expr::{ExpansionPoint, ExprId, Pool, RealPoint, SymbolId, Verdict as Zero};
 
@@ -21,7 +21,7 @@ use super::gauge;
 use super::sample::{Sample, sample, state_on_d, uses};
 use crate::model::Model;
 
-/// True if the flow of a field is shown to keep the Lagrangian itself.
+/// True if the flow of a field is proved to keep the Lagrangian itself.
 pub(crate) fn keeps_lagrangian(model: &mut Model, field: &[ExprId], seed: u64) -> bool {
     let kept = kept(model, field);
     evidence(model, &kept, seed).shows_that_it_vanishes()
@@ -72,7 +72,7 @@ pub(crate) fn check_symmetry(
     (Verdict::Proved(certificate), remarks)
 }
 
-/// The verdict of changes that are proved together, or of the first that is not.
+/// The verdict on several changes: their common proof, or the verdict on the first change that is not proved to vanish.
 fn verdict(together: Result<Certificate, Verdict>) -> Verdict {
     match together {
         Ok(certificate) => Verdict::Proved(certificate),
@@ -104,7 +104,7 @@ pub(super) fn check_forces(
     verdict(proved_together(model, &changes, seed))
 }
 
-/// The verdict on a symmetry of a first-order system: its flow takes motions to motions where both fields commute.
+/// The verdict on a symmetry of a first-order system: its flow maps motions to motions if both fields commute.
 fn check_commuting(
     model: &mut Model,
     dynamics: &Dynamics,
@@ -147,11 +147,11 @@ fn jump(model: &mut Model, field: &[ExprId]) -> Option<Verdict> {
     let place = field
         .iter()
         .find_map(|expr| possible_jump(model, *expr, &[], &mut |_, _| false))?;
-    let text = format!("where it is smooth it is one, but it may jump {place}");
+    let text = format!("it is a symmetry where it is smooth, but it may jump {place}");
     Some(Verdict::Undecided(text))
 }
 
-/// The certificate that all changes vanish, or the verdict on the first that is not shown to.
+/// The certificate that all changes vanish, or the verdict on the first change that is not proved to vanish.
 fn proved_together(
     model: &Model,
     changes: &[Change<'_>],
@@ -171,7 +171,7 @@ fn proved_together(
     Ok(whole.unwrap_or_else(|| Certificate::without_chance(KEPT.to_owned(), seed)))
 }
 
-/// Joins two certificates.
+/// Joins two certificates. Both statements were tested at the smaller number of points.
 fn joined(first: Option<Certificate>, second: Certificate) -> Certificate {
     let Some(mut whole) = first else {
         return second;
@@ -210,7 +210,7 @@ fn of_constraints<'d>(
     changes
 }
 
-/// The change of each force at velocities in D, up to what vanishes.
+/// The change of each force at velocities in D, without components that vanish.
 fn of_forces<'d>(
     model: &mut Model,
     dynamics: &'d Dynamics,
@@ -243,9 +243,11 @@ fn of_forces<'d>(
     changes
 }
 
-/// The certificates of a symmetry of the Lagrangian itself, and of one that changes it by a total derivative.
+/// Proved statement on a symmetry of the Lagrangian itself.
 const KEPT: &str = "its flow keeps the Lagrangian and the constraints";
+/// Proved statement on a symmetry of a first-order system.
 const RATES: &str = "its flow keeps the rates";
+/// Proved statement on a symmetry up to a total derivative.
 const GAUGE: &str =
     "its flow changes the Lagrangian by a total time derivative and keeps the constraints";
 
@@ -258,7 +260,7 @@ enum Subject {
     Rates,
 }
 
-/// The rate of something along a flow.
+/// The rate of a quantity along a flow.
 struct Change<'d> {
     rate: ExprId,
     name: String,
@@ -422,7 +424,7 @@ fn momentum_equation(model: &mut Model, field: &[ExprId], gauge: Option<ExprId>)
         (false, false) => "not horizontal; ",
     };
     let name = match lost {
-        Some(_) => "its momentum, less what the Lagrangian gains,",
+        Some(_) => "its momentum, less the gain of the Lagrangian,",
         None => "its momentum",
     };
     if terms.is_empty() {

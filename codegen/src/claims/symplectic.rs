@@ -59,7 +59,7 @@ pub(super) fn check_symplectic(model: &mut Model, around: &Surroundings<'_>) -> 
                 all.shown += &format!("; `{name}` keeps it");
             }
             Verdict::Undecided(reason) => {
-                open.get_or_insert(format!("what `{name}` does is not known: {reason}"));
+                open.get_or_insert(format!("the effect of `{name}` is not known: {reason}"));
             }
             refuted @ Verdict::Refuted(_) => return refuted,
         }
@@ -230,7 +230,7 @@ fn with_behind(
 /// An open verdict with the name of a surface and the reason.
 fn unknown(model: &Model, surface: usize, reason: &str) -> Verdict {
     let name = &model.surfaces[surface].name.display;
-    Verdict::Undecided(format!("what `{name}` does is not known: {reason}"))
+    Verdict::Undecided(format!("the effect of `{name}` is not known: {reason}"))
 }
 
 /// Verdict on the vectors that one surface carries to another mode.

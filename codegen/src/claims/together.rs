@@ -14,7 +14,7 @@ impl Together {
         Self { all, open: None }
     }
 
-    /// Adds a verdict; a refutation is given back.
+    /// Adds a verdict. Returns a refutation.
     pub fn add(&mut self, verdict: Verdict) -> Option<Verdict> {
         match verdict {
             Verdict::Proved(part) => self.all.rest_on(&part),
@@ -26,7 +26,7 @@ impl Together {
         None
     }
 
-    /// Proved, or the first reason for which it is not.
+    /// The common proof, or the first reason for which a proof is missing.
     pub fn verdict(self) -> Verdict {
         match self.open {
             Some(reason) => Verdict::Undecided(reason),

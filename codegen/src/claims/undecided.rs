@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The largest chance of error with which something is proved.
+/// Largest chance of error of a proof.
 pub(super) const LARGEST_CHANCE: f64 = 1e-12;
 
 /// Reason for which there is no answer.
@@ -10,21 +10,21 @@ pub(super) const LARGEST_CHANCE: f64 = 1e-12;
 pub enum Undecided {
     /// No point was found where metric, constraints and all expressions are regular.
     Degenerate,
-    /// No real state was found at which the equations of motion have values: of what is not there anything is true.
+    /// No real state was found at which the equations of motion have values: without states, any claim would hold.
     Stateless,
-    /// Constraints are not linear in the velocities.
+    /// The constraints are not linear in the velocities.
     Nonlinear,
     /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
     Depth(usize),
-    /// Forces whose divergence is not known to be linear in the velocities.
+    /// The divergence of the forces is not known to be linear in the velocities.
     Forces,
-    /// Coefficients inside sin, cos and exp without a common denominator.
+    /// The coefficients inside sin, cos and exp have no small common denominator.
     Denominators,
-    /// Roots and absolute values have more branches than are gone through.
+    /// Roots and absolute values have more branches than are examined.
     Branches,
-    /// Residues are 0, but so many of them may be by accident that nothing follows.
+    /// Residues are 0, but the chance that they are 0 by accident is too large.
     Chance,
-    /// The parts named may be related in ways that residues do not show.
+    /// These parts may be related in ways that residues do not show.
     Relations(Vec<String>),
 }
 
@@ -41,7 +41,7 @@ impl fmt::Display for Undecided {
             ),
             Self::Nonlinear => write!(
                 f,
-                "claims are examined where constraints are linear in the velocities"
+                "claims are examined only where constraints are linear in the velocities"
             ),
             Self::Depth(depth) => write!(
                 f,
@@ -57,18 +57,18 @@ impl fmt::Display for Undecided {
             ),
             Self::Branches => write!(
                 f,
-                "roots and absolute values have more combinations of signs than are gone through"
+                "roots and absolute values have more combinations of signs than are examined"
             ),
             Self::Chance => write!(
                 f,
                 "with so many roots and such degrees, values at random points modulo 61-bit primes leave too large a chance of error"
             ),
             Self::Relations(atoms) if atoms.is_empty() => {
-                write!(f, "values at real points do not confirm what residues say")
+                write!(f, "values at real points do not confirm the residues")
             }
             Self::Relations(atoms) => write!(
                 f,
-                "values at real points do not confirm what residues say, as these may be related: {}",
+                "values at real points do not confirm the residues, as these may be related: {}",
                 atoms.join(", ")
             ),
         }

@@ -9,11 +9,12 @@
 //! totally plastic          eps = -rho G/dh(pi_D grad h)
 //! ```
 //!
-//! Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous constraints come before the law ([`super::focusing`]).
+//! Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous constraints come before the law
+//! ([`super::focusing`]).
 //!
 //! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
-//! through the surface, `-G+/G-`. The determinant is the factor by which G is multiplied with the other sign, except for
-//! `elastic` and `restitution e` where constraints are affine: there it is e.
+//! through the surface, `-G+/G-`. The determinant is `-G+/G-` too, except for `elastic` and `restitution e` with affine
+//! constraints, where it is e (1 for `elastic`).
 
 use std::cmp::Ordering;
 
@@ -33,10 +34,11 @@ use crate::model::{Beside, Law, Model, Surface};
 /// Newton steps from 16 digits to 76, and one more.
 const STEPS: usize = 4;
 
-/// An impact surface with everything that its map is made of.
+/// An impact surface with the expressions of its map.
 #[derive(Debug)]
 pub(super) struct Wall {
-    /// Metric (N N), forms of the constraints and of the K instantaneous ones ((M + K) N), dh (N), psi_0 (K), d_t h, coefficient.
+    /// Metric (N N), forms of the constraints and of the K instantaneous constraints ((M + K) N), dh (N), psi_0 (K),
+    /// d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,
     /// The map of a reset or of a transition.
@@ -73,7 +75,7 @@ pub(super) enum Place {
 fn lists(surface: &Surface) -> (usize, Vec<usize>) {
     let others = match &surface.beside {
         Beside::Otherwise(others) => others.iter().map(Vec::len).collect(),
-        // The last of several transitions has a law by its own conditions.
+        // The last of several transitions counts by its own conditions.
         Beside::Last(_) | Beside::Independent => Vec::new(),
     };
     (surface.conditions.len(), others)
@@ -160,7 +162,7 @@ impl Wall {
         })
     }
 
-    /// The gap rate before an impact, and that before its law.
+    /// The gap rate before an impact, and the gap rate after the projection onto instantaneous constraints.
     pub(super) fn gap_rates<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -175,7 +177,7 @@ impl Wall {
         found.try_into().ok()
     }
 
-    /// Values at a point of series that are made of the velocities there.
+    /// Values at a point of series built from the velocities there.
     fn at_point<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -260,7 +262,8 @@ impl Wall {
         Some(field.mul(determinant, field.neg(ratio)))
     }
 
-    /// A real state that approaches the surface where it counts, and its point. The symbols of `roots` are shown of it.
+    /// A real state that approaches the surface where it counts, and its point. The sample holds the symbols of
+    /// `roots`.
     pub(super) fn incoming(
         &self,
         model: &Model,
@@ -433,10 +436,10 @@ struct Polynomial {
     solution: Option<ExprId>,
 }
 
-/// The coordinates in which a gap is a polynomial of degree 1 or 2 whose first coefficient is 0 nowhere.
+/// The coordinates in which a gap is a polynomial of degree 1 or 2 whose leading coefficient is 0 nowhere.
 ///
-/// NOTE: then every component of the surface depends on the coordinate, and a root leads to each. `x*y` has none: the
-/// component `y = 0` is not seen from `x`.
+/// NOTE: every component of the surface then depends on the coordinate, and a root leads to each. `x*y` has no such
+/// coordinate: solving for `x` misses the component `y = 0`.
 fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<Polynomial> {
     let mut found = Vec::new();
     let mut moving = coordinates.to_vec();
@@ -476,7 +479,7 @@ mod tests {
 
     use super::*;
 
-    /// The range in which a circle of radius 1 is looked for, next to the point where `x` is given and `y` is 0.3.
+    /// Midpoint and radius of the range of `x` that encloses a point of the unit circle next to `(x, 0.3)`.
     fn enclosed<P: RangePoint>(x: f64) -> Option<(f64, f64)> {
         let declaration = "pub Sample { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
             impacts { wall: x^2 + y^2 >= 1 => elastic; } }";
@@ -506,7 +509,7 @@ mod tests {
 
     #[test]
     fn a_position_off_the_surface_is_not() {
-        // Steps of Newton's method halve what is far out.
+        // Far from the circle, a step of Newton's method only halves the distance.
         assert_eq!(enclosed::<BallPoint>(5e5), None);
     }
 }

@@ -1,4 +1,4 @@
-//! A function as lines: the one walk over its operations from which every other language is written.
+//! A function as lines. All other languages are written from this single walk over its operations.
 
 use dalembert_expr::Function as Elementary;
 
@@ -13,11 +13,11 @@ pub enum Operand {
     Number(f64),
     /// The time.
     Time,
-    /// A component of the state; of a function of positions and velocities, a position.
+    /// A component of the state, or a position in a function of positions and velocities.
     State(usize),
     /// A velocity.
     Velocity(usize),
-    /// A parameter, or behind all of them an input.
+    /// A parameter or an input; inputs follow all parameters.
     Parameter(usize),
 }
 
@@ -37,23 +37,23 @@ pub enum Fault {
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Line {
-    /// A value by its number: a sign between two operands (`+`, `-`, `*`, `/`), or a function by its name in C. `neg` is the
-    /// opposite of its operand.
+    /// A numbered value: a sign between two operands (`+`, `-`, `*`, `/`), or a function by its name in C. `neg`
+    /// changes the sign of its operand.
     Let {
         /// Number of the value.
         value: usize,
         /// Sign or name.
         operation: &'static str,
-        /// The argument.
+        /// The operands, in order.
         operands: Vec<Operand>,
     },
     /// `value > factor*reference`, or else the function ends with a fault.
     Demand {
         /// The side that must be greater.
         value: Operand,
-        /// A factor of the reference.
+        /// The factor of the reference.
         factor: f64,
-        /// The side that it is compared with; 0 without.
+        /// The quantity that is multiplied by the factor; `None` for 0.
         reference: Option<Operand>,
         /// The fault.
         fault: Fault,
@@ -72,7 +72,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// The lines of a function of a model with `n` coordinates; `None` if it reads what no state has.
+    /// The lines of a function of a model with `n` coordinates; `None` if it reads rates, excesses or multipliers.
     pub fn of(function: &Function, n: usize) -> Option<Self> {
         let mut known: Vec<Operand> = Vec::with_capacity(function.ops.len());
         let mut lines = Vec::new();
@@ -109,7 +109,7 @@ impl Lines {
         })
     }
 
-    /// Adds a line, and gives its value.
+    /// Adds a line and returns its value.
     pub(super) fn add(&mut self, operation: &'static str, operands: Vec<Operand>) -> Operand {
         let value = self.next;
         self.next += 1;
@@ -145,7 +145,7 @@ fn place(input: Input, n: usize) -> Option<Operand> {
     }
 }
 
-/// The sign or the name of an operation, and what it reads.
+/// The sign or the name of an operation, and its operands.
 fn operation(op: &Op, at: &dyn Fn(&Value) -> Operand) -> (&'static str, Vec<Operand>) {
     let name = match op {
         Op::Neg(_) => "neg",

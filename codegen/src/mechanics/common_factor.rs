@@ -16,7 +16,7 @@ pub(super) fn factored(pool: &mut Pool, sum: ExprId) -> ExprId {
     pool.mul(common, rest)
 }
 
-/// Integer powers that all entries which are not zero have as factors, and the entries without them.
+/// The integer powers that are factors of all nonzero entries, and the entries divided by them.
 pub(super) fn without_common_factor(pool: &mut Pool, vector: &[ExprId]) -> (ExprId, Vec<ExprId>) {
     let mut common: Option<Factors> = None;
     for &entry in vector
@@ -37,7 +37,8 @@ pub(super) fn without_common_factor(pool: &mut Pool, vector: &[ExprId]) -> (Expr
     (pool.power_product(&common), rest)
 }
 
-/// The entries without factors that all nonzero entries have in common and that are never zero, a number up to sign included.
+/// The entries divided by those common factors of all nonzero entries that are never zero, and by a common number up to
+/// sign.
 pub(super) fn without_regular_factor(pool: &mut Pool, vector: &[ExprId]) -> Vec<ExprId> {
     let (common, entries) = without_common_factor(pool, vector);
     let singular = match pool.node(common) {
@@ -100,7 +101,7 @@ fn shared(known: &Factors, entry: &Factors) -> Factors {
     whole_powers(in_both.collect())
 }
 
-/// An entry without factors that it has.
+/// An entry divided by some of its factors.
 fn divided(pool: &mut Pool, entry: ExprId, common: &Factors) -> ExprId {
     if pool.is_syntactic_zero(entry) {
         return entry;

@@ -12,21 +12,21 @@ pub struct FieldTerms {
     pub force: Vec<ExprId>,
     /// `d/dt` of `dL/dqdot^k` at fixed velocity: `gdot qdot + Adot`.
     pub drift: Vec<ExprId>,
-    /// True for coordinates where force and drift were shown to be the same.
+    /// True for coordinates where force and drift were proved equal.
     pub cancels: Vec<bool>,
-    /// `d_t L`, where named forces ask for it; else zero.
+    /// `d_t L` if there are named forces; else zero.
     pub by_time: ExprId,
 }
 
-/// Distinct parts beyond which force and drift are not compared.
+/// Number of subexpressions beyond which force and drift are not compared.
 const PARTS: usize = 400;
 
-/// Coordinates up to which the expanded metric is differentiated too.
+/// Number of coordinates up to which the expanded metric is differentiated too.
 const COORDINATES: usize = 4;
 
 /// Derives forces and drift. Differentiating `L` itself instead of its expanded metric keeps the
-/// structure that the author wrote, so that an N-link chain costs O(N^2) operations and not O(N^3). Of few coordinates
-/// both are tried: terms that cancel in the metric do not come up again in its derivatives.
+/// structure that the author wrote, so that an N-link chain costs O(N^2) operations and not O(N^3). With few
+/// coordinates both are tried: terms that cancel in the metric do not occur in its derivatives.
 pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> FieldTerms {
     let motion = coordinates.motion(model);
     let whole = model.lagrangian.whole;
@@ -54,7 +54,7 @@ pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> Fiel
     terms
 }
 
-/// True if two expressions that are finite everywhere are the same.
+/// True if two expressions are finite everywhere and proved equal.
 fn cancel(pool: &mut Pool, a: ExprId, b: ExprId) -> bool {
     if !pool.is_finite(a) || !pool.is_finite(b) || pool.reachable(&[a, b]).len() > PARTS {
         return false;

@@ -10,7 +10,7 @@ pub(crate) type Matrix = Vec<Vec<ExprId>>;
 /// Larger blocks of a matrix are not inverted by minors.
 const LARGEST_BLOCK: usize = 4;
 
-/// An expression multiplied out and simplified, of almost all states.
+/// An expression multiplied out and simplified. It has the same value at almost all states.
 pub(crate) fn tidy(pool: &mut Pool, expression: ExprId) -> ExprId {
     /// Rounds of simplification, each of which may let powers merge.
     const ROUNDS: usize = 3;
@@ -44,7 +44,7 @@ pub(crate) fn inverse(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix>
     inverse_by(pool, matrix, |_, determinant| determinant)
 }
 
-/// The same with determinants as products of common factors, which cancel where they are never zero.
+/// The inverse with determinants written as products of common factors. Factors that are never zero cancel.
 pub(crate) fn inverse_in_factors(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix> {
     inverse_by(pool, matrix, factored)
 }
@@ -85,7 +85,7 @@ fn inverse_by(
     Some(inverse)
 }
 
-/// The indices that are connected by entries that are not 0.
+/// Sets of indices that are connected by nonzero entries.
 fn blocks(pool: &Pool, matrix: &[Vec<ExprId>]) -> Vec<Vec<usize>> {
     let mut left: Vec<usize> = (0..matrix.len()).collect();
     let mut blocks = Vec::new();
@@ -120,7 +120,7 @@ pub(crate) fn minor(
     by_first_row(pool, matrix, rows, columns, tidy)
 }
 
-/// The determinant of the first rows in these columns, as it comes; that of no columns is 1.
+/// The determinant of the first rows and these columns, not simplified. Without columns it is 1.
 pub(crate) fn determinant(pool: &mut Pool, matrix: &[Vec<ExprId>], columns: &[usize]) -> ExprId {
     let rows: Vec<usize> = (0..columns.len()).collect();
     by_first_row(pool, matrix, &rows, columns, |_, sum| sum)
@@ -155,17 +155,17 @@ fn by_first_row(
     finish(pool, sum)
 }
 
-/// Reason for which rows are not told to be independent.
+/// Reason for which no minor of independent rows is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NoMinor {
     /// Determinants that are too large to be written out.
     TooLarge,
-    /// A determinant that is not known to be 0, nor to be another.
+    /// A determinant that is neither proved to be 0 nor proved to be nonzero.
     Undecided,
 }
 
-/// As many rows as are independent, and columns in which they have a determinant that is not 0 identically, as far as possible one that is
-/// 0 nowhere.
+/// As many independent rows as there are, and columns in which their determinant is not identically 0. Columns with a
+/// determinant that is 0 nowhere are preferred.
 ///
 /// # Errors
 /// [`NoMinor`].
@@ -173,7 +173,7 @@ pub(crate) fn independent_minor(
     pool: &mut Pool,
     rows: &[Vec<ExprId>],
 ) -> Result<(Vec<usize>, Vec<usize>), NoMinor> {
-    /// Rows beyond which no determinant is written out.
+    /// Number of rows beyond which no determinant is written out.
     const LARGEST: usize = 6;
     let (mut chosen, mut columns) = (Vec::new(), Vec::new());
     let width = rows.first().map_or(0, Vec::len);

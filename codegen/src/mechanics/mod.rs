@@ -9,8 +9,9 @@
 //! curvature_a = (d_i eta^a_j) qdot^i qdot^j + (d_i eta^a_0) qdot^i + (d_t eta^a_j) qdot^j + d_t eta^a_0
 //! ```
 //!
-//! Only derivatives are taken here. `g^{-1}` and `m_ab` are never formed. The program stage factorises (see
+//! Emitted functions need derivatives only: `g^{-1}` and `m_ab` are not formed. The program stage factorises (see
 //! [`crate::program::linear`]), except for factors that are known as expressions ([`factors`], [`frame::Invariant`]).
+//! Brackets, reductions and the maximum principle write out the inverses of small matrices.
 //! Sources: W. Clark, thesis, chapters III and V, with signs as in docs/conventions.md.
 
 pub mod bracket;
@@ -42,7 +43,7 @@ pub use frame::{Frame, Unreduced};
 pub use impact::SurfaceForm;
 pub use metric::MetricDerivatives;
 
-/// The expressions that every emitted function is made of, in the pool of the model they were derived from.
+/// The expressions from which every emitted function is built, in the pool of the model.
 #[derive(Debug)]
 pub struct Derivation {
     /// Rows of the factors of the metric that are known in simple terms.
@@ -51,7 +52,7 @@ pub struct Derivation {
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
     pub constraints: Vec<ConstraintForm>,
-    /// True if their forms are linear in the velocities and not known to be independent at every state.
+    /// True if constraints that are linear in the velocities are not known to be independent at every state.
     pub can_lose_rank: bool,
     /// True if the rates may have features that are narrow compared with the length of a step.
     pub can_be_narrow: bool,
@@ -112,7 +113,7 @@ pub fn derive(model: &mut Model) -> Derivation {
     }
 }
 
-/// The symbols that derivatives are taken by.
+/// The symbols of all derivatives.
 #[derive(Debug, Clone)]
 pub struct Coordinates {
     /// Coordinates, in order.

@@ -54,7 +54,7 @@ mod tests {
     use dalembert_expr::{Assumption, Rational};
 
     #[test]
-    fn functions_that_are_flat_elsewhere_are_told_from_others() {
+    fn functions_that_are_flat_elsewhere_are_recognised() {
         let mut pool = Pool::new();
         let [x, k] = ["x", "k"].map(|name| pool.symbol(name, name, Assumption::None));
         let [along, constant] = [x, k].map(|symbol| pool.variable(symbol));

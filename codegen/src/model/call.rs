@@ -46,7 +46,7 @@ impl<'s> Resolver<'s> {
         Some(self.pool.pow(value, power).into())
     }
 
-    /// Refuses powers of numbers that are not numbers, and numbers that are too long.
+    /// Refuses powers of numbers that are undefined or not real, and exact numbers that are too long.
     fn check_constant_power(
         &mut self,
         whole: &Scalar,
@@ -124,7 +124,7 @@ impl<'s> Resolver<'s> {
         values.into_iter().collect()
     }
 
-    /// A function of numbers; `None` stands for the two that are no [`Function`]: `sqrt` and `atan2`.
+    /// A function of numbers. `None` stands for `sqrt` and `atan2`, which are not a [`Function`].
     fn elementary(
         &mut self,
         at: Location,
@@ -197,12 +197,12 @@ impl<'s> Resolver<'s> {
         })
     }
 
-    /// Looks for a value that differs from case to case: some may be points that happen to be fixed.
+    /// True if an expression contains a value that may differ between uses, and be constant in only some of them.
     fn mentions_local(&self, scalar: &Scalar, scope: &Scope) -> bool {
         let within = |part: &Scalar| self.mentions_local(part, scope);
         match &scalar.kind {
             ScalarKind::Number(..) => false,
-            // A definition may be a constant in one use of a text and a point in another.
+            // A definition may stand for a constant or for a moving point.
             ScalarKind::Name(name) => {
                 let meaning = self.symbols.names.get(name);
                 scope.get(name).is_some() || matches!(meaning, Some((Meaning::Definition, _)))
@@ -295,7 +295,7 @@ impl<'s> Resolver<'s> {
     /// `partial(x)`, in a claim of symmetry.
     fn partial(&mut self, name: &Word, arguments: &[Scalar], scope: &mut Scope) -> Option<Value> {
         if self.partials.is_empty() {
-            let help = "`symmetry: partial(theta);` in `claims` is where it belongs";
+            let help = "write `symmetry: partial(theta);` in `claims`";
             return self.refuse(name.at, "`partial` is not known here", help);
         }
         let [argument] = arguments else {
@@ -306,7 +306,7 @@ impl<'s> Resolver<'s> {
         Some(self.pool.variable(self.partials[index]).into())
     }
 
-    /// The coordinate that an expression is.
+    /// The index of the coordinate that an expression stands for.
     pub(super) fn coordinate(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<usize> {
         if let ScalarKind::Name(name) = &scalar.kind
             && scope.get(name).is_none()
@@ -341,7 +341,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// `a` or `a.3` for what was written `a` or `a[3]`.
+    /// The display name `a` or `a.3` of a name that was written `a` or `a[3]`.
     fn display_name(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<String> {
         match &scalar.kind {
             ScalarKind::Name(name) => Some(name.clone()),

@@ -44,7 +44,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The body of a sum at the first index where it has the fault; the index stays known.
+    /// The body of a sum at the first index where it has the fault. The index stays bound.
     fn faulty_body<'a>(
         &mut self,
         binder: &crate::spec::Binder,

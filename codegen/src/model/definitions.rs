@@ -1,4 +1,4 @@
-//! `let` and `const`: values, functions, families; each may use what stands above it.
+//! `let` and `const`: values, functions, families. Each may use the definitions above it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -77,7 +77,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// Makes the names of all definitions known; gives the positions of those that cannot be resolved.
+    /// Makes the names of all definitions known. Returns the positions of definitions that cannot be resolved.
     fn declare_definitions(&mut self, spec: &'s spec::Spec) -> BTreeSet<usize> {
         let mut faulty = BTreeSet::new();
         let mut families: BTreeSet<&str> = BTreeSet::new();
@@ -160,7 +160,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// Uses of a family with a faulty member are not errors of their own.
+    /// Marks a family with a faulty member, so that its uses are not reported as further errors.
     fn poison(&mut self, name: &'s Word) {
         self.definitions.insert(&name.text, Definition::Faulty);
     }

@@ -1,9 +1,9 @@
-//! The degree of an expression in some of its symbols, and linear expressions taken apart.
+//! The degree of an expression in some of its symbols, and the coefficients of linear expressions.
 
 use dalembert_expr::{Assumption, ExprId, Node, Pool, Rational, SymbolId, Verdict};
 
-/// An upper bound for the degree of `expr` as a polynomial in `symbols`, from its structure; `None` if it need not be
-/// one. One pass over the shared nodes, operands first.
+/// An upper bound for the degree of `expr` as a polynomial in `symbols`, from its structure; `None` if it may not be a
+/// polynomial. One pass over the shared nodes, operands first.
 pub(super) fn degree_bound(pool: &Pool, expr: ExprId, symbols: &[SymbolId]) -> Option<u32> {
     let order = pool.reachable(&[expr]);
     let mut degrees: Vec<Option<u32>> = Vec::with_capacity(order.len());
@@ -55,9 +55,9 @@ fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
     base.checked_mul(exponent)
 }
 
-/// True if `expr` is written as a polynomial in `symbols` and has at most this degree: by its structure, or because
-/// its derivative of the next order along a general direction is zero. What is no polynomial as written may not have
-/// a value where the symbols are 0, so that its coefficients cannot be read off.
+/// True if `expr` is written as a polynomial in `symbols` and has at most this degree: by its structure, or because its
+/// derivative of the next order along a general direction is zero. An expression that is not written as a polynomial
+/// may have no value where the symbols are 0, so that its coefficients cannot be read off there.
 pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], degree: u32) -> bool {
     match degree_bound(pool, expr, symbols) {
         None => return false,
@@ -90,7 +90,7 @@ pub(super) fn without_hidden_zero(pool: &Pool, expr: ExprId) -> ExprId {
     }
 }
 
-/// True if an expression has a value wherever others have: each part that may have none by itself is a part of them.
+/// True if an expression has a value wherever `others` have values: each part that may be undefined is a part of them.
 pub(super) fn is_defined_with(pool: &Pool, expr: ExprId, others: &[ExprId]) -> bool {
     let known = pool.reachable(others);
     let is_known = |id: &ExprId| known.binary_search(id).is_ok();
@@ -125,7 +125,7 @@ pub(super) fn at_zero(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Ex
     pool.substitute(expr, &replacements)
 }
 
-/// The coefficients of `symbols` in an expression that is linear in them; those that are zero are the number 0.
+/// The coefficients of `symbols` in an expression that is linear in them. Hidden zeros become the number 0.
 pub(super) fn coefficients(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId]) -> Vec<ExprId> {
     let derivatives: Vec<ExprId> = symbols
         .iter()

@@ -1,4 +1,4 @@
-//! Indices: integers known while building, ranges of them, and the members of families they name.
+//! Indices: integers known while building, their ranges, and the members of families that they name.
 
 use dalembert_expr::{ExprId, Rational};
 
@@ -23,7 +23,7 @@ fn value(spec: &Spec, index: &Scalar) -> Result<i64, Diagnostics> {
     value.ok_or(resolver.diagnostics)
 }
 
-/// A resolver that knows constants alone.
+/// A resolver that knows only constants.
 fn with_constants(spec: &Spec) -> Resolver<'_> {
     let mut resolver = Resolver::new(spec, STEPS);
     resolver.constants();
@@ -80,7 +80,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// A name of capital letters that nothing declares, as sizes are called.
+    /// An undeclared name of capital letters, as is usual for sizes.
     fn undeclared_size<'a>(&self, scalar: &'a Scalar, scope: &Scope) -> Option<&'a str> {
         let ScalarKind::Name(name) = &scalar.kind else {
             return None;

@@ -1,4 +1,4 @@
-//! Names as formulas write them: `theta1` is `\theta_{1}`, `ta` is `\mathrm{ta}`, `θ` is `\theta`.
+//! Names in formulas: `theta1` is `\theta_{1}`, `ta` is `\mathrm{ta}`, `θ` is `\theta`.
 
 use super::Name;
 
@@ -83,7 +83,7 @@ fn decorated(name: &Name, decorate: fn(String) -> String) -> String {
     }
 }
 
-/// The letter or word, and what is written as its index: trailing digits, and what follows an underscore.
+/// The letter or word, and its indices: trailing digits, and the part behind an underscore.
 fn split(field: &str) -> (&str, Vec<String>) {
     let (word, index) = match field.split_once('_') {
         Some((word, index)) if !word.is_empty() && !index.is_empty() => (word, Some(index)),

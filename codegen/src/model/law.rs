@@ -1,4 +1,4 @@
-//! Declared impact laws. The runtime has one of the same name for each.
+//! Declared impact laws. The runtime has a law of the same name for each.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
@@ -45,7 +45,7 @@ impl Law {
         })
     }
 
-    /// Name.
+    /// Name of the law in the language; `transition` for a transition.
     pub fn name(self) -> &'static str {
         match self {
             Self::Elastic => "elastic",
@@ -65,7 +65,7 @@ impl Law {
         self != Self::Stop
     }
 
-    /// Coefficient.
+    /// Coefficient of restitution, if the law has one.
     pub fn coefficient(self) -> Option<ExprId> {
         match self {
             Self::Restitution(e) | Self::Newton(e) => Some(e),
@@ -138,14 +138,14 @@ impl Reset {
 }
 
 impl Model {
-    /// Surfaces behind which the motion goes on, by index: those of which claims about impacts speak.
+    /// Indices of the surfaces behind which the motion goes on. Claims about impacts refer to these surfaces.
     pub fn acting_surfaces(&self) -> Vec<usize> {
         let acts = |surface: &usize| self.surfaces[*surface].law.goes_on();
         (0..self.surfaces.len()).filter(acts).collect()
     }
 
-    /// Law of a surface as declared, with the names of its instantaneous constraints: `newton(e), instantaneous {
-    /// no_slip }`.
+    /// Law of a surface as declared, with the names of its instantaneous constraints:
+    /// `newton(e), instantaneous { no_slip }`.
     pub fn law_text(&self, surface: usize) -> String {
         let Surface {
             law,

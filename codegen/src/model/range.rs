@@ -1,12 +1,12 @@
 //! Bounds of an expression of the parameters, from their assumptions: interval arithmetic in double precision.
 //!
-//! `[low, high]` contains every value; where a parameter occurs twice it may contain more.
+//! `[low, high]` contains every value up to rounding. Where a parameter occurs twice, it may contain more.
 
 use dalembert_expr::{Course, ExprId, Function, Node, Pool, Rational, SymbolId};
 
 use super::{Assumption, Parameter};
 
-/// Bounds of a quantity, ends included; infinite where there is none.
+/// Bounds of a quantity, ends included; infinite if there is no bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range {
     /// The lower bound.
@@ -140,7 +140,7 @@ impl Range {
     }
 }
 
-/// Bounds of an expression, without any where it depends on more than parameters.
+/// Bounds of an expression. Symbols that are not parameters have infinite bounds.
 pub(super) fn range(pool: &Pool, expr: ExprId, parameters: &[Parameter]) -> Range {
     let order = pool.reachable(&[expr]);
     let mut ranges: Vec<Range> = Vec::with_capacity(order.len());

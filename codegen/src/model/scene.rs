@@ -4,7 +4,7 @@ use super::{Claim, Model};
 use crate::diagnostics::listed;
 use crate::spec::ItemId;
 
-/// A declared scene: what of the model it uses.
+/// A declared scene, with the parts of the model that it uses.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Name of the scene and of its module of indices: `with_drag`.
@@ -33,7 +33,7 @@ pub struct Parts {
 /// Extras of a scene besides forces and surfaces. The model itself has all of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Extras {
-    /// The return to the constraints after steps.
+    /// The projection onto the constraints after steps.
     pub projection: bool,
     /// Density form, divergence, and the invariant volume that a claim proves.
     pub volume: bool,
@@ -51,7 +51,7 @@ impl Extras {
 }
 
 impl Model {
-    /// The model with nothing but what the scene of this index uses: forces, surfaces, and the claims about it.
+    /// The model of the scene with this index: its forces, surfaces and extras, and the claims about it.
     pub fn in_scene(&self, index: usize) -> Self {
         let scene = &self.scenes[index];
         let Parts {
@@ -114,8 +114,8 @@ impl Model {
 }
 
 impl Claim {
-    /// The claim about a scene as one about the model that the scene is, of whose surfaces only these are left; it names
-    /// no other.
+    /// The claim about a scene as a claim about the model of that scene, which keeps these surfaces. The claim names no
+    /// other surface.
     fn on_surfaces(&self, surfaces: &[usize]) -> Self {
         let mut claim = self.clone();
         claim.scene = None;

@@ -1,4 +1,4 @@
-//! The symbols of a model: time, coordinates, velocities, differentials, parameters; and what each name means.
+//! The symbols of a model: time, coordinates, velocities, differentials, parameters; and the meaning of each name.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ impl Meaning {
     }
 }
 
-/// The symbols of a model and the names they go by.
+/// The symbols of a model and their names.
 #[derive(Debug)]
 pub(super) struct Symbols {
     /// `t`
@@ -118,7 +118,7 @@ impl Symbols {
         inputs.map(|input| input.symbol).collect()
     }
 
-    /// Index of the coordinate that a symbol is. Coordinates and time are the directions of a total time derivative.
+    /// Index of the coordinate with this symbol. Coordinates and time are the directions of a total time derivative.
     pub(super) fn coordinate_of(&self, symbol: SymbolId) -> Option<usize> {
         self.coordinates
             .iter()

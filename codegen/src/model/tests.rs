@@ -1,4 +1,4 @@
-//! Models that are right, and what is said of those that are not.
+//! Models that are accepted, and the remarks on them.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 
@@ -308,7 +308,7 @@ fn differences_that_lose_their_digits_are_noted() {
 }
 
 #[test]
-fn remarks_name_what_a_person_should_see() {
+fn remarks_name_likely_mistakes() {
     let model = model(
         "P { coordinates { x; y; } parameters { m; k; }
             lagrangian = m/2*(dot(x)^2 + dot(y)^2) + x*dot(y);
@@ -352,7 +352,7 @@ fn a_chain_of_sixty_lets_doubles_nothing() {
 }
 
 #[test]
-fn plastic_laws_say_where_they_leave_the_state_approaching() {
+fn plastic_laws_report_where_the_state_still_approaches() {
     let notes = |law: &str, constraint: &str| {
         let model = model(&format!(
             "P {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -377,7 +377,7 @@ fn plastic_laws_say_where_they_leave_the_state_approaching() {
 }
 
 #[test]
-fn resets_that_leave_the_motion_on_its_way_are_noted() {
+fn resets_after_which_the_motion_passes_are_noted() {
     let notes = |motion: &str, reset: &str| {
         let model = model(&format!(
             "P {{ coordinates {{ x; y; z; }} {motion} impacts {{ w: x - z*t >= 0 => reset {{ {reset} }}; }} }}"
@@ -439,7 +439,7 @@ fn members_of_a_family_may_stand_anywhere_in_a_section() {
 }
 
 #[test]
-fn what_cancels_is_not_there() {
+fn terms_that_cancel_are_dropped() {
     let model = model(
         "P { coordinates { x; y; } parameters { m > 0; }
             let one = sin(x)^2 + cos(x)^2;

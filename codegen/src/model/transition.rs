@@ -9,9 +9,9 @@ use super::{Name, Topology};
 pub struct Transition {
     /// The index of the mode that is entered.
     pub enters: usize,
-    /// Name.
+    /// The name of that mode.
     pub mode: String,
-    /// The state that it is entered with; where none was declared, what mechanics makes of the state.
+    /// The declared state with which it is entered. `None` if mechanics determines this state.
     pub map: Option<Map>,
     /// True if the surface counts from both sides: the opposite of its gap belongs to a transition of the same mode.
     pub has_no_side: bool,
@@ -19,15 +19,15 @@ pub struct Transition {
     pub keeps_lagrangian: bool,
 }
 
-/// The state that a mode is entered with: expressions of the state that is left, of parameters and of time, in the order of
-/// the coordinates of the mode that is entered.
+/// The state with which a mode is entered: expressions of the state that is left, of parameters and of time, in the
+/// order of the coordinates of the mode that is entered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Map {
     /// Names of these coordinates.
     pub names: Vec<String>,
     /// Positions.
     pub q: Vec<ExprId>,
-    /// Velocities; none where the mode is a first-order system.
+    /// Velocities; empty if the mode is a first-order system.
     pub qdot: Vec<ExprId>,
 }
 

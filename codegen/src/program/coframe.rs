@@ -68,7 +68,7 @@ impl<'a> Kernel<'a> {
         x
     }
 
-    /// The velocities that are asked for, and those that they follow from.
+    /// The requested velocities, and the velocities from which they follow.
     fn needed(&self, blocks: &[Block], asked: &Asked<'_>) -> Vec<bool> {
         let mut needed = asked.velocities.clone();
         for block in blocks.iter().rev() {

@@ -36,7 +36,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Pairs of constraint and coordinate whose velocity follows from it, in an order to solve for them.
+    /// Pairs of a constraint and the coordinate whose velocity it determines, in an order in which they can be solved.
     pub fn regular_minor(&self) -> Option<Vec<(usize, usize)>> {
         regular_minor(&self.model.pool, &self.derivation.constraints)
     }

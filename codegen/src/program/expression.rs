@@ -1,4 +1,4 @@
-//! Expressions to operations.
+//! Lowering of expressions to operations.
 //!
 //! Nodes are lowered in increasing id, so operands come first and depth costs no stack. Sums are factored:
 //! a factor that several terms share is multiplied once (`a*b + a*c` becomes `a*(b + c)`), the most frequent
@@ -134,7 +134,7 @@ impl<'a> Expressions<'a> {
                     false => outside.push((coefficient, factors)),
                 }
             }
-            // NOTE: only a proper part of the terms is worth a recursion; powers may be higher than a stack.
+            // NOTE: the function recurses for a proper part of the terms only. High powers would overflow the stack.
             if outside.is_empty() {
                 pending.push(Pending::Times(self.values[&shared]));
                 terms = inside;
@@ -250,8 +250,7 @@ pub fn positive_power(builder: &mut Builder, base: Value, exponent: &Rational) -
     }
 }
 
-/// Factors of a sum up to which shared ones are sought. The search takes the square of this number, and a longer sum fills
-/// a good part of a function anyway.
+/// Number of factors of a sum up to which shared factors are sought: the time of the search grows with its square.
 const SEARCHED: usize = 1 << 13;
 
 /// The base that occurs with a positive integer exponent in the most terms, at least two.
@@ -270,7 +269,7 @@ fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
         *counts.entry(base).or_default() += 1;
     }
     let best = shareable().map(|base| counts[&base]).max()?;
-    // The first of the most frequent: the order of the terms decides, never that of the map.
+    // The first of the most frequent bases: the order of the terms decides, never the order of the map.
     shareable().find(|base| best > 1 && counts[base] == best)
 }
 

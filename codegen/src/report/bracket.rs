@@ -7,7 +7,7 @@ use super::request::Asked;
 use super::{Item, Report, ReportError, Section};
 use crate::mechanics::bracket::{Bracket, FunctionOnD, derive_bracket};
 
-/// Brackets that are derived of functions.
+/// Kind of a bracket of functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BracketKind {
     /// `{f, g}`
@@ -26,11 +26,11 @@ impl BracketKind {
     }
 }
 
-/// The bracket of functions of a model, of one of its scenes or modes. The functions are a list in the language of claims:
-/// `x, momentum(x)`.
+/// The bracket of functions of a model, or of one of its scenes or modes. The functions are a list in the language of
+/// claims: `x, momentum(x)`.
 ///
 /// # Errors
-/// [`ReportError`]: a function that is not one, a number of them that does not fit, a model that has no bracket.
+/// [`ReportError`]: an invalid function, a wrong number of functions, or a model without a bracket.
 pub fn bracket(
     source: &str,
     part: Option<&str>,

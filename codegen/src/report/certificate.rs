@@ -2,8 +2,8 @@
 //! grounds.
 //!
 //! Expressions are texts of the language: `+ - * / ^`, the functions of `docs/language.md`, names of coordinates and
-//! parameters, velocities `dot(x)`, `energy`, `momentum(x)` and `t`. Only the density that was found is derived; a
-//! checker of a claim derives the motion anew.
+//! parameters, velocities `dot(x)`, `energy`, `momentum(x)` and `t`. The density that was found is the only derived
+//! quantity; a checker derives the motion by itself.
 
 use dalembert_expr::ExprId;
 
@@ -207,11 +207,11 @@ impl Writer<'_> {
         Tree::list(self.model.surfaces.iter().map(entry))
     }
 
-    /// The lists of functions of which one must be negative in each for the surface to count.
+    /// Lists of functions. The surface counts only where each list contains a negative function.
     fn excluded(&self, beside: &Beside) -> Tree {
         let lists = match beside {
             Beside::Otherwise(lists) => lists.as_slice(),
-            // The last of several transitions has a law by its own conditions.
+            // The last of several transitions counts by its own conditions.
             Beside::Last(_) | Beside::Independent => &[],
         };
         let list = |list: &Vec<Condition>| {
@@ -221,7 +221,8 @@ impl Writer<'_> {
         Tree::list(lists.iter().map(list))
     }
 
-    /// The mode that is entered, which is another part of the document, and the state that it is entered with if that was declared.
+    /// The mode that is entered, which is another part of the document, and the declared state with which it is
+    /// entered.
     fn transition(&self, transition: Option<&Transition>) -> Tree {
         let Some(transition) = transition else {
             return Tree::Absent;
@@ -350,7 +351,7 @@ impl Writer<'_> {
         }))
     }
 
-    /// The terms of G, and the columns whose determinant one of them may name.
+    /// The terms of G, and the columns of the determinant `det A_dep`, which a term may name.
     fn density(&self, density: &ClosedForm) -> Tree {
         let terms = density.potential.terms.iter().map(|(coefficient, term)| {
             let (kind, of) = match term {

@@ -7,7 +7,7 @@ use crate::mechanics::{Derivation, Entry};
 use crate::model::Model;
 
 /// `theta_k = m_ab [ W^{a,j} d_j eta^b_k + W^{b,j} d_k eta^a_j - W^b.(d_k g) W^a ]`, N components; `None` for a model
-/// that is too large to be written out, and for constraints that are not linear in the velocities, which have none.
+/// that is too large to be written out, and for constraints that are not linear in the velocities.
 pub fn density_form(model: &mut Model, derivation: &Derivation) -> Option<Vec<ExprId>> {
     if model.is_nonlinear() {
         return None;

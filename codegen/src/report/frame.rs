@@ -1,5 +1,5 @@
-//! The section on the motion reduced to D: its quasi-velocities, and how velocities follow from them; or why there is
-//! none.
+//! The section on the motion reduced to D: its quasi-velocities and the equations of the velocities, or the reason for
+//! which the motion is not reduced.
 
 use dalembert_expr::ExprId;
 

@@ -1,19 +1,19 @@
 //! Derivation for a reader: the emitted expressions, as text and LaTeX.
 //!
 //! A report prints the emitted code: every expression here is lowered as it stands, after collection of `cos^2 + sin^2`
-//! and common factors. Only the density form is written out for the reader; the emitted code solves for it.
+//! and common factors. The density form, brackets and reductions are written out for the reader only.
 //!
 //! | file | job |
 //! |---|---|
-//! | `mod.rs` | what a report is, and its order |
+//! | `mod.rs` | the types of a report, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
-//! | `request.rs`, `bracket.rs`, `group.rs` | what is asked for in the words of a claim: brackets of functions, reduction by a group |
+//! | `request.rs`, `bracket.rs`, `group.rs` | requests in the words of a claim: brackets of functions, reduction by a group |
 //! | `control.rs` | the maximum principle of a model with a cost |
 //! | `modulo.rs` | symmetries for orbits that close up to a group |
 //! | `planar` | hypotheses of the Poincare-Bendixson theorem |
-//! | `certificate.rs` | what the claims are about and rest on, for a program that checks them |
-//! | `print.rs` | a report as text and as a document of LaTeX |
+//! | `certificate.rs` | declaration and grounds of the claims, for an independent checker |
+//! | `print.rs` | a report as text and as a LaTeX document |
 //! | `volume.rs`, `density_form.rs` | the invariant volume; the density form written out |
 
 mod bracket;
@@ -61,7 +61,7 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// The verdicts on its claims, in order.
     pub findings: Vec<Finding>,
-    /// Claims with the grounds of their verdicts.
+    /// Certificate of the claims, with the grounds of their verdicts.
     pub certificate: Tree,
     /// Reports of its scenes, in order.
     pub scenes: Vec<Report>,
@@ -186,7 +186,7 @@ fn report_of_declaration(declaration: Declaration) -> Result<Report, ReportError
     })
 }
 
-/// The report of a model with modes: how they hang together, and each of them as a scene.
+/// The report of a model with modes: its modes and transitions, and the report of each mode as a scene.
 fn report_of_modes(declared: &Modes) -> Result<Report, ReportError> {
     let compiled = compile_modes(declared).map_err(ReportError::Declaration)?;
     let CompiledModes { graph, modes } = compiled;
@@ -342,7 +342,7 @@ fn work(model: &Model, program: &Program) -> Section {
     Section::plain("Work of the emitted functions", items)
 }
 
-/// The verdicts on what is claimed.
+/// The verdicts on the claims.
 fn claims(findings: &[Finding]) -> Section {
     let items = findings
         .iter()

@@ -1,4 +1,4 @@
-//! Reports as text and as a document of LaTeX.
+//! Reports as text and as a LaTeX document.
 
 use super::{Item, Report};
 
@@ -12,7 +12,7 @@ impl Report {
         text(self)
     }
 
-    /// A document of LaTeX that compiles as it is.
+    /// A complete LaTeX document.
     pub fn latex(&self) -> String {
         latex(self)
     }
@@ -100,7 +100,7 @@ fn latex(report: &Report) -> String {
     out + "\\end{document}\n"
 }
 
-/// Words as LaTeX text wants them.
+/// Words with the special characters of LaTeX escaped.
 fn escape(words: &str) -> String {
     let mut out = String::new();
     for c in words.chars() {

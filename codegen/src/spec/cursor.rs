@@ -1,4 +1,4 @@
-//! A cursor over the tokens of one declaration: what comes next, and where something is missing.
+//! A cursor over the tokens of one declaration: the next token, and the place where a token is missing.
 
 use proc_macro2::{Delimiter, Group, Ident, Spacing, TokenStream, TokenTree};
 
@@ -7,7 +7,7 @@ use super::keyword;
 use super::limits::NAME_LENGTH;
 use crate::diagnostics::{Diagnostics, Location};
 
-/// Says that an error was recorded and reading this declaration makes no more sense.
+/// Signals that an error was recorded and that this declaration is not read any further.
 #[derive(Debug)]
 pub(super) struct Refused;
 
@@ -25,7 +25,7 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// A cursor before `tokens`; `before` is where something is missing if there are none.
+    /// A cursor before `tokens`; `before` is the place of an error if there are none.
     pub(super) fn new(
         tokens: &'a [TokenTree],
         before: Location,
@@ -84,7 +84,7 @@ impl<'a> Cursor<'a> {
         self.tokens.get(self.next..).unwrap_or_default()
     }
 
-    /// Takes `length` tokens and the `;` behind them; says whether that was there.
+    /// Takes `length` tokens and the `;` behind them. False if the `;` is missing.
     pub(super) fn take(&mut self, length: usize) -> (&'a [TokenTree], bool) {
         let (taken, rest) = self.remaining().split_at(length);
         self.next += length + usize::from(!rest.is_empty());
@@ -138,7 +138,7 @@ impl<'a> Cursor<'a> {
         self.refuse(at, text, help)
     }
 
-    /// Takes the operator if it comes next, and says where it stands.
+    /// Takes the operator if it comes next, and returns its place.
     pub(super) fn eat_operator(&mut self, operator: &str) -> Option<Location> {
         if !self.is_operator(operator) {
             return None;
@@ -269,7 +269,7 @@ fn without_invisible_group(mut token: TokenTree) -> TokenTree {
     }
 }
 
-/// A token as messages write it: groups without their content, long names cut.
+/// A token in the form of messages: groups without their content, long names cut.
 pub(super) fn token_text(token: &TokenTree) -> String {
     let text = match token {
         TokenTree::Group(group) => match group.delimiter() {

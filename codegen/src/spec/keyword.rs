@@ -2,7 +2,7 @@
 
 use dalembert_expr::Function;
 
-/// The section keywords of this version, as they may begin a declaration of a model.
+/// The keywords that begin a declaration of a model.
 pub const SECTIONS: [&str; 19] = [
     "const",
     "coordinates",
@@ -25,7 +25,7 @@ pub const SECTIONS: [&str; 19] = [
     "claims",
 ];
 
-/// The elementary functions: those of one argument, and before and after them the two that are built otherwise.
+/// The elementary functions: `sqrt`, the functions of one argument in the order of [`Function::ALL`], and `atan2`.
 pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
     let mut names = ["sqrt"; Function::ALL.len() + 2];
     let mut index = 0;
@@ -37,7 +37,7 @@ pub const FUNCTIONS: [&str; Function::ALL.len() + 2] = {
     names
 };
 
-/// Declarations as other languages call them, with what is written here.
+/// Names of declarations in other languages, with advice.
 const FOREIGN_SECTIONS: [(&str, &str); 17] = [
     ("L", "write `lagrangian = ..;`"),
     ("coords", "write `coordinates { .. }`"),
@@ -70,7 +70,7 @@ const FOREIGN_SECTIONS: [(&str, &str); 17] = [
     ("def", "a function is written `let f(u) = ..;`"),
 ];
 
-/// Functions of other languages, with what is written here.
+/// Functions of other languages, with advice.
 const FOREIGN_FUNCTIONS: [(&str, &str); 25] = [
     ("log", "write `ln(..)`"),
     ("log10", "write `ln(..)/ln(10)`"),
@@ -105,7 +105,7 @@ const FOREIGN_FUNCTIONS: [(&str, &str); 25] = [
     ("p", "write `momentum(..)`, in `outputs`"),
 ];
 
-/// Functions that are not differentiable and belong nowhere in an expression.
+/// Functions that are not differentiable and are refused in expressions.
 const NOT_DIFFERENTIABLE: [&str; 8] = [
     "max",
     "min",
@@ -135,7 +135,7 @@ pub const RESET: &str = "reset";
 /// The law that ends the motion.
 pub const STOP: &str = "stop";
 
-/// An output that is the integral of an expression along a run.
+/// Function of an output that is the integral of an expression along a run.
 pub const INTEGRAL: &str = "integral";
 
 /// The Lagrangian: its declaration, and its name in `outputs`.
@@ -151,7 +151,7 @@ pub const INSTANTANEOUS: &str = "instantaneous";
 /// divergence and invariant volume, and variations.
 pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 
-/// The scene that the model itself is: everything that was declared.
+/// Name of the scene with everything that was declared: the model itself.
 pub const WHOLE: &str = "all";
 
 /// Words with a meaning of their own in expressions.
@@ -181,7 +181,7 @@ const RUST: [&str; 52] = [
     "override", "priv", "try", "typeof", "unsized", "virtual", "yield",
 ];
 
-/// True if Rust has this word for itself.
+/// True if Rust reserves this word.
 pub fn is_rust_keyword(name: &str) -> bool {
     RUST.contains(&name)
 }

@@ -69,7 +69,7 @@ impl FormOf<'_> {
     }
 }
 
-/// The description of a model that has nothing but its name, its text and its parameters.
+/// The description of a model with only its name, its text and its parameters.
 pub(super) fn of_model(model: &Model) -> Description {
     Description {
         type_name: name(&model.name),
@@ -172,7 +172,7 @@ pub(super) fn surface(model: &Model, index: usize) -> SurfaceInfo {
     }
 }
 
-/// Description of the view; `places` are those of the coordinates.
+/// Description of the view; `places` are the indices of the coordinates in the description.
 pub(super) fn view(model: &Model, places: &[usize]) -> Option<ViewInfo> {
     let view = model.view.as_ref()?;
     Some(ViewInfo {

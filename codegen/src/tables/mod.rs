@@ -8,7 +8,7 @@
 //! | `modes.rs` | both for a model with modes, and the place of each mode's quantities among those of the model |
 //!
 //! `emit` writes the data down as constants; an interpreter of declarations uses them directly.
-// NOTE: tables own what they hold, but for names: those are interned (`names.rs`), as errors carry them.
+// NOTE: tables own their data, except names. Names are interned (`names.rs`), because errors carry them.
 
 mod description;
 mod form;
@@ -40,7 +40,7 @@ pub struct FormOf<'a> {
 }
 
 impl<'a> FormOf<'a> {
-    /// The forms of a model, of a scene or of a mode: its own, then the global one if that is another.
+    /// The forms of a model, of a scene or of a mode: its own, then the global form if that is another one.
     pub fn all(compiled: &'a Compiled, scenes: &'a [Scene]) -> Vec<Self> {
         let Compiled {
             model,
@@ -90,7 +90,7 @@ impl<'a> FormOf<'a> {
         quasi.map(|velocity| velocity.name.clone()).collect()
     }
 
-    /// Gaps that have a series: all of them, or none.
+    /// Number of gaps with a power series: all of them, or none.
     pub fn series_gaps(&self) -> usize {
         self.program.jet.function.outputs.len() - self.state_dimension()
     }
@@ -106,17 +106,17 @@ fn constant(model: &Model, expression: ExprId) -> f64 {
     model.pool.eval(&[expression], &|_| f64::NAN)[0]
 }
 
-/// Values as a table has them.
+/// Values as an owned table.
 fn table<T>(values: impl IntoIterator<Item = T>) -> Held<[T]> {
     Held::Owned(values.into_iter().collect())
 }
 
-/// A text as a table has it.
+/// A text as an owned table.
 fn text(text: impl Into<Box<str>>) -> Held<str> {
     Held::Owned(text.into())
 }
 
-/// Names as a table has them.
+/// Interned names as an owned table.
 fn names<'n>(names: impl IntoIterator<Item = &'n str>) -> Held<[&'static str]> {
     table(names.into_iter().map(name))
 }

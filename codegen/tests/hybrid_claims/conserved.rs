@@ -12,7 +12,7 @@ const ROUND: &str = "pub Round { coordinates { x; y; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 - (x^2 + y^2)^2; CLAIM }";
 const CHARGED: &str = "pub Charged { coordinates { x; y; } parameters { b > 0 = 3; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 + b*x*dot(y); CLAIM }";
-/// A wall across `(1, 2)`, and one that changes velocities and moves the particle along itself.
+/// A wall with the normal `(1, 2)`, and a wall that changes velocities and moves the particle along itself.
 const WALLS: &str = "pub Walls { coordinates { x; y; } parameters { a > 0 = 5/4; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2; impacts { wall: x + 2*y >= 0;
     left: x >= 0 => reset { dot(x) = -a*dot(x); dot(y) = dot(y)/a; y = y + 1; }; } CLAIM }";
@@ -26,7 +26,7 @@ fn all(kind: &str, cases: &[(&str, &str, Expected)]) {
 }
 
 #[test]
-fn what_the_motion_keeps_and_changes() {
+fn quantities_along_the_motion() {
     let disk = disk("");
     let kept = [
         (FALL, "energy"),
@@ -93,10 +93,10 @@ fn what_the_motion_keeps_and_changes() {
     }
 }
 
-/// A quantity that is kept has no state that shows it, but one at which a reader sees its parts cancel.
+/// A conserved quantity has no counterexample. The message shows a state at which the parts of its rate cancel.
 #[test]
 fn parts_that_cancel_are_shown() {
-    // m g dot(y) and -m g dot(y); a harmonic motion beside it; a speed without parts.
+    // g dot(y) and -g dot(y) with g = 2; then a rotation, and an impact.
     let sum = "\nfor example part by y = -1.5, part by dot(y) = 1.5 at y = -0.53, g = 2, dot(x) = 0.5, dot(y) = -0.75";
     check(FALL, "not conserved: energy", Barred(sum));
     let turned = "pub Turned { coordinates { x; y; } field { dot(x) = -y; dot(y) = x; } CLAIM }";
@@ -107,7 +107,7 @@ fn parts_that_cancel_are_shown() {
 }
 
 #[test]
-fn what_impulses_and_resets_keep_and_change() {
+fn quantities_under_impulses_and_resets() {
     let damped = ball("restitution(c)");
     let kept = [
         (WALLS, "wall", "energy"),
@@ -184,7 +184,7 @@ fn what_impulses_and_resets_keep_and_change() {
             True,
         );
     }
-    // A wall that is moved by 1e-9 in its direction.
+    // A wall that is turned by about 1e-9.
     let turned = WALLS.replace("x + 2*y", "x + (2 + 1e-9)*y");
     check(
         &turned,
@@ -193,7 +193,7 @@ fn what_impulses_and_resets_keep_and_change() {
     );
 }
 
-/// The momentum of a field of D that depends on the position (W. Clark, thesis, 5.2), with its equation and its jump at a wall.
+/// The momentum of a field of D that depends on the position (W. Clark, thesis, 5.2), and its change at a wall.
 #[test]
 fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
     let along = |factor: &str| {
@@ -217,7 +217,7 @@ fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
         &format!("not conserved under wall: {}", along("1")),
         True,
     );
-    // A stop of the direction alone does not.
+    // A wall for the direction alone keeps the momentum.
     let stop = disk("stop: 1/2 - cos(phi) >= 0;");
     check(
         &stop,

@@ -43,7 +43,7 @@ fn bounded_billiards_are_recurrent() {
 }
 
 #[test]
-fn unbounded_motion_is_not_said_to_be_recurrent() {
+fn unbounded_motion_is_not_reported_as_recurrent() {
     check(&ball("elastic"), KEPT, [true, false]);
     check(&particle("outside: x^2 + y^2 >= 1;"), KEPT, [true, false]);
     check(&particle("strip: 1 - x^2 >= 0;"), KEPT, [true, false]);

@@ -118,7 +118,7 @@ fn with_growth() -> Vec<(String, f64)> {
 }
 
 #[test]
-fn densities_on_all_of_q_are_told_from_others() {
+fn densities_on_all_of_q_are_recognised() {
     for system in with_density() {
         check(&system, "density: exact", True);
         check(&system, "density: none", Barred("exists"));
@@ -131,7 +131,7 @@ fn densities_on_all_of_q_are_told_from_others() {
 }
 
 #[test]
-fn that_there_is_none_is_proved_and_shown_at_a_point() {
+fn absence_of_a_density_is_proved_and_shown_at_a_point() {
     for (system, shown) in without_density() {
         check(&system, "density: none", True);
         check(&system, "density: exact", shown);
@@ -171,7 +171,7 @@ fn stated_densities_that_the_motion_keeps_are_proved() {
 
 /// At x = 0.36, y = -0.53 with dot(x) = 0.5, dot(y) = -0.75.
 #[test]
-fn stated_densities_that_it_changes_are_refuted_at_a_point() {
+fn stated_densities_that_the_motion_changes_are_refuted_at_a_point() {
     let (y, dy) = (-0.53, -0.75);
     for (system, density, name, value) in [
         // G = ln(1 + y^2)/2 has the rate y dot(y)/(1 + y^2).

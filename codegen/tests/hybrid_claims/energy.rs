@@ -9,7 +9,7 @@ fn under(surface: &str) -> String {
 }
 
 #[test]
-fn maps_that_take_energy_are_proved_to() {
+fn maps_that_reduce_the_energy_are_proved() {
     check(&ball("elastic"), &under("floor"), True);
     check(&ball("restitution(c)"), &under("floor"), True);
     check(&ball("impact_plastic"), &under("floor"), True);
@@ -49,7 +49,7 @@ fn maps_that_take_energy_are_proved_to() {
 }
 
 #[test]
-fn maps_that_give_energy_are_refuted_at_a_state() {
+fn maps_that_add_energy_are_refuted_at_a_state() {
     check(
         &ball("reset { dot(x) = -k*dot(x); }"),
         &under("floor"),
@@ -105,7 +105,7 @@ fn near_misses_are_refuted() {
 }
 
 #[test]
-fn what_takes_energy_for_reasons_that_are_not_known_stays_open() {
+fn unexplained_losses_of_energy_stay_open() {
     check(
         &particle("wall: x <= 2 + t;"),
         &under("wall"),

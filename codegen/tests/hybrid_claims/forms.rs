@@ -301,7 +301,7 @@ fn a_belt_carries_the_motion_away_from_a_wall() {
     check(
         &belt("-1/4", "restitution(0)"),
         pair,
-        Open("a law that turns the rate of its gap round"),
+        Open("a law that reverses the rate of its gap"),
     );
     let held = "; the motion behind it is held";
     check(&belt("1/4", "newton(0)"), pair, False(held));
@@ -334,7 +334,7 @@ fn forms_that_are_not_examined_stay_open() {
     check(
         &disk("hold: 1 - x >= 0 => nonholonomic_plastic;"),
         "invariant: d(dot(phi))",
-        Open("a law that turns the rate of its gap round at all states"),
+        Open("a law that reverses the rate of its gap at all states"),
     );
     check(
         &parametric(["k", "1"], "k = 1"),

@@ -61,7 +61,7 @@ fn functions_in_involution_are_proved() {
     );
     check(&disk(""), "involution: x, y, phi, theta", True);
     check(SLEIGH, "involution: x, y, theta", True);
-    // Impacts have no part in it.
+    // Impacts do not matter.
     check(&ball("newton(1/2)"), "involution: energy, energy^2", True);
 }
 

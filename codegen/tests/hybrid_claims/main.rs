@@ -12,7 +12,7 @@
 //! | `values.rs` | numbers of a model at a state |
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
 //! | `symmetries.rs` | symmetries of motion, surfaces and their maps together; of first-order systems |
-//! | `qualified.rs`, `momenta.rs` | what a proof of a density says of impacts, and one of a symmetry of its momentum |
+//! | `qualified.rs`, `momenta.rs` | remarks on impacts in proofs of densities, and in proofs of symmetries on their momenta |
 //! | `stops.rs` | surfaces at which the motion ends |
 //! | `numbers.rs` | numbers of the sources: returns of a walker, an impact off D, the matrix of a ball |
 //! | `differences.rs`, `carried.rs` | factors and forms by differences of motions through an impact |
@@ -64,7 +64,7 @@ enum Expected {
 /// The findings on all claims of a declaration, mode by mode.
 ///
 /// # Panics
-/// If it is refused before its claims are looked at.
+/// If it is refused before its claims are examined.
 fn findings(source: &str) -> Vec<Finding> {
     let refused = |errors: &dalembert_codegen::diagnostics::Diagnostics| -> ! {
         let texts: Vec<&str> = errors.iter().map(|error| error.message()).collect();
@@ -90,11 +90,11 @@ fn findings(source: &str) -> Vec<Finding> {
     }
 }
 
-/// Checks what becomes of a claim at the place `CLAIM` of a declaration; every mode that has it must agree.
+/// Checks the verdict on a claim at the place `CLAIM` of a declaration, in every mode that has it.
 #[track_caller]
 fn check(declaration: &str, claim: &str, expected: Expected) {
     let source = declaration.replace("CLAIM", &format!("claims {{ {claim}; }}"));
-    // Beside other claims densities are stated for them.
+    // A density that is stated for the sake of another claim is not checked.
     let is_density = |claim: &str| claim.starts_with("density = ") && !claim.contains(';');
     let mut found = findings(&source);
     found.retain(|finding| is_density(claim) || !is_density(&finding.claim));

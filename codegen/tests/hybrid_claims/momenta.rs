@@ -28,7 +28,7 @@ fn a_round_wall_keeps_the_angular_momentum_and_an_ellipse_does_not() {
 }
 
 #[test]
-fn a_straight_wall_keeps_what_runs_along_it() {
+fn a_straight_wall_keeps_the_momentum_along_it() {
     let wall = particle("wall: x + 2*y >= 0 => newton(1/2);");
     let along = note(&wall, "2*partial(x) - partial(y)");
     assert!(
@@ -42,8 +42,8 @@ fn a_straight_wall_keeps_what_runs_along_it() {
     );
 }
 
-/// The rotation of a disk and its place is a symmetry that is not in D: a round table keeps it, and its momentum jumps all the same, as
-/// that of the impulse within D.
+/// The rotation of a disk together with its place is a symmetry that is not in D. A round table keeps the symmetry. Its
+/// momentum still jumps, because the impulse acts within D.
 #[test]
 fn a_disk_on_a_round_table_keeps_its_symmetry() {
     let table = |tb: &str| {
@@ -67,7 +67,7 @@ fn a_disk_on_a_round_table_keeps_its_symmetry() {
 }
 
 #[test]
-fn resets_and_gauge_symmetries_are_looked_at() {
+fn resets_and_gauge_symmetries_are_examined() {
     let step = particle("step: y >= 0 => reset { dot(y) = -dot(y); dot(x) = dot(x)/2; };");
     let found = note(&step, "partial(x)");
     assert!(

@@ -1,4 +1,5 @@
-//! Numbers of the sources, by differences of motions through impacts, with the claims that say the same for all states.
+//! Numbers of the sources, checked by differences of motions through impacts, with claims that prove them at all
+//! states.
 
 use dalembert_texts::TEXTS;
 
@@ -10,7 +11,7 @@ use crate::systems::ball;
 /// Parameters of the walker: mass against inertia, falling against friction, slope, half the angle between the legs.
 const WALKER: [f64; 4] = [2.5, 0.5, 0.4, 0.4];
 
-/// Rates of the dimensionless walker, with the integral of their divergence for a fourth component.
+/// Rates of the dimensionless walker, with the integral of their divergence as a fourth component.
 fn walking(z: &[f64]) -> State {
     let [mu, eps, alpha, _] = WALKER;
     let (sin, cos) = z[0].sin_cos();
@@ -84,8 +85,8 @@ fn returns_of_the_walker_shrink_by_step_and_motion() {
     check(&kept, &format!("{claim} + 1e-9"), False("Jacobian"));
 }
 
-/// A disk off its constraints: a first-order system of positions and momenta. Constraint forces keep `P(W^a)`, off D too; an elastic impact adds
-/// `-2 dh(pi_D qdot)/dh(pi_D grad h)` times `pi_D^* dh`.
+/// A disk off its constraints: a first-order system of positions and momenta. Constraint forces keep `P(W^a)`, off D
+/// too. An elastic impact adds `-2 dh(pi_D qdot)/dh(pi_D grad h)` times `pi_D^* dh`.
 const DISK_OFF_D: &str = "pub DiskOffD {
     coordinates { x; y; theta; phi; px; py; ptheta; pphi; }
     parameters { m > 0 = 7/5; R > 0 = 3/8; I > 0 = 2/9; J > 0 = 1/7; hx = -3/4; hy = -1/3; }
@@ -106,8 +107,8 @@ const DISK_OFF_D: &str = "pub DiskOffD {
         ptheta = ptheta + eps*slope*I/mass; pphi = pphi + eps*turn;
     }; } CLAIM }";
 
-/// `(h_x, h_y)` of the disk at phi = 0.6, from the last component of grad h, `R/J (h_y cos - h_x sin)`, and the second one of pi_D grad h,
-/// `R^2/(2 (I + m R^2)) (h_y (1 - cos 2 phi) + h_x sin 2 phi)`.
+/// `(h_x, h_y)` of the disk at phi = 0.6, from two components: the last one of grad h, `R/J (h_y cos - h_x sin)`, and
+/// the second one of pi_D grad h, `R^2/(2 (I + m R^2)) (h_y (1 - cos 2 phi) + h_x sin 2 phi)`.
 fn gradient_of_rim() -> [f64; 2] {
     let [m, radius, inertia, j] = [7.0 / 5.0, 3.0 / 8.0, 2.0 / 9.0, 1.0 / 7.0_f64];
     let mass = inertia + m * radius * radius;
@@ -118,10 +119,11 @@ fn gradient_of_rim() -> [f64; 2] {
     [slope * cos - turned * sin, slope * sin + turned * cos]
 }
 
-/// W. Clark, thesis, (7.11): off D an elastic impact multiplies `omega^n` by `(2 dh(pi_D qdot) - dh(qdot))/dh(qdot)`. On D that is 1.
+/// W. Clark, thesis, (7.11): off D an elastic impact multiplies `omega^n` by
+/// `(2 dh(pi_D qdot) - dh(qdot))/dh(qdot)`. On D that is 1.
 ///
-/// The formula is proved for all states. Its known value is that of differences of motions at one state: its gradient is solved from known components, its
-/// momenta are decimals of one digit.
+/// The claim proves the formula for all states. Differences of motions check its value at one state, whose gradient is
+/// solved from known components and whose momenta are decimals of one digit.
 #[test]
 fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
     let claim = |factor: &str| format!("density under wall: factor = {factor}");
@@ -133,7 +135,7 @@ fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
     );
     check(DISK_OFF_D, &claim("1"), False("Jacobian"));
     check(DISK_OFF_D, "density = 1", True);
-    // p = (1.2, -0.2, 0.4, 0.1) at phi = 0.6, under the gradient that known components of grad h and pi_D grad h determine.
+    // p = (1.2, -0.2, 0.4, 0.1) at phi = 0.6, with the gradient that known components of grad h and pi_D grad h give.
     let [m, radius, inertia, j] = [7.0 / 5.0, 3.0 / 8.0, 2.0 / 9.0, 1.0 / 7.0];
     let [hx, hy] = gradient_of_rim();
     let slopes = move |phi: f64| {
@@ -176,14 +178,15 @@ fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
         after: &motion,
         densities: [&one, &one],
     };
-    // The state a moment before the impact: the motion runs back with its momenta reversed.
+    // The state a moment before the impact: the motion runs backwards in time.
     let back = |z: &[f64]| -> State { motion(z).iter().map(|rate| -rate).collect() };
     let hit = [0.0, 0.0, 0.0, 0.6, 1.2, -0.2, 0.4, 0.1];
     let early = crate::differences::run(&back, &hit, 0.1);
     assert_close(wall.factor(&early, 0.2), 0.677_466_760_267_277_6);
 }
 
-/// W. Clark, thesis, Example IX.9 with its sign corrected: `[[-1, 0], [-2 g/v, -1]]`, which is `[[-1, 0], [1, -1]]` for g = 1 and v = -2.
+/// W. Clark, thesis, Example IX.9 with its sign corrected: `[[-1, 0], [-2 g/v, -1]]`, which is `[[-1, 0], [1, -1]]` for
+/// g = 1 and v = -2.
 #[test]
 fn the_augmented_differential_of_a_ball() {
     let falls = |z: &[f64]| vec![z[1], -1.0];

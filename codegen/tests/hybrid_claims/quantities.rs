@@ -16,7 +16,7 @@ const LEFT: &str = "m1/2*(dot(x)^2 + dot(y)^2)";
 const RIGHT: &str = "m2/2*(dot(x)^2 + dot(y)^2) - V";
 
 #[test]
-fn what_a_transition_keeps_is_proved() {
+fn quantities_that_a_transition_keeps_are_proved() {
     let glass = media(LEFT, RIGHT);
     check(&glass, &kept("rightward", "energy"), True);
     check(&glass, &kept("rightward", "momentum(y)"), True);
@@ -52,7 +52,7 @@ fn what_a_transition_keeps_is_proved() {
 }
 
 #[test]
-fn what_it_changes_is_refuted_at_a_state() {
+fn quantities_that_a_transition_changes_are_refuted_at_a_state() {
     let glass = media(LEFT, RIGHT);
     check(&glass, &kept("rightward", "dot(y)"), False("dot(y) after"));
     check(
@@ -104,7 +104,8 @@ fn what_it_changes_is_refuted_at_a_state() {
     );
 }
 
-/// The elastic reflection where the step of the potential is too high: it turns the normal momentum, and keeps the energy.
+/// Where the step of the potential is too high, an elastic reflection reverses the normal momentum and keeps the
+/// energy.
 #[test]
 fn reflections_count_too() {
     let same = media("(dot(x)^2 + dot(y)^2)/2", "(dot(x)^2 + dot(y)^2)/2 - V*y^2");
@@ -112,9 +113,9 @@ fn reflections_count_too() {
     check(&same, &kept("rightward", "x*momentum(y)"), True);
 }
 
-/// A map that keeps what it should on one side of `dot(y) = 0` alone.
+/// A map that keeps `dot(y)` on one side of `dot(y) = 0` only.
 #[test]
-fn branches_of_resets_are_all_looked_at() {
+fn all_branches_of_resets_are_examined() {
     for map in ["abs(dot(y))", "sqrt(dot(y)^2)"] {
         let folded = particle(&format!(
             "wall: x >= 0 => reset {{ dot(x) = -dot(x); dot(y) = {map}; }};"

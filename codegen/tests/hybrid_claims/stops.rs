@@ -1,4 +1,4 @@
-//! Surfaces with the law `stop`: nothing is claimed of what follows, and what is claimed of the rest stays as it is.
+//! Surfaces with the law `stop`. Claims do not refer to them; claims about other surfaces and the motion are unchanged.
 
 use crate::Expected::{False, True};
 use crate::check;

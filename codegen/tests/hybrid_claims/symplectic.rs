@@ -12,7 +12,7 @@ fn forced(force: &str) -> String {
 }
 
 #[test]
-fn what_keeps_the_form_is_proved() {
+fn maps_and_forces_that_keep_the_form_are_proved() {
     check(&ball("elastic"), CLAIM, True);
     check(&ball("newton(1)"), CLAIM, True);
     check(&ball("reset { dot(x) = -dot(x); }"), CLAIM, True);
@@ -49,7 +49,7 @@ fn what_keeps_the_form_is_proved() {
 }
 
 #[test]
-fn what_does_not_is_refuted_at_a_point() {
+fn maps_and_forces_that_change_the_form_are_refuted_at_a_point() {
     check(&ball("restitution(c)"), CLAIM, Shown("Jacobian", 0.49));
     check(&ball("impact_plastic"), CLAIM, Shown("Jacobian", 0.0));
     check(
@@ -107,7 +107,7 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// The constraint forces of a homogeneous ball and of a straight groove are 0, and the form on D is kept; walls change it on D.
+/// The constraint forces of a homogeneous ball and of a straight groove are 0. The form on D is kept; walls change it.
 #[test]
 fn constraints_without_forces_keep_the_form_on_d() {
     check(BALL, CLAIM, True);
@@ -165,14 +165,14 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
     ] {
         check(&declaration, CLAIM, True);
     }
-    // Neither is integrable without the other.
+    // `slope` is integrable only together with `stop`.
     let both = "pub Both { coordinates { x; y; z; w; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2 + dot(w)^2)/2 - z*w;
         constraints { slope: dot(z) = x*dot(y); stop: dot(y) = 0; } CLAIM }";
     check(both, CLAIM, True);
 }
 
 #[test]
-fn leaves_are_not_kept_by_losses_forces_and_what_is_not_integrable() {
+fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
     // On the circle the form on these vectors is -1 at x = 0, times the factor of the area.
     let wall = |law: &str| bead("1", &format!("impacts {{ wall: x >= 0 => {law}; }}"));
     let after = "the form on partial(x), partial(dot(x)) after";
@@ -227,12 +227,12 @@ fn transitions_lead_from_leaves_to_leaves() {
     check(
         &step("x*z", "dot(x)"),
         CLAIM,
-        Open("across those of the constraints behind it"),
+        Open("across the leaves of the constraints behind it"),
     );
     check(
         &step("x*z", "x - y + 1e-9*dot(x)"),
         CLAIM,
-        Open("across those"),
+        Open("across the leaves"),
     );
     let mixed = "pub Mixed { coordinates { x; y; z; turn; } constraints { roll: dot(y) = x*dot(turn); shelf: dot(z) = 0; }
         lagrangian = (dot(x)^2 + dot(z)^2 + (dot(y) - x*dot(turn))^2 + dot(turn)^2)/2 - z*x; CLAIM }";
@@ -259,7 +259,7 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     check(&step("", "dot(y)", ""), CLAIM, True);
     check(&step(&wall("x"), "dot(y)", ""), CLAIM, True);
     // The wall turns dz/dt = dot(y) into a part of the form: leaves of the shelf keep it, other vectors do not.
-    let across = Open("across those of the constraints behind it");
+    let across = Open("across the leaves of the constraints behind it");
     check(&step(&wall("x + z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + 1e-9*z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + z"), "y", ""), CLAIM, across);
@@ -270,7 +270,7 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     let changed = "back: far -> near when x >= 1 => reset { y = y + z; dot(s) = 0; };";
     check(&step("", "3", changed), CLAIM, True);
     check(&step("", "dot(y)", changed), CLAIM, across);
-    // A third one behind them, with the potential near its entrance.
+    // A third mode behind them, with a potential near its entrance.
     let third = |potential: &str, z: &str| {
         let on = "on: far -> third when y <= -1 => reset { dot(z) = 0; };";
         let mode = format!(
@@ -311,7 +311,7 @@ fn states_of_more_dimensions_may_keep_the_form() {
         held.replace("dot(z)^2)/2", "dot(z)^2)/2 - x*z")
     };
     check(&shelf("3"), CLAIM, True);
-    let across = Open("across those of the constraints behind it");
+    let across = Open("across the leaves of the constraints behind it");
     check(&shelf("dot(x)"), CLAIM, across);
     check(&shelf("3 + 1e-9*dot(x)"), CLAIM, across);
     // Constraints that are not linear in the velocities have no leaves that are known.
@@ -326,8 +326,8 @@ fn states_of_more_dimensions_may_keep_the_form() {
     check(narrow, CLAIM, False("`go`"));
 }
 
-/// Along `dot(x)^2 + dot(y)^2 = v^2` the rate is `2 g dot(x)/v^2` on `partial(y)` and `partial(dot(x))`, from `lambda = m g dot(y)/(2 v^2)` and
-/// `-2 dot(y) dlambda - 2 lambda ddot(y)`.
+/// Along `dot(x)^2 + dot(y)^2 = v^2` the rate on `partial(y)` and `partial(dot(x))` is `2 g dot(x)/v^2`, from
+/// `lambda = m g dot(y)/(2 v^2)` and `-2 dot(y) dlambda - 2 lambda ddot(y)`.
 #[test]
 fn constraints_that_are_not_linear_change_the_form() {
     let speed = |weight: &str, rest: &str| {

@@ -34,7 +34,7 @@ pub(super) fn bits(numbers: &[f64]) -> Vec<Option<u64>> {
 
 const INPUTS: usize = 12;
 
-/// Code with its values at the inputs.
+/// Code with the values of its operations at the inputs.
 struct Written {
     straight: Straight,
     values: Vec<f64>,
@@ -119,14 +119,14 @@ impl Written {
 }
 
 #[test]
-fn random_code_gives_what_it_says() {
+fn random_code_gives_the_values_of_its_operations() {
     let mut random = Random(7);
     let inputs: [f64; INPUTS] = core::array::from_fn(|i| 0.3 + 0.17 * i as f64);
     for round in 0..2000 {
         let (count, reach) = (1 + random.below(120), 2 + random.below(40));
         let code = write(&mut random, (count, reach), &inputs);
         let allocated = registers::allocate(&code.straight);
-        let mut assembly = Assembly::new().expect("a processor that there is code for");
+        let mut assembly = Assembly::new().expect("machine code for this processor");
         let entry = assembly.function(&allocated);
         let memory = assembly.finish().expect("memory");
         // SAFETY: a function with this signature was written there.
@@ -149,7 +149,7 @@ fn a_guard_that_does_not_hold_stops_a_function() {
         let bound = straight.number(0.5);
         straight.push(Operation::Guard([t, bound]));
         straight.store(t, Place::of(Base::Argument(3), 0));
-        let mut assembly = Assembly::new().expect("a processor that there is code for");
+        let mut assembly = Assembly::new().expect("machine code for this processor");
         let entry = assembly.function(&registers::allocate(&straight));
         let memory = assembly.finish().expect("memory");
         // SAFETY: a function with this signature was written there.
@@ -181,7 +181,7 @@ fn places_are_reached_however_far_they_lie() {
         let difference = straight.binary(Binary::Sub, [b, a]);
         straight.push(Operation::StoreVector(vec![a, difference], written[0]));
         straight.store(b, written[1]);
-        let mut assembly = Assembly::new().expect("a processor that there is code for");
+        let mut assembly = Assembly::new().expect("machine code for this processor");
         let entry = assembly.function(&registers::allocate(&straight));
         let memory = assembly.finish().expect("memory");
         // SAFETY: a function with this signature was written there.

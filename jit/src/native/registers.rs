@@ -1,8 +1,9 @@
 //! Registers for straight-line code.
 //!
-//! Operations are processed in their order. A value with a place in memory (a constant, an argument, a value in the frame)
-//! is read from there where it is needed once, and kept in a register where it is needed again. Where no register is free,
-//! the value that is needed last gives way; it goes into the frame if it has no place yet. Calls keep no register.
+//! Operations are processed in their order. A value with a place in memory (a constant, an argument, a value in the
+//! frame) is read from there if one read is left, and loaded into a register if several are left. If no register is
+//! free, the value with the latest next read is evicted. It is stored in the frame unless it has a place in memory.
+//! Calls preserve no register.
 
 use super::helpers;
 use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value};
@@ -10,10 +11,10 @@ use super::straight::{Base, Binary, Operation, Place, Straight, Unary, Value};
 /// A register for doubles, by its number.
 pub(super) type Register = u8;
 
-/// Registers that values are given; the two behind them are for single instructions.
+/// Number of registers for values. The two registers behind them are scratch registers of single instructions.
 const COUNT: usize = 14;
 
-/// The first register that no value is given.
+/// The first scratch register.
 pub(super) const SCRATCH: Register = COUNT as Register;
 
 /// Operand of an instruction.
@@ -50,7 +51,7 @@ pub(super) enum Instruction {
 #[derive(Debug)]
 pub(super) struct Allocated {
     pub(super) instructions: Vec<Instruction>,
-    /// Numbers of the frame.
+    /// Length of the frame, in numbers.
     pub(super) frame: usize,
 }
 
@@ -90,7 +91,7 @@ struct Allocation {
     released: Vec<Place>,
 }
 
-/// Gives registers to the values of straight-line code.
+/// Assigns registers to the values of straight-line code.
 pub(super) fn allocate(code: &Straight) -> Allocated {
     let count = code.operations.len();
     let mut allocation = Allocation {
@@ -117,7 +118,8 @@ pub(super) fn allocate(code: &Straight) -> Allocated {
     }
 }
 
-/// Reads of each value, from the last one on. Operations that nothing needs read nothing.
+/// Positions of the reads of each value, the last read first. Operations without effect that nothing reads are left
+/// out.
 fn reads(code: &Straight) -> Vec<Vec<u32>> {
     let mut reads = vec![Vec::new(); code.operations.len()];
     for (place, operation) in code.operations.iter().enumerate().rev() {
@@ -256,7 +258,7 @@ impl Allocation {
             (Some(register), _) => Operand::Register(register),
             (None, Some(Home::Fixed(operand))) => operand,
             (None, Some(Home::Spilled(place))) => Operand::Memory(place),
-            (None, None) => unreachable!("a value is somewhere as long as it is needed"),
+            (None, None) => unreachable!("a needed value has a register or a place"),
         }
     }
 
@@ -281,7 +283,7 @@ impl Allocation {
         }
     }
 
-    /// One read less.
+    /// Counts one read of a value as done. After the last read, its register and its place in the frame are free.
     fn done(&mut self, value: Value) {
         self.reads[value.index()].pop();
         if self.is_needed(value) {
@@ -307,7 +309,7 @@ impl Allocation {
         register
     }
 
-    /// The register of a sum for its new value, or a copy if the old one is needed later.
+    /// The register of a sum for its new value, or a copy if the old value is needed later.
     fn take_over(&mut self, value: Value, sum: Value, from: Register) -> Register {
         self.done(sum);
         if !self.is_needed(sum) {
@@ -331,7 +333,7 @@ impl Allocation {
                 .copied()
                 .unwrap_or(u32::MAX),
         };
-        // NOTE: the first of the best, so that few registers are touched.
+        // NOTE: the first of the best registers, so that few registers are used.
         let register = open
             .rev()
             .max_by_key(|register| next_read(*register))

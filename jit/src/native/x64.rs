@@ -1,4 +1,4 @@
-//! Instructions of x86-64 with AVX, of functions that are called as on Unix.
+//! Instructions of x86-64 with AVX. Functions have the System V calling convention.
 
 // NOTE: the macro of the assembler converts the numbers of registers.
 #![allow(clippy::useless_conversion)]
@@ -20,10 +20,10 @@ macro_rules! convention {
 }
 pub(super) use convention;
 
-/// Numbers of a vector.
+/// Number of doubles in a vector.
 pub(super) const LANES: usize = 4;
 
-/// Vectors of sums that one loop takes.
+/// Largest number of vectors of sums in one loop.
 pub(super) const SIDE_BY_SIDE: usize = 8;
 
 /// Registers of a loop over sums: vectors of sums come first, then factors, then halves.
@@ -50,12 +50,12 @@ const ORDER: u8 = R14;
 /// Machine code under construction.
 pub(super) struct Assembly {
     ops: Assembler,
-    /// The registers of the pointers that places are counted from.
+    /// The registers of the base pointers of places.
     bases: &'static [u8],
     numbers: BTreeMap<u64, DynamicLabel>,
     sign: DynamicLabel,
     magnitude: DynamicLabel,
-    /// Label of the end of the current function after a guard that does not hold.
+    /// Label of the end of the current function after a guard that fails.
     stopped: DynamicLabel,
 }
 
@@ -78,7 +78,7 @@ impl Products {
 const OF_LEAF: [u8; 4] = [RDI, RSI, RDX, RCX];
 const OF_CALLER: [u8; 4] = [RBX, R12, R13, R14];
 
-/// The bases of a series: parameters, values known at first, the row of coefficients, kept rows, the newest of them.
+/// The bases of a series: parameters, values known at order 0, the row of coefficients, kept rows, the newest of them.
 const OF_SERIES: [u8; 5] = [RBX, RBP, R15, R12, R13];
 
 /// An instruction with a target, a register and an operand.
@@ -101,7 +101,7 @@ macro_rules! with_operand {
 }
 
 impl Assembly {
-    /// `None` on a processor without machine code.
+    /// `None` on a processor without AVX, or without memory for the code.
     pub(super) fn new() -> Option<Self> {
         if !std::arch::is_x86_feature_detected!("avx") {
             return None;
@@ -118,7 +118,7 @@ impl Assembly {
         })
     }
 
-    /// A function of four pointers and, between the first two, a number: 0 in the end, or 1 where a guard stops it.
+    /// A function of a pointer, a number and three pointers. It returns 0, or 1 if a guard fails.
     pub(super) fn function(&mut self, code: &Allocated) -> AssemblyOffset {
         let entry = self.ops.offset();
         self.stopped = self.ops.new_dynamic_label();
@@ -150,7 +150,8 @@ impl Assembly {
         entry
     }
 
-    /// A function of parameters, values known at first, unit, last order, coefficients from order 1 on, and room.
+    /// A function of the parameters, the values known at order 0, the unit, the last order, the coefficients from order
+    /// 1 on, and memory for kept rows.
     pub(super) fn series(&mut self, expansion: &Expansion<'_>) -> AssemblyOffset {
         let entry = self.ops.offset();
         self.bases = &OF_SERIES;
@@ -192,7 +193,7 @@ impl Assembly {
         entry
     }
 
-    /// Takes the sums of a group, in the order of additions of `jet::middles` and `jet::halves`.
+    /// Computes the sums of a group, in the order of additions of `jet::middles` and `jet::halves`.
     fn sums(&mut self, group: &Group, kept: i32) {
         let done = self.ops.new_dynamic_label();
         let vectors = group.sums.len().div_ceil(LANES) as Register;
@@ -263,7 +264,7 @@ impl Assembly {
         self.add_ends(products);
     }
 
-    /// Adds as many products as `rdx` counts, from the rows at `rax` and `rcx`, which move apart or towards each other.
+    /// Adds `rdx` products of the rows at `rax` and `rcx`. The rows move towards each other or apart.
     fn add_range(&mut self, products: &Products, step: i32) {
         let [head, end] = core::array::from_fn(|_| self.ops.new_dynamic_label());
         dynasm!(self.ops ; .arch x64 ; test rdx, rdx ; jle =>end ; =>head);
@@ -276,7 +277,7 @@ impl Assembly {
             ; =>end);
     }
 
-    /// Adds the products of order 1 and the newest, whose rows `rax` and `rcx` are then.
+    /// Adds the products of order 1 and the newest order. Afterwards `rax` and `rcx` point to their rows.
     fn add_ends(&mut self, products: &Products) {
         let kept = products.kept;
         dynasm!(self.ops ; .arch x64 ; lea rax, [r12 + kept] ; lea rcx, [r13 - kept]);
@@ -312,7 +313,7 @@ impl Assembly {
         self.ops.finalize().ok()
     }
 
-    /// The register and the distance of a place.
+    /// The base register and the offset of a place.
     fn address(&self, place: Place) -> (u8, i32) {
         match place.base {
             Base::Frame => (RSP, place.offset),
@@ -478,7 +479,7 @@ impl Assembly {
                 dynasm!(self.ops ; .arch x64 ; vucomisd Rx(from), QWORD [=>label]);
             }
         }
-        // NOTE: a comparison with NaN is not "larger".
+        // NOTE: with NaN the comparison sets the flags of "below or equal", so the guard fails.
         dynasm!(self.ops ; .arch x64 ; jbe =>self.stopped);
     }
 

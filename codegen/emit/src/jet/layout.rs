@@ -1,8 +1,8 @@
 //! Storage of coefficients over the orders, and the sums over their products that are computed side by side.
 //!
 //! A sum over `a_j b_(k-j)` with `0 < j < k` needs no coefficient of order `k`: all such sums of an order can be computed
-//! at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the room holds coefficient `k`
-//! of all factors; those of neighbouring sums lie next to each other.
+//! at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the storage holds
+//! coefficient `k` of all factors; the coefficients of neighbouring sums are adjacent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ use dalembert_codegen::program::jet::History;
 /// Sums computed side by side: they fill one, two or four vector registers.
 const SIDE_BY_SIDE: usize = 8;
 
-/// A sum over all products of coefficients of two series whose orders add up to one order, without those of order 0.
+/// The sum over `a_j b_(k-j)` with `0 < j < k`, for the coefficients of two series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sum {
     /// Half of the sum over a series with itself.
@@ -24,20 +24,20 @@ pub(super) enum Sum {
     Middle(History, History),
 }
 
-/// The room of an expansion.
+/// The storage of an expansion.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Layout {
     /// Histories read one coefficient at a time, and their places.
     alone: BTreeMap<History, usize>,
-    /// Values that grow steadily and multiply others: their one coefficient is a local; and values whose coefficient of
-    /// the order before is one.
+    /// Values that grow steadily and multiply others. Their only coefficient above order 0 is a local.
     steady: BTreeSet<Value>,
+    /// Values that these multiply. Their coefficient of the previous order is a local.
     multiplied: BTreeSet<Value>,
     halves: Vec<Value>,
     middles: Vec<(History, History)>,
 }
 
-/// Sums taken together, as the sums of their kind from `first` on.
+/// A block of sums that are computed side by side: the sums of one kind from index `first` on.
 struct Block {
     first: usize,
     /// Place of the coefficients of the first factor in a row, and number of places of each factor.
@@ -60,7 +60,7 @@ impl Block {
         })
     }
 
-    /// The first place behind it.
+    /// The first place behind the block.
     fn end(&self) -> usize {
         self.place + self.factors.len() * self.width
     }
@@ -73,7 +73,8 @@ impl Layout {
         Literal::usize_unsuffixed(*self.alone.entry(history).or_insert(place))
     }
 
-    /// The only product of a value that grows steadily with coefficients of another, as two locals: it needs no memory from order to order.
+    /// Factors of the only product of a steadily growing value with a coefficient of another value, as two locals. The
+    /// product needs no stored coefficients.
     pub(super) fn product_with_steady(&mut self, steady: Value, other: Value) -> [Ident; 2] {
         self.steady.insert(steady);
         self.multiplied.insert(other);
@@ -85,7 +86,7 @@ impl Layout {
         self.steady.contains(&value)
     }
 
-    /// The values whose coefficient of the order before is a local.
+    /// The values whose coefficient of the previous order is a local.
     pub(super) fn multiplied(&self) -> impl Iterator<Item = Value> + '_ {
         self.multiplied.iter().copied()
     }
@@ -120,7 +121,7 @@ impl Layout {
         self.alone.keys().copied()
     }
 
-    /// Takes a sum, and gives the name of its value.
+    /// Adds a sum to the layout and returns the name of its value.
     pub(super) fn sum(&mut self, sum: Sum) -> Ident {
         match sum {
             Sum::Half(value) => name("half", position(&mut self.halves, value)),
@@ -128,7 +129,7 @@ impl Layout {
         }
     }
 
-    /// Statements that take all sums of order `k`.
+    /// Statements that compute all sums of order `k`.
     pub(super) fn sums(&self) -> TokenStream {
         let statements = self.blocks().into_iter().map(|block| {
             let (prefix, function) = match block.factors.len() {
@@ -170,13 +171,13 @@ impl Layout {
         statements
     }
 
-    /// Places of a row.
+    /// Number of places in a row.
     pub(super) fn width(&self) -> usize {
         let blocks = self.blocks();
         blocks.last().map_or(self.alone.len(), Block::end)
     }
 
-    /// The halves, then the sums of two series, as many together as are taken side by side.
+    /// The half sums, then the sums over two series, in blocks of at most `SIDE_BY_SIDE`.
     fn blocks(&self) -> Vec<Block> {
         let halves = self.halves.iter().map(|&value| History::plain(value));
         let (left, right) = self.middles.iter().copied().unzip();

@@ -7,7 +7,7 @@ use super::{Whole, types, whole};
 use crate::describe as one;
 use crate::{attributes, parameters};
 
-/// `impl Documented`, and `impl Emitted` with all that is constant of the whole.
+/// `impl Documented`, and `impl Emitted` with the constants of the whole.
 pub(super) fn emit_documented(whole: &Whole<'_>) -> TokenStream {
     let type_name = whole.type_name();
     let attributes = attributes();

@@ -1,4 +1,5 @@
-//! A model with modes: a type for each mode, as for scenes, and one for the whole, which asks the kernels of the present mode.
+//! Code of a model with modes: a type for each mode, as for scenes, and a type for the whole, which calls the kernels
+//! of the present mode.
 
 mod describe;
 mod types;
@@ -19,7 +20,7 @@ use dalembert_codegen::tables;
 /// Input of every emitter of the whole.
 struct Whole<'a> {
     graph: &'a ModeGraph,
-    /// Its tables.
+    /// The tables of the whole.
     known: tables::Whole<'a>,
     /// Contexts of each mode: that of its own form, then that of the global form where the two differ.
     contexts: Vec<Vec<Context<'a>>>,

@@ -1,4 +1,4 @@
-//! The types: the parameters with the mode that a run begins in, and the module of indices with the modes.
+//! The types: the struct of the parameters and the start mode, and the module of indices and modes.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
@@ -35,7 +35,7 @@ pub(super) fn emit_struct(whole: &Whole<'_>) -> TokenStream {
         #[derive(Debug, Clone, Copy, PartialEq)]
         #visibility struct #type_name {
             #fields
-            /// The mode that states made of positions and velocities are in: where a run begins.
+            /// The mode in which a run begins. States made of positions and velocities are states of this mode.
             pub mode: #module::Mode,
         }
         #default
@@ -52,7 +52,7 @@ pub(super) fn first_mode(whole: &Whole<'_>) -> TokenStream {
 fn documentation(whole: &Whole<'_>) -> Vec<String> {
     let mut lines = whole.model().documentation.clone();
     lines.push(String::new());
-    lines.push(" Modes, each with the order of its state; the state of the whole is that of the present mode, zeros, and the \
+    lines.push(" Modes, each with the order of its state. The state of the whole is the state of the present mode, zeros, and the \
                 number of the mode:".to_owned());
     lines.push(String::new());
     for (mode, context) in whole.graph.modes.iter().zip(whole.mode_contexts()) {
@@ -163,8 +163,8 @@ fn emit_mode(whole: &Whole<'_>, mode: &model::Mode, context: &crate::Context<'_>
     }
 }
 
-/// The visibility of the model as it is written in the module beside it: a mode names the model in its interface, and may
-/// not be seen from farther away.
+/// The visibility of the model, written for the module of indices beside it. The interface of a mode names the model,
+/// so a mode cannot be more visible.
 fn inner_visibility(written: &str) -> TokenStream {
     match written.replace(' ', "").as_str() {
         "" => quote!(pub(super)),

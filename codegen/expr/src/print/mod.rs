@@ -20,9 +20,9 @@ impl Pool {
         text::render(self, &layout::layout(self, id))
     }
 
-    /// The expression in LaTeX, with the symbols' own forms.
+    /// The expression in LaTeX, with the LaTeX forms of the symbols.
     ///
-    /// Limited as [`Pool::text`].
+    /// The limits of [`Pool::text`] apply.
     pub fn latex(&self, id: ExprId) -> String {
         latex::render(self, &layout::layout(self, id))
     }

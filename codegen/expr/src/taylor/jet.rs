@@ -1,7 +1,7 @@
 //! Truncated series: products, powers, functions.
 //!
-//! A series is its coefficients by monomial; missing coefficients at the end are 0, and the series 0 is empty. With
-//! the Euler operator `E = sum x_v d_v`, which multiplies the part of degree d by d, every function satisfies a
+//! A series is the list of its coefficients, by monomial. Missing coefficients at the end are 0; 0 is the empty list.
+//! The Euler operator `E = sum x_v d_v` multiplies the part of degree d by d. With it, every function satisfies a
 //! linear recurrence by degree: `E(exp u) = exp(u) E(u)`, `u E(u^r) = r u^r E(u)`, `E(sin u) = cos(u) E(u)`.
 
 use super::arithmetic::Arithmetic;
@@ -46,7 +46,7 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
         self.order
     }
 
-    /// Series of the order below, as derivatives have it; order 0 stays.
+    /// Series of one order less, the order of derivatives; order 0 stays 0.
     pub fn lower(self) -> Self {
         Self {
             order: self.order.saturating_sub(1),
@@ -98,7 +98,7 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
         self.combined(a, b, |a, b| self.field.sub(a, b))
     }
 
-    /// `a` with its coefficients combined with those that `b` has.
+    /// Combines coefficients up to the length of `b`; coefficients of `a` beyond it stay as they are.
     fn combined(
         &self,
         a: &[A::Scalar],
@@ -231,7 +231,7 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
         self.power(a, &Rational::from(-1), value)
     }
 
-    /// The square root of `a` whose value is given; `None` if the value of `a` is 0 and the series is not that of a constant.
+    /// The square root of `a` whose value is given; `None` if the value of `a` is 0 and `a` is not constant.
     pub fn root(&self, a: &[A::Scalar], value: A::Scalar) -> Option<Series<A>> {
         match a.len() {
             0 | 1 => Some(self.constant(value)),

@@ -15,7 +15,7 @@ pub struct JetSpace {
     exponents: Vec<u8>,
     /// The degree of each monomial.
     degrees: Vec<usize>,
-    /// A monomial of one degree less and the variable that makes it this one.
+    /// A monomial of one degree less, and the variable that multiplies it to give this monomial.
     parents: Vec<(u32, u32)>,
     /// `raised[i * variables + v]`: the position of monomial i times variable v, below the last degree.
     raised: Vec<u32>,
@@ -60,8 +60,8 @@ impl JetSpace {
         Some(space)
     }
 
-    /// Monomial i times variable v: by construction if v is not below the highest variable of i, else by way of the
-    /// parent of i, which takes v first and the variable of i afterwards.
+    /// Tabulates monomial i times variable v. If v is not below the highest variable of i, the product was constructed.
+    /// Otherwise it is the parent of i times v, times the last variable of i.
     fn fill_raised(&mut self, highest: &[usize]) {
         let below = self.starts[self.order];
         self.raised = vec![0; below * self.variables];
@@ -94,7 +94,7 @@ impl JetSpace {
         self.parents.len()
     }
 
-    /// Never: 1 is a monomial.
+    /// Always false: 1 is a monomial.
     pub fn is_empty(&self) -> bool {
         false
     }

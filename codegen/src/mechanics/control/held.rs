@@ -11,7 +11,8 @@ use super::system::{self, System};
 use super::{TERMINAL, Uncontrolled};
 use crate::model::{Cost, Model, Output, Topology};
 
-/// A model whose inputs are components that stay, between the state and the cost so far. Its only output is the terminal cost.
+/// A model whose inputs are constant components, between the state and the cost so far. Its only output is the terminal
+/// cost.
 #[derive(Debug)]
 pub struct Held {
     /// The first-order model.
@@ -25,7 +26,7 @@ pub struct Held {
 /// Makes the first-order model of a checked model with a cost.
 ///
 /// # Errors
-/// The first declaration that is in the way.
+/// Names the first declaration that rules it out.
 pub fn held_model(mut model: Model) -> Result<Held, Uncontrolled> {
     let Some(cost_of) = model.cost else {
         return Err(Uncontrolled::without_cost(&model));

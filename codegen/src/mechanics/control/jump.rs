@@ -1,6 +1,6 @@
 //! The costate after an impact: `p+ = a + eps w` with `a = p.Delta_*^{-1}` and `w = dh.Delta_*^{-1}`.
 //!
-//! Inputs that do not act along `w` leave `H*` linear in `eps` at the state after: `H*+ = H*(a) + eps w.f+`, so that
+//! If inputs do not act along `w`, `H*` is linear in `eps` at the state after the impact, `H*+ = H*(a) + eps w.f+`, and
 //! `eps = (H*- - H*(a) + a.d_t Delta)/(w.(f+ - d_t Delta) + d_t h)`.
 
 use dalembert_expr::{Assumption, ExprId, Pool, SymbolId, Verdict};
@@ -35,10 +35,10 @@ pub(super) fn derive(
     Ok(jumps)
 }
 
-/// The costate after an impact but for `eps`.
+/// The costate after an impact as a function of `eps`, which is not yet known.
 struct Landing<'a> {
     impact: &'a Impact,
-    /// Symbols of state and of nothing else, with their values after the impact.
+    /// Symbols of the state, with their values after the impact.
     after: Vec<(SymbolId, ExprId)>,
     /// `a`
     base: Vec<ExprId>,
@@ -66,7 +66,7 @@ impl<'a> Landing<'a> {
         }
     }
 
-    /// An input that acts along `w` after the impact, for all that is known.
+    /// An input that may act along `w` after the impact.
     fn acting(&self, pool: &mut Pool, system: &System, principle: &Principle) -> Option<String> {
         for (input, column) in system.inputs.iter().zip(&principle.actuation) {
             let column = pool.substitute_all(column, &self.after);
@@ -126,7 +126,7 @@ impl<'a> Landing<'a> {
     }
 }
 
-/// `w . Delta_*^{-1}`
+/// `covector . Delta_*^{-1}`
 fn back(pool: &mut Pool, back: &Back, form: &[ExprId], covector: &[ExprId]) -> Vec<ExprId> {
     let (factor, direction, turned) = match back {
         Back::Matrix(inverse) => {

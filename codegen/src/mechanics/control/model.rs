@@ -18,10 +18,10 @@ pub const TERMINAL: &str = "terminal";
 /// Name of the component with the cost so far.
 const COST: &str = "cost";
 
-/// The model of the extremals of a model, in whose pool their expressions are. Its coordinates are the state, the costate and
-/// the cost so far; its surfaces are those of the model. Its outputs are the optimal inputs, `H*`, the terminal cost, the
-/// gradient of that by the state, the rows of its second derivative, and the minors that are positive where the optimal inputs are a
-/// minimum.
+/// The first-order model of the extremals of `model`, whose pool holds their expressions. Its coordinates are the
+/// state, the costate and the cost so far; its surfaces are those of the model. Its outputs are the optimal inputs,
+/// `H*`, the terminal cost, its gradient by the state, the rows of its second derivative, and the minors that are
+/// positive where the optimal inputs are a minimum.
 pub fn extremal_model(mut model: Model, extremals: &Extremals) -> Model {
     let item = item_of(&model);
     let components = extremals.components.iter();
@@ -40,12 +40,12 @@ pub fn extremal_model(mut model: Model, extremals: &Extremals) -> Model {
     .assembled(model)
 }
 
-/// Place of what is derived: the cost.
+/// Declaration to which the derived items refer: the cost.
 pub(super) fn item_of(model: &Model) -> ItemId {
     model.cost.map_or(model.lagrangian.item, |cost| cost.item)
 }
 
-/// A component of a first-order model: its name and symbol.
+/// A component of a first-order model: its name, symbol and topology.
 pub(super) type Entry = (String, SymbolId, Topology);
 
 /// The component with the cost so far.
@@ -54,7 +54,7 @@ pub(super) fn cost(model: &mut Model) -> Entry {
     (COST.to_owned(), symbol, Topology::Line)
 }
 
-/// The parts of a first-order model that is made of another one.
+/// The parts of a first-order model that is derived from another model.
 pub(super) struct Parts {
     /// The components of the state.
     pub components: Vec<Entry>,
@@ -67,7 +67,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The first-order model, in the pool of the other one.
+    /// The first-order model, in the pool of the other model.
     pub fn assembled(self, mut model: Model) -> Model {
         let item = item_of(&model);
         let coordinates = coordinates(&mut model, self.components, item);
@@ -115,7 +115,7 @@ fn entries(model: &mut Model, extremals: &Extremals) -> Vec<Entry> {
     entries
 }
 
-/// The topologies of coordinates, and of what follows them.
+/// The topologies of the coordinates, followed by lines.
 pub(super) fn topologies(model: &Model) -> impl Iterator<Item = Topology> {
     let declared = model.coordinates.iter().map(|it| it.topology);
     declared.chain(core::iter::repeat(Topology::Line))
@@ -137,7 +137,7 @@ fn coordinates(model: &mut Model, entries: Vec<Entry>, item: ItemId) -> Vec<Coor
     entries.into_iter().map(coordinate).collect()
 }
 
-/// Symbols of momenta, which a first-order model has no use for but in their number.
+/// Symbols of momenta. A first-order model needs only their number.
 fn momenta(model: &mut Model, coordinates: &[Coordinate]) -> Vec<SymbolId> {
     let names = coordinates
         .iter()
@@ -147,7 +147,7 @@ fn momenta(model: &mut Model, coordinates: &[Coordinate]) -> Vec<SymbolId> {
     names.iter().map(symbol).collect()
 }
 
-/// The name of a coordinate or an output by itself.
+/// The name of a coordinate or output that belongs to no family.
 pub(super) fn plain(display: String) -> Name {
     Name {
         field: display.replace('.', "_"),
@@ -257,7 +257,7 @@ fn initial(model: &Model, count: usize) -> Initial {
     }
 }
 
-/// The placeholder of a Lagrangian that first-order models have.
+/// The placeholder Lagrangian of a first-order model.
 fn euclidean(model: &Model, count: usize, item: ItemId) -> Lagrangian {
     let [zero, one] = [model.pool.zero(), model.pool.one()];
     let row = |i: usize| {

@@ -49,7 +49,7 @@ pub(super) fn derive(
     let chosen: Vec<(SymbolId, ExprId)> = chosen.collect();
     let work = dot(pool, &covector, &system.rates);
     let whole = pool.sum(&[work, cost.running]);
-    // The derivative by the inputs is 0 at the optimum: that by the state is taken before it is put in.
+    // The derivative by the inputs is 0 at the optimum: the optimum is substituted after the derivative by the state.
     let costate_rates: Vec<ExprId> = system
         .states
         .iter()
@@ -140,7 +140,7 @@ fn optimal(
     Ok(optimal.collect())
 }
 
-/// Determinants of the first rows and columns.
+/// Leading principal minors.
 fn minors(pool: &mut Pool, matrix: &Matrix) -> Vec<ExprId> {
     let indices: Vec<usize> = (0..matrix.len()).collect();
     (1..=matrix.len())

@@ -24,7 +24,7 @@ pub(super) struct System {
 
 /// An impact.
 pub(super) struct Impact {
-    /// `dh`, a component for each of the state.
+    /// `dh`, one entry for each component of the state.
     pub form: Vec<ExprId>,
     /// `d_t h`
     pub form_rate: ExprId,
@@ -240,7 +240,7 @@ fn of_reset(
     })
 }
 
-/// A law after which the state before is not known.
+/// The refusal of a law that is not invertible.
 fn refused(surface: &Surface) -> Uncontrolled {
     if surface.law == Law::Stop {
         let text = format!("the motion ends at `{}`", surface.name.display);
@@ -248,7 +248,7 @@ fn refused(surface: &Surface) -> Uncontrolled {
         return Uncontrolled::at(surface.item, text, help);
     }
     let text = format!(
-        "the law of `{}` is not invertible: the costate after the impact does not follow from that before",
+        "the law of `{}` is not invertible: the costate after the impact does not follow from the costate before",
         surface.name.display
     );
     let help = "use `elastic`, `restitution(e)` or `newton(e)` with e > 0, or an invertible reset";

@@ -1,8 +1,9 @@
 //! A frame that is regular at every configuration, found from the constraint forms alone.
 //!
 //! A velocity can be made dependent if it occurs in only one of the constraints still to be solved, with a coefficient
-//! that is never zero. Otherwise two velocities that occur in only one constraint serve, if the sum of the squares of
-//! their coefficients is never zero: a knife edge `-sin(theta) dx + cos(theta) dy` leaves the velocity along it,
+//! that is never zero. Otherwise a pair of velocities that occur in only one constraint is used, if the sum of the
+//! squares of their coefficients is never zero: a knife edge `-sin(theta) dx + cos(theta) dy` leaves the velocity along
+//! it,
 //! `cos(theta) dx + sin(theta) dy`.
 
 use dalembert_expr::{ExprId, Pool};
@@ -15,11 +16,11 @@ use crate::model::Model;
 enum Dependent {
     /// One velocity follows from the others.
     One(usize),
-    /// The velocity along the constraint is left of these two.
+    /// Of these two velocities, only the velocity along the constraint stays independent.
     Pair(usize, usize),
 }
 
-/// Quasi-velocities: those of the coordinates that no constraint takes away, and those along pairs.
+/// Quasi-velocities: the velocities of coordinates that stay independent, and one velocity along each pair.
 pub(super) fn choose(
     model: &mut Model,
     constraints: &[ConstraintForm],
@@ -36,7 +37,7 @@ pub(super) fn choose(
     Ok(quasi_velocities(model, constraints, &taken))
 }
 
-/// A constraint that can be solved for velocities that no other of `rows` holds.
+/// A constraint that can be solved for velocities that no other constraint of `rows` contains.
 fn removable(
     pool: &mut Pool,
     constraints: &[ConstraintForm],
@@ -51,7 +52,7 @@ fn removable(
     for &a in rows {
         let columns = alone(pool, a);
         let is_regular = |&&j: &&usize| pool.sign(constraints[a].form[j]).is_nonzero();
-        // A number is a better divisor than a parameter, and a parameter than a function: the divisor is then exact.
+        // The simplest divisor is the best: a number before a parameter, and a parameter before a function.
         let regular = columns.iter().filter(is_regular);
         if let Some(&j) = regular.min_by_key(|&&j| complexity(pool, constraints[a].form[j])) {
             return Some((a, Dependent::One(j)));

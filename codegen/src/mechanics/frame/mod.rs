@@ -35,7 +35,7 @@ pub struct Frame {
     pub quasi: Vec<QuasiVelocity>,
     /// The blocks of the coframe, in the order in which they are solved.
     pub blocks: Vec<Block>,
-    /// Bound of each velocity at unit quasi-velocities, a function of the parameters; 1 where the bound is not one.
+    /// Bound of each velocity at unit quasi-velocities: a function of the parameters, or 1 if no such bound is known.
     pub position_units: Vec<ExprId>,
     /// Expressions that do not depend on the configuration.
     pub invariant: Option<Invariant>,
@@ -46,7 +46,7 @@ pub struct Frame {
 pub struct QuasiVelocity {
     /// Name: as declared, or `x_dot` for the velocity of `x`.
     pub name: String,
-    /// The coordinate whose velocity it is, if it is one.
+    /// The coordinate whose velocity it is, if there is one.
     pub coordinate: Option<usize>,
     /// `alpha_j`, N entries.
     pub form: Vec<ExprId>,

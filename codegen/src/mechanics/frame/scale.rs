@@ -72,7 +72,7 @@ fn entry(
     (is_parametric && model.pool.sign(bound).is_nonzero()).then_some(bound)
 }
 
-/// `|e|`, where `e` is known to vanish nowhere.
+/// `|e|`; `None` unless `e` is known to vanish nowhere.
 fn magnitude(pool: &mut Pool, e: ExprId) -> Option<ExprId> {
     let size = pool.call(dalembert_expr::Function::Abs, e);
     pool.sign(e).is_nonzero().then_some(size)

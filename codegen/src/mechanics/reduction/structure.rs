@@ -43,7 +43,7 @@ pub(super) fn structure(
     Ok(constants)
 }
 
-/// The claim that a field is the combination of others with these factors, and that the factors are constant.
+/// The verdict on a field being the combination of others with these factors, and on the factors being constant.
 fn combination(
     pool: &mut Pool,
     q: &[SymbolId],

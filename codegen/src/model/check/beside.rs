@@ -1,4 +1,5 @@
-//! Several surfaces with one gap: `otherwise`, and transitions that leave a motion without one.
+//! Several surfaces with one gap: `otherwise`, and transitions whose conditions may leave a motion without a
+//! transition.
 
 use dalembert_expr::Pool;
 
@@ -73,7 +74,8 @@ pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<String
     notes
 }
 
-/// Margin whose sign decides which of two surfaces counts.
+/// Margin whose sign decides which of two surfaces counts, in words; `None` unless their strict conditions are
+/// opposite.
 fn left_out(pool: &mut Pool, first: &Surface, second: &Surface) -> Option<String> {
     let ([one], [other]) = (&*first.conditions, &*second.conditions) else {
         return None;

@@ -49,7 +49,7 @@ pub(super) fn notes(
     if found.is_empty() {
         return Vec::new();
     }
-    // The other forms are made in a copy: a remark adds nothing to the model.
+    // The other forms are built in a copy: a remark adds nothing to the model.
     let mut pool = resolver.pool.clone();
     let moving = resolver.symbols.moving();
     let mut notes = BTreeMap::new();
@@ -175,7 +175,7 @@ fn cancellation(pool: &mut Pool, candidate: &Candidate) -> Option<Cancellation> 
     }
 }
 
-/// The other form of the difference of 1 and a function that is 1 where its argument is 0.
+/// The form without cancellation of the difference of 1 and a function with `f(0) = 1`.
 fn safe(pool: &mut Pool, function: Function, argument: ExprId) -> Option<Cancellation> {
     let half = pool.scale(&Rational::new(1, 2), argument);
     let (factors, sign) = match function {

@@ -1,5 +1,5 @@
-//! The cost that an optimal input makes least: quadratic in the inputs, and growing with each of them, so that there is
-//! one best input at every state and costate.
+//! The cost that optimal inputs minimise. It must be quadratic in the inputs and grow with each combination of them:
+//! the optimal input is then unique at every state and costate.
 
 use dalembert_expr::{ExprId, Sign, Verdict};
 

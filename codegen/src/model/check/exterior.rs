@@ -1,6 +1,7 @@
-//! `invariant: FORM`: the form as it was written, resolved.
+//! `invariant: FORM`: resolves the written form.
 //!
-//! `^` is decided by its two sides: a power of functions, a wedge product of forms. Every mistake is told at the smallest part that is wrong.
+//! The two sides of `^` decide its meaning: a power of functions, or a wedge product of forms. Every mistake is
+//! reported at the smallest part that is wrong.
 
 use dalembert_expr::ExprId;
 
@@ -9,11 +10,11 @@ use super::super::resolve::{Resolver, Scope};
 use crate::diagnostics::Location;
 use crate::spec::{Binder, Operator, Scalar, ScalarKind};
 
-/// Products that a form may have when it is multiplied out.
+/// Largest number of products of a form that is multiplied out.
 const TERMS: usize = 1024;
 const WEDGE: &str = "a wedge product is written `d(x)^d(y)`";
 
-/// True if a part is a differential.
+/// True if an expression contains a differential.
 fn has_differential(written: &Scalar) -> bool {
     match &written.kind {
         ScalarKind::Number(..) | ScalarKind::Name(_) | ScalarKind::Member(..) => false,
@@ -28,7 +29,7 @@ fn has_differential(written: &Scalar) -> bool {
 }
 
 impl Resolver<'_> {
-    /// A form of degree 1 or more, not 0 by its shape.
+    /// A form of degree 1 or more. A form that is 0 by its shape is refused.
     pub(super) fn invariant_form(&mut self, written: &Scalar) -> Option<ExteriorForm> {
         let form = self.form(written, &mut Scope::default())?;
         if form.degree == 0 {
@@ -210,7 +211,7 @@ impl Resolver<'_> {
                     product.wedge(&mut self.pool, &form)
                 }
                 (Operator::Times, None) => {
-                    let text = format!("`{factor}` is a form, and so is what is multiplied by it");
+                    let text = format!("`{factor}` is a form, and so is the factor before it");
                     return self.refuse(factor.at, text, WEDGE);
                 }
                 (Operator::Over, Some(function)) => {

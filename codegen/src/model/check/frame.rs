@@ -140,7 +140,7 @@ pub(super) fn check_coframe(
         let text = match others.is_empty() {
             true => format!("the form of `{}` is zero", entry.name.display),
             false => format!(
-                "`{}` is no quasi-velocity of its own: with the constraints it follows from {}",
+                "`{}` is not independent: with the constraints it follows from {}",
                 entry.name.display,
                 listed(named)
             ),

@@ -1,5 +1,5 @@
-//! Inputs may act in forces and rates only. Expressions that are differentiated, or that decide where motion is
-//! allowed, must be known.
+//! Inputs may act in forces, rates and the running cost only. Expressions that are differentiated, or that decide where
+//! motion is allowed, must be known.
 
 use dalembert_expr::ExprId;
 

@@ -82,13 +82,13 @@ pub(super) fn check_independent(
     }
 }
 
-/// An error at an instantaneous constraint that keeps the gap.
+/// An error at an instantaneous constraint that determines the gap rate.
 fn refuse_blocking(resolver: &mut Resolver<'_>, surface: &Surface, constraint: &Constraint) {
     let (name, blocking) = (&surface.name.display, &constraint.name.display);
     let law = surface.law.name();
     let at = resolver.spec.location(constraint.item);
     let text =
-        format!("`{blocking}` leaves nothing to `{law}`: it settles how `{name}` is approached");
+        format!("`{blocking}` leaves nothing to `{law}`: it determines the gap rate of `{name}`");
     let help = "leave it out; `impact_plastic` stops the motion across a surface";
     resolver.refuse::<()>(at, text, help);
 }

@@ -1,8 +1,8 @@
 //! Remarks on constraints that are integrable but not declared as such.
 //!
 //! `omega = eta + eta_0 dt` on Q x R is closed if `d omega = 0` and integrable if `omega ^ d omega = 0` (a single
-//! form; Frobenius). Both are looked for, and neither is used: only a constraint written as `d(f)` or as an equation of
-//! positions is kept on position level.
+//! form; Frobenius). Both are only remarked on: a constraint is kept on position level only if it is written as `d(f)`
+//! or as an equation of positions.
 
 use dalembert_expr::{ExprId, Pool, SymbolId, Verdict};
 

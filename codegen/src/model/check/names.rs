@@ -6,7 +6,7 @@ use super::super::symbols::member_name;
 use crate::diagnostics::Location;
 use crate::spec::{Declared, Index, Scalar, Word};
 
-/// The names of a section in the order in which they are met.
+/// The names of a section in the order in which they are read.
 pub(super) struct Names {
     noun: &'static str,
     met: Vec<(Name, Location)>,
@@ -81,7 +81,7 @@ impl Names {
 }
 
 impl Resolver<'_> {
-    /// The members that a declaration declares, each with what its index stands for.
+    /// The members of a declaration, each with a scope that holds the value of its index.
     pub(in crate::model) fn members(&mut self, declared: &Declared) -> Vec<(Name, Scope)> {
         self.members_within(declared, &Scope::default())
     }

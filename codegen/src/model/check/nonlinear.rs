@@ -28,7 +28,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
         }
         let at = law.map_or(surface.declared.name.at, |law| law.name.at);
         let surface = &surface.declared.name.text;
-        let text = format!("{because}: no law says how `{surface}` is left");
+        let text = format!("{because}: no impact law is defined at `{surface}`");
         let help = "write `=> reset { dot(x) = ..; }` with velocities that satisfy it";
         resolver.refuse::<()>(at, text, help);
     }
@@ -52,7 +52,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
     }
 }
 
-/// Remarks on their forces.
+/// Remarks on the forces of such constraints.
 pub(super) fn notes(constraints: &[Constraint]) -> impl Iterator<Item = String> + '_ {
     let nonlinear = constraints
         .iter()

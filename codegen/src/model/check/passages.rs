@@ -1,4 +1,4 @@
-//! Resets that leave the motion on its way through their surface.
+//! Resets after which the motion continues through their surface.
 
 use dalembert_expr::{ExprId, Pool};
 

@@ -1,4 +1,4 @@
-//! The declared start lies in front of every wall and on the constraints.
+//! Check that the declared start lies in front of every wall and on the constraints.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
@@ -29,7 +29,7 @@ pub(super) fn check(
     }
 }
 
-/// An error to be told.
+/// An error to be reported.
 struct Refused {
     at: Location,
     text: String,
@@ -159,20 +159,20 @@ impl<'a, 'b> Start<'a, 'b> {
         Some(entry.value.at)
     }
 
-    /// The value of an expression, without the digits that rounding makes.
+    /// The value of an expression, rounded to twelve digits.
     fn shown(&self, id: ExprId) -> String {
         let value = self.pool.eval(&[id], &|symbol| self.at(symbol))[0];
         let rounded = format!("{value:.11e}").parse::<f64>();
         rounded.unwrap_or(value).to_string()
     }
 
-    /// 1 or -1 where rounding leaves no doubt about the sign.
+    /// The sign, 1 or -1; `None` if it may be due to rounding.
     fn clear_sign(&self, id: ExprId) -> Option<f64> {
         let (value, magnitude) = self.pool.eval_magnitude(id, &|symbol| self.at(symbol));
         (value.abs() > MARGIN * magnitude).then(|| value.signum())
     }
 
-    /// The value of a symbol at the start; not a number where it is known at run time only.
+    /// The value of a symbol at the start; NaN if it is known at run time only.
     fn at(&self, symbol: SymbolId) -> f64 {
         let coordinates = &self.resolver.symbols.coordinates;
         if self.solved_for.contains(&symbol) {

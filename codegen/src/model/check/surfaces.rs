@@ -78,7 +78,7 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Surface> {
 }
 
 impl Resolver<'_> {
-    /// The side that is greater minus the other.
+    /// The greater side minus the other side.
     pub(super) fn difference(
         &mut self,
         comparison: &Comparison,
@@ -221,7 +221,7 @@ pub(super) fn have_same_gap(
     gaps[0] * gaps[1] > 0.0 && is_proportional(resolver, first.gap, second.gap)
 }
 
-/// A point that no declaration has in mind.
+/// Coordinates of a generic point, at which no declaration is special.
 fn generic(symbol: SymbolId) -> f64 {
     0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract()
 }

@@ -139,7 +139,7 @@ impl Section {
             (Self::Field, "t") => "time runs by itself",
             (Self::Field, _) => "rates are given for coordinates: `dot(x) = ..;`",
             (Self::Reset, _) => {
-                "what is reset is a coordinate or its velocity: `x = ..;`, `dot(x) = ..;`"
+                "a reset sets coordinates and their velocities: `x = ..;`, `dot(x) = ..;`"
             }
         }
     }

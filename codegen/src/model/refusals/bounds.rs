@@ -119,7 +119,7 @@ fn algebra_without_end_is_given_up_where_it_began() {
 }
 
 #[test]
-fn no_more_errors_are_told_than_anybody_reads() {
+fn the_number_of_errors_is_limited() {
     let names: Vec<String> = (0..3000).map(|i| format!("u{i}")).collect();
     let errors = diagnostics(&particle(&format!(
         "outputs {{ o: {}; }}",

@@ -12,7 +12,7 @@ fn a_lagrangian_that_is_not_natural_is_refused_at_its_term() {
         "«sqrt(1 - dot(x)^2)»",
         "not natural: `sqrt(1 - dot(x)^2)` is no polynomial in the velocities",
     );
-    // The value is a polynomial, the text is none.
+    // The value is a polynomial, but it is not written as one.
     refused_term(
         "«sqrt(dot(x)^4)»/2",
         "not natural: `sqrt(dot(x)^4)` is no polynomial in the velocities",

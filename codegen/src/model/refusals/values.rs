@@ -82,7 +82,7 @@ fn a_start_lies_in_front_of_every_wall() {
 }
 
 #[test]
-fn rates_are_taken_of_what_changes() {
+fn rates_are_taken_of_variable_quantities() {
     let message = "which depends neither on coordinates nor on `t`\nhelp: parameters, inputs and numbers have no rate";
     refused_in("outputs { o: «dot(m)»; }", message);
     refused_in("constraints { c: d(x) = «d(k*m)»; }", message);
@@ -115,7 +115,7 @@ fn starts_are_on_the_constraints() {
         "constraints { c: x^2 + y^2 = 1; } initial { y = 4/5; }",
         "constraints { c: d(x^2 + y^2) = 0; } initial { y = 4/5; dot(y) = 0; }",
         "constraints { c: dot(x) = y*dot(a); } initial { y = 4/5; dot(a) = 5; dot(x) = 4; }",
-        // Where `x` is solved for, nobody knows yet what the rate has to be.
+        // `x` is solved for at run time, so its rate cannot be checked here.
         "constraints { c: x^2 + y^2 = 1; } initial { y = 4/5; dot(y) = 3; dot(x) = 3; }",
     ] {
         accepted(&particle(accepted_start));

@@ -8,9 +8,9 @@ const LONGEST: u32 = 4;
 /// The order after which all coefficients vanish, for all values of the numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Degree {
-    /// At most this one.
+    /// All coefficients above this order vanish.
     AtMost(u32),
-    /// None is known.
+    /// No such order is known.
     Endless,
 }
 
@@ -54,8 +54,8 @@ pub(super) fn of(
     }
 }
 
-/// The degrees of the components of a state, from the function that gives their derivatives: the least ones that
-/// agree with it. Coefficients above them vanish order after order, since each follows from lower ones.
+/// The degrees of the components of a state: the least degrees that are consistent with the function of their
+/// derivatives. Coefficients above them vanish order after order, because each follows from lower ones.
 pub fn of_components(rate: &Function, component: impl Fn(Input) -> Option<usize>) -> Vec<Degree> {
     let mut components = vec![Degree::AtMost(0); rate.outputs.len()];
     loop {

@@ -1,6 +1,6 @@
-//! Constant factors, taken out of products and multiplied with each other before anything that varies. `x (c y)` is
-//! `c (x y)` where `x y` is computed anyway: that spares a sum in every order. `a (b x)` is `(a b) x`: its coefficients
-//! are known earlier.
+//! Takes constant factors out of products and multiplies them with each other first. `x (c y)` becomes `c (x y)` if the
+//! product `x y` is computed anyway: that saves a sum in every order. `a (b x)` becomes `(a b) x`: its coefficients are
+//! known earlier.
 
 use std::collections::HashSet;
 
@@ -49,7 +49,7 @@ struct Known<'a> {
     degrees: Vec<Degree>,
     /// Number of times a value is an operand or a result.
     uses: Vec<usize>,
-    /// All products that are computed, the operand that comes first in front.
+    /// All products that are computed, each with its operands in order.
     products: HashSet<[Value; 2]>,
 }
 
@@ -72,7 +72,8 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// A product as constant factors and a rest, each to be multiplied for itself first, where that is shorter.
+    /// A product as two groups, constant factors and the rest. The factors within a group are multiplied first. `None`
+    /// unless this saves operations.
     fn split(&self, value: Value) -> Option<[Vec<Value>; 2]> {
         let Op::Mul(a, b) = self.function.ops[value.index()] else {
             return None;

@@ -27,7 +27,7 @@ pub fn gradient(model: &Model, derivation: &Derivation, integral: &Integral) -> 
         .collect();
     let n = vectors.len();
     let flat = Ldlt::identity(builder, n);
-    // A guard that fails names the first constraint: the vectors are dependent where the forms are, or where their frame fails.
+    // A guard that fails names the first constraint: the vectors are dependent where the forms or their frame are.
     let guard = |_, squared, reference| Guard::Constraint {
         constraint: 0,
         squared,

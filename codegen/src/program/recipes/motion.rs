@@ -99,7 +99,7 @@ pub fn force(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// Operations up to which a function repeats the computation of the velocities rather than calling their function.
+/// Number of operations up to which a function computes the velocities itself instead of calling their function.
 const REPEATED: usize = 100;
 
 /// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`, by the formula with the fewest

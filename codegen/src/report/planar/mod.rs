@@ -1,13 +1,13 @@
-//! Hypotheses of the Poincare-Bendixson theorem for planar hybrid systems (W. Clark, thesis, Theorem IV.26): as far as
-//! they are decided for a model at values of its parameters.
+//! Hypotheses of the Poincare-Bendixson theorem for planar hybrid systems (W. Clark, thesis, Theorem IV.26), with
+//! verdicts for a model at given values of its parameters.
 //!
 //! | file | job |
 //! |---|---|
-//! | `mod.rs` | the hypotheses, and what decides them |
+//! | `mod.rs` | the hypotheses and their verdicts |
 //! | `graph.rs` | modes, and the surfaces that lead from one to another |
 //! | `cascade.rs` | a forward invariant set between two energies: the inequalities (4.13) |
 //!
-//! Numbers are intervals, rounded outwards: what holds is proved at the given values.
+//! Numbers are intervals, rounded outwards: a hypothesis that holds is proved at the given values.
 
 mod cascade;
 mod graph;
@@ -128,7 +128,7 @@ pub fn planar(source: &str, parameters: &[(&str, f64)]) -> Result<Planar, Report
 /// A verdict with its reason.
 type Reasoned = (Decided, String);
 
-/// An interval in words: its middle, with the digits in which its ends agree, or both ends where they differ in the first eight.
+/// An interval in words: its middle with eight digits if its relative width is at most 1e-8, otherwise both ends.
 pub fn shown(interval: Interval) -> String {
     let middle = 0.5 * interval.lo + 0.5 * interval.hi;
     match interval.hi - interval.lo <= 1e-8 * middle.abs() {

@@ -1,4 +1,4 @@
-//! `cost { running = u^2/2; terminal = a*(x - 1)^2; }`: the quantity that an optimal input makes least.
+//! `cost { running = u^2/2; terminal = a*(x - 1)^2; }`: the quantity that optimal inputs minimise.
 
 use super::super::ast::{Cost, Spec, Word};
 use super::super::cursor::{Cursor, Read};
@@ -7,7 +7,7 @@ use super::target::equals;
 
 const FORM: &str = "running = u^2/2;";
 
-/// Notes that there is a cost, however empty.
+/// Records that a cost is declared, even if it is empty.
 pub(super) fn begin(keyword: &Word, spec: &mut Spec) {
     if spec.cost.is_none() {
         let item = spec.item(keyword.at);

@@ -6,7 +6,7 @@ use super::super::ast::{Constant, Definition, Spec, Word};
 use super::super::cursor::{Cursor, Read, tokens_of};
 use super::{declared, end_of_declaration};
 
-/// Reads what stands behind `const`.
+/// Reads a constant after the word `const`.
 pub(super) fn constant(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let name = cursor.new_name("the name of a constant")?;
     cursor.expect_operator("=", "const N = 8;")?;
@@ -16,7 +16,7 @@ pub(super) fn constant(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     Ok(())
 }
 
-/// Reads what stands behind `let`.
+/// Reads a definition after the word `let`.
 pub(super) fn definition(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let declared = declared(cursor, "the name of a definition")?;
     let arguments = arguments(cursor)?;

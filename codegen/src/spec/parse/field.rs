@@ -7,7 +7,7 @@ use super::target::{equals, inside_dot};
 
 const FORM: &str = "dot(x) = ..;";
 
-/// Notes that there is a field, however empty.
+/// Records that a field is declared, even if it is empty.
 pub(super) fn begin(keyword: &Word, spec: &mut Spec) {
     if spec.field.is_none() {
         let item = spec.item(keyword.at);

@@ -10,7 +10,7 @@ use super::entry_length;
 
 const FORM: &str = "=> LAW, instantaneous { name: dot(y) = 0; }";
 
-/// Reads what stands behind the comma after a law; nothing if there is none.
+/// Reads the constraints behind the comma after a law; none without a comma.
 pub(super) fn equations(
     cursor: &mut Cursor<'_>,
     spec: &mut Spec,
@@ -26,7 +26,7 @@ pub(super) fn equations(
     let word = cursor.name("a word")?;
     if law.assignments.is_some() {
         let text = "a reset takes no instantaneous constraints";
-        let help = "a reset says what positions and velocities are after the impact";
+        let help = "a reset gives positions and velocities after the impact";
         return Err(cursor.refuse(word.at, text, help));
     }
     if law.name.text == STOP {

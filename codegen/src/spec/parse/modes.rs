@@ -1,8 +1,8 @@
 //! `modes { rough { .. } smooth { .. } }` and `transitions { enter: smooth -> rough when x >= 0; }`
 //!
-//! A mode is read as a model of its own: the declarations outside of `modes`, then those in its braces, then as surfaces
-//! the transitions that leave it. What modes share is so read once for each of them. Families are written out before, as
-//! tokens.
+//! A mode is read as a model of its own: the declarations outside of `modes`, then those in its braces, then the
+//! transitions that leave it, as surfaces. Shared declarations are read once for each mode. Families are written out
+//! before, as tokens.
 
 use proc_macro2::{Delimiter, Group, TokenTree};
 
@@ -15,7 +15,7 @@ use crate::diagnostics::{Diagnostics, Location};
 
 const MODE: &str = "modes { slow { .. } fast { .. } }";
 
-/// Declarations that stand outside of `modes`, each with the reason.
+/// Declarations that a mode must not contain, each with advice.
 const SHARED: [(&str, &str); 5] = [
     (
         "const",
@@ -32,7 +32,7 @@ const SHARED: [(&str, &str); 5] = [
     ("cost", "declare the model of one mode by itself"),
     (
         "scenes",
-        "leave them out: what a scene would leave out, a mode need not declare",
+        "leave them out: a mode declares only the parts that it uses",
     ),
 ];
 
@@ -49,7 +49,7 @@ struct Parts {
     first: Option<Word>,
 }
 
-/// True if a declaration is one of modes.
+/// True if the tokens declare modes or transitions.
 pub(super) fn are_declared(tokens: &[TokenTree]) -> bool {
     split(tokens).any(|declaration| {
         matches!(
@@ -124,7 +124,7 @@ fn take_apart(tokens: &[TokenTree], body: &Group, diagnostics: &mut Diagnostics)
         let word = keyword(declaration);
         if let Some("modes" | "transitions") = word.as_deref() {
             let mut cursor = Cursor::new(declaration, before, diagnostics);
-            // What is wrong was recorded; the next declaration may be right.
+            // The mistake was recorded; the next declaration may be right.
             let _ = part(&mut cursor, &mut parts);
         } else {
             parts.shared.extend(declaration.iter().cloned());
@@ -181,7 +181,7 @@ fn mode(cursor: &mut Cursor<'_>, parts: &mut Parts) -> Read<()> {
     Ok(())
 }
 
-/// Refuses in a mode what all modes share, and scenes.
+/// Refuses declarations that a mode must not contain.
 fn refuse_shared(tokens: &[TokenTree], diagnostics: &mut Diagnostics) {
     for declaration in split(tokens) {
         let Some(word) = keyword(declaration) else {

@@ -47,7 +47,7 @@ fn assignment(cursor: &mut Cursor<'_>) -> Read<Assignment> {
 }
 
 fn target(cursor: &mut Cursor<'_>) -> Read<(AssignmentTarget, Declared)> {
-    const HELP: &str = "what is reset is a coordinate or its velocity: `x = ..;`, `dot(x) = ..;`";
+    const HELP: &str = "a reset sets coordinates and their velocities: `x = ..;`, `dot(x) = ..;`";
     let is_call = is_call(cursor);
     if !matches!(cursor.peek(), Some(TokenTree::Ident(_))) {
         return Err(cursor.unexpected("expected a coordinate or `dot(..)` of one", HELP));

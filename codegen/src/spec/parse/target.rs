@@ -11,7 +11,7 @@ pub(super) fn is_call(cursor: &Cursor<'_>) -> bool {
     matches!(cursor.peek_second(), Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis)
 }
 
-/// The coordinate in the parentheses behind `dot`; `form` is how an entry is written.
+/// The coordinate in the parentheses behind `dot`; `form` is an example of an entry.
 pub(super) fn inside_dot(cursor: &mut Cursor<'_>, form: &str) -> Read<Declared> {
     let Some(group) = cursor.eat_group(Delimiter::Parenthesis) else {
         return Err(cursor.unexpected("expected a coordinate", &format!("write `{form}`")));

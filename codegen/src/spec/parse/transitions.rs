@@ -82,7 +82,7 @@ impl<'a> Transitions<'a> {
     }
 }
 
-/// The members of a family, each with its number in the brackets; anything else as it is.
+/// The members of a family, each with its number in the brackets. Other entries stay as they are.
 fn written_out(
     tokens: &[TokenTree],
     group: &Group,
@@ -150,7 +150,7 @@ fn transition(
     let (conditions, is_otherwise) = conditions(cursor, FORM)?;
     let law = law(cursor, spec, FORM)?;
     let item = spec.item(at);
-    // A transition happens when what is compared becomes true; the gap of a surface is positive before.
+    // A transition happens when the comparison becomes true. The gap of a surface is positive before.
     let gap = Comparison {
         greater: less,
         less: greater,
@@ -174,7 +174,7 @@ fn transition(
     Ok((Transition { name, from, to }, surface))
 }
 
-/// The name of a transition: `enter`, of a member of a family `step3`.
+/// The name of a transition: `enter`, or `step3` for a member of a family.
 fn name(declared: Declared, constants: &Constants, cursor: &mut Cursor<'_>) -> Read<Word> {
     if declared.index.is_none() {
         return Ok(declared.name);

@@ -1,4 +1,4 @@
-//! Families of modes and transitions: what is refused of them.
+//! Refusals in families of modes and transitions.
 
 use super::refusals::refused;
 
@@ -19,7 +19,7 @@ fn refused_hopper(rest: &str, message: &str) {
     refused(&hopper(rest), message);
 }
 
-/// With the modes `leg[1]` to `leg[3]` and `flight`.
+/// Checks the message for transitions between the modes `leg[1]` to `leg[3]` and `flight`.
 #[track_caller]
 fn refused_transition(rest: &str, message: &str) {
     let modes = "leg[i in 1..=N] { lagrangian = dot(x)^2; } flight { lagrangian = dot(y)^2; }";
@@ -133,7 +133,7 @@ fn references_name_one_mode() {
 
 /// Consequences of a mistake elsewhere are not reported.
 #[test]
-fn consequences_are_not_told() {
+fn consequences_are_not_reported() {
     refused_hopper(
         "const M «=»; modes { leg[i in 1..=M] { } } transitions { go: leg[1] -> leg[2] when x >= 0; }",
         "expected an expression",

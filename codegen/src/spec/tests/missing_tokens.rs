@@ -30,7 +30,7 @@ fn models_with_single_tokens_missing_never_panic() {
     }
 }
 
-/// Numbers by Knuth's linear congruence; the high bits are used.
+/// Linear congruential generator with Knuth's multiplier. The high bits are used.
 struct Random(u64);
 
 impl Random {
