@@ -68,3 +68,30 @@ fn a_killed_ensemble_goes_on_to_the_same_rows() {
 fn a_killed_ensemble_goes_on_to_the_same_density() {
     kill_and_go_on("density", "--density x,y:20");
 }
+
+/// Rows that began in one mode are not continued in another.
+#[test]
+fn the_first_mode_is_part_of_the_metadata() {
+    let folder = std::env::temp_dir().join(format!("dalembert-mode-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let rows = folder.join("rows.csv");
+    let run = |mode: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_dalembert"));
+        let line = format!(
+            "ensemble ball_on_switching_table --mode {mode} --vary x=0..1:3 --until 1 --resume"
+        );
+        command
+            .args(line.split_whitespace())
+            .arg("--csv")
+            .arg(&rows);
+        command.args(["--json", "-"]).output().unwrap()
+    };
+    let first = run("slow");
+    let document: serde_json::Value = serde_json::from_slice(&first.stdout).unwrap();
+    assert_eq!(document["mode"], "slow");
+    let other = run("fast");
+    assert_eq!(other.status.code(), Some(2));
+    let errors = String::from_utf8(other.stderr).unwrap();
+    assert!(errors.contains("--resume"), "{errors}");
+    fs::remove_dir_all(&folder).unwrap();
+}
