@@ -142,7 +142,7 @@ pub fn compile_spec(spec: &spec::Spec, steps: u64) -> Result<Compiled, diagnosti
 /// [`mechanics::control`]. The scene `None` is the model itself.
 ///
 /// # Errors
-/// Same as [`compile`], and the first declaration for which no maximum principle is derived.
+/// Same as [`compile`], an unknown scene, and the first declaration for which no maximum principle is derived.
 pub fn compile_control(
     spec: &spec::Spec,
     scene: Option<&str>,
@@ -195,16 +195,30 @@ fn derive_control(
         .map_err(|refused| uncontrolled(spec, refused))
 }
 
+/// The checked model, in a scene if one is named.
 fn in_scene(
     spec: &spec::Spec,
     scene: Option<&str>,
 ) -> Result<model::Model, diagnostics::Diagnostics> {
     let model = model::check_within(spec, spec::STEPS)?;
-    let named = model.scenes.iter().position(|it| Some(&*it.name) == scene);
-    Ok(match named {
-        Some(scene) => model.in_scene(scene),
-        None => model,
-    })
+    let Some(scene) = scene else {
+        return Ok(model);
+    };
+    let mut names = model.scenes.iter().map(|it| it.name.as_str());
+    if let Some(place) = names.clone().position(|name| name == scene) {
+        return Ok(model.in_scene(place));
+    }
+    let mut mistakes = diagnostics::Diagnostics::new();
+    let help = match names.next() {
+        None => "the model declares no scenes".to_owned(),
+        Some(first) => format!(
+            "scenes are {}",
+            diagnostics::listed([first].into_iter().chain(names))
+        ),
+    };
+    let text = format!("unknown scene `{scene}`");
+    mistakes.error(spec.name.at, text).help(help);
+    Err(mistakes)
 }
 
 fn uncontrolled(

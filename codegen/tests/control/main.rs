@@ -388,6 +388,13 @@ fn families_angles_and_scenes_are_kept() {
     assert_eq!(model.outputs[0].name.display, "u.1");
     let free = compile_control(&spec, Some("free")).unwrap().model;
     assert!(free.surfaces.is_empty());
+    let unknown = compile_control(&spec, Some("fre")).expect_err("an unknown scene");
+    let error = unknown.iter().next().expect("an error");
+    assert!(
+        error.message().starts_with("unknown scene `fre`"),
+        "{}",
+        error.message()
+    );
     let chain = Derived::of(
         CHAIN,
         &[("m.2", 2.0), ("m.1", 1.0)],

@@ -3,7 +3,7 @@
 use super::super::ast::{Claim, Existence, Scalar, Spec, Statement};
 use super::super::cursor::{Cursor, Read};
 use super::declared;
-use crate::diagnostics::{Location, nearest};
+use crate::diagnostics::{Location, listed, nearest};
 
 const KINDS: [&str; 11] = [
     "density",
@@ -54,10 +54,7 @@ pub(super) fn claim(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
                 unknown => {
                     let help = match nearest(unknown, KINDS) {
                         Some(near) => format!("did you mean `{near}`?"),
-                        None => {
-                            "claims are `density: exact`, `conserved: energy` and `symmetry: partial(theta)`"
-                                .to_owned()
-                        }
+                        None => format!("claims begin with {}", listed(KINDS)),
                     };
                     let text = format!("unknown claim `{unknown}`");
                     return Err(cursor.refuse(kind.at, text, &help));
