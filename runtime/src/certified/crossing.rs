@@ -1,4 +1,4 @@
-//! The map of a box of states across an impact, to one time after it.
+//! The map of a box of states across an impact, to a common time after it.
 //!
 //! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface. If the gap
 //! is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface once. Interval
@@ -43,7 +43,7 @@ pub(super) struct Crossed<Sys: Variational + Impacting> {
     pub(super) time: Interval,
     pub(super) before: Bounds<Sys::State>,
     pub(super) after: Bounds<Sys::State>,
-    /// A time after all of these, and the states at that time.
+    /// A time after all impacts, and the states at that time.
     pub(super) t: f64,
     pub(super) frame: Frame<Sys>,
     pub(super) sides: Sides<Sys>,
@@ -64,7 +64,7 @@ struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     /// The motions of the box, and that of the centre.
     all: Course<'f, 'a, Sys>,
     centre: Course<'f, 'a, Sys>,
-    /// Enclosures of the derivatives of the states at any time until `t_1` along each axis, and of those of the gap.
+    /// Enclosures of the derivatives of states and gap along each axis, at any time until `t_1`.
     turned: Turned<Sys>,
     slopes: Slopes<Sys>,
     /// Enclosures of all motions until `t_1`, and of the rate of the gap per unit of time.
@@ -89,7 +89,7 @@ struct Centre<S> {
     time: Interval,
     before: Bounds<S>,
     after: Bounds<S>,
-    /// Its states at the time after all impacts.
+    /// The state at the time after all impacts.
     moved: Bounds<S>,
 }
 
@@ -187,8 +187,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Some(approach)
     }
 
-    /// `Dphi q`: enclosure of the derivatives of the states along a direction, at any time until `t_1`, and of that
-    /// of the gap.
+    /// `Dphi q`: enclosures of the derivatives of the states and of the gap along a direction, at any time until `t_1`.
     fn swept(&self, direction: &Bounds<Sys::State>) -> Option<(Bounds<Sys::State>, Interval)> {
         let (field, whole) = (self.surfaces.field, &self.whole);
         let hull = self.frame.hull();
@@ -279,7 +278,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         })
     }
 
-    /// Passes all other surfaces until the last motion meets this one.
+    /// Proves that no motion meets another surface before the last motion meets this one. Returns the sides of all surfaces.
     fn pass_others(
         &self,
         meeting: &Meeting<Sys>,
@@ -404,8 +403,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
 
     /// The impact of the centre, and its state `rest` units of time after `t_0`.
     ///
-    /// The result is a function of the time `tau` and of the state `x` there. It is evaluated at one time and one
-    /// state; its derivatives by both enclose the difference elsewhere.
+    /// The result is a function of the time `tau` of the impact and of the state `x` at that time. It is evaluated at one
+    /// time and one state. Its derivatives with respect to both enclose the difference at other times and states.
     fn struck_centre(
         &self,
         strike: &Strike,
@@ -482,7 +481,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Ok(is_map)
     }
 
-    /// Enclosure of the law's result over a box.
+    /// Enclosure of the states that the law gives for a box of states.
     fn applied(
         &self,
         strike: &Strike,

@@ -3,7 +3,7 @@
 //!
 //! | file | job |
 //! |---|---|
-//! | `flow.rs` | steps: a tube that contains the motion, its Taylor series with remainder, the derivative by the start |
+//! | `flow.rs` | steps: a tube that contains the motion, its Taylor series with remainder, the derivative with respect to the start |
 //! | `frame.rs` | a box that is rotated with the motion (QR), against the wrapping effect |
 //! | `series.rs` | tubes, and series with remainder, of motions and of their derivatives |
 //! | `course.rs` | gaps along a step: surfaces that are certainly not met |

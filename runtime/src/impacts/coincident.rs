@@ -1,4 +1,4 @@
-//! Impacts at one time: test for infinitely many.
+//! Impacts at one time: a test whether they are infinitely many.
 //!
 //! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner with an open exit have
 //! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of very different
@@ -21,7 +21,7 @@ const DIED: f64 = 1.0 / (1 << 20) as f64;
 /// Conclusion from the impacts at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Gathering {
-    /// They are few, or go on.
+    /// They are few, or may be finitely many.
     None,
     /// Almost all of them are hops on this surface.
     Hops(usize),
@@ -33,7 +33,7 @@ pub(super) enum Gathering {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Tally {
     count: u32,
-    /// Largest gap rate before them.
+    /// Largest gap rate before one of them.
     fastest: f64,
 }
 
