@@ -61,7 +61,7 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) here: Option<Sys::Gaps>,
     /// Largest absolute values of the state's components since the last impact; they determine the rounding errors.
     pub(super) sizes: Sys::State,
-    /// The same at the start of the last step, for a cut: the motion behind the cut does not contribute.
+    /// The sizes at the start of the last step. A cut uses them, because the motion behind it does not contribute.
     sizes_at_start: Sys::State,
     /// Number of steps since the last impact. Each has rounded the state.
     pub(super) steps: u32,

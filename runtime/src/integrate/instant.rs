@@ -8,7 +8,7 @@
 pub struct Instant {
     /// The time, in units of time.
     pub t: f64,
-    /// Number to be added: at most half a unit in the last place of `t`.
+    /// The low part, to be added to `t`: at most half a unit in its last place.
     pub rest: f64,
 }
 
@@ -32,7 +32,7 @@ impl Instant {
         }
     }
 
-    /// The time that has passed since another moment.
+    /// The time since another moment.
     #[inline(always)]
     pub fn since(self, other: Self) -> f64 {
         (self.t - other.t) + (self.rest - other.rest)
