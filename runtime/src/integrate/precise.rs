@@ -68,10 +68,7 @@ mod tests {
     use nalgebra::SVector;
 
     #[test]
-    #[cfg_attr(
-        miri,
-        ignore = "a million steps take an hour under miri"
-    )]
+    #[cfg_attr(miri, ignore = "a million steps take an hour under miri")]
     fn nothing_is_lost_over_a_million_steps() {
         let mut sum = Precise::new(SVector::<f64, 1>::new(1.0));
         let mut naive = 1.0_f64;
