@@ -21,7 +21,7 @@ pub enum Fact {
     List(Vec<Fact>),
 }
 
-/// The facts of an outcome besides its kind and its time, in the model's names.
+/// The facts of an outcome apart from its kind and its time, in the model's names.
 pub fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Fact)> {
     let surface = |index: usize| ("surface", name(names::surfaces(description), index));
     let constraint = |index: usize| {

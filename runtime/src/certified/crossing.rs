@@ -61,7 +61,7 @@ struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     t: f64,
     unit: Interval,
     tube: Bounds<Sys::State>,
-    /// The motions of the box, and that of the centre.
+    /// The motion of the box, and the motion of the centre.
     all: Course<'f, 'a, Sys>,
     centre: Course<'f, 'a, Sys>,
     /// Enclosures of the derivatives of states and gap along each axis, at any time until `t_1`.

@@ -96,7 +96,7 @@ pub trait SceneVisitor {
 
 /// A form of a declared model or of a scene, as `model!` writes it: everything but the parameter values is constant.
 pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField + 'static {
-    /// Facts about the form besides its kernels.
+    /// Facts about the form apart from its kernels.
     const TABLES: &'static Tables;
 
     /// Documentation of the form.

@@ -44,13 +44,13 @@ pub enum Global {
     /// The form of a type.
     // NOTE: a function, as the constant of a type cannot refer to itself.
     OfType(fn() -> Option<&'static Form>),
-    /// A form of its own.
+    /// A separate form.
     Another(Shared<Form>),
 }
 
 /// A form of a model, or of a scene: tables, and pointers to its functions.
 pub struct Form {
-    /// Facts about the form besides its kernels.
+    /// Facts about the form apart from its kernels.
     pub tables: Held<Tables>,
     /// Documentation of the form.
     pub documentation: Held<Documentation>,

@@ -1,7 +1,7 @@
 //! Accumulations of impacts in which the energy grows, and the extrapolation of their time.
 //!
 //! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add
-//! a share of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
+//! a fraction of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
 //! The model that better predicts a flight in between from the first and the last one is used. The remaining flights take
 //! `f r/(1 - r)` in total, or `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
 

@@ -91,7 +91,7 @@ pub(super) struct Struck<Sys: Impacting> {
     is_graze: bool,
 }
 
-/// An impact to be carried out.
+/// An impact to apply.
 #[derive(Debug, Clone, Copy)]
 struct Strike {
     surface: usize,

@@ -42,11 +42,11 @@ pub trait Method: Copy {
     const ORDER: usize;
     /// Order of the dense output between them.
     const DENSE_ORDER: usize;
-    /// Number of refinements of the cubic through the ends by two rates inside. Each raises its order by one, up to
-    /// 5.
+    /// Number of refinements of the cubic through the ends by two rates inside. Each raises its order by one, at
+    /// most to 5.
     const REFINEMENTS: u32;
 
-    /// Data that the method keeps from one step for the next besides the state.
+    /// Data besides the state that the method keeps for the next step.
     type Memory<S: StateVector>: Copy;
 
     /// True for implicit steps: shorter steps may have a solution where a longer one has none.

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Written with `mu`, the method is symplectic iff `mu_ij + mu_ji = 1`, which holds exactly for the rounded numbers,
-//! whatever the rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
+//! for any rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
 //! decrease, and the sums over steps are compensated, so that rounding errors grow as a random walk (Brouwer's law).
 
 use super::controller::not_finite;

@@ -3,7 +3,7 @@
 /// A time and its rounding error.
 ///
 /// Late in a run, or where impacts accumulate, steps and flights may be shorter than a unit in the last place of the
-/// time. The sum of two parts is accurate to about 32 digits, and a step moves the time however short it is.
+/// time. The sum of two parts is accurate to about 32 digits, and even the shortest step moves the time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Instant {
     /// The time, in units of time.

@@ -22,7 +22,7 @@ pub struct Counters {
     pub event_evaluations: u64,
     /// Enclosures of one gap along a part of a step.
     pub enclosures: u64,
-    /// Roots of a gap that were located, whatever the direction of the motion afterwards.
+    /// Roots of a gap that were located, for any direction of the motion afterwards.
     pub crossings: u64,
     /// Impacts.
     pub impacts: u64,
