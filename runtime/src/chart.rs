@@ -60,7 +60,8 @@ pub(crate) fn outside<Sys: System, Step: Stepper<Sys>>(
     step.system.outside_chart(&step.state(part))
 }
 
-/// True if the cubics through the ends of the step, widened by the deviation of the inner rates, stay inside all charts.
+/// True if the cubics through the ends of the step, widened by the deviation of the inner rates, stay inside all
+/// charts.
 fn stays_inside<Sys: System, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
     mut charts: impl Iterator<Item = Chart>,

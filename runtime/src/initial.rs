@@ -1,5 +1,5 @@
-//! Completion of initial states. Positions come first: they satisfy the constraints that are equations of positions. Then
-//! come the velocities of least norm that satisfy all constraints.
+//! Completion of initial states. Positions come first: they satisfy the constraints that are equations of positions.
+//! Then come the velocities of least norm that satisfy all constraints.
 
 use crate::contract::Constrained;
 use crate::error::StateError;
@@ -26,8 +26,9 @@ const BEGINNINGS: [f64; 6] = [1.0, -1.0, 0.25, -0.25, 4.0, -4.0];
 /// all positions are placed, `q` is only checked.
 ///
 /// # Errors
-/// [`StateError::OffPosition`] for `q` as given if no solution was found; [`StateError::NotFinite`] for a position that is
-/// not finite; [`StateError::TooLarge`] if the numbers of coordinates and of constraints have a product above `64^2`.
+/// [`StateError::OffPosition`] for `q` as given if no solution was found; [`StateError::NotFinite`] for a position that
+/// is not finite; [`StateError::TooLarge`] if the numbers of coordinates and of constraints have a product above
+/// `64^2`.
 pub fn complete_positions<Sys: Constrained>(
     system: &Sys,
     t: f64,
@@ -106,8 +107,8 @@ fn solved_from<Sys: Constrained>(
 }
 
 /// Completes velocities. Velocities of `qdot` where `named` is not 0 are kept. The others are those of least norm that
-/// satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in the velocities, they come from
-/// Newton steps from 1, which prefers positive solutions.
+/// satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in the velocities, they come
+/// from Newton steps from 1, which prefers positive solutions.
 ///
 /// # Errors
 /// [`StateError::OffConstraint`] if the free components cannot satisfy a constraint; [`StateError::NotFinite`] for a

@@ -7,8 +7,8 @@ use crate::describe::Instance;
 use crate::error::Fault;
 use crate::record::{Observer, Segment};
 
-/// Integrates the outputs that are declared as integrals along the run that it observes. `K` is the number of all outputs
-/// of the model.
+/// Integrates the outputs that are declared as integrals along the run that it observes. `K` is the number of all
+/// outputs of the model.
 ///
 /// # Examples
 ///
@@ -49,8 +49,8 @@ impl<'a, Sys: Instance, const K: usize> Integrals<'a, Sys, K> {
         }
     }
 
-    /// Value of an output that is an integral, by its index among all outputs, from the start of the run to its last state.
-    /// It is 0 for other outputs.
+    /// Value of an output that is an integral, by its index among all outputs, from the start of the run to its last
+    /// state. It is 0 for other outputs.
     ///
     /// # Errors
     /// The first [`Fault`] of the output or of the dense output.

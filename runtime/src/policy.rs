@@ -1,5 +1,5 @@
-//! Policies for impacts that the law alone does not decide. By default the run stops there, with an outcome that names the
-//! reason, except after a split ([`Split`]).
+//! Policies for impacts that the law alone does not decide. By default the run stops there, with an outcome that names
+//! the reason, except after a split ([`Split`]).
 
 /// The policies of a run.
 ///
@@ -38,8 +38,8 @@ pub enum Split {
 /// a plastic impact, or at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rest {
-    /// End with [`Outcome::Contact`](crate::Outcome::Contact), or with [`Outcome::Zeno`](crate::Outcome::Zeno) where impacts
-    /// accumulate.
+    /// End with [`Outcome::Contact`](crate::Outcome::Contact), or with [`Outcome::Zeno`](crate::Outcome::Zeno) where
+    /// impacts accumulate.
     #[default]
     Stop,
     /// Go on along the surface without friction, `h = 0`, until the contact force would have to pull.

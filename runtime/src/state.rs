@@ -28,14 +28,15 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Array with one value per component.
     type Each<T: Plain>: Plain + AsRef<[T]> + AsMut<[T]>;
 
-    /// An array with the same value for each of `count` components. If the type fixes the number of components, `count` is
-    /// ignored.
+    /// An array with the same value for each of `count` components. If the type fixes the number of components, `count`
+    /// is ignored.
     fn each<T: Plain>(count: usize, value: T) -> Self::Each<T>;
 
     /// A vector of `count` zeros. If the type fixes the number of components, `count` is ignored.
     fn zeros(count: usize) -> Self;
 
-    /// The vector with these components. If the type fixes the number of components, `components` must have that length.
+    /// The vector with these components. If the type fixes the number of components, `components` must have that
+    /// length.
     fn of(components: &[f64]) -> Self {
         let mut vector = Self::zeros(components.len());
         vector.as_mut_slice().copy_from_slice(components);

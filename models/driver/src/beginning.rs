@@ -16,8 +16,8 @@ pub enum Component {
 }
 
 impl Component {
-    /// The coordinate or velocity with this name, such as `x` or `x_dot`. Velocities of first-order systems are not found,
-    /// because they are not free.
+    /// The coordinate or velocity with this name, such as `x` or `x_dot`. Velocities of first-order systems are not
+    /// found, because they are not free.
     ///
     /// # Errors
     /// [`Unknown`] if no coordinate or velocity has this name.

@@ -34,13 +34,13 @@ pub struct Certification {
     pub impacts: Option<u64>,
     /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges that replace the values of parameters, by index. A model with modes accepts no other ranges, and starts in the
-    /// same state for all values of its parameters.
+    /// Ranges that replace the values of parameters, by index. A model with modes accepts no other ranges, and starts
+    /// in the same state for all values of its parameters.
     pub parameters: Vec<(usize, Interval)>,
     /// Ranges that replace the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,
-    /// Ranges that replace velocities, by index: the origin's velocities in the global form of a model without constraints,
-    /// quasi-velocities in the reduced form. They are ignored in other cases and if momenta are given.
+    /// Ranges that replace velocities, by index: the origin's velocities in the global form of a model without
+    /// constraints, quasi-velocities in the reduced form. They are ignored in other cases and if momenta are given.
     pub rates: Vec<(usize, Interval)>,
 }
 

@@ -21,8 +21,8 @@ impl Grid {
     }
 }
 
-/// A range that contains the values with a margin of `room` times their range on both sides. The range of a constant has the
-/// size of its absolute value, at least 1.
+/// A range that contains the values with a margin of `room` times their range on both sides. The range of a constant
+/// has the size of its absolute value, at least 1.
 pub fn padded(values: impl Iterator<Item = f64>, room: f64) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))

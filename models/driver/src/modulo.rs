@@ -1,4 +1,5 @@
-//! Symmetry groups whose flows are affine in the coordinates: translations, rotations and the groups that they generate.
+//! Symmetry groups whose flows are affine in the coordinates: translations, rotations and the groups that they
+//! generate.
 //!
 //! ```text
 //! dq/ds = A q + c,   dqdot/ds = A qdot,   [A q + a, B q + b] = (B A - A B) q + B a - A b

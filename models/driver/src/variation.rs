@@ -146,8 +146,8 @@ impl Variable {
     }
 }
 
-/// Derivatives of the last state of a run with respect to these variables. `values` are the values of all parameters, inputs
-/// included. The run begins in the mode with the number `mode`. It is abandoned once `is_over` returns true.
+/// Derivatives of the last state of a run with respect to these variables. `values` are the values of all parameters,
+/// inputs included. The run begins in the mode with the number `mode`. It is abandoned once `is_over` returns true.
 ///
 /// # Errors
 /// [`Refusal`] if the run does not start. The inner error says why it has no derivatives.

@@ -231,8 +231,8 @@ fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
     report.curve("position", ["bounce", "error"], marks);
 }
 
-/// A chaotic run, in which a difference of one bit changes all later states. The hash is the 64-bit hash of Fowler, Noll and
-/// Vo.
+/// A chaotic run, in which a difference of one bit changes all later states. The hash is the 64-bit hash of Fowler,
+/// Noll and Vo.
 fn same_bits(setting: Setting, report: &mut Report) {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let table = SINAI.model();
@@ -376,8 +376,8 @@ impl Errors<'_> {
         self.system.position(state).as_slice()[0]
     }
 
-    /// The error at a time. Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time since the
-    /// nearest even multiple.
+    /// The error at a time. Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time
+    /// since the nearest even multiple.
     fn at(&self, t: f64, x: f64) -> f64 {
         let phase = (t + self.t1).rem_euclid(2.0 * self.t1) - self.t1;
         (x - phase.cos()).abs()

@@ -1,4 +1,5 @@
-//! Names, arguments and values of the functions that the generator derives from a model, shared by generator and runtime.
+//! Names, arguments and values of the functions that the generator derives from a model, shared by generator and
+//! runtime.
 
 /// A function of a model in one form of its equations. Its arguments are the time, two lists of numbers
 /// ([`Kernel::first`], [`Kernel::second`]) and the parameters. It writes its values as one list of numbers.
@@ -28,7 +29,8 @@ pub enum Kernel {
     Multipliers,
     /// The residuals of the constraints, then the sums of the absolute values of their terms: 2 m.
     Residuals,
-    /// The constraint forms row by row, then their affine parts: m n + m. Forms of nonlinear constraints depend on the velocities.
+    /// The constraint forms row by row, then their affine parts: m n + m. Forms of nonlinear constraints depend on the
+    /// velocities.
     Forms,
     /// The momenta after a step, projected onto the constraints: k.
     Restore,
@@ -58,7 +60,8 @@ pub enum Kernel {
     Coefficient(usize),
     /// The impulse by the law of a surface: size, share, direction.
     Blow(usize),
-    /// The quantities of an impact on a surface: gap rate, constrained rate, rate of the surface, constrained and free compliance, direction.
+    /// The quantities of an impact on a surface: gap rate, constrained rate, rate of the surface, constrained and free
+    /// compliance, direction.
     Contact(usize),
     /// The positions and velocities after the reset of a surface: 2 n.
     Reset(usize),

@@ -1,10 +1,11 @@
 //! Quantities along a stretch of motion, as intervals of their values and of their rates.
 //!
 //! For a function `f` over numbers and a path `x(s)`, `f(x)` encloses the values and the rates of `f(x(s))` on the
-//! stretch. The interval of the rates also holds the slopes of all chords, so that it is valid for functions with kinks.
-//! If all rates have one sign, the function has at most one root on the stretch.
+//! stretch. The interval of the rates also holds the slopes of all chords, so that it is valid for functions with
+//! kinks. If all rates have one sign, the function has at most one root on the stretch.
 //!
-//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 6 (centred forms).
+//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 6 (centred
+//! forms).
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -152,7 +153,8 @@ impl Numbers for Rated {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are unbounded.
+    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are
+    /// unbounded.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {

@@ -1,5 +1,5 @@
-//! Values and derivatives of the functions of one number, each written once for all numbers that carry derivatives: [`crate::Rated`],
-//! [`crate::Bent`] and the dual numbers of variations.
+//! Values and derivatives of the functions of one number, each written once for all numbers that carry derivatives:
+//! [`crate::Rated`], [`crate::Bent`] and the dual numbers of variations.
 
 use crate::interval::Interval;
 use crate::numbers::Numbers;

@@ -107,7 +107,8 @@ pub struct Transition {
     pub enters: usize,
     /// Rule of the entry.
     pub passage: Passage,
-    /// True if the motion may be on both sides of the surface: another transition of the same mode has the negative of its gap.
+    /// True if the motion may be on both sides of the surface: another transition of the same mode has the negative of
+    /// its gap.
     pub has_no_side: bool,
     /// Between first-order modes, the surface of the model whose transition can lead back at once.
     pub opposite: Option<usize>,

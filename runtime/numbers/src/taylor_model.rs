@@ -1,12 +1,12 @@
 //! Taylor models: functions along a stretch of motion, as a cubic and bounds of the remainder.
 //!
 //! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)`
-//! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a function
-//! `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. Halving the stretch divides the error by sixteen: one
-//! model locates the root of a gap during a flight, for which interval arithmetic needs a dozen stretches.
+//! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a
+//! function `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. Halving the stretch divides the error by
+//! sixteen: one model locates the root of a gap during a flight, for which interval arithmetic needs a dozen stretches.
 //!
-//! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International Journal of Pure and
-//! Applied Mathematics 6 (2003).
+//! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International
+//! Journal of Pure and Applied Mathematics 6 (2003).
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -183,7 +183,8 @@ impl TaylorModel {
         first == 0.0 && second == 0.0 && third == 0.0 && self.slope == 0.0
     }
 
-    // NOTE: the rounding error of the constant term is the same along the whole stretch and does not contribute to the slope.
+    // NOTE: the rounding error of the constant term is the same along the whole stretch and does not contribute to the
+    // slope.
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
         let sum = Self {
@@ -315,7 +316,8 @@ impl TaylorModel {
         }
     }
 
-    /// Model from enclosures of the values, of the rates and of the value in the middle: linear, or constant if its error is smaller.
+    /// Model from enclosures of the values, of the rates and of the value in the middle: linear, or constant if its
+    /// error is smaller.
     fn of_rated(found: Rated, middle: Interval) -> Self {
         let (rate, value) = (found.rate.middle(), found.value.middle());
         let steady = Self {
@@ -533,7 +535,8 @@ impl Numbers for TaylorModel {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are unbounded.
+    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are
+    /// unbounded.
     fn turned(self, sign: Self) -> Self {
         let range = sign.range();
         match (range.lo < 0.0, range.hi < 0.0) {
@@ -604,7 +607,8 @@ impl Numbers for TaylorModel {
             summed([sine, cosine, -0.5 * sine, -cosine / 6.0]),
             summed([cosine, -sine, -0.5 * cosine, sine / 6.0]),
         ];
-        // Next to an extremum of one function its model is not sharp, but the other is. If neither is, the stretch is too long for the series.
+        // Next to an extremum of one function its model is not sharp, but the other is. If neither is, the stretch is
+        // too long for the series.
         if !sines.is_sharp() && !cosines.is_sharp() {
             sines = sines.or_closer(self.enclosed(Rated::sin, Interval::sin));
             cosines = cosines.or_closer(self.enclosed(Rated::cos, Interval::cos));

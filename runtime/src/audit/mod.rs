@@ -1,12 +1,14 @@
-//! Audit of a run: shows that the motion meets no surface between recorded impacts, and that recorded impacts lie on their surfaces.
+//! Audit of a run: shows that the motion meets no surface between recorded impacts, and that recorded impacts lie on
+//! their surfaces.
 //!
 //! An audit observes a run and does not rely on the events that the run reports. It encloses all values of every gap
 //! along every step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). It shares no
 //! code with event location. A claim that it cannot prove within its budget is reported as a [`Finding`], in the same
 //! way as a surface that was passed.
 //!
-//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative, unless the system
-//! encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while it does.
+//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative,
+//! unless the system encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while
+//! it does.
 //!
 //! ```
 //! use dalembert::audit::{Audit, Finding};

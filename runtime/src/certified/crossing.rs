@@ -13,8 +13,9 @@
 //! along each axis `q` of the frame: the saltation matrix between the derivatives of the two flows. The centre alone
 //! is mapped to an enclosure as narrow as rounding allows.
 //!
-//! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic solution of a system of
-//! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
+//! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic
+//! solution of a system of differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics
+//! and Applied Mathematics 11 (1958).
 
 use super::course::{Course, Part, Side, Sides, Surfaces};
 use super::departure::{Departure, ORDER, carried, together};
@@ -278,7 +279,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         })
     }
 
-    /// Proves that no motion meets another surface before the last motion meets this one. Returns the sides of all surfaces.
+    /// Proves that no motion meets another surface before the last motion meets this one. Returns the sides of all
+    /// surfaces.
     fn pass_others(
         &self,
         meeting: &Meeting<Sys>,
@@ -403,8 +405,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
 
     /// The impact of the centre, and its state `rest` units of time after `t_0`.
     ///
-    /// The result is a function of the time `tau` of the impact and of the state `x` at that time. It is evaluated at one
-    /// time and one state. Its derivatives with respect to both enclose the difference at other times and states.
+    /// The result is a function of the time `tau` of the impact and of the state `x` at that time. It is evaluated at
+    /// one time and one state. Its derivatives with respect to both enclose the difference at other times and states.
     fn struck_centre(
         &self,
         strike: &Strike,

@@ -29,7 +29,8 @@ pub(super) struct Departed<Sys: Variational + Impacting> {
 }
 
 impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
-    /// Proves that the motion meets no surface. Returns its tube, its rates at the impact, and the sides of all surfaces.
+    /// Proves that the motion meets no surface. Returns its tube, its rates at the impact, and the sides of all
+    /// surfaces.
     pub(super) fn departed(
         &self,
         after: &Bounds<Sys::State>,
@@ -67,7 +68,8 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
     }
 }
 
-/// Enclosure of the derivatives of the flow along directions, after `units` of time, for all states of a box with a tube.
+/// Enclosure of the derivatives of the flow along directions, after `units` of time, for all states of a box with a
+/// tube.
 pub(super) fn carried<Sys: Variational>(
     field: &Field<'_, Sys>,
     [from, tube, along]: [&Bounds<Sys::State>; 3],

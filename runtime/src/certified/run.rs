@@ -229,8 +229,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// Propagates the box to the time `t_end`, or until `observer` breaks after an impact.
     ///
     /// # Errors
-    /// [`Lost`] with the condition that could not be proved. The box then encloses the states at the time up to which the
-    /// motion is certified.
+    /// [`Lost`] with the condition that could not be proved. The box then encloses the states at the time up to which
+    /// the motion is certified.
     pub fn run(
         &mut self,
         t_end: f64,

@@ -112,8 +112,8 @@ pub trait Variational: TaylorField + System + Sized {
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault>;
 
-    /// The state in the same mode after `change` has modified its positions and velocities. Both slices have one entry per
-    /// coordinate of the model. Entries of coordinates that the mode lacks are 0, and their changes are ignored.
+    /// The state in the same mode after `change` has modified its positions and velocities. Both slices have one entry
+    /// per coordinate of the model. Entries of coordinates that the mode lacks are 0, and their changes are ignored.
     ///
     /// # Errors
     /// A [`Fault`] where the velocities do not exist or the state cannot be formed.
@@ -224,8 +224,8 @@ pub trait Variational: TaylorField + System + Sized {
         }
     }
 
-    /// Writes the declared outputs, in order; `values` has their number of entries. An output that the mode does not have
-    /// stays as it is.
+    /// Writes the declared outputs, in order; `values` has their number of entries. An output that the mode does not
+    /// have stays as it is.
     ///
     /// # Errors
     /// A [`Fault`] where an output does not exist. The default, for systems without outputs, gives

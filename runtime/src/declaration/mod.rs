@@ -44,7 +44,8 @@ pub trait Described: Instance {
     /// The model as data, for [`Erased`](crate::erased::Erased); `None` for a model that only its own type can run.
     const FORM: Option<&'static Form> = None;
 
-    /// Calls the visitor with the type of each declared scene, in order. The model itself, the scene `all`, is left out.
+    /// Calls the visitor with the type of each declared scene, in order. The model itself, the scene `all`, is left
+    /// out.
     fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
         let _ = visitor;
     }

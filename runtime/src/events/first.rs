@@ -1,8 +1,8 @@
 //! Search for the first fraction of a step at which a predicate holds. Stretches on which an enclosure excludes the
 //! predicate are skipped; others are halved.
 
-/// Numbers of halvings after which the end of a stretch decides: `2^-40` of the step at first, then coarser stretches if
-/// too many cannot be excluded, for example where rounding decides the predicate.
+/// Numbers of halvings after which the end of a stretch decides: `2^-40` of the step at first, then coarser stretches
+/// if too many cannot be excluded, for example where rounding decides the predicate.
 const DEPTHS: [u32; 3] = [40, 20, 10];
 
 /// Maximum number of stretches examined at each depth.
@@ -44,8 +44,8 @@ pub(crate) enum Walk<T> {
     Stopped(f64),
 }
 
-/// Walks over the stretches of a span from its start. Halves those that `is_out` does not exclude, up to `leaves` times,
-/// and calls `found` on the smallest. Examines at most `stretches` stretches.
+/// Walks over the stretches of a span from its start. Halves those that `is_out` does not exclude, up to `leaves`
+/// times, and calls `found` on the smallest. Examines at most `stretches` stretches.
 pub(crate) fn walk<T>(
     span: [f64; 2],
     [leaves, stretches]: [u32; 2],

@@ -1,9 +1,9 @@
 //! Event location: the first fall of a gap through zero inside a step, and its time to the last bits.
 //!
-//! The step is searched stretch by stretch from its start. A Taylor model of the gap on the stretch, or on a longer one,
-//! decides each stretch. A gap that the model encloses away from zero has no fall there. For a gap whose rates have one
-//! sign, the signs at the ends show the fall. Undecided stretches are halved until rounding decides. A new model is
-//! computed if the remainder of the last one is the reason.
+//! The step is searched stretch by stretch from its start. A Taylor model of the gap on the stretch, or on a longer
+//! one, decides each stretch. A gap that the model encloses away from zero has no fall there. For a gap whose rates
+//! have one sign, the signs at the ends show the fall. Undecided stretches are halved until rounding decides. A new
+//! model is computed if the remainder of the last one is the reason.
 
 use super::crossing::Signs;
 use super::piece::Piece;
@@ -64,7 +64,8 @@ pub(crate) enum Search {
     Clear,
     /// The first fall, bracketed by neighbouring numbers or nearly so.
     Falls(Bracket),
-    /// The gap goes from zero (within rounding) to clearly negative at this fraction; 0 if it never rises from the surface.
+    /// The gap goes from zero (within rounding) to clearly negative at this fraction; 0 if it never rises from the
+    /// surface.
     Sinks(f64),
     /// The gap changes sign at a pole before this fraction.
     Pole(f64),
@@ -73,7 +74,8 @@ pub(crate) enum Search {
 }
 
 /// The gap of one surface along a step.
-// NOTE: the functions are behind pointers, so that the long search is compiled once instead of for every system and integrator.
+// NOTE: the functions are behind pointers, so that the long search is compiled once instead of for every system and
+// integrator.
 pub(crate) struct Line<'a> {
     /// The gap at a fraction of the step.
     pub gap: &'a mut dyn FnMut(f64) -> f64,
@@ -369,8 +371,8 @@ impl Line<'_> {
         }
     }
 
-    /// Result for a gap that is negative beyond rounding at `low` although no stretch shows the fall: the gap fell between
-    /// two stretches or where it is flat, or it never rose.
+    /// Result for a gap that is negative beyond rounding at `low` although no stretch shows the fall: the gap fell
+    /// between two stretches or where it is flat, or it never rose.
     fn sunk(
         [left, _]: [f64; 2],
         rose: bool,
@@ -398,7 +400,7 @@ impl Line<'_> {
         const NEAREST: f64 = 1.0 / 64.0;
         let trial = before.x + guess.clamp(NEAREST, 1.0 - NEAREST) * (after.x - before.x);
         let at_trial = value(trial);
-        // The newest point and one on the other side of the root, then the third.
+        // The first two points are the newest one and one on the other side of the root.
         let drop = match at_trial >= 0.0 {
             true => Drop {
                 x: [trial, after.x, before.x],

@@ -111,8 +111,8 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Prepares the dense output of the step and replaces the cubic by it. Returns true if the path changed; it must then
-    /// be enclosed again.
+    /// Prepares the dense output of the step and replaces the cubic by it. Returns true if the path changed; it must
+    /// then be enclosed again.
     ///
     /// # Errors
     /// The [`Fault`](crate::Fault) of the dense output.
@@ -270,8 +270,8 @@ impl<S: StateVector> Path<S> {
 
     /// Bounds of the first and second derivative of component `i` on the whole step, with respect to its fraction `s`.
     ///
-    /// Path and polynomial agree at both ends of the step. If their rates differ by at most `d`, their values differ by at
-    /// most `d min(s, 1 - s) <= 4 d s (1 - s)/2`. The difference therefore counts as a second derivative of `4 d`.
+    /// Path and polynomial agree at both ends of the step. If their rates differ by at most `d`, their values differ by
+    /// at most `d min(s, 1 - s) <= 4 d s (1 - s)/2`. The difference therefore counts as a second derivative of `4 d`.
     #[inline]
     pub(crate) fn motion(&self, i: usize) -> [f64; 2] {
         debug_assert!(self.is_enclosed, "the path has no error bounds yet");

@@ -171,8 +171,8 @@ impl Piece {
         }
     }
 
-    /// True if a gap with these nonnegative values at its ends is positive inside, by the bound of its change from one of
-    /// the ends.
+    /// True if a gap with these nonnegative values at its ends is positive inside, by the bound of its change from one
+    /// of the ends.
     fn stays_above(&self, first: f64, last: f64) -> bool {
         const THIRDS: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 1.0];
         let [start, a, b, end] = self.hull;

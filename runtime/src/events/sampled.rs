@@ -4,8 +4,8 @@
 //! form the remainder, and its last two coefficients estimate the interpolation error. This is not an enclosure:
 //! features narrower than the distance of two samples may be missed.
 //!
-//! NOTE: gaps are enclosed instead ([`super::path`]). Contact forces of surfaces that hold the motion are sampled, because
-//! they are not available over intervals.
+//! NOTE: gaps are enclosed instead ([`super::path`]). Contact forces of surfaces that hold the motion are sampled,
+//! because they are not available over intervals.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 

@@ -54,8 +54,8 @@ impl<G: StateVector> Accumulation<G> {
         }
     }
 
-    /// Records an impact. `rounding` gives the size of the gap's rounding errors, `energy` the energy after the impact, if
-    /// known. Returns the accumulation if the impacts accumulate.
+    /// Records an impact. `rounding` gives the size of the gap's rounding errors, `energy` the energy after the impact,
+    /// if known. Returns the accumulation if the impacts accumulate.
     pub(super) fn add(
         &mut self,
         bounce: Bounce,
@@ -93,14 +93,14 @@ impl<G: StateVector> Accumulation<G> {
         are_many.then_some(Ends::AtOneTime(t))
     }
 
-    /// True if passages through surfaces, this one among them, followed each other ever faster until the time `t`, where
-    /// two of them cannot be distinguished.
+    /// True if passages through surfaces, this one among them, followed each other ever faster until the time `t`,
+    /// where two of them cannot be distinguished.
     pub(super) fn has_passed_on(&self, surface: usize, t: f64) -> bool {
         self.passing.has_accumulated(surface, t)
     }
 
-    /// The time of accumulation of a motion that bounced off a surface at `t` but did not rise from it, because the hop is
-    /// too small to be resolved. `None` if it did not bounce.
+    /// The time of accumulation of a motion that bounced off a surface at `t` but did not rise from it, because the hop
+    /// is too small to be resolved. `None` if it did not bounce.
     pub(super) fn ends_at(&self, surface: usize, t: f64) -> Option<f64> {
         let hops = &self.hops[surface];
         hops.has_bounced_at(t).then(|| hops.end(t))

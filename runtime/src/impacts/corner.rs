@@ -13,8 +13,8 @@ use crate::state::StateVector;
 /// impacts.
 const LONGEST: u32 = 100;
 
-/// Two changes of velocity count as equal if the energy of their difference is below this multiple of the larger of their
-/// energies: the square of `2^-40`, the rounding errors in corners of small angles.
+/// Two changes of velocity count as equal if the energy of their difference is below this multiple of the larger of
+/// their energies: the square of `2^-40`, the rounding errors in corners of small angles.
 const SAME: f64 = 1.0 / (1_u128 << 80) as f64;
 
 /// Knowledge of the order of the impacts at one moment.

@@ -2,8 +2,8 @@
 //!
 //! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add
 //! a fraction of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
-//! The model that better predicts a flight in between from the first and the last one is used. The remaining flights take
-//! `f r/(1 - r)` in total, or `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
+//! The model that better predicts a flight in between from the first and the last one is used. The remaining flights
+//! take `f r/(1 - r)` in total, or `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
 
 use crate::math;
 use crate::per_surface::PerSurface;
@@ -61,9 +61,9 @@ impl<G: StateVector> Growth<G> {
         self.0[surface] = Series::ENDLESS;
     }
 
-    /// Records a flight that ends at `t`. `before` is the length of the previous flight on this surface, `energy` the energy
-    /// of the motion or a substitute. Returns the time of accumulation if flights have become too short to be resolved while
-    /// the energy grew.
+    /// Records a flight that ends at `t`. `before` is the length of the previous flight on this surface, `energy` the
+    /// energy of the motion or a substitute. Returns the time of accumulation if flights have become too short to be
+    /// resolved while the energy grew.
     pub(super) fn add(
         &mut self,
         surface: usize,

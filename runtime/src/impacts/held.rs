@@ -1,7 +1,7 @@
 //! Motion along surfaces: the contact forces that hold it there, and the correction of drift.
 //!
-//! A frictionless surface `c` pushes along `pi_D^* dh_c`. The sizes `lambda_c` of the forces keep the gap rates of all held
-//! surfaces constant:
+//! A frictionless surface `c` pushes along `pi_D^* dh_c`. The sizes `lambda_c` of the forces keep the gap rates of all
+//! held surfaces constant:
 //!
 //! ```text
 //! sum_d dh_c(pi_D grad h_d) lambda_d = -d^2 h_c/dt^2
@@ -11,8 +11,8 @@
 //! symmetric and positive semidefinite. In exact arithmetic, conjugate gradients solve them in at most one step per
 //! surface, without storing the matrix.
 //!
-//! Instantaneous constraints of a surface hold as long as the surface holds the motion ([`Impacting::trace`]). Their forces
-//! come first, and the surfaces push within the constraints. At most one of the held surfaces has instantaneous
+//! Instantaneous constraints of a surface hold as long as the surface holds the motion ([`Impacting::trace`]). Their
+//! forces come first, and the surfaces push within the constraints. At most one of the held surfaces has instantaneous
 //! constraints ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};
@@ -152,8 +152,8 @@ impl<G: StateVector> Held<G> {
         Ok(without.map(|without| sum(&with, -1.0, &without)))
     }
 
-    /// Sizes of the impulses on the held surfaces that cancel these gap rates, or of the forces that cancel these second
-    /// rates.
+    /// Sizes of the impulses on the held surfaces that cancel these gap rates, or of the forces that cancel these
+    /// second rates.
     fn against<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,

@@ -31,11 +31,11 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Impacts of a system on its surfaces. Each surface has its declared law unless another was chosen.
 ///
-/// Simultaneous impacts (within rounding) act in rounds, each in order of index, until no surface at hand is approached.
-/// Touching surfaces that are approached after an impact join the next round, so that a wave of impacts passes through
-/// touching bodies at one time. The [`Policies`] decide the continuation where the order of a round matters, where a law
-/// leaves the state approaching, and where the motion presses into a surface. By default the run ends there; after an
-/// impact, it ends with the state after the impact.
+/// Simultaneous impacts (within rounding) act in rounds, each in order of index, until no surface at hand is
+/// approached. Touching surfaces that are approached after an impact join the next round, so that a wave of impacts
+/// passes through touching bodies at one time. The [`Policies`] decide the continuation where the order of a round
+/// matters, where a law leaves the state approaching, and where the motion presses into a surface. By default the run
+/// ends there; after an impact, it ends with the state after the impact.
 ///
 /// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). If the state still
 /// approaches, the law acts within them; they hold while the motion goes on along the surface.
@@ -44,8 +44,8 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
 /// reset of positions, a surface at hand acts if it is approached. Such a surface does not hold the motion.
 ///
-/// A surface with the law [`Law::Stop`] ends the run as [`Outcome::StoppedAt`] when it is approached, before other surfaces
-/// at hand act.
+/// A surface with the law [`Law::Stop`] ends the run as [`Outcome::StoppedAt`] when it is approached, before other
+/// surfaces at hand act.
 ///
 /// # Examples
 ///

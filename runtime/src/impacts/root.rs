@@ -59,8 +59,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         (signs == Signs::Falls).then_some(end)
     }
 
-    /// The fall of the gap in a bracket in which the polynomial has a fall and no other root, by Chebyshev's method on the
-    /// polynomial, with the gap itself in the last step. `None` if the method does not converge soon, or if the gap
+    /// The fall of the gap in a bracket in which the polynomial has a fall and no other root, by Chebyshev's method on
+    /// the polynomial, with the gap itself in the last step. `None` if the method does not converge soon, or if the gap
     /// differs from the polynomial. The second value is true if the gap provably has no other root in the bracket.
     pub(super) fn fall(
         &self,
@@ -104,11 +104,12 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         is_plain.then_some((bracket, is_only))
     }
 
-    /// True if the gap certainly falls once near the root of the polynomial. `slope` is the slope of the polynomial there.
+    /// True if the gap certainly falls once near the root of the polynomial. `slope` is the slope of the polynomial
+    /// there.
     ///
-    /// The gap has roots only where the polynomial is within its error `d` of zero. Within `4 d / |slope|` of the root, the
-    /// slope must change by at most half. The polynomial then exceeds `d` outside. Inside, half of the slope must exceed the
-    /// error of the derivative.
+    /// The gap has roots only where the polynomial is within its error `d` of zero. Within `4 d / |slope|` of the root,
+    /// the slope must change by at most half. The polynomial then exceeds `d` outside. Inside, half of the slope must
+    /// exceed the error of the derivative.
     #[inline(always)]
     fn falls_through(&self, slope: f64) -> bool {
         let doubt = self.series.doubt(self.surface, self.at_hand);
@@ -120,9 +121,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         slope < 0.0 && 8.0 * bend * doubt <= slope * slope && -0.5 * slope > drift
     }
 
-    /// True if the step to `root` leaves errors below rounding only. The error of the step itself is about twice the step
-    /// times the square of the relative change of the slope. The slope of the gap differs from that of the polynomial by at
-    /// most the slope of a last term as large as the polynomial's error.
+    /// True if the step to `root` leaves errors below rounding only. The error of the step itself is about twice the
+    /// step times the square of the relative change of the slope. The slope of the gap differs from that of the
+    /// polynomial by at most the slope of a last term as large as the polynomial's error.
     #[inline(always)]
     fn is_next(&self, near: &Near, root: f64) -> bool {
         let step = (root - near.part).abs();
@@ -134,9 +135,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             && degree * doubt * step <= f64::EPSILON * root * size
     }
 
-    /// The root of the gap itself, near the root `root` of its polynomial: the same step with the value of the gap, then
-    /// secant steps. One evaluation suffices if the error of the polynomial is small. `None` if that error exceeds its
-    /// bound, or if the secant steps do not converge.
+    /// The root of the gap itself, near the root `root` of its polynomial: the same step with the value of the gap,
+    /// then secant steps. One evaluation suffices if the error of the polynomial is small. `None` if that error exceeds
+    /// its bound, or if the secant steps do not converge.
     fn corrected(
         &self,
         near: &Near,
@@ -175,8 +176,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         None
     }
 
-    /// Estimate of the fall of the polynomial in a bracket. It starts at the fall of the parabola with the same values at
-    /// both ends of the step and the same slope at the start, and iterates on the leading terms.
+    /// Estimate of the fall of the polynomial in a bracket. It starts at the fall of the parabola with the same values
+    /// at both ends of the step and the same slope at the start, and iterates on the leading terms.
     #[inline(always)]
     fn guess(&self, [before, after]: [f64; 2]) -> f64 {
         let middle = 0.5 * (before + after);

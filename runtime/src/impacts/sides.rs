@@ -22,8 +22,8 @@ use crate::state::StateVector;
 const UNITS: f64 = 32.0 * f64::EPSILON;
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Proposes to cut the step where a surface first begins to count while the motion is behind it, if this precedes the
-    /// present proposal.
+    /// Proposes to cut the step where a surface first begins to count while the motion is behind it, if this precedes
+    /// the present proposal.
     pub(super) fn look_behind<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
@@ -105,7 +105,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(found.map(|found| begin(surface, found.after, step)))
     }
 
-    /// True if the gap is certainly nowhere below `-floor` on a part of the step, or if the surface counts nowhere on it.
+    /// True if the gap is certainly nowhere below `-floor` on a part of the step, or if the surface counts nowhere on
+    /// it.
     fn is_free<Step: Stepper<Sys>>(
         &self,
         part: [f64; 2],
@@ -129,9 +130,9 @@ impl<Sys: Impacting> Watch<Sys> {
         counts == Some(false)
     }
 
-    /// Refuses a gap that is negative beyond rounding if the surface counts. Sets a gap that is negative within rounding to 0,
-    /// so that the surface is at hand. A surface that counts by rounding alone does not count yet: a ball that lands on a
-    /// ledge is not inside the wall below.
+    /// Refuses a gap that is negative beyond rounding if the surface counts. Sets a gap that is negative within
+    /// rounding to 0, so that the surface is at hand. A surface that counts by rounding alone does not count yet: a
+    /// ball that lands on a ledge is not inside the wall below.
     pub(super) fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..self.gaps.count() {
             let gap = self.gaps.as_slice()[surface];
@@ -149,8 +150,9 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Keeps the side of a passable surface that is met within rounding at the end of the step, without a fall that counts.
-    /// The motion has not crossed it: its gap becomes the smallest number of the side from which the motion came.
+    /// Keeps the side of a passable surface that is met within rounding at the end of the step, without a fall that
+    /// counts. The motion has not crossed it: its gap becomes the smallest number of the side from which the motion
+    /// came.
     pub(super) fn keep_side<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,

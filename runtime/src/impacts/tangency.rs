@@ -7,8 +7,8 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Least fraction of a step over which the decrease of a gap rate is compared with the second rate. It keeps half of the
-/// digits, so that rounding is not taken for a second rate.
+/// Least fraction of a step over which the decrease of a gap rate is compared with the second rate. It keeps half of
+/// the digits, so that rounding is not taken for a second rate.
 const LEAST_PART: f64 = 1.0 / (1 << 26) as f64;
 
 /// True if the second rate of a gap accounts for at least half of the decrease of its rate over some small part of the

@@ -21,8 +21,8 @@ pub(super) enum Told {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Adds a bound of the truncated terms to the error of a gap's polynomial, once per step. Returns true if the gap has
-    /// a polynomial and a bound.
+    /// Adds a bound of the truncated terms to the error of a gap's polynomial, once per step. Returns true if the gap
+    /// has a polynomial and a bound.
     #[inline]
     pub(super) fn certify<Step: Stepper<Sys>>(
         &mut self,

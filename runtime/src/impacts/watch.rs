@@ -6,8 +6,8 @@
 //! step marks a surface at hand, which was just hit, or touched within rounding. Its root there is divided out, so it
 //! is neither found again nor hides a later one.
 //!
-//! A surface is passable if its law is a reset, or a transition that counts from both sides. Its gap may be negative, and
-//! only falls from above count.
+//! A surface is passable if its law is a reset, or a transition that counts from both sides. Its gap may be negative,
+//! and only falls from above count.
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
@@ -83,8 +83,8 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) limits: Bends<Sys::State, Sys::Gaps>,
     /// Bounds of the truncated terms of the gaps' power series.
     pub(super) tails: Tails<Sys::State, Sys::Gaps>,
-    /// True if the stored gaps belong to an earlier time than the start of the next step, because the last steps were not
-    /// tested.
+    /// True if the stored gaps belong to an earlier time than the start of the next step, because the last steps were
+    /// not tested.
     is_stale: bool,
 }
 
@@ -157,7 +157,8 @@ impl<Sys: Impacting> Watch<Sys> {
         self.has_guarded = self.guarded.iter().any(|is_guarded| is_guarded);
     }
 
-    /// True if the surface has conditions, does not hold the motion, and may have had the motion behind it in the last step.
+    /// True if the surface has conditions, does not hold the motion, and may have had the motion behind it in the last
+    /// step.
     pub(super) fn may_be_behind(&self, surface: usize) -> bool {
         let is_in_front = self.is_told[surface] && self.gaps.as_slice()[surface] >= 0.0;
         self.guarded[surface] && !is_in_front && !self.held.is_held(surface)

@@ -22,11 +22,12 @@ use super::stepper::{EnergyAt, GapAt, Rebound, Stepper};
 use crate::contract::VectorField;
 use crate::state::StateVector;
 
-/// Maximum number of iterations for the length of a step, and for the size of a jump. Each iteration gains several digits.
+/// Maximum number of iterations for the length of a step, and for the size of a jump. Each iteration gains several
+/// digits.
 const LIMIT: u32 = 30;
 
-/// Largest accepted difference between the solved length of a step and the length from dense output, relative to the step;
-/// and between the scale of a jump and 1.
+/// Largest accepted difference between the solved length of a step and the length from dense output, relative to the
+/// step; and between the scale of a jump and 1.
 const BESIDE: f64 = 1.0 / 16.0;
 
 /// Relative difference of the energies before and after an impact up to which it counts as elastic.

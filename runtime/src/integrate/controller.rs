@@ -200,8 +200,8 @@ pub(super) fn not_finite(components: &[f64]) -> Option<usize> {
 }
 
 /// Size of the first step, from the difference between the rates at both ends of an explicit Euler step (Hairer,
-/// Norsett, Wanner I, II.4). `rate_after(h)` returns the rate after an Euler step of `h`. If it fails, the result is the
-/// cautious first guess.
+/// Norsett, Wanner I, II.4). `rate_after(h)` returns the rate after an Euler step of `h`. If it fails, the result is
+/// the cautious first guess.
 ///
 /// The book's fallbacks are absolute numbers. Here they are fractions of the span, and time is measured in units of
 /// `|y| / |y'|`, so that the choice does not depend on units.

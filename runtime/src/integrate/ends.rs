@@ -56,7 +56,8 @@ impl<S: StateVector> Ends<S> {
         self.t[1].since(self.t[0])
     }
 
-    /// The state from which the integration restarts. Components equal to those of the last cut keep their rounding errors.
+    /// The state from which the integration restarts. Components equal to those of the last cut keep their rounding
+    /// errors.
     #[inline(always)]
     pub(super) fn kept(&self, state: &S) -> Precise<S> {
         self.cut.as_ref().unwrap_or(&self.end).kept(state)

@@ -1,9 +1,9 @@
 //! Steps of fixed size: the common code of the methods without error estimate.
 //!
-//! A run is a grid of steps of the given size, or of the automatic first step of the tolerance. Exceptions: the last step
-//! lands on the end. After an impact, steps grow back from the length that the driver allows. A step in which the vector
-//! field does not exist is shortened until it exists. An implicit step that cannot be solved is divided into 2, 4, 8, ..
-//! equal parts, which keeps the grid and the invariants of the method.
+//! A run is a grid of steps of the given size, or of the automatic first step of the tolerance. Exceptions: the last
+//! step lands on the end. After an impact, steps grow back from the length that the driver allows. A step in which the
+//! vector field does not exist is shortened until it exists. An implicit step that cannot be solved is divided into 2,
+//! 4, 8, .. equal parts, which keeps the grid and the invariants of the method.
 
 use super::collision;
 use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
@@ -23,8 +23,8 @@ use crate::state::StateVector;
 /// Largest factor between successive steps while they grow back to the size of the run.
 const GROW: f64 = 4.0;
 
-/// Remainder before the end of a run, as a fraction of a step, that is joined to the last step: it is a rounding error of
-/// the number of steps.
+/// Remainder before the end of a run, as a fraction of a step, that is joined to the last step: it is a rounding error
+/// of the number of steps.
 const SLIVER: f64 = 1e-6;
 
 /// Maximum number of parts of an implicit step.
@@ -58,8 +58,8 @@ pub trait Method: Copy {
     /// True if the method has [`Method::mean_energy`].
     const KEEPS_ENERGY: bool = false;
 
-    /// Mean of an energy over the stages of the step from `start` over `h`: the negative derivative of the step's action
-    /// with respect to `h`. For methods that follow from a discrete action and store their stages.
+    /// Mean of an energy over the stages of the step from `start` over `h`: the negative derivative of the step's
+    /// action with respect to `h`. For methods that follow from a discrete action and store their stages.
     #[doc(hidden)]
     fn mean_energy<S: StateVector>(
         (t, h): (f64, f64),
@@ -157,8 +157,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     /// Order of the solution at the ends of steps.
     pub const ORDER: usize = M::ORDER;
 
-    /// An integrator that chooses its step at the start and then keeps it. The step is the automatic first step for this
-    /// tolerance and the method's order, rounded down to a power of two, but long enough for at most about
+    /// An integrator that chooses its step at the start and then keeps it. The step is the automatic first step for
+    /// this tolerance and the method's order, rounded down to a power of two, but long enough for at most about
     /// [`AUTOMATIC_STEPS`] steps. It depends on the motion at the start only: prefer [`FixedStep::with_step`] if the
     /// motion becomes faster later.
     pub fn new(tolerance: Tolerance) -> Self {

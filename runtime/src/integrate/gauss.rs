@@ -37,16 +37,16 @@ use crate::state::StateVector;
 ///
 /// The method solves for an impact inside the step, and completes the step to the grid. For systems without constraints
 /// and forces whose Lagrangian does not depend on time, single elastic impacts keep the discrete energy, and the step
-/// across the impact is symplectic. In a quartic well with a wall (`h = 0.05`), the energy is off by 1.7e-7 at most over
-/// a million units of time, without drift beyond 3e-12. The velocity after the impact agrees with the law to the order of
-/// the method. For several impacts in one step, other laws, forces or constraints, the law acts without this
+/// across the impact is symplectic. In a quartic well with a wall (`h = 0.05`), the energy is off by 1.7e-7 at most
+/// over a million units of time, without drift beyond 3e-12. The velocity after the impact agrees with the law to the
+/// order of the method. For several impacts in one step, other laws, forces or constraints, the law acts without this
 /// correction.
 ///
-/// Each step takes one evaluation of the rate, and two more for each of about 5 to 12 iterations. Use the method for long
-/// runs of smooth conservative systems. For a given error over a short time, [`Dop853`](super::Dop853) takes less work.
-/// Where the fixed-point iteration does not contract (`h` times the fastest rate above about 1), the step is made in 2,
-/// 4, 8, .. equal parts, so that every step is still a symplectic map. If 1024 parts are not enough, the run ends with
-/// [`StepFailure::NotConverged`](super::StepFailure::NotConverged).
+/// Each step takes one evaluation of the rate, and two more for each of about 5 to 12 iterations. Use the method for
+/// long runs of smooth conservative systems. For a given error over a short time, [`Dop853`](super::Dop853) takes less
+/// work. Where the fixed-point iteration does not contract (`h` times the fastest rate above about 1), the step is made
+/// in 2, 4, 8, .. equal parts, so that every step is still a symplectic map. If 1024 parts are not enough, the run ends
+/// with [`StepFailure::NotConverged`](super::StepFailure::NotConverged).
 ///
 /// # References
 /// Hairer, Lubich, Wanner, *Geometric numerical integration*, II.1.3, VI.4, VIII.6; E. Hairer, R. McLachlan,
@@ -70,8 +70,8 @@ struct Table<const STAGES: usize> {
     weights: [f64; STAGES],
     /// `mu_ij`
     couplings: [[f64; STAGES]; STAGES],
-    /// Extrapolation to the stages of the next step, by the polynomial through the rates of this step: the weights of the
-    /// rates at the stages, and of the rate at the end.
+    /// Extrapolation to the stages of the next step, by the polynomial through the rates of this step: the weights of
+    /// the rates at the stages, and of the rate at the end.
     guess: [([f64; STAGES], f64); STAGES],
 }
 

@@ -1,9 +1,10 @@
 //! Integrators: one step of a [`VectorField`](crate::VectorField), with dense output.
 //!
-//! [`Stepper`] is the only interface that the driver uses. [`Embedded`] implements it for Runge-Kutta pairs with an error
-//! estimate, whose coefficients come from a [`Scheme`]; [`FixedStep`] for methods with a fixed step size, whose step comes
-//! from a [`Method`]. They contain the code that their methods share: step sizes, failures, dense output. [`Taylor`] sums
-//! power series whose coefficients are generated with the vector field ([`TaylorField`](crate::TaylorField)).
+//! [`Stepper`] is the only interface that the driver uses. [`Embedded`] implements it for Runge-Kutta pairs with an
+//! error estimate, whose coefficients come from a [`Scheme`]; [`FixedStep`] for methods with a fixed step size, whose
+//! step comes from a [`Method`]. They contain the code that their methods share: step sizes, failures, dense output.
+//! [`Taylor`] sums power series whose coefficients are generated with the vector field
+//! ([`TaylorField`](crate::TaylorField)).
 
 mod chosen;
 mod collision;

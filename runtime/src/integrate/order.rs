@@ -7,9 +7,9 @@
 //! 2 c p^3 = l (a + c p^2)
 //! ```
 //!
-//! If `a` is unknown or small, this is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` up to constants, with a step of
-//! `e^-2` of the radius. The work `a`, which every step takes at any order, favours higher orders. Series that terminate
-//! are computed to their last term.
+//! If `a` is unknown or small, this is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` up to constants, with a step
+//! of `e^-2` of the radius. The work `a`, which every step takes at any order, favours higher orders. Series that
+//! terminate are computed to their last term.
 //!
 //! Reference: A. Jorba and M. Zou, Experimental Mathematics 14 (2005), sections 3.1 and 3.2.
 

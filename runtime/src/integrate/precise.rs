@@ -45,8 +45,8 @@ impl<S: StateVector> Precise<S> {
         (self.value.padded()[i] - other.value.padded()[i]) + rests
     }
 
-    /// The state plus `increment(i)` in each component, also in those of [`StateVector::padded`], with the rounding error of
-    /// the sum.
+    /// The state plus `increment(i)` in each component, also in those of [`StateVector::padded`], with the rounding
+    /// error of the sum.
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
         let mut sum = *self;

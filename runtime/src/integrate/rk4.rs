@@ -5,8 +5,8 @@
 //! y1 = y + h (k1 + 2 k2 + 2 k3 + k4)/6
 //! ```
 //!
-//! References: W. Kutta, *Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen*, 1901; Hairer, Norsett,
-//! Wanner I, II.1.
+//! References: W. Kutta, *Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen*, 1901; Hairer,
+//! Norsett, Wanner I, II.1.
 
 use super::embedded::Counted;
 use super::fixed::{Advance, Departure, FixedStep, Method, evaluate};

@@ -4,8 +4,8 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Counters {
-    /// Evaluations of the vector field, including those of rejected steps. An evaluation of the force with a solution for a
-    /// velocity, as in a discrete principle, takes as much work and counts as one.
+    /// Evaluations of the vector field, including those of rejected steps. An evaluation of the force with a solution
+    /// for a velocity, as in a discrete principle, takes as much work and counts as one.
     pub rate_evaluations: u64,
     /// Expansions of the motion in a power series.
     pub expansions: u64,

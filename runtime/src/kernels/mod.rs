@@ -293,8 +293,8 @@ macro_rules! kernels {
                 }
             }
 
-            /// Builds a table by looking up every kernel by name. A kernel of surfaces is looked up by the constructor of its
-            /// names.
+            /// Builds a table by looking up every kernel by name. A kernel of surfaces is looked up by the constructor
+            /// of its names.
             pub fn found(
                 plain: impl Fn(Kernel) -> Option<Held<Plain<L>>>,
                 of_surface: impl Fn(fn(usize) -> Kernel) -> Option<Held<OfSurface<L>>>,
@@ -408,9 +408,9 @@ pub type OfSurface<L> = dyn Fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault> 
 pub struct NoKernels;
 
 kernels! {
-    /// The kernels of one form of a model. Each writes its values to `values`, which has exactly as many entries. A slice
-    /// shorter than a kernel reads or writes is an error of the caller and panics. A kernel that a form does not define is
-    /// the kernel of [`Kernels::BASE`].
+    /// The kernels of one form of a model. Each writes its values to `values`, which has exactly as many entries. A
+    /// slice shorter than a kernel reads or writes is an error of the caller and panics. A kernel that a form does not
+    /// define is the kernel of [`Kernels::BASE`].
     plain {
         rate: Rate,
         scale: Scale,

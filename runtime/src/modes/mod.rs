@@ -5,8 +5,8 @@
 //! followed by the number of the mode, which no motion changes. A transition is a surface at which the state becomes a
 //! state of another mode. A run passes it with the same integrator, event location and effects as an impact.
 //!
-//! [`Part`](crate::kernels::Part) selects the mode for every kernel. This module contains the functions that treat a mode
-//! as a separate system.
+//! [`Part`](crate::kernels::Part) selects the mode for every kernel. This module contains the functions that treat a
+//! mode as a separate system.
 //!
 //! | file | job |
 //! |---|---|

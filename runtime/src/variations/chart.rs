@@ -21,8 +21,8 @@ const SWEEPS: usize = 60;
 /// Maximum number of Newton steps onto the section.
 const STEPS: usize = 12;
 
-/// Tangent directions of a section at a point. Along them, neither the gap nor the constraints change. The directions of a
-/// group are excluded.
+/// Tangent directions of a section at a point. Along them, neither the gap nor the constraints change. The directions
+/// of a group are excluded.
 pub(super) struct Chart<Sys: Variational> {
     /// Orthonormal basis, in units of the components: first the excluded directions, then those of the section.
     frame: Sys::Columns,
@@ -64,7 +64,8 @@ impl<Sys: Variational> Fixed<Sys> {
         Ok(Self { surface, kept })
     }
 
-    /// Calls `take` with the index of each equation and its residual at a point, with derivatives along some directions.
+    /// Calls `take` with the index of each equation and its residual at a point, with derivatives along some
+    /// directions.
     fn excess(
         &self,
         system: &Sys,
@@ -87,8 +88,8 @@ impl<Sys: Variational> Fixed<Sys> {
 }
 
 impl<Sys: Variational> Chart<Sys> {
-    /// The directions at a point, and a step to first order. Without a parameter, the step moves the point onto the section.
-    /// With a parameter, it keeps the point on the section, per unit of the parameter.
+    /// The directions at a point, and a step to first order. Without a parameter, the step moves the point onto the
+    /// section. With a parameter, it keeps the point on the section, per unit of the parameter.
     fn at(
         system: &Sys,
         (fixed, group): (&Fixed<Sys>, Option<&dyn Group>),
@@ -255,8 +256,8 @@ pub(super) fn columns<Sys: Variational>(system: &Sys) -> Sys::Columns {
     columns
 }
 
-/// Orthonormalises the first `count` rows, drops dependent ones, and returns the number of rows that remain. Also computes
-/// the `correction` of least norm whose products with the original rows are `-values`.
+/// Orthonormalises the first `count` rows, drops dependent ones, and returns the number of rows that remain. Also
+/// computes the `correction` of least norm whose products with the original rows are `-values`.
 fn orthonormalise<S: StateVector>(
     rows: &mut [S],
     count: usize,
@@ -326,8 +327,8 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     }
 }
 
-/// The `x` that minimises `|A x - b|^2 + damping |x|^2`, without singular values that count as 0. `A` is the leading square
-/// of size `size`. `columns` and `turned` are overwritten.
+/// The `x` that minimises `|A x - b|^2 + damping |x|^2`, without singular values that count as 0. `A` is the leading
+/// square of size `size`. `columns` and `turned` are overwritten.
 ///
 /// One-sided Jacobi method (Hestenes): pairs of columns are rotated until all are orthogonal.
 pub(super) fn least_squares<S: StateVector>(

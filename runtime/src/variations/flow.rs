@@ -93,8 +93,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(())
     }
 
-    /// Expands the motion from a state. Returns the length of the step that the series allow, at most `length`, in units of
-    /// time.
+    /// Expands the motion from a state. Returns the length of the step that the series allow, at most `length`, in
+    /// units of time.
     fn step(
         &mut self,
         system: &Sys,
@@ -118,7 +118,8 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// The step that the series allow, at most `wished` units of time; `None` if they must be computed in a shorter unit.
+    /// The step that the series allow, at most `wished` units of time; `None` if they must be computed in a shorter
+    /// unit.
     fn reach(&self, wished: f64) -> Option<f64> {
         let mut sizes = [[0.0; DIRECTIONS + 1]; LENGTH];
         for (sizes, row) in sizes

@@ -19,19 +19,20 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The mean logarithm of the growth of a small deviation per image of the section, over `images` images from the first
-    /// arrival after a state. It tends to the largest Lyapunov exponent. For a periodic orbit, this is the logarithm of the
-    /// largest modulus of its multipliers. It is minus infinity where deviations vanish.
+    /// The mean logarithm of the growth of a small deviation per image of the section, over `images` images from the
+    /// first arrival after a state. It tends to the largest Lyapunov exponent. For a periodic orbit, this is the
+    /// logarithm of the largest modulus of its multipliers. It is minus infinity where deviations vanish.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where the section is not met again or the motion to it has no derivative,
-    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NoMultipliers`] if the
-    /// growth is not finite.
+    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NoMultipliers`]
+    /// if the growth is not finite.
     pub fn exponent(&mut self, state: &Sys::State, images: u32) -> Result<f64, OrbitError> {
         let first = self.arrive(state, &mut [])?.before;
         let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
         let (chart, mut point) = Chart::onto(self.system, (&fixed, None), 0.0, first)?;
-        // The deviation has a part along every direction of the section: it is rarely orthogonal to the direction of growth.
+        // The deviation has a part along every direction of the section: it is rarely orthogonal to the direction of
+        // growth.
         let mut deviation = self.system.zero_state();
         for index in 0..chart.dimension() {
             let share = 1.0 / (index + 1) as f64;

@@ -9,8 +9,8 @@
 //!
 //! with the second rate `h''` along `f` and the gap rates `r` from the first coefficients of the gaps' series.
 //!
-//! Where held motion begins, variations jump as at any transition, with the held field as `f+`: neighbouring motions begin
-//! on the surface as well. Where the contact force vanishes, the field is continuous and variations do not jump.
+//! Where held motion begins, variations jump as at any transition, with the held field as `f+`: neighbouring motions
+//! begin on the surface as well. Where the contact force vanishes, the field is continuous and variations do not jump.
 
 use super::flow::{Flow, dual_parameters, dual_state};
 use super::{Dual, Undefined};
@@ -129,8 +129,8 @@ impl<Sys: Variational> Flow<Sys> {
         };
         let mut second = half + half;
         if let Some(traced) = system.trace(parameters, surface, now, state, &rate)? {
-            // A gap rate is affine in the velocity variables, so that its change by a force is the difference of two gap
-            // rates.
+            // A gap rate is affine in the velocity variables, so that its change by a force is the difference of two
+            // gap rates.
             let forced = sum(state, &sum(&traced, &rate, -1.0), 1.0);
             let collision = system.collision(parameters, surface, now, &forced)?;
             second = second + (collision.as_slice()[0] - gap_rate);
@@ -166,7 +166,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(rate)
     }
 
-    /// Refuses an end of held motion at which the field jumps: it ends for another reason than a vanishing contact force.
+    /// Refuses an end of held motion at which the field jumps: it ends for another reason than a vanishing contact
+    /// force.
     pub(super) fn check_release(
         &mut self,
         system: &Sys,

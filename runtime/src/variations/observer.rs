@@ -11,9 +11,9 @@ use crate::record::{Event, Hold, Observer, Segment};
 
 /// Propagates first variations along the run that it observes.
 ///
-/// The caller provides any number of directions, each with variations of state and parameters. Observe one run, then call
-/// [`Variations::tangents`]. Any integrator may be used: the derivatives are computed by power series from the states that
-/// it gives.
+/// The caller provides any number of directions, each with variations of state and parameters. Observe one run, then
+/// call [`Variations::tangents`]. Any integrator may be used: the derivatives are computed by power series from the
+/// states that it gives.
 ///
 /// # Examples
 ///
@@ -52,7 +52,8 @@ pub struct Variations<'a, Sys: Variational> {
     flow: Flow<Sys>,
     /// The cause of held motion; `None` while the motion is free.
     holder: Option<Holder>,
-    /// Transitions at one moment, and the holder before them. The holder after them is known only when the motion goes on.
+    /// Transitions at one moment, and the holder before them. The holder after them is known only when the motion goes
+    /// on.
     crossing: Option<(Sequence<Sys::State>, Option<Holder>)>,
     /// The end of the last stretch of motion.
     end: Option<Sys::State>,

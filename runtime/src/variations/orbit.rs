@@ -46,9 +46,9 @@ pub struct Orbit<Sys: Variational> {
     /// The leading square of size `dimension` is the derivative of the Poincare map in these directions: the
     /// monodromy matrix, without the direction of the motion.
     pub derivative: Sys::Columns,
-    /// Eigenvalues of that derivative: the Floquet multipliers of the orbit, without the multiplier 1 along the motion. Every
-    /// conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1. For an orbit modulo a group,
-    /// the directions of the group are left out.
+    /// Eigenvalues of that derivative: the Floquet multipliers of the orbit, without the multiplier 1 along the motion.
+    /// Every conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1. For an orbit
+    /// modulo a group, the directions of the group are left out.
     pub multipliers: Multipliers<Sys::State>,
     /// The element of the group that takes the point to its image, see [`Section::modulo`].
     pub element: Element,
@@ -133,8 +133,8 @@ where
     /// The periodic orbit near a point on or near the section, by Newton's method in at most `iterations` steps
     /// ([`ITERATIONS`] is enough).
     ///
-    /// Angles close up to full turns. If orbits form a family, as in every conservative system, the iteration converges to a
-    /// member near the point. A step that does not bring point and image closer is halved.
+    /// Angles close up to full turns. If orbits form a family, as in every conservative system, the iteration converges
+    /// to a member near the point. A step that does not bring point and image closer is halved.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where a point is not mapped back or the map has no derivative,
@@ -171,8 +171,8 @@ where
         }
     }
 
-    /// True if a point is its own image, up to rounding and relative to the length of the orbit. A motion that comes to rest
-    /// returns to its point without being an orbit.
+    /// True if a point is its own image, up to rounding and relative to the length of the orbit. A motion that comes to
+    /// rest returns to its point without being an orbit.
     pub(super) fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
         let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
@@ -224,8 +224,8 @@ where
         let mut shift = self.system.zero_state();
         let mut carried = dimension;
         if let Some(parameter) = parameter {
-            // The section has at least one equation less than the state has components, so that there is room for one direction
-            // more.
+            // The section has at least one equation less than the state has components, so that there is room for one
+            // direction more.
             shift = Chart::shift(self.system, fixed, 0.0, &point, parameter)?;
             tangents.as_mut()[dimension] = Tangent {
                 state: shift,
@@ -315,8 +315,8 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     step
 }
 
-/// True if a point is closer to its image than another point, in the largest component or in length. A short Newton step
-/// always lowers the length.
+/// True if a point is closer to its image than another point, in the largest component or in length. A short Newton
+/// step always lowers the length.
 fn is_nearer<Sys: Variational>(better: &Trial<Sys>, trial: &Trial<Sys>) -> bool {
     let [length, before] = [better, trial].map(|trial| dot(&trial.miss, &trial.miss));
     better.residual < trial.residual || length < before

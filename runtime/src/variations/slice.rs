@@ -5,8 +5,8 @@ use super::group::GENERATORS;
 use crate::math;
 use crate::state::StateVector;
 
-/// A slice across the directions of a group: linear functions that are 0 on the slice, and directions along which the group
-/// moves points to it.
+/// A slice across the directions of a group: linear functions that are 0 on the slice, and directions along which the
+/// group moves points to it.
 #[derive(Clone, Copy)]
 pub(super) struct Slice<S> {
     functions: [S; GENERATORS],
@@ -33,11 +33,11 @@ impl<S: StateVector> Slice<S> {
         self.count += 1;
     }
 
-    /// Adds a function for each independent direction of the group. The first `kept` rows of the frame are an orthonormal basis
-    /// of the gradients of the section's equations. Returns the number of excluded directions.
+    /// Adds a function for each independent direction of the group. The first `kept` rows of the frame are an
+    /// orthonormal basis of the gradients of the section's equations. Returns the number of excluded directions.
     ///
-    /// A direction along which an equation changes leads to other levels of a constraint: the level itself is the function, and
-    /// the section does not change. Any other direction lies along the section and is excluded from it.
+    /// A direction along which an equation changes leads to other levels of a constraint: the level itself is the
+    /// function, and the section does not change. Any other direction lies along the section and is excluded from it.
     pub(super) fn cut(&mut self, frame: &mut [S], kept: usize, rates: [S; GENERATORS]) -> usize {
         let (mut left_out, mut leaving) = (kept, self.back);
         for rate in rates {

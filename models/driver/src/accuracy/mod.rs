@@ -1,5 +1,5 @@
-//! The cost of accuracy: measured errors of integrators at several tolerances, with work and time, and the choice of the
-//! fastest integrator for a wanted error.
+//! The cost of accuracy: measured errors of integrators at several tolerances, with work and time, and the choice of
+//! the fastest integrator for a wanted error.
 //!
 //! Errors are measured, never estimated. The error of a run is the largest difference of a position from a reference
 //! run, compared at [`TIMES`] equally spaced times and at the end. It is relative to the largest absolute value that
@@ -67,7 +67,8 @@ pub struct Plan {
     pub rounds: u32,
     /// The least duration of one timing. Shorter runs are repeated.
     pub least: Duration,
-    /// Longest duration of a run. An integrator that exceeds it is not run at tighter tolerances, which take even longer.
+    /// Longest duration of a run. An integrator that exceeds it is not run at tighter tolerances, which take even
+    /// longer.
     pub patience: Duration,
     /// An error that is small enough: an integrator that reaches it is not run at tighter tolerances.
     pub enough: Option<f64>,
@@ -300,8 +301,8 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// Runs the cases up to the first that is accurate enough or takes too long. The error says why tighter tolerances are
-    /// left out.
+    /// Runs the cases up to the first that is accurate enough or takes too long. The error says why tighter tolerances
+    /// are left out.
     fn climb<M: Model>(
         &mut self,
         model: &M,

@@ -1,5 +1,5 @@
-//! Conjugate points: zeros of the determinant along a motion between impacts, of odd or even order. A change of its sign
-//! at an impact is not a zero.
+//! Conjugate points: zeros of the determinant along a motion between impacts, of odd or even order. A change of its
+//! sign at an impact is not a zero.
 
 /// Longest step between two evaluations of the determinant, as a fraction of the time of the motion.
 pub(super) const LONGEST: f64 = 1.0 / 128.0;
@@ -7,8 +7,8 @@ pub(super) const LONGEST: f64 = 1.0 / 128.0;
 /// Time between an impact and the next evaluation of the determinant, as a fraction of the time of the motion.
 const AFTER: f64 = 1e-9;
 
-/// A minimum of the absolute determinant is sought if the parabola through three values falls below this fraction of the
-/// larger outer value.
+/// A minimum of the absolute determinant is sought if the parabola through three values falls below this fraction of
+/// the larger outer value.
 const SHALLOW: f64 = 0.2;
 
 /// Number of golden sections of an interval with a minimum.
@@ -59,8 +59,8 @@ pub(super) fn zeros(marks: &[Mark], time: f64, at: &mut dyn FnMut(f64) -> f64) -
 }
 
 /// The zeros near the middle of three times, if the absolute determinant has its minimum there: two zeros if it changes
-/// sign and changes back, one if it touches 0. It touches 0 where motions in two independent directions are conjugate at
-/// once.
+/// sign and changes back, one if it touches 0. It touches 0 where motions in two independent directions are conjugate
+/// at once.
 fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     let [(from, first), (middle, least), (to, last)] = three;
     let is_alike = first * least > 0.0 && least * last > 0.0;

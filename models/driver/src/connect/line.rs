@@ -1,5 +1,5 @@
-//! Starts along a line, for one unknown. A change of sign of the miss brackets a root. An extremum of the miss near 0 is
-//! bracketed by the signs of its derivative.
+//! Starts along a line, for one unknown. A change of sign of the miss brackets a root. An extremum of the miss near 0
+//! is bracketed by the signs of its derivative.
 
 use super::aim::{Aim, Course};
 use super::scan::Sample;
@@ -18,9 +18,9 @@ struct Place {
     slope: f64,
 }
 
-/// Finds the starts with miss 0 in one equation, on a stretch of starts with one sequence of impacts. `unit` is the value
-/// of the unknown at speed 1. An extremum of the miss is a root if its size is at most `near`. Also returns the number of
-/// intervals that were not resolved.
+/// Finds the starts with miss 0 in one equation, on a stretch of starts with one sequence of impacts. `unit` is the
+/// value of the unknown at speed 1. An extremum of the miss is a root if its size is at most `near`. Also returns the
+/// number of intervals that were not resolved.
 pub(super) fn roots(
     aim: &mut dyn Aim,
     window: &[Sample],
@@ -133,7 +133,8 @@ impl Line<'_> {
             if !is_better && (place.w - best.w).abs() <= 4.0 * f64::EPSILON * best.w.abs() {
                 break;
             }
-            // Newton's method continues from the new start if its miss is smaller, else from the better end of the bracket.
+            // Newton's method continues from the new start if its miss is smaller, else from the better end of the
+            // bracket.
             best = if is_better {
                 place
             } else {

@@ -1,9 +1,9 @@
-//! Boundary-value problems: a search for the motions that join two configurations in a given time, with given numbers of
-//! impacts.
+//! Boundary-value problems: a search for the motions that join two configurations in a given time, with given numbers
+//! of impacts.
 //!
-//! The unknowns are the quasi-velocities of the start in the reduced form, or its momenta for a model without constraints.
-//! The equations are the given coordinates of the end. [`Variations`](dalembert::Variations) computes the derivatives of a
-//! motion with respect to the unknowns, across impacts.
+//! The unknowns are the quasi-velocities of the start in the reduced form, or its momenta for a model without
+//! constraints. The equations are the given coordinates of the end. [`Variations`](dalembert::Variations) computes the
+//! derivatives of a motion with respect to the unknowns, across impacts.
 //!
 //! | file | job |
 //! |---|---|
@@ -65,11 +65,11 @@ pub struct Boundary {
     pub directions: Option<usize>,
     /// Seed of the directions.
     pub seed: u64,
-    /// Largest kinetic energy of a start. By default the scan continues until every start has too many impacts, or up to a
-    /// large multiple of the energies that the problem suggests.
+    /// Largest kinetic energy of a start. By default the scan continues until every start has too many impacts, or up
+    /// to a large multiple of the energies that the problem suggests.
     pub kinetic: Option<f64>,
-    /// Number of starts in each direction whose conjugate points are sought, for one unknown. The points lie on the envelope of
-    /// all motions from the first configuration.
+    /// Number of starts in each direction whose conjugate points are sought, for one unknown. The points lie on the
+    /// envelope of all motions from the first configuration.
     pub envelope: usize,
 }
 
@@ -115,10 +115,11 @@ pub struct Connection {
     pub conjugate: Vec<Conjugate>,
     /// The determinant at the end, divided by its value for motion at constant velocity.
     pub determinant: f64,
-    /// False if the determinant at the end is 0 up to rounding: to first order, neighbouring starts reach the end as well.
+    /// False if the determinant at the end is 0 up to rounding: to first order, neighbouring starts reach the end as
+    /// well.
     pub is_isolated: bool,
-    /// Number of motions in the family that this motion represents: they are not isolated, and have the same surfaces and the
-    /// same action. 1 for an isolated motion.
+    /// Number of motions in the family that this motion represents: they are not isolated, and have the same surfaces
+    /// and the same action. 1 for an isolated motion.
     pub family: usize,
 }
 

@@ -1,7 +1,7 @@
 //! Newton's method for a root within one sequence of impacts: steps that change the sequence are shortened.
 //!
-//! Known roots are divided out (deflation): the miss is multiplied by `M = prod(1 + |y_i|^2/|y - y_i|^2)`, which multiplies
-//! the step by `1/(1 - dM(step)/M)`.
+//! Known roots are divided out (deflation): the miss is multiplied by `M = prod(1 + |y_i|^2/|y - y_i|^2)`, which
+//! multiplies the step by `1/(1 - dM(step)/M)`.
 
 use super::aim::{Aim, Course, Shot};
 use crate::least_squares::solve;

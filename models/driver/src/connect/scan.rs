@@ -120,8 +120,8 @@ fn reaches(sample: &Sample) -> bool {
 /// Number of successive quiet doublings after which faster starts are assumed to lead away from the end.
 const QUIET: u32 = 5;
 
-/// Number of doublings after which a ray without any motion to the end is given up. It is above 1, because slow starts may
-/// have too many impacts where fast ones have few.
+/// Number of doublings after which a ray without any motion to the end is given up. It is above 1, because slow starts
+/// may have too many impacts where fast ones have few.
 const VAIN: u32 = 5;
 
 /// Record of the doublings of the speed along a ray.
@@ -171,7 +171,8 @@ impl Scan<'_> {
         Sample { speed, shot }
     }
 
-    /// Adds the start at a speed, after the starts between it and the last one that resolve changes of the sequence of impacts.
+    /// Adds the start at a speed, after the starts between it and the last one that resolve changes of the sequence of
+    /// impacts.
     fn extend(&mut self, samples: &mut Vec<Sample>, speed: f64, halvings: u32) {
         let sample = self.sample(speed);
         if let Some(last) = samples.last() {

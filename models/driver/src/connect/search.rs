@@ -2,9 +2,10 @@
 //!
 //! With one unknown, both rays of starts are scanned, and every stretch with one sequence of impacts is searched by
 //! brackets ([`line`](super::line)). With more unknowns, rays in many directions are scanned. Newton's method continues
-//! from the starts of each stretch that come closest to the end. With two unknowns, the angle between directions is halved
-//! where their sequences of impacts differ. With three unknowns or more, the search also tries starts that the problem
-//! itself guesses ([`Aim::guess`]). Finally, known roots are divided out, and the closest starts are tried again.
+//! from the starts of each stretch that come closest to the end. With two unknowns, the angle between directions is
+//! halved where their sequences of impacts differ. With three unknowns or more, the search also tries starts that the
+//! problem itself guesses ([`Aim::guess`]). Finally, known roots are divided out, and the closest starts are tried
+//! again.
 
 use super::Stage;
 use super::aim::{Aim, Course};
@@ -33,9 +34,9 @@ const AGAIN: usize = 6;
 /// Maximum number of starts per sequence of impacts from which Newton's method starts.
 const TRIED: usize = 240;
 
-/// Number of integrator steps after which no further direction is scanned, and after which no further start is tried. This
-/// limit holds only if the problem has guesses and no surfaces: with surfaces, the scan is needed to find the sequences of
-/// impacts.
+/// Number of integrator steps after which no further direction is scanned, and after which no further start is tried.
+/// This limit holds only if the problem has guesses and no surfaces: with surfaces, the scan is needed to find the
+/// sequences of impacts.
 const SPENT: u64 = 50_000;
 
 /// Extent of a search.

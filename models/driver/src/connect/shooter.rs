@@ -268,8 +268,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         tangents.iter().map(column).collect()
     }
 
-    /// The determinant of the derivative of the configuration with respect to the unknowns. If all coordinates of the end are
-    /// given, the configuration is projected onto the velocities that the constraints allow.
+    /// The determinant of the derivative of the configuration with respect to the unknowns. If all coordinates of the
+    /// end are given, the configuration is projected onto the velocities that the constraints allow.
     pub fn determinant(&self, t: f64, state: &S::State, tangents: &[Tangent<S>]) -> f64 {
         let columns = self.columns(tangents);
         self.projected(t, state, &columns)
@@ -432,8 +432,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         points
     }
 
-    /// The mechanical units of a search: the value of each unknown at kinetic energy 1/2, and the speed that the problem
-    /// suggests.
+    /// The mechanical units of a search: the value of each unknown at kinetic energy 1/2, and the speed that the
+    /// problem suggests.
     pub fn units(&self) -> Units {
         units(self.system, self.boundary, &self.rest, self.motion)
     }

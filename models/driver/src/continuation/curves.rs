@@ -1,8 +1,8 @@
 //! Curves of bifurcations over two parameters: zeros of the return map together with a test function.
 //!
 //! The first parameter is the last component of the state. The derivatives of the map are exact. The derivatives of the
-//! test function need second derivatives of the map and are finite differences: they affect the speed of Newton's method,
-//! not its result.
+//! test function need second derivatives of the map and are finite differences: they affect the speed of Newton's
+//! method, not its result.
 
 use dalembert::contract::Variational;
 use dalembert::{Instance, Scene};
@@ -17,7 +17,8 @@ use crate::linear::{add, determinant, norm};
 /// Displacement of finite differences, in the units of the state and in the ranges of the parameters.
 const APART: f64 = 1e-5;
 
-/// Imaginary part below which a pair of multipliers is about to meet. It decreases like the square root of the distance.
+/// Imaginary part below which a pair of multipliers is about to meet. It decreases like the square root of the
+/// distance.
 const MEETING: f64 = 1e-3;
 
 /// The plane of two parameters.
@@ -108,7 +109,8 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
                 let points = branch.points.iter();
                 let ends = [branch.points.first(), branch.points.last()];
                 let ends = [0, 1].map(|side| match (branch.ends[side], ends[side]) {
-                    // Newton's method may fail before the resonance, because curves of other bifurcations meet this one there.
+                    // Newton's method may fail before the resonance, because curves of other bifurcations meet this one
+                    // there.
                     (BranchEnd::NotConverged, Some(member)) if meets(member) => {
                         BranchEnd::Resonance
                     }
@@ -130,8 +132,8 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
         let columns = local.columns(self.plane.extents[1].width());
         let gradient: Vec<f64> = columns.iter().filter_map(|it| it.last().copied()).collect();
         let unit = 1.0 / norm(&gradient);
-        // The derivative of a test function that is 0 for all orbits, as in a family at a constant parameter, is 0 up to
-        // rounding.
+        // The derivative of a test function that is 0 for all orbits, as in a family at a constant parameter, is 0 up
+        // to rounding.
         match unit.is_finite() && unit < 1.0 / APART {
             true => self.unit = unit,
             false => return Err(Failure::NotKnown),
@@ -179,8 +181,8 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
         }
     }
 
-    /// The derivative of the test function along a change of the state and of the parameters. The difference is one-sided if
-    /// the map does not exist on one side.
+    /// The derivative of the test function along a change of the state and of the parameters. The difference is
+    /// one-sided if the map does not exist on one side.
     fn slope(
         &mut self,
         state: &[f64],

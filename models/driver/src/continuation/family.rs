@@ -145,8 +145,8 @@ pub(crate) struct Node {
     pub tangent: Vec<f64>,
     /// The direction as a change of length 1.
     pub heading: Vec<f64>,
-    /// Dimension of the set of neighbouring members: 1 for a branch, 2 where branches cross, more than 1 for orbits that belong
-    /// to a family at a constant parameter.
+    /// Dimension of the set of neighbouring members: 1 for a branch, 2 where branches cross, more than 1 for orbits
+    /// that belong to a family at a constant parameter.
     pub dimension: usize,
     /// Distance from the preceding member.
     pub distance: f64,
@@ -163,7 +163,8 @@ impl Node {
         }
         let length = norm(&tangent);
         match kernel.first() {
-            // The direction is orthogonal to the heading, which is the direction of the parameter: the branch turns back here.
+            // The direction is orthogonal to the heading, which is the direction of the parameter: the branch turns
+            // back here.
             Some(direction) if length < 1e-9 => tangent.clone_from(direction),
             _ => tangent.iter_mut().for_each(|entry| *entry /= length),
         }

@@ -10,8 +10,8 @@ use crate::linear::determinant;
 pub(crate) struct Precision {
     /// Distance from the unit circle at which multipliers count as lying on it.
     on_circle: f64,
-    /// Bound for the ends of a step. Smaller factors of test functions count as 0 along the whole step and are left out, for
-    /// example factors of conserved quantities.
+    /// Bound for the ends of a step. Smaller factors of test functions count as 0 along the whole step and are left
+    /// out, for example factors of conserved quantities.
     always: f64,
     /// Bound for members between the ends, where a factor that changes sign may be small.
     within: f64,
@@ -125,8 +125,8 @@ impl Test {
         }
     }
 
-    /// True if a member at a zero is the bifurcation. Other causes of a zero: the product of two real multipliers passes 1, or
-    /// near a crossing the member lies on the other branch and has another direction.
+    /// True if a member at a zero is the bifurcation. Other causes of a zero: the product of two real multipliers
+    /// passes 1, or near a crossing the member lies on the other branch and has another direction.
     pub fn is_met(self, node: &Node, precision: Precision) -> bool {
         let (near, on_circle) = (precision.near, precision.on_circle);
         let mut multipliers = node.local.member.multipliers.iter();
@@ -159,8 +159,8 @@ fn pairs(multipliers: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     })
 }
 
-/// The sign of a product of complex numbers, which are real or come in conjugate pairs, times their least modulus. Factors
-/// with a modulus below `least` are left out.
+/// The sign of a product of complex numbers, which are real or come in conjugate pairs, times their least modulus.
+/// Factors with a modulus below `least` are left out.
 fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
     factors.fold(f64::INFINITY, |value, [re, im]| {
         let modulus = f64::hypot(re, im);

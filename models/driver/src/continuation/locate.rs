@@ -111,9 +111,9 @@ impl Tracer<'_, '_> {
         Ok(Some(Located { fraction, member }))
     }
 
-    /// The member between two others at which several multipliers cross the unit circle at once, as in a system with equal
-    /// parts: an even number of crossings does not change the sign of a test function. `None` if no multiplier is near the
-    /// circle.
+    /// The member between two others at which several multipliers cross the unit circle at once, as in a system with
+    /// equal parts: an even number of crossings does not change the sign of a test function. `None` if no multiplier is
+    /// near the circle.
     fn together(
         &mut self,
         [node, next]: [&Node; 2],
@@ -165,8 +165,8 @@ impl Tracer<'_, '_> {
         Err(Failure::Diverged)
     }
 
-    /// The crossing with another branch, interpolated from members on both sides. Closer to the crossing, members of both
-    /// branches differ by rounding only, and a test function has half of the digits.
+    /// The crossing with another branch, interpolated from members on both sides. Closer to the crossing, members of
+    /// both branches differ by rounding only, and a test function has half of the digits.
     fn crossing(
         &mut self,
         near: f64,
@@ -215,8 +215,8 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// State and parameter on the cubic Hermite arc between two members. From a chord, the other branch of a crossing may be
-/// closer than this one.
+/// State and parameter on the cubic Hermite arc between two members. From a chord, the other branch of a crossing may
+/// be closer than this one.
 pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f64>, f64) {
     let rest = 1.0 - fraction;
     let ends = [
@@ -281,8 +281,8 @@ impl Bracket {
         }
     }
 
-    /// Moves the end whose value has the same sign. Returns the distance of the move, or the new length of the bracket if that
-    /// is less.
+    /// Moves the end whose value has the same sign. Returns the distance of the move, or the new length of the bracket
+    /// if that is less.
     fn narrow(&mut self, fraction: f64, value: f64) -> f64 {
         let is_first = value.is_sign_negative() == self.ends[0].1.is_sign_negative();
         let end = usize::from(!is_first);

@@ -63,7 +63,8 @@ pub struct Branch {
     pub points: Vec<Member>,
     /// Both ends of the branch.
     pub ends: [BranchEnd; 2],
-    /// The curves of its bifurcations over two parameters, if requested. A curve through several of them is listed once.
+    /// The curves of its bifurcations over two parameters, if requested. A curve through several of them is listed
+    /// once.
     pub curves: Vec<BifurcationCurve>,
 }
 

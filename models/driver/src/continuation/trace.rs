@@ -1,8 +1,8 @@
 //! Pseudo-arclength continuation: steps along the branch with orthogonal corrections.
 //!
-//! Lengths are measured in the units of the state and, for the parameter, in the length of its range. A correction is the
-//! shortest Newton step (Moore-Penrose inverse). It needs no additional equation, and also converges where orbits form a
-//! family at a constant parameter.
+//! Lengths are measured in the units of the state and, for the parameter, in the length of its range. A correction is
+//! the shortest Newton step (Moore-Penrose inverse). It needs no additional equation, and also converges where orbits
+//! form a family at a constant parameter.
 
 use super::family::{Failure, Family, Local, Node, Unknowns};
 use super::indicator::{Precision, Test, is_degenerate};
@@ -145,8 +145,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Ok(self.both_ways(&start))
     }
 
-    /// Follows the branch from a member outside the range to the nearer end of the range. Returns the member there, or the end
-    /// of the branch if it does not reach the range.
+    /// Follows the branch from a member outside the range to the nearer end of the range. Returns the member there, or
+    /// the end of the branch if it does not reach the range.
     fn approached(&mut self, start: Node) -> Result<Result<Node, BranchEnd>, Failure> {
         let [low, high] = self.extent.limits();
         let from = start.parameter();

@@ -1,9 +1,9 @@
 //! Optimal control: a search for the extremals of a model with a cost, with given numbers of impacts.
 //!
-//! The system is the first-order model of the extremals that the generator makes: state `x`, costate `p` and the cost so
-//! far. The unknowns are the costate at the start. The equations are the given components of the state at the end, and
-//! `p = dg` for the other components, with the terminal cost `g`. [`Variations`](dalembert::Variations) computes the
-//! derivatives of a motion across impacts; the search is the one of [`connect`](crate::connect).
+//! The system is the first-order model of the extremals that the generator makes: state `x`, costate `p` and the cost
+//! so far. The unknowns are the costate at the start. The equations are the given components of the state at the end,
+//! and `p = dg` for the other components, with the terminal cost `g`. [`Variations`](dalembert::Variations) computes
+//! the derivatives of a motion across impacts; the search is the one of [`connect`](crate::connect).
 //!
 //! | file | job |
 //! |---|---|

@@ -4,10 +4,10 @@
 //! z_{k+1} = Phi_k(z_k),  k = 0 .. M - 2,      the equations of the end hold for Phi_{M-1}(z_{M-1})
 //! ```
 //!
-//! `z = (x, p)`, and `Phi_k` is the motion from one node to the next. The unknowns are the costate at the start, and state
-//! and costate at the further nodes. Errors grow over a single stretch only. Newton's method, damped by the natural
-//! monotonicity test (Deuflhard 2004, section 3.3), therefore converges from rough guesses, where single shooting from a
-//! guess of the costate at the start fails.
+//! `z = (x, p)`, and `Phi_k` is the motion from one node to the next. The unknowns are the costate at the start, and
+//! state and costate at the further nodes. Errors grow over a single stretch only. Newton's method, damped by the
+//! natural monotonicity test (Deuflhard 2004, section 3.3), therefore converges from rough guesses, where single
+//! shooting from a guess of the costate at the start fails.
 
 use std::f64::consts::{PI, TAU};
 
@@ -100,8 +100,8 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         None
     }
 
-    /// The units of the unknowns: the largest absolute values of states and costates at the nodes, at least the sizes of the
-    /// state and [`SMALL`].
+    /// The units of the unknowns: the largest absolute values of states and costates at the nodes, at least the sizes
+    /// of the state and [`SMALL`].
     fn units(&self, unknowns: &[f64]) -> Vec<f64> {
         let n = self.n;
         let (_, _, sizes) = self.shooter.ends();
@@ -115,8 +115,8 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         units[n..].iter().copied().chain(nodes).collect()
     }
 
-    /// A guess. The first one has states on a line from start to end; the others add a half wave and a full wave. All costates
-    /// are 0.
+    /// A guess. The first one has states on a line from start to end; the others add a half wave and a full wave. All
+    /// costates are 0.
     fn guess(&self, index: usize) -> Vec<f64> {
         let n = self.n;
         let (from, to, sizes) = self.shooter.ends();

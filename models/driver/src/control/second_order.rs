@@ -1,12 +1,12 @@
-//! The second-order test of an extremal: it is a local minimum if the cost of neighbouring motions with the same start is
-//! larger.
+//! The second-order test of an extremal: it is a local minimum if the cost of neighbouring motions with the same start
+//! is larger.
 //!
 //! Over a stretch of time the derivative of the flow is `(dx', dp') = (A dx + B dp, C dx + D dp)`. The least cost of a
-//! stretch as a function of its ends has the second derivatives `S_xx = -B^-1 A`, `S_xx' = B^-1`, `S_x'x' = -D B^-1`. The
-//! test runs backwards from the second derivative `K` of the terminal cost. In each step, `S_x'x' + K` must be positive, and
-//! the second derivative of the cost to go becomes `S_xx - S_xx' (S_x'x' + K)^-1 S_x'x`. Given components of the end do
-//! not vary. This is the Riccati equation in steps. It remains finite up to a focal point, and stretches may contain
-//! impacts.
+//! stretch as a function of its ends has the second derivatives `S_xx = -B^-1 A`, `S_xx' = B^-1`, `S_x'x' = -D B^-1`.
+//! The test runs backwards from the second derivative `K` of the terminal cost. In each step, `S_x'x' + K` must be
+//! positive, and the second derivative of the cost to go becomes `S_xx - S_xx' (S_x'x' + K)^-1 S_x'x`. Given components
+//! of the end do not vary. This is the Riccati equation in steps. It remains finite up to a focal point, and stretches
+//! may contain impacts.
 //!
 //! The derivatives of every stretch are computed from its own start. Derivatives with respect to the start of the whole
 //! motion would lose digits: over a short time, an input hardly moves the states on which it acts through others.
@@ -23,7 +23,8 @@ pub enum SecondOrder {
         /// The time.
         t: f64,
     },
-    /// The test is inconclusive: some directions of the state are not controlled, or the derivatives have lost their digits.
+    /// The test is inconclusive: some directions of the state are not controlled, or the derivatives have lost their
+    /// digits.
     Open,
 }
 
@@ -48,8 +49,8 @@ const RESOLVED: f64 = 1e-2;
 /// Rows of a matrix.
 type Matrix = Vec<Vec<f64>>;
 
-/// Tests an extremal by the flows of its stretches, in order of time. `terminal` is the second derivative of the terminal
-/// cost; `free` lists the components that vary at the end.
+/// Tests an extremal by the flows of its stretches, in order of time. `terminal` is the second derivative of the
+/// terminal cost; `free` lists the components that vary at the end.
 pub(super) fn test(flows: &[Flow], terminal: &Matrix, free: &[usize]) -> SecondOrder {
     let everything: Vec<usize> = (0..terminal.len()).collect();
     let mut cost = terminal.clone();
@@ -225,8 +226,8 @@ fn combined(left: &Matrix, right: &Matrix, factor: f64) -> Matrix {
     left.iter().zip(right).map(row).collect()
 }
 
-/// The inverse of a matrix; `None` if errors of the entries may change it. Components have different units, so that rows and
-/// columns are scaled to make the diagonal 1.
+/// The inverse of a matrix; `None` if errors of the entries may change it. Components have different units, so that
+/// rows and columns are scaled to make the diagonal 1.
 fn resolved_inverse(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let units: Vec<f64> = (0..n).map(|i| matrix[i][i].abs().sqrt()).collect();
@@ -265,8 +266,8 @@ fn inverse(matrix: &Matrix) -> Option<Matrix> {
 mod tests {
     use super::*;
 
-    /// Flows of `x' = -p, p' = -k x`, the extremals of the cost `u^2/2 + k x^2/2`. For `k = -1` the cost is the action of an
-    /// oscillator.
+    /// Flows of `x' = -p, p' = -k x`, the extremals of the cost `u^2/2 + k x^2/2`. For `k = -1` the cost is the action
+    /// of an oscillator.
     fn flows(k: f64, time: f64) -> Vec<Flow> {
         let t = time / 40.0;
         let columns = match k < 0.0 {
@@ -334,8 +335,8 @@ mod tests {
         sum
     }
 
-    /// A chain of four integrators: the input is the fourth derivative of `x`, and the cost is `u^2/2 - k x^2/2`. Over a 128th
-    /// of the time, the effect of the input on `x` is below the rounding of its effect on the third derivative.
+    /// A chain of four integrators: the input is the fourth derivative of `x`, and the cost is `u^2/2 - k x^2/2`. Over
+    /// a 128th of the time, the effect of the input on `x` is below the rounding of its effect on the third derivative.
     #[test]
     fn a_long_chain_behind_an_input_is_tested_too() {
         let chain = |k: f64| -> Matrix {

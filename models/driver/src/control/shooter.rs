@@ -25,17 +25,18 @@ use crate::typed::vector;
 /// A motion with an impact within this fraction of the time from its start or end is not accepted.
 const AT_ENDS: f64 = 1e-9;
 
-/// Number of steps after which a motion is given up: a minimum, and a multiple of the steps with costate 0 at the start.
+/// Number of steps after which a motion is given up: a minimum, and a multiple of the steps with costate 0 at the
+/// start.
 const STEPS: [u64; 2] = [4000, 50];
 /// The same for three unknowns or more without surfaces, where many motions of a scan diverge.
 const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 
-/// Numbers of stretches of the second-order test, tried in order. Short stretches resolve conjugate points. Long stretches
-/// control states on which an input acts through others.
+/// Numbers of stretches of the second-order test, tried in order. Short stretches resolve conjugate points. Long
+/// stretches control states on which an input acts through others.
 const STRETCHES: [usize; 4] = [64, 32, 16, 8];
 
-/// Positions of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative, and
-/// one minor per input. All minors are positive if the optimal inputs minimise the Hamiltonian.
+/// Positions of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative,
+/// and one minor per input. All minors are positive if the optimal inputs minimise the Hamiltonian.
 #[derive(Debug, Clone, Copy)]
 struct Layout {
     inputs: usize,
@@ -160,8 +161,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.behind(t, state).is_none() && values.is_ok_and(|values| self.layout.is_best(&values))
     }
 
-    /// Determines the sizes of state and costate, and the limit of the steps of a motion. A costate of its size moves the end by
-    /// about the size of the state.
+    /// Determines the sizes of state and costate, and the limit of the steps of a motion. A costate of its size moves
+    /// the end by about the size of the state.
     fn measure(&mut self) {
         let n = self.layout.states;
         let still = vec![0.0; n];
@@ -235,8 +236,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.task.seed
     }
 
-    /// The motion from a state and a costate between two fractions of the time, with its derivatives with respect to both;
-    /// `None` if it ends early or has no derivatives.
+    /// The motion from a state and a costate between two fractions of the time, with its derivatives with respect to
+    /// both; `None` if it ends early or has no derivatives.
     pub fn stretch(&mut self, shares: [f64; 2], z: &[f64]) -> Option<Stretch<S>> {
         let n = self.layout.states;
         let (system, span) = (self.system, shares.map(|share| share * self.task.time));
@@ -261,8 +262,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         })
     }
 
-    /// The residuals of the equations at the end, and their derivatives with respect to state and costate at the start of the
-    /// last stretch.
+    /// The residuals of the equations at the end, and their derivatives with respect to state and costate at the start
+    /// of the last stretch.
     pub fn arrival(&self, last: &Stretch<S>) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let values = self.outputs(self.task.time, &last.end).ok()?;
         let columns = last.columns.iter();

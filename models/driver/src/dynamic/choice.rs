@@ -37,8 +37,9 @@ impl Move {
 pub struct Layer {
     /// The least costs from this time on.
     pub costs: Vec<f64>,
-    /// The margins: the largest distance to the edges of the grid that motions can keep from this time on, in steps of the axes.
-    /// Where the margin is negative, every motion leaves the grid, and the cost is the cost of a motion along its edge.
+    /// The margins: the largest distance to the edges of the grid that motions can keep from this time on, in steps of
+    /// the axes. Where the margin is negative, every motion leaves the grid, and the cost is the cost of a motion along
+    /// its edge.
     pub margins: Vec<f64>,
 }
 
@@ -96,8 +97,8 @@ fn is_kept(margin: f64) -> bool {
 /// The best input of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// The least cost; if every motion leaves the grid, the cost of the motion with the largest margin. NaN if there is no
-    /// motion.
+    /// The least cost; if every motion leaves the grid, the cost of the motion with the largest margin. NaN if there is
+    /// no motion.
     pub cost: f64,
     /// The largest margin of the motions; negative if all of them leave the grid, NaN if there is no initial state.
     pub margin: f64,
@@ -116,8 +117,9 @@ impl Choice {
 ///
 /// Only motions that stay on the grid count. If there are none, only motions with the largest margin count.
 ///
-/// The sum of costs may have its minimum between two inputs. If the motions of the best input and of its neighbours have the
-/// same number of impacts, an interpolated motion at the minimum of the parabola through their sums is tried as well.
+/// The sum of costs may have its minimum between two inputs. If the motions of the best input and of its neighbours
+/// have the same number of impacts, an interpolated motion at the minimum of the parabola through their sums is tried
+/// as well.
 pub fn choose(moves: &[Move], lattice: &Lattice, after: &Layer) -> Choice {
     let margins = moves.iter().map(|it| after.margin_after(lattice, it));
     let margin = margins.fold(f64::NAN, f64::max);
@@ -186,8 +188,8 @@ impl Best {
     }
 }
 
-/// The place of the minimum of a parabola through three equally spaced values, relative to the middle one; 0 if it has no
-/// minimum.
+/// The place of the minimum of a parabola through three equally spaced values, relative to the middle one; 0 if it has
+/// no minimum.
 fn vertex([before, middle, after]: [f64; 3]) -> f64 {
     let bend = before - 2.0 * middle + after;
     match bend > 0.0 {

@@ -1,8 +1,8 @@
 //! A rectangular grid of nodes, and interpolation between them.
 //!
-//! Values are interpolated by weighted parabolas (WENO of fourth order; Carlini, Ferretti, Russo 2005). Between two nodes,
-//! one parabola uses the node before, the other the node after. For smooth values, the weights combine them into a cubic. At
-//! a kink, they leave out the parabola across it. A least cost has kinks where two ways are equally good.
+//! Values are interpolated by weighted parabolas (WENO of fourth order; Carlini, Ferretti, Russo 2005). Between two
+//! nodes, one parabola uses the node before, the other the node after. For smooth values, the weights combine them into
+//! a cubic. At a kink, they leave out the parabola across it. A least cost has kinks where two ways are equally good.
 
 /// Number added to the squares of second differences, as a fraction of their sum.
 const FLOOR: f64 = 1e-6;
@@ -81,10 +81,11 @@ impl Lattice {
         self.margin(at) >= -ROUNDING
     }
 
-    /// The value at a place, interpolated by parabolas. Outside the grid, it is the value at the nearest place of the edge.
+    /// The value at a place, interpolated by parabolas. Outside the grid, it is the value at the nearest place of the
+    /// edge.
     ///
-    /// Nodes without a value are NaN. The values of other nodes are extrapolated linearly to them. The result is NaN if no
-    /// corner of the cell has a value.
+    /// Nodes without a value are NaN. The values of other nodes are extrapolated linearly to them. The result is NaN if
+    /// no corner of the cell has a value.
     pub fn between(&self, values: &[f64], at: [f64; 2]) -> f64 {
         self.combined(values, at, parabolas)
     }

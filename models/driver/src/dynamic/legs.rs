@@ -1,5 +1,5 @@
-//! Motions over a step from many states, with each of several inputs. The first-order model has the components state, held
-//! inputs and cost.
+//! Motions over a step from many states, with each of several inputs. The first-order model has the components state,
+//! held inputs and cost.
 
 use std::ops::ControlFlow;
 

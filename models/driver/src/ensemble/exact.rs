@@ -1,7 +1,7 @@
 //! Exact sums of numbers and of their squares. They do not depend on the order or on the grouping of the terms.
 //!
-//! A finite `f64` is an integer multiple of `2^-1074`, and its square an integer multiple of `2^-2148`. The sums of these
-//! integers are stored in digits of 32 bits with room for carries.
+//! A finite `f64` is an integer multiple of `2^-1074`, and its square an integer multiple of `2^-2148`. The sums of
+//! these integers are stored in digits of 32 bits with room for carries.
 
 /// Terms of a sum are integer multiples of `2^-UNIT`.
 pub const UNIT: u32 = 1074;

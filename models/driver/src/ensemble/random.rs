@@ -1,6 +1,6 @@
-//! Random numbers as a function of their index, independent of the order of use. The generator is Philox 4x32-10 (Salmon,
-//! Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011), with the seed as key, and member and
-//! quantity as counter.
+//! Random numbers as a function of their index, independent of the order of use. The generator is Philox 4x32-10
+//! (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011), with the seed as key, and
+//! member and quantity as counter.
 
 use dalembert::math;
 

@@ -192,8 +192,8 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Runs a member under observation. A member whose start is refused or whose run panics gives an outcome and a reason
-    /// instead of an ending.
+    /// Runs a member under observation. A member whose start is refused or whose run panics gives an outcome and a
+    /// reason instead of an ending.
     pub fn watched(
         &mut self,
         member: u64,
@@ -225,7 +225,8 @@ impl<'a> Runner<'a> {
         )
     }
 
-    /// Sets the model's parameters to those of a member, and returns its initial state. The error says why there is none.
+    /// Sets the model's parameters to those of a member, and returns its initial state. The error says why there is
+    /// none.
     fn origin(&mut self, member: u64) -> Result<Origin, String> {
         let Shared {
             common,

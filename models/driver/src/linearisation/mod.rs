@@ -4,8 +4,8 @@
 //! d/dt y = A y + B u,   z = C y + D u       for small deviations y of the state, u of the inputs, z of the outputs
 //! ```
 //!
-//! The state consists of `(q, qdot)` without constraints, of positions and quasi-velocities with constraints, and of the
-//! coordinates of a first-order system. All derivatives are exact to rounding.
+//! The state consists of `(q, qdot)` without constraints, of positions and quasi-velocities with constraints, and of
+//! the coordinates of a first-order system. All derivatives are exact to rounding.
 //!
 //! | file | job |
 //! |---|---|
@@ -34,8 +34,8 @@ pub use trim::Trim;
 /// Largest rate at an equilibrium, as a fraction of its largest term.
 const AT_REST: f64 = 1e-9;
 
-/// Distance between an equilibrium and the neighbours at which its stability is compared, in Newton steps. At a double root,
-/// one Newton step covers half of the distance to the root.
+/// Distance between an equilibrium and the neighbours at which its stability is compared, in Newton steps. At a double
+/// root, one Newton step covers half of the distance to the root.
 const BEYOND: f64 = 4.0;
 
 /// Largest real part that counts as 0, as a fraction of the largest entry of A.
@@ -68,13 +68,13 @@ pub struct Linearisation {
     pub d: Vec<Vec<f64>>,
     /// The eigenvalues of `A`, as real and imaginary parts; `None` if they are not found.
     pub eigenvalues: Option<Vec<[f64; 2]>>,
-    /// The eigenvalues at states on both sides of this one, several Newton steps away. Where two equilibria meet, rounding
-    /// leaves the equilibrium uncertain, and its stability differs between these states.
+    /// The eigenvalues at states on both sides of this one, several Newton steps away. Where two equilibria meet,
+    /// rounding leaves the equilibrium uncertain, and its stability differs between these states.
     pub(crate) nearby: Vec<Vec<[f64; 2]>>,
     /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`].
     pub unsteady: Vec<usize>,
-    /// Number of position levels that the constraints conserve. The same number of eigenvalues is 0; these belong to directions
-    /// off the constraints.
+    /// Number of position levels that the constraints conserve. The same number of eigenvalues is 0; these belong to
+    /// directions off the constraints.
     pub levels: usize,
     /// Number of steps to the equilibrium; `None` without a search.
     pub steps: Option<u32>,
@@ -89,8 +89,8 @@ pub enum Tendency {
     Stable,
     /// This many eigenvalues have positive real parts: some deviations grow.
     Unstable(usize),
-    /// No eigenvalue has a positive real part, and this many have the real part 0 up to rounding: the linearisation does not
-    /// decide the stability.
+    /// No eigenvalue has a positive real part, and this many have the real part 0 up to rounding: the linearisation
+    /// does not decide the stability.
     Neutral(usize),
 }
 
@@ -199,7 +199,8 @@ impl From<Fault> for Unlinear {
     }
 }
 
-/// The names of the components of a linearised state: coordinates, then velocities or, with constraints, quasi-velocities.
+/// The names of the components of a linearised state: coordinates, then velocities or, with constraints,
+/// quasi-velocities.
 pub fn components(description: &Description) -> Vec<String> {
     let coordinates = names::coordinates(description);
     let motion: Vec<String> = match description.is_first_order {

@@ -209,7 +209,8 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
         Ok([rates, outputs, levels])
     }
 
-    /// The state of the system with these components, and its variations with respect to each component, then to each input.
+    /// The state of the system with these components, and its variations with respect to each component, then to each
+    /// input.
     ///
     /// # Errors
     /// [`Unlinear::Fault`] if there is no such state.

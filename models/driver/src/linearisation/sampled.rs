@@ -1,5 +1,5 @@
-//! The sampled motion: propagation of small deviations from one sample to the next, across impacts, with inputs constant
-//! between samples.
+//! The sampled motion: propagation of small deviations from one sample to the next, across impacts, with inputs
+//! constant between samples.
 
 use std::ops::ControlFlow;
 
@@ -29,8 +29,8 @@ pub struct Sampling {
     pub policies: Policies,
 }
 
-/// The motion from one sample to the next: `y(t + T) = Phi y(t) + Gamma u` for small deviations `y` of the state and `u`
-/// of the inputs.
+/// The motion from one sample to the next: `y(t + T) = Phi y(t) + Gamma u` for small deviations `y` of the state and
+/// `u` of the inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stride {
     /// The time of the sample.

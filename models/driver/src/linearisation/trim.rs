@@ -29,8 +29,8 @@ const LEAST: f64 = 1e-6;
 /// Search for an equilibrium from a state.
 #[derive(Debug, Clone, Default)]
 pub struct Trim {
-    /// Indices of the variables that the search changes, among the components of the state followed by the inputs. If it is
-    /// empty, the search changes all of them.
+    /// Indices of the variables that the search changes, among the components of the state followed by the inputs. If
+    /// it is empty, the search changes all of them.
     pub free: Vec<usize>,
     /// Indices of components whose rates need not vanish, for example coordinates that move steadily.
     pub moving: Vec<usize>,

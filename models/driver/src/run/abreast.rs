@@ -54,8 +54,8 @@ pub(crate) fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     endings
 }
 
-/// Makes several runs at once with `Taylor`, each as [`simulate`](super::simulate) does. Returns the results in the order of
-/// the runs.
+/// Makes several runs at once with `Taylor`, each as [`simulate`](super::simulate) does. Returns the results in the
+/// order of the runs.
 fn simulate_abreast<M: Model>(
     runs: Vec<Abreast<'_, M>>,
     settings: &Settings,

@@ -2,16 +2,16 @@
 //! errors.
 //!
 //! Along smooth motion, the energy changes at the rate of the power, which is 0 unless a force works on the system. Any
-//! other change is an error. The power is integrated by the trapezoidal rule, whose error does not grow with the number of
-//! steps.
+//! other change is an error. The power is integrated by the trapezoidal rule, whose error does not grow with the number
+//! of steps.
 
 use dalembert::{Segment, StateVector, System};
 
 /// Relative energy error that causes a warning.
 const TOLD: f64 = 1e-2;
 
-/// Lower bound of the energy scale, as a fraction of the largest kinetic energy. It gives a scale to an energy that is 0 up
-/// to rounding.
+/// Lower bound of the energy scale, as a fraction of the largest kinetic energy. It gives a scale to an energy that is
+/// 0 up to rounding.
 const SWING: f64 = 1e-3;
 
 /// Fraction of a step over which the power is computed as a difference quotient of energies. Rounding adds an error of

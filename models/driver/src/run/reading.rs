@@ -27,8 +27,8 @@ impl<M: Instance> Reading<M::State> for &M {
     }
 }
 
-/// The outputs of a run that are integrals, each with its value at the start of the present stretch of motion. The value is
-/// NaN after the first stretch over which the integral does not exist.
+/// The outputs of a run that are integrals, each with its value at the start of the present stretch of motion. The
+/// value is NaN after the first stretch over which the integral does not exist.
 pub(super) struct Integrals {
     /// The number of all outputs.
     outputs: usize,

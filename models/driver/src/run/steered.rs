@@ -54,14 +54,14 @@ pub enum Changes<'c> {
     Everywhere,
     /// Inputs are evaluated at multiples of this period, and constant in between.
     Held(f64),
-    /// Inputs are evaluated wherever the motion is evaluated. They are smooth between these times, at which steps end. The cell
-    /// holds the number of times that have passed.
+    /// Inputs are evaluated wherever the motion is evaluated. They are smooth between these times, at which steps end.
+    /// The cell holds the number of times that have passed.
     Pieces(&'c [f64], &'c Cell<usize>),
 }
 
 /// Makes a run with these inputs, as [`Runs::simulate`](crate::Runs::simulate) does. `values` are the values of all
-/// parameters. Returns `None` for a form that is too large, and for `Taylor` and discrete principles, which do not support
-/// input functions.
+/// parameters. Returns `None` for a form that is too large, and for `Taylor` and discrete principles, which do not
+/// support input functions.
 ///
 /// # Errors
 /// [`Refusal`] if the run does not start.

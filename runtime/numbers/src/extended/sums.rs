@@ -1,8 +1,8 @@
 //! Sums and products of doubles without error, and their roundings to a number of parts.
 //!
-//! References: D. E. Knuth, *The Art of Computer Programming* 2 (1997), 4.2.2, theorem B; T. J. Dekker, *A Floating-Point
-//! Technique for Extending the Available Precision*, Numerische Mathematik 18 (1971); D. M. Priest, *Algorithms for
-//! Arbitrary Precision Floating Point Arithmetic* (1991).
+//! References: D. E. Knuth, *The Art of Computer Programming* 2 (1997), 4.2.2, theorem B; T. J. Dekker, *A
+//! Floating-Point Technique for Extending the Available Precision*, Numerische Mathematik 18 (1971); D. M. Priest,
+//! *Algorithms for Arbitrary Precision Floating Point Arithmetic* (1991).
 
 /// Maximum number of parts of a sum, plus one level for the rest.
 const LEVELS: usize = 7;
@@ -33,7 +33,8 @@ fn two_product(a: f64, b: f64) -> [f64; 2] {
 #[cfg(not(all(target_feature = "fma", feature = "std")))]
 #[inline(always)]
 fn product_error(a: f64, b: f64, product: f64) -> f64 {
-    /// Bounds of the factors (`2^996`) and of the product (`2^-968`). Beyond them, halves overflow, or the least digits of the product underflow.
+    /// Bounds of the factors (`2^996`) and of the product (`2^-968`). Beyond them, halves overflow, or the least digits
+    /// of the product underflow.
     const HUGE: f64 = f64::from_bits((1023 + 996) << 52);
     const TINY: f64 = f64::from_bits((1023 - 968) << 52);
     let is_inside = a.abs() < HUGE && b.abs() < HUGE && product.abs() > TINY;
@@ -86,7 +87,8 @@ impl<const PARTS: usize> Sum<PARTS> {
         }
     }
 
-    /// The sum in parts that do not overlap. Each part is the rounded difference between the sum and the parts before it.
+    /// The sum in parts that do not overlap. Each part is the rounded difference between the sum and the parts before
+    /// it.
     #[inline(always)]
     pub(super) fn parts(self) -> [f64; PARTS] {
         let mut levels = self.levels;

@@ -100,7 +100,8 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         &self.firsts.as_slice()[components.as_slice().len()..][..gaps.as_slice().len()]
     }
 
-    /// Largest absolute values among the entries of the last coefficient, and of the one before it, each times its factor.
+    /// Largest absolute values among the entries of the last coefficient, and of the one before it, each times its
+    /// factor.
     #[inline(always)]
     pub(crate) fn sizes(&self, order: usize, factors: &F::Row<L>) -> [L; 2] {
         let mut sizes = [L::ZERO; 2];
@@ -133,8 +134,8 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
     }
 }
 
-/// The end of a step from a start with rounding error `rest`, and the rounding error of the end, which is the exact error
-/// of the sum (Moller, Knuth).
+/// The end of a step from a start with rounding error `rest`, and the rounding error of the end, which is the exact
+/// error of the sum (Moller, Knuth).
 #[inline(always)]
 pub(crate) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
     let change = change + rest;

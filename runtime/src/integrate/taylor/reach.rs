@@ -11,9 +11,9 @@ const SHRINK: f64 = 0.75;
 /// Largest step, in units of time of its expansion. All powers of it stay far from overflow.
 pub(crate) const LONGEST: f64 = 1024.0;
 
-/// Largest of the tried steps, up to `wished` units of time, at whose end the last two terms of every series are at most
-/// `last` times the largest of the first ones. `None` if the series must be computed in a shorter unit. `sizes` has one
-/// row per order.
+/// Largest of the tried steps, up to `wished` units of time, at whose end the last two terms of every series are at
+/// most `last` times the largest of the first ones. `None` if the series must be computed in a shorter unit. `sizes`
+/// has one row per order.
 pub(crate) fn reach<const K: usize>(
     sizes: &[[f64; K]; LENGTH],
     order: usize,

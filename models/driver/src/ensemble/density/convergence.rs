@@ -15,7 +15,8 @@ pub struct Checkpoint {
     pub over_time: f64,
     /// The distance between two halves of the members; NaN if one of them is empty.
     pub over_members: f64,
-    /// The expected distance between halves of the same number of independent states, drawn from the density of all states.
+    /// The expected distance between halves of the same number of independent states, drawn from the density of all
+    /// states.
     pub independent: f64,
 }
 
@@ -65,8 +66,8 @@ fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     }
 }
 
-/// The mean distance between the densities of two samples of `samples/2` states each, drawn independently from the density
-/// `total/all`: the counts of a cell are nearly Poisson.
+/// The mean distance between the densities of two samples of `samples/2` states each, drawn independently from the
+/// density `total/all`: the counts of a cell are nearly Poisson.
 fn expected(total: &[u64], all: u64, samples: u64) -> f64 {
     let half = 0.5 * samples as f64;
     let means = total

@@ -62,8 +62,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis of a coordinate, a velocity, an output or `energy`. The default range is a full turn for an angle, else the
-    /// finite chart of the coordinate, else NaN for an unknown range.
+    /// The axis of a coordinate, a velocity, an output or `energy`. The default range is a full turn for an angle, else
+    /// the finite chart of the coordinate, else NaN for an unknown range.
     ///
     /// # Errors
     /// [`Unknown`] if no quantity has this name.
@@ -136,8 +136,8 @@ impl Density {
         self.axes[0].bins * self.axes[1].bins
     }
 
-    /// The index of the cell of a state. The first axis runs fastest. A state outside the grid has the index one past the last
-    /// cell.
+    /// The index of the cell of a state. The first axis runs fastest. A state outside the grid has the index one past
+    /// the last cell.
     pub fn cell(&self, point: &Point) -> usize {
         let [x, y] = &self.axes;
         let bins = x.bin(x.shown.value(point)).zip(y.bin(y.shown.value(point)));
