@@ -1,4 +1,4 @@
-//! A hanging chain of N point masses on N rods, one declaration for every N that differ in that number alone.
+//! A hanging chain of N point masses on N rods. The declarations for several N differ in that number alone.
 //!
 //! Facts: N = 2 is the double pendulum; the metric is `g_jk = (N + 1 - max(j, k)) m l^2 cos(theta_j - theta_k)`.
 

@@ -1,5 +1,5 @@
-//! The systems of the source papers as dalembert models. Each has a text, `rolling_disk.dal`, and a module with its source and the facts known in
-//! closed form. `tests/facts` has a test of such a fact.
+//! The systems of the source papers as dalembert models. Each has a text, such as `rolling_disk.dal`, and a module that
+//! names its source and the known facts about its motion. `tests/facts` tests one of these facts for each model.
 //!
 //! The `dalembert` command runs the same texts without compiling them.
 

@@ -1,9 +1,10 @@
-//! A Hamiltonian whose motion escapes in finite time, between two walls: energy and volume are kept, and yet impacts
-//! accumulate.
+//! A Hamiltonian system between two walls whose motion escapes in finite time. Energy and volume are conserved, and yet
+//! impacts accumulate.
 //!
-//! `H = p_x (1 + x^2) + p_y^2 x/2` is degenerate, no Lagrangian has it: its field is declared.
+//! `H = p_x (1 + x^2) + p_y^2 x/2` is degenerate and has no Lagrangian, so that its field is declared.
 //!
-//! Facts: from `x = 0`, `x = tan(t)`; the n-th impact comes at `acos(exp(-(n - y0)/p_y))`, and they accumulate at `pi/2`.
-//! Source: W. Clark and A. Bloch, Example 6; its walls are `y = 0` and `y = 1`, where `S = {0, 1} x R` is printed.
+//! Facts: from `x = 0`, `x = tan(t)`. The n-th impact is at the time `acos(exp(-(n - y0)/p_y))`; the impacts accumulate
+//! at `pi/2`. Source: W. Clark and A. Bloch, Example 6; its walls are `y = 0` and `y = 1`, where `S = {0, 1} x R` is
+//! printed.
 
 dalembert::model_file!("src/spasmodic_hamiltonian.dal");

@@ -1,7 +1,7 @@
-//! Integrals along a run, above all the action: that of the Lagrangian.
+//! Integrals along a run, in particular the action, the integral of the Lagrangian.
 //!
-//! `L = <p, qdot> - H` with `H = 1/2 g(qdot, qdot) + V`, so that a term of `L` that is linear in the velocities is
-//! counted. Impacts take no time and add nothing to an integral.
+//! The Lagrangian is evaluated as `L = <p, qdot> - H` with `H = 1/2 g(qdot, qdot) + V`, which includes terms of `L`
+//! that are linear in the velocities. Impacts take no time and add nothing to an integral.
 
 use core::ops::ControlFlow;
 
@@ -11,10 +11,10 @@ use crate::quadrature::composite;
 use crate::record::{Observer, Segment};
 use crate::state::StateVector;
 
-/// Largest number of panels of one step; their number doubles until the integral agrees.
+/// Maximum number of panels of one step. Their number doubles until the integral converges.
 const PANELS: u32 = 64;
 
-/// Largest change of the integral over a step, as a share of the integral of the absolute value.
+/// Largest change between two successive sums that counts as converged, relative to the integral of the absolute value.
 const AGREEMENT: f64 = 1e-15;
 
 /// The Lagrangian at a state.
@@ -28,8 +28,8 @@ pub fn lagrangian<Sys: System>(system: &Sys, t: f64, state: &Sys::State) -> Resu
     Ok(product - system.energy(t, state)?)
 }
 
-/// The integral of a function of time and state over a part of a stretch of motion, with 16 Gauss-Legendre nodes in each of as
-/// many panels as it takes for the sum to settle to its last digits, 64 at most.
+/// The integral of a function of time and state between two times of a segment of the run. It uses 16 Gauss-Legendre
+/// nodes per panel, and doubles the number of panels, up to 64, until the sum settles to its last digits.
 ///
 /// # Errors
 /// A [`Fault`] of the function or of the dense output.
@@ -60,8 +60,7 @@ pub fn integral<S: Copy>(
     Ok(coarse.0 * length)
 }
 
-/// Integrates the Lagrangian along the run that it observes, with 16 Gauss-Legendre nodes in each panel of a step of
-/// the dense output.
+/// Integrates the Lagrangian along the run that it observes, by [`integral`] over the dense output of each step.
 ///
 /// # Examples
 ///

@@ -9,19 +9,19 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// A step without rates inside is looked at where the cubic through its ends comes this near to an edge, in parts of its range.
+/// Margin of the cubic through the ends of a step whose inner rates are unknown, as a multiple of the cubic's range.
 const NEAR: f64 = 4.0;
 
 /// The end of a chart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Exit {
-    /// The last part of the step inside the chart, and the first outside.
+    /// The last fraction of the step inside the chart, and the first outside.
     pub onset: Onset,
     /// Index of the coordinate that leaves.
     pub coordinate: usize,
 }
 
-/// The first place in `[0, reach]` at which a coordinate is outside its chart.
+/// The first fraction of the step in `[0, reach]` at which a coordinate is outside its chart.
 ///
 /// # Errors
 /// Faults of the dense output.
@@ -52,7 +52,7 @@ pub(crate) fn exit<Sys: System, Step: Stepper<Sys>>(
     }))
 }
 
-/// The coordinate that is outside its chart at a part of a step with dense output.
+/// The coordinate that is outside its chart at a fraction of a step with dense output.
 pub(crate) fn outside<Sys: System, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
     part: f64,
@@ -60,7 +60,8 @@ pub(crate) fn outside<Sys: System, Step: Stepper<Sys>>(
     step.system.outside_chart(&step.state(part))
 }
 
-/// True if the cubics through the ends of the step, and what rates inside differ from theirs by, keep all coordinates inside.
+/// True if the cubics through the ends of the step, widened by the deviation of the inner rates, stay inside all
+/// charts.
 fn stays_inside<Sys: System, Step: Stepper<Sys>>(
     step: &StepView<'_, Sys, Step>,
     mut charts: impl Iterator<Item = Chart>,

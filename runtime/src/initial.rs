@@ -1,5 +1,5 @@
-//! Completion of initial states: first positions that satisfy the equations of positions among the constraints, then
-//! the smallest velocities that satisfy the constraints.
+//! Completion of initial states. Positions come first: they satisfy the constraints that are equations of positions.
+//! Then come the velocities of least norm that satisfy all constraints.
 
 use crate::contract::Constrained;
 use crate::error::StateError;
@@ -10,24 +10,25 @@ use crate::state::StateVector;
 /// Size of the buffer for the constraint forms: constraints times coordinates.
 const ENTRIES: usize = 64 * 64;
 
-/// Accepted residual, as a share of the sum of the absolute values of its terms; the same as for
+/// Accepted residual, relative to the sum of the absolute values of its terms, as in
 /// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
 /// Maximum number of Newton steps, for positions and for constraints that are nonlinear in the velocities.
 const STEPS: u32 = 48;
 
-/// Start values of the free positions, in this order, for a Newton iteration that fails from the given ones. At 0,
-/// the usual start value, a square has no slope.
+/// Start values of all free positions, in this order, for a Newton iteration that fails from the given ones. At 0, the
+/// usual start value, a square has zero slope.
 const BEGINNINGS: [f64; 6] = [1.0, -1.0, 0.25, -0.25, 4.0, -4.0];
 
-/// Completes positions. Where `placed` is not 0, a position of `q` is kept; the others come from least-norm Newton
-/// steps from `q` or, if these fail or leave the chart, from 1, -1, 1/4, -1/4, 4 or -4. Of several solutions it
-/// prefers a positive one. With everything placed, `q` is only checked.
+/// Completes positions. Positions of `q` where `placed` is not 0 are kept. The others come from least-norm Newton steps
+/// from `q` or, if these fail or leave the chart, from 1, -1, 1/4, -1/4, 4 or -4, which prefers positive solutions. If
+/// all positions are placed, `q` is only checked.
 ///
 /// # Errors
-/// [`StateError::OffPosition`], of `q` as given, if no solution was found; [`StateError::NotFinite`] for a position that is not
-/// finite; [`StateError::TooLarge`] beyond 64 coordinates.
+/// [`StateError::OffPosition`] for `q` as given if no solution was found; [`StateError::NotFinite`] for a position that
+/// is not finite; [`StateError::TooLarge`] if the numbers of coordinates and of constraints have a product above
+/// `64^2`.
 pub fn complete_positions<Sys: Constrained>(
     system: &Sys,
     t: f64,
@@ -105,13 +106,14 @@ fn solved_from<Sys: Constrained>(
     (is_inside && check_positions(system, t, &q).is_ok()).then_some(q)
 }
 
-/// Completes velocities. Where `named` is not 0, a velocity of `qdot` is kept; the others are those of least norm
-/// that satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in the velocities they
-/// come from Newton steps from 1, so that of several solutions a positive one is preferred.
+/// Completes velocities. Velocities of `qdot` where `named` is not 0 are kept. The others are those of least norm that
+/// satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in the velocities, they come
+/// from Newton steps from 1, which prefers positive solutions.
 ///
 /// # Errors
 /// [`StateError::OffConstraint`] if the free components cannot satisfy a constraint; [`StateError::NotFinite`] for a
-/// named component that is not finite; [`StateError::TooLarge`] beyond 64 coordinates.
+/// named component that is not finite; [`StateError::TooLarge`] if there are more constraints than coordinates, or if
+/// their numbers have a product above `64^2`.
 pub fn complete_velocities<Sys: Constrained>(
     system: &Sys,
     t: f64,

@@ -8,7 +8,7 @@ use crate::law::{Blow, Contact, Jump, Landing, Law};
 use crate::numbers::{Bent, ComplexInterval, TaylorModel};
 use crate::outcome::Outcome;
 
-/// A system whose declared `inputs` the caller supplies. It stores their values like parameters; they are 0 until
+/// A system with declared `inputs`, whose values the caller supplies. It stores them like parameters; they are 0 until
 /// they are set.
 ///
 /// # Examples
@@ -25,7 +25,7 @@ use crate::outcome::Outcome;
 ///     }
 /// }
 ///
-/// // A spring by feedback.
+/// // A feedback that acts like a spring.
 /// let cart = Cart::default();
 /// let steered = cart.with_inputs(|_t, state| [-4.0 * state[0]]);
 /// let state = steered.state(0.0, &[0.5].into(), &[0.0].into())?;
@@ -60,12 +60,12 @@ pub trait Actuated: System + Copy {
 ///
 /// The function is called wherever the motion is evaluated, also at trial states that no run accepts. It should be
 /// smooth between impacts, as the integrators expect. Power series of the motion (`Taylor`) and the discrete
-/// principle are not available for it, nor are derivatives: for these the law is written in the declaration, in place of
-/// the input. Effects are made for it as for any system: `Projection::new()`,
+/// principle are not available for such a system, and neither are derivatives: for these, write the law in the
+/// declaration, in place of the input. Effects are made for it as for any system: `Projection::new()`,
 /// `Impacts::declared(&steered)`.
 #[derive(Debug, Clone, Copy)]
 pub struct Steered<Sys, F> {
-    /// The system; the values of its inputs are replaced.
+    /// The system. The function replaces the values of its inputs.
     pub system: Sys,
     /// `(t, state) -> inputs`
     pub inputs: F,

@@ -7,7 +7,8 @@ use crate::describe::Instance;
 use crate::error::Fault;
 use crate::record::{Observer, Segment};
 
-/// Integrates the outputs of the model that are integrals, `K` of all its outputs, along the run that it observes.
+/// Integrates the outputs that are declared as integrals along the run that it observes. `K` is the number of all
+/// outputs of the model.
 ///
 /// # Examples
 ///
@@ -28,7 +29,7 @@ use crate::record::{Observer, Segment};
 /// let mut integrals = Integrals::<_, { Falling::DESCRIPTION.outputs.len() }>::new(&ball);
 /// let stepper = Dop853::new(Tolerance::new(1e-12)?);
 /// Simulation::new(&ball, stepper, ball.effects()).run(0.0, state, 2.0, &mut integrals)?;
-/// // Down and up again: from t = 0 to 1, L = t^2/2 - (1 - t^2)/2.
+/// // The ball falls and rises again. From t = 0 to 1, L = t^2/2 - (1 - t^2)/2.
 /// assert!((integrals.value(falling::output::S)? + 1.0 / 3.0).abs() < 1e-11);
 /// assert!((integrals.value(falling::output::squares)? - 2.0 / 3.0).abs() < 1e-11);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -48,7 +49,8 @@ impl<'a, Sys: Instance, const K: usize> Integrals<'a, Sys, K> {
         }
     }
 
-    /// The integral that an output is, by its index, from the start of the run to its last state; 0 for an output that is none.
+    /// Value of an output that is an integral, by its index among all outputs, from the start of the run to its last
+    /// state. It is 0 for other outputs.
     ///
     /// # Errors
     /// The first [`Fault`] of the output or of the dense output.

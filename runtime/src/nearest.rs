@@ -1,20 +1,20 @@
-//! The velocity nearest to a given one that satisfies constraints which are not linear in it, by Newton's steps.
+//! The velocity nearest to a given one that satisfies constraints nonlinear in the velocities, by Newton's method.
 
 use crate::contract::Constrained;
 use crate::error::Fault;
 use crate::state::StateVector;
 
-/// Maximum number of Newton steps. Each doubles the number of correct digits once the first few have come near.
+/// Maximum number of Newton steps. Near the solution, each step doubles the number of correct digits.
 const STEPS: u32 = 48;
 
-/// Residual, as a share of the sum of the absolute values of its terms, that counts as rounding.
+/// Residual that counts as rounding, relative to the sum of the absolute values of its terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Largest such share that is accepted where further steps do not help; the same as for
+/// Largest relative residual that is accepted if further steps do not reduce it, as in
 /// [`System::state`](crate::System::state).
 const ACCEPTED: f64 = 1e-9;
 
-/// State at the limit of Newton's iteration from a velocity; `step` makes one step, orthogonal in the metric.
+/// State at the limit of Newton's iteration from a velocity. `step` makes one step, which is orthogonal in the metric.
 ///
 /// # Errors
 /// [`Fault::ProjectionFailed`] where the iteration does not converge; the [`Fault`] of a step.
@@ -44,8 +44,8 @@ pub fn nearest_by_steps<S: Constrained>(
     }
 }
 
-/// The largest residual as a share of the sum of the absolute values of its terms, and the index of its constraint.
-/// NaN counts as largest.
+/// The largest residual, relative to the sum of the absolute values of its terms, and the index of its constraint. NaN
+/// counts as infinite.
 fn worst<S: Constrained>(system: &S, t: f64, q: &S::Vector, qdot: &S::Vector) -> (f64, usize) {
     let (residuals, scales) = system.residuals(t, q, qdot);
     let pairs = residuals.as_slice().iter().zip(scales.as_slice());

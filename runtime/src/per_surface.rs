@@ -9,7 +9,7 @@ use crate::state::{Plain, StateVector};
 pub(crate) struct PerSurface<T: Plain, G: StateVector>(G::Each<T>);
 
 impl<T: Plain, G: StateVector> PerSurface<T, G> {
-    /// The same value for every surface; `gaps` gives the number of surfaces.
+    /// The same value for every surface. `gaps` determines the number of surfaces.
     pub(crate) fn all(gaps: &G, value: T) -> Self {
         Self(G::each(gaps.count(), value))
     }
@@ -19,7 +19,7 @@ impl<T: Plain, G: StateVector> PerSurface<T, G> {
         self.0.as_ref().get(surface).copied()
     }
 
-    /// Sets the value of a surface; past the last nothing changes.
+    /// Sets the value of a surface. An index past the last surface has no effect.
     pub(crate) fn set(&mut self, surface: usize, value: T) {
         if let Some(place) = self.0.as_mut().get_mut(surface) {
             *place = value;

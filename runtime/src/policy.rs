@@ -1,5 +1,5 @@
-//! Policies for impacts that the law alone does not decide. The default is to stop, with the outcome that names the
-//! reason.
+//! Policies for impacts that the law alone does not decide. By default the run stops there, with an outcome that names
+//! the reason, except after a split ([`Split`]).
 
 /// The policies of a run.
 ///
@@ -13,17 +13,17 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Policies {
-    /// For a surface that the motion presses into.
+    /// Policy for a surface that the motion presses into.
     pub rest: Rest,
-    /// For a law that leaves the state approaching.
+    /// Policy for a law that leaves the state approaching.
     pub penetration: Penetration,
-    /// For several surfaces hit at one time.
+    /// Policy for several surfaces hit at one time.
     pub corner: Corner,
-    /// For a transition from which the motion can go on in more than one way.
+    /// Policy for a transition after which the motion can go on in more than one way.
     pub split: Split,
 }
 
-/// Policy for a transition from which the motion can go on in more than one way: refracted into the other mode, or
+/// Policy for a transition after which the motion can go on in more than one way: refracted into the other mode, or
 /// reflected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Split {
@@ -38,8 +38,8 @@ pub enum Split {
 /// a plastic impact, or at the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rest {
-    /// End with [`Outcome::Contact`](crate::Outcome::Contact), or with [`Outcome::Zeno`](crate::Outcome::Zeno) where impacts
-    /// accumulate.
+    /// End with [`Outcome::Contact`](crate::Outcome::Contact), or with [`Outcome::Zeno`](crate::Outcome::Zeno) where
+    /// impacts accumulate.
     #[default]
     Stop,
     /// Go on along the surface without friction, `h = 0`, until the contact force would have to pull.
@@ -52,7 +52,7 @@ pub enum Penetration {
     /// End with [`Outcome::StillPenetrating`](crate::Outcome::StillPenetrating).
     #[default]
     Stop,
-    /// Repeat the law to its limit, which takes the whole gap rate, as `impact_plastic` does.
+    /// Repeat the law to its limit, which removes the whole gap rate like `impact_plastic`.
     Repeat,
 }
 

@@ -17,11 +17,11 @@ pub(crate) const NODES: [(f64, f64); 8] = [
     (0.452_493_745_081_181_3, 0.094_725_305_227_534_25),
 ];
 
-/// Maximum number of panels of the line; their number doubles until the integral agrees.
+/// Maximum number of panels of the line. Their number doubles until the integral converges.
 const PANELS: u32 = 256;
-/// Largest change of the integral, as a share of the integral of the absolute value. The second number bounds the
-/// relative change of that integral: across a pole the first integral may cancel.
+/// Largest change of the integral that counts as converged, relative to the integral of the absolute value.
 const AGREEMENT: f64 = 1e-14;
+/// Largest relative change of the integral of the absolute value: across a pole the integral itself may cancel.
 const GROWTH: f64 = 1e-6;
 
 /// The integral of `gradient` along the line from `from` to `to`.
@@ -64,7 +64,7 @@ pub fn line_integral<V: StateVector>(
     })
 }
 
-/// The integrals of a function and of its absolute value over (0, 1).
+/// The integrals of a function and of its absolute value over (0, 1), in `panels` equal panels.
 pub(crate) fn composite(
     function: &mut impl FnMut(f64) -> Result<f64, Fault>,
     panels: u32,

@@ -19,7 +19,7 @@ use crate::outcome::Outcome;
 /// #     }
 /// # }
 ///
-/// // A ball that takes ever smaller hops: the run ends where they accumulate, at t = 3.
+/// // The ball makes ever smaller hops. The run ends where they accumulate, at t = 3.
 /// # use dalembert::{Law, SceneEffects};
 /// let ball = Ball::default();
 /// let mut effects = ball.effects();

@@ -1,4 +1,4 @@
-//! State vectors on the stack: the only view of a state that an integrator has.
+//! State vectors on the stack, the only form in which integrators know states.
 
 use core::fmt::Debug;
 
@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 /// A vector of `f64` components, stored contiguously on the stack.
 ///
-/// Integrators work on these alone; the system gives the components their meaning (see [`System`](crate::System)).
+/// Integrators work on the components alone; the system gives them their meaning (see [`System`](crate::System)).
 /// Implemented by nalgebra's `SVector<f64, D>` for every `D`, zero included, whose number of components is part of
 /// its type. Other vectors have a fixed capacity and use as many components as the system declares
 /// ([`VectorField::state_len`](crate::VectorField::state_len) and its relatives).
@@ -28,14 +28,15 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Array with one value per component.
     type Each<T: Plain>: Plain + AsRef<[T]> + AsMut<[T]>;
 
-    /// An array with the same value for each of `count` components; where the type fixes their number, `count` is
-    /// ignored.
+    /// An array with the same value for each of `count` components. If the type fixes the number of components, `count`
+    /// is ignored.
     fn each<T: Plain>(count: usize, value: T) -> Self::Each<T>;
 
-    /// A vector of `count` zeros. Where the type fixes the number of components, `count` is ignored.
+    /// A vector of `count` zeros. If the type fixes the number of components, `count` is ignored.
     fn zeros(count: usize) -> Self;
 
-    /// The vector of these components. Where the type fixes their number, it must be theirs.
+    /// The vector with these components. If the type fixes the number of components, `components` must have that
+    /// length.
     fn of(components: &[f64]) -> Self {
         let mut vector = Self::zeros(components.len());
         vector.as_mut_slice().copy_from_slice(components);
@@ -60,14 +61,14 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// The components in order, to be written.
     fn as_mut_slice(&mut self) -> &mut [f64];
 
-    /// All components within the capacity: those in use, then zeros. Their number is known at compile time, so sums
-    /// of multiples, which keep the zeros, are faster over all of them.
+    /// All components within the capacity: those in use, then zeros. Their number is known at compile time, which makes
+    /// linear combinations faster; these keep the zeros.
     #[inline(always)]
     fn padded(&self) -> &[f64] {
         self.as_slice()
     }
 
-    /// Mutable form of [`StateVector::padded`]; the components behind those in use must stay 0.
+    /// Mutable form of [`StateVector::padded`]. The components after those in use must stay 0.
     #[inline(always)]
     fn padded_mut(&mut self) -> &mut [f64] {
         self.as_mut_slice()

@@ -1,4 +1,4 @@
-//! Initial states: given positions and velocities, which are then completed and checked.
+//! Initial states: positions and velocities are given, then completed and checked.
 
 use dalembert::StateError;
 use dalembert::describe::Description;
@@ -16,8 +16,8 @@ pub enum Component {
 }
 
 impl Component {
-    /// The coordinate or velocity of this name, such as `x` or `x_dot`. Velocities of first-order systems are not
-    /// found, since they are not free.
+    /// The coordinate or velocity with this name, such as `x` or `x_dot`. Velocities of first-order systems are not
+    /// found, because they are not free.
     ///
     /// # Errors
     /// [`Unknown`] if no coordinate or velocity has this name.
@@ -99,7 +99,7 @@ impl Beginning {
         )
     }
 
-    /// The state, complete and checked.
+    /// Completes and checks the state. `policy` decides on a state that violates the constraints.
     ///
     /// # Errors
     /// [`StateError`] if the system refuses the state.
@@ -128,7 +128,7 @@ impl Beginning {
         model.state(0.0, &origin).map(|_| origin)
     }
 
-    /// The positions of a start; open positions are solved from the constraints.
+    /// The positions of a start. Those that are not given are solved from the constraints.
     fn placed(
         model: &dyn AnyModel,
         start: &Start,

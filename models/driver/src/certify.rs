@@ -1,7 +1,7 @@
 //! Certified motion of a model: enclosures of times, positions and velocities, as plain data.
 //!
-//! The enclosures are computed by the runtime with the system of all forms, which is compiled for the largest capacity
-//! only. The form needs kernels over intervals, which forms loaded from a text have.
+//! The runtime computes the enclosures for an erased system of the largest capacity. Its form needs kernels over
+//! intervals, which forms loaded from a text have.
 
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
@@ -20,7 +20,7 @@ use crate::refusal::{Refusal, Uncertified};
 /// Stack size in bytes: four times the need of the longest vectors in unoptimised code.
 const STACK: usize = 16 << 20;
 
-/// The system for which certified motion is compiled: the one with room for every form.
+/// The system for which certified motion is compiled, with room for every form.
 type System<'f> = Erased<'f, 32>;
 
 /// Request for certified motion from `t = 0` on.
@@ -28,27 +28,27 @@ type System<'f> = Erased<'f, 32>;
 pub struct Certification {
     /// The form of the equations.
     pub form: Form,
-    /// The last time.
+    /// The end time.
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
-    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
+    /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges in place of the values of parameters, by index. A model with modes accepts only these ranges, and starts
-    /// in the same state for all their values.
+    /// Ranges that replace the values of parameters, by index. A model with modes accepts no other ranges, and starts
+    /// in the same state for all values of its parameters.
     pub parameters: Vec<(usize, Interval)>,
-    /// Ranges in place of the origin's positions, by index of the coordinate.
+    /// Ranges that replace the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,
-    /// Ranges in place of velocities, by index: the origin's velocities in the global form of a model without
+    /// Ranges that replace velocities, by index: the origin's velocities in the global form of a model without
     /// constraints, quasi-velocities in the reduced form. They are ignored in other cases and if momenta are given.
     pub rates: Vec<(usize, Interval)>,
 }
 
-/// All possible positions and velocities, one range per coordinate. The range of a velocity that may not exist is the
-/// whole real line; the range of a coordinate that the mode does not have is NaN.
+/// Enclosures of positions and velocities, one range per coordinate. The range of a velocity that may not exist is the
+/// whole real line. The range of a coordinate that the mode does not have is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranges {
-    /// The name of the mode, of a model with modes.
+    /// The name of the mode, for a model with modes.
     pub mode: Option<&'static str>,
     /// Positions.
     pub q: Vec<Interval>,
@@ -56,7 +56,7 @@ pub struct Ranges {
     pub qdot: Vec<Interval>,
 }
 
-/// An impact that every motion from the start has.
+/// An impact that every motion from the start makes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strike {
     /// The index of the surface.
@@ -80,13 +80,13 @@ pub struct Certified {
     pub impacts: u64,
     /// The number of steps.
     pub steps: u64,
-    /// The reason for which certification stopped before the requested end.
+    /// The reason why certification stopped before the requested end.
     pub lost: Option<Lost>,
 }
 
 /// A form with values for its parameters.
 pub(crate) struct Subject<'a> {
-    /// The form, of a model that has one.
+    /// The form, if the model has one.
     pub form: Option<&'a erased::Form>,
     /// The values of all parameters, inputs included.
     pub values: &'a [f64],
@@ -96,7 +96,7 @@ pub(crate) struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// Follows the motion, and reports its impacts.
+    /// Encloses the motion on a thread with a large stack, and reports its impacts.
     pub(crate) fn certify(
         &self,
         request: &Certification,
@@ -112,7 +112,7 @@ impl Subject<'_> {
         })
     }
 
-    /// Follows the motion on the stack of the current thread.
+    /// Encloses the motion on the current thread.
     fn certify_here(
         &self,
         request: &Certification,
@@ -181,7 +181,7 @@ impl Subject<'_> {
         })
     }
 
-    /// All initial states.
+    /// Ranges of the components of the initial states.
     fn start(
         &self,
         system: &System<'_>,
@@ -213,7 +213,7 @@ impl Subject<'_> {
                 };
                 let row = match is_free {
                     true => of_box([&request.positions, &request.rates])?,
-                    // The given velocities satisfy the constraints at the origin only; `positions` are widened below.
+                    // The given velocities satisfy the constraints at the origin only. The positions are widened below.
                     false => of_box([&[], &[]])?,
                 };
                 row.as_slice().to_vec()

@@ -1,4 +1,4 @@
-//! Defaults of a run for values that its request leaves open: the form of the equations, the last time, the laws of
+//! Defaults for values that the request of a run leaves open: the form of the equations, the end time, the laws of
 //! surfaces.
 
 use dalembert::describe::Description;
@@ -8,10 +8,10 @@ use thiserror::Error;
 use crate::integrator::Form;
 use crate::model::AnyModel;
 
-/// The time that a run to a number of impacts may take, unless the model's declared `until` is longer.
+/// End time of a run to a number of impacts, unless the model's declared `until` is later.
 const IMPACT_HORIZON: f64 = 3600.0;
 
-/// Reasons for which a form cannot be run.
+/// Reasons why a form cannot be run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum FormError {
     /// The model has no reduced form.
@@ -20,12 +20,12 @@ pub enum FormError {
         /// The model.
         model: &'static str,
     },
-    /// The request has states off the constraints or a projection.
+    /// The reduced form is requested together with states off the constraints or a projection.
     #[error("the reduced form has no states off the constraints and needs no projection")]
     OnConstraints,
 }
 
-/// Reasons for which a law cannot be used.
+/// Reasons why a law cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum LawError {
     /// The surface is a transition to another mode.
@@ -65,8 +65,8 @@ impl Form {
     }
 }
 
-/// The last time of a run: the requested time, else the declared one, which a requested number of impacts extends.
-/// `None` if neither ends the run.
+/// The end time of a run: the requested one, else the declared one, which a requested number of impacts extends to at
+/// least 3600. `None` if neither is given.
 pub fn horizon(model: &dyn AnyModel, until: Option<f64>, impacts: Option<u64>) -> Option<f64> {
     let declared = model.initial().until;
     let declared = declared.filter(|until| until.is_finite() && *until > 0.0);

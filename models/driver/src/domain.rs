@@ -1,4 +1,4 @@
-//! The states that a model allows: on the allowed side of its surfaces, within its charts.
+//! Test that states lie on the allowed side of the surfaces.
 
 use dalembert::contract::{TaylorField, Variational};
 use dalembert::numbers::{Numbers, Row};
@@ -8,7 +8,7 @@ use dalembert::{Fault, Instance};
 
 use crate::variation::constant;
 
-/// Largest gap behind a surface that is rounding, as a fraction of the size of the state.
+/// Largest distance behind a surface that counts as rounding, as a fraction of the size of the state.
 const ROUNDING: f64 = 1e-9;
 
 /// The surfaces that count at a state, with their gaps.
@@ -29,7 +29,7 @@ pub(crate) fn gaps<S: Instance + Variational>(
     Ok(counted.collect())
 }
 
-/// A surface that a state is behind, with its gap; `size` is that of the state.
+/// The first surface behind which a state lies, with its gap. `size` is the size of the state.
 ///
 /// # Errors
 /// A [`Fault`] where a gap does not exist.
@@ -44,7 +44,7 @@ pub(crate) fn behind<S: Instance + Variational>(
     Ok(behind.next())
 }
 
-/// The largest absolute value of some components of a state, at least 1.
+/// The size of a state: the largest absolute value of its components, at least 1.
 pub(crate) fn size(components: &[f64]) -> f64 {
     let values = components.iter();
     values.fold(1.0_f64, |most, value| most.max(value.abs()))

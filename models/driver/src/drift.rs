@@ -89,7 +89,7 @@ impl Series {
         largest.fold(0.0, f64::max)
     }
 
-    /// Increase over the run of the straight line fitted to the means of the windows: the drift, since oscillations
+    /// The drift: increase over the run of the straight line fitted to the means of the windows, in which oscillations
     /// cancel.
     pub fn drift(&self) -> f64 {
         let points: Vec<_> = self.windows.iter().map(|it| (it.t, it.mean)).collect();

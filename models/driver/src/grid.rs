@@ -10,7 +10,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The time of this index; `None` past the last.
+    /// The time at this index; `None` past the last.
     pub fn time(&self, index: u64) -> Option<f64> {
         let last = self.count.checked_sub(1)?;
         match index {
@@ -21,14 +21,15 @@ impl Grid {
     }
 }
 
-/// A range that contains the values with a margin; one unit around a constant.
+/// A range that contains the values with a margin of `room` times their range on both sides. The range of a constant
+/// has the size of its absolute value, at least 1.
 pub fn padded(values: impl Iterator<Item = f64>, room: f64) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });
     let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
     let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
-    // A smaller range is rounding error of a constant, or too small for ticks.
+    // A smaller range is the rounding error of a constant, or too small for ticks.
     let is_constant = half <= 1e-12 * middle.abs() || half < 1e-200;
     let half = if is_constant {
         0.5 * middle.abs().max(1.0)

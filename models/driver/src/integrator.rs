@@ -1,4 +1,4 @@
-//! The integrators by name, and the form of the equations that they integrate.
+//! The integrators by name, and the forms of the equations that they integrate.
 
 use dalembert::integrate::{
     ClassicalRungeKutta, ComposedPrinciple, Dop853Scheme, DormandPrince5Scheme, Gauss, Method,
@@ -69,18 +69,18 @@ impl Integrator {
         }
     }
 
-    /// True if it chooses its steps by an error estimate.
+    /// True if it controls its step size by the tolerance.
     pub const fn is_adaptive(self) -> bool {
         matches!(self, Self::Dop853 | Self::Dopri5 | Self::Taylor)
     }
 }
 
-/// Form of the equations: the components of the state of a run.
+/// Form of the equations, which determines the components of the state of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Positions and the quasi-velocities that the constraints leave free: (q, u) on D.
     Reduced,
-    /// Positions and momenta, also off the constraints: (q, p) on T*Q.
+    /// Positions and momenta, which need not satisfy the constraints: (q, p) on T*Q.
     Global,
 }
 

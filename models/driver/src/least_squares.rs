@@ -2,10 +2,10 @@
 
 use crate::linear::norm;
 
-/// Smallest pivot, as a fraction of the largest, that is not taken for 0.
+/// Pivots up to this fraction of the largest length of a column count as 0.
 const SINGULAR: f64 = 1e-13;
 
-/// The vector with the least `|A x - b|`; `columns` are those of A. `None` if A is singular.
+/// The vector `x` that minimises `|A x - b|`, with the columns of `A`; `None` if its columns are dependent.
 pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
     let (rows, unknowns) = (b.len(), columns.len());
     if rows < unknowns {
@@ -43,7 +43,7 @@ pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
     x.iter().all(|value| value.is_finite()).then_some(x)
 }
 
-/// The vector with the least `|J x - r|^2 + damping^2 |x|^2`.
+/// The vector `x` that minimises `|J x - r|^2 + damping^2 |x|^2`, with the columns of `J` and the residuals `r`.
 pub(crate) fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
     let count = columns.len();
     let rows: Vec<Vec<f64>> = (columns.iter().enumerate())
@@ -58,7 +58,7 @@ pub(crate) fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> O
     solve(&rows, &right)
 }
 
-/// Reflects a vector at the plane at right angles to `reflector`.
+/// Reflects a vector at the plane orthogonal to `reflector`.
 fn reflect(reflector: &[f64], vector: &mut [f64]) {
     let square: f64 = reflector.iter().map(|value| value * value).sum();
     if square == 0.0 {

@@ -1,8 +1,8 @@
-//! Runs of models that are known only at run time, periodic orbits, and the cost of accuracy.
+//! Runs and analysis of models that are known only at run time.
 //!
 //! | file | job |
 //! |---|---|
-//! | `model.rs` | the trait of a model whose type is erased, and the data that its functions take and return |
+//! | `model.rs` | the trait of a model whose type is erased, and the data of its interface |
 //! | `typed.rs` | the implementation of this trait for the type of a system |
 //! | `run/` | one run: its settings, its observer, its end |
 //! | `accuracy/` | measured errors of integrators, with work and time |
@@ -14,15 +14,15 @@
 //! | `linearisation/` | equilibria, and linearised equations with inputs and outputs |
 //! | `control/` | extremals of models with a cost |
 //! | `dynamic/` | dynamic programming of models with a cost |
-//! | `modulo.rs` | groups up to which orbits close |
+//! | `modulo.rs` | symmetry groups up to which orbits close |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
-//! | `course.rs` | defaults of a run for values that its request leaves open |
+//! | `course.rs` | defaults for values that the request of a run leaves open |
 //! | `beginning.rs` | initial states from given components |
 //! | `names.rs`, `words.rs`, `outcome.rs` | names of quantities; refusals, faults and outcomes in the names of the model |
 //!
-//! A model that has a form is run by the system of all forms ([`of_form`]), which is compiled once, in this crate. Any
-//! other model is compiled, with the code that runs it, at the place that names its type ([`of_type`]).
+//! An erased system, compiled once in this crate, runs every model that has a form ([`of_form`]). Any other model is
+//! compiled together with the code that runs it, in the crate that names its type ([`of_type`]).
 
 #![forbid(unsafe_code)]
 

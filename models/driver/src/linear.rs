@@ -1,6 +1,6 @@
 //! Vectors and determinants. A matrix is a list of columns.
 
-/// The determinant of a square matrix, by its columns.
+/// The determinant of a square matrix, by Gaussian elimination with pivoting.
 pub(crate) fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
     let n = columns.len();
     let mut value = 1.0;
@@ -27,7 +27,7 @@ pub(crate) fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
     value
 }
 
-/// The Euclidean length.
+/// The Euclidean length, without overflow or underflow of squares.
 pub(crate) fn norm(values: &[f64]) -> f64 {
     let largest = values
         .iter()

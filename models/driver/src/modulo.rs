@@ -1,4 +1,5 @@
-//! Groups of symmetries whose flows are affine in the coordinates: translations, rotations, and what they generate.
+//! Symmetry groups whose flows are affine in the coordinates: translations, rotations and the groups that they
+//! generate.
 //!
 //! ```text
 //! dq/ds = A q + c,   dqdot/ds = A qdot,   [A q + a, B q + b] = (B A - A B) q + B a - A b
@@ -10,10 +11,10 @@ use dalembert::variations::group::{GENERATORS, Group};
 
 use crate::linear::{add, dot, norm};
 
-/// Share of a field that must remain beside those before it.
+/// A field counts as dependent on others if its orthogonal part is at most this fraction of it.
 const DEPENDENT: f64 = 1e-10;
 
-/// Most terms of a power series whose argument is at most 1.
+/// Maximum number of terms of a power series whose argument is at most 1.
 const TERMS: u32 = 30;
 
 /// A vector field that is affine in the coordinates.
@@ -21,30 +22,30 @@ const TERMS: u32 = 30;
 pub struct Generator {
     /// The field as written.
     pub name: String,
-    /// N rows of N: the derivative of the field.
+    /// The derivative of the field: N rows of N entries.
     pub linear: Vec<Vec<f64>>,
     /// The field at 0.
     pub constant: Vec<f64>,
-    /// True if its momentum is conserved.
+    /// True if the momentum of the field is conserved.
     pub keeps_momentum: bool,
 }
 
-/// Symmetries modulo which an orbit closes.
+/// The symmetries up to which an orbit closes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Symmetries {
     generators: Vec<Generator>,
 }
 
-/// Reason for which fields generate no group that is followed.
+/// Reason why fields do not generate a supported group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoGroup {
-    /// More fields than are followed.
+    /// There are more fields than supported.
     #[error("at most {GENERATORS} fields are followed together")]
     Many,
     /// A field is a combination of those before it.
     #[error("field {0} is a combination of those before it")]
     Dependent(usize),
-    /// The commutator of two fields is no combination of the fields.
+    /// The commutator of two fields is not a combination of the fields.
     #[error(
         "fields {0} and {1} do not commute, and their commutator is no combination of the fields; add it"
     )]
@@ -113,7 +114,7 @@ impl Generator {
         entries
     }
 
-    /// Largest sum of a row of the linear part.
+    /// Largest sum of absolute values in a row of the linear part.
     fn size(&self) -> f64 {
         let sums = self.linear.iter();
         let sums = sums.map(|row| row.iter().map(|entry| entry.abs()).sum());
@@ -121,7 +122,7 @@ impl Generator {
     }
 }
 
-/// The part of a vector at right angles to orthonormal ones.
+/// The part of a vector orthogonal to orthonormal vectors.
 fn remainder(basis: &[Vec<f64>], vector: &[f64]) -> Vec<f64> {
     let mut left = vector.to_vec();
     for _ in 0..2 {
@@ -134,7 +135,7 @@ fn remainder(basis: &[Vec<f64>], vector: &[f64]) -> Vec<f64> {
 }
 
 impl Symmetries {
-    /// The rate of a position, or of a velocity, along the combination of the fields with these factors.
+    /// The rate of a position, or of a velocity, along the combination of the fields with the factors `element`.
     fn rate(&self, element: &[Dual], values: &[Dual], is_position: bool) -> Vec<Dual> {
         let mut rates = vec![Dual::ZERO; values.len()];
         for (factor, generator) in element.iter().zip(&self.generators) {
@@ -151,7 +152,7 @@ impl Symmetries {
         rates
     }
 
-    /// Moves values by the time 1 along the combination of the fields with these factors, in `steps` steps.
+    /// Moves values along the combination of the fields with the factors `element` for the time 1, in `steps` steps.
     fn follow(&self, element: &[Dual], values: &mut [Dual], is_position: bool, steps: u32) {
         let share = 1.0 / f64::from(steps);
         for _ in 0..steps {

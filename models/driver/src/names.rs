@@ -58,7 +58,7 @@ pub fn momentum(coordinate: &str) -> String {
     format!("p_{coordinate}")
 }
 
-/// The coordinates' names in order.
+/// The names of the coordinates, in order.
 pub fn coordinates(description: &Description) -> impl Iterator<Item = &'static str> + Clone {
     description
         .coordinates
@@ -66,12 +66,12 @@ pub fn coordinates(description: &Description) -> impl Iterator<Item = &'static s
         .map(|coordinate| coordinate.name)
 }
 
-/// The surfaces' names in order.
+/// The names of the surfaces, in order.
 pub fn surfaces(description: &Description) -> impl Iterator<Item = &'static str> + Clone {
     description.surfaces.iter().map(|surface| surface.name)
 }
 
-/// The nearest accepted name, if there is one, and all accepted names.
+/// Text with the nearest accepted name, if one is near, and all accepted names.
 fn hints(given: &str, accepted: &[String]) -> String {
     let mut text = String::new();
     if let Some(nearest) = nearest(given, accepted) {
@@ -86,7 +86,7 @@ fn hints(given: &str, accepted: &[String]) -> String {
     text
 }
 
-/// The first of the names nearest to `given`, unless more than a third of its letters differ.
+/// The accepted name nearest to `given`, unless more than a third of its letters differ.
 fn nearest<'a>(given: &str, accepted: &'a [String]) -> Option<&'a String> {
     let lower = given.to_lowercase();
     let distance = |name: &String| strsim::damerau_levenshtein(&lower, &name.to_lowercase());

@@ -21,18 +21,18 @@ use crate::model::{Point, point};
 use crate::modulo::Symmetries;
 use crate::refusal::Refusal;
 
-/// Request for a periodic orbit, or for an exponent.
+/// Request for a periodic orbit, or for a Lyapunov exponent.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// The index of the surface that is the section.
     pub surface: usize,
-    /// Number of returns in a period, or over which deviations grow.
+    /// Number of returns in a period, or number over which the growth of deviations is measured.
     pub returns: u32,
     /// Longest time of one return.
     pub horizon: f64,
     /// The tolerance of the integrator.
     pub tolerance: Tolerance,
-    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
+    /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
     /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
@@ -51,24 +51,24 @@ pub struct Found {
     pub after: Point,
     /// Distance between the point of the section and its image.
     pub residual: f64,
-    /// The factors of the symmetries: their flows take the point to its image.
+    /// The factors of the symmetries whose flow takes the point to its image.
     pub element: Vec<f64>,
     /// Number of Newton steps.
     pub iterations: u32,
     /// Directions of the section, each in components of the state.
     pub directions: Vec<Vec<f64>>,
-    /// The derivative of the return in these directions, row after row.
+    /// The derivative of the return map in these directions, row by row.
     pub derivative: Vec<f64>,
     /// The Floquet multipliers: real and imaginary parts.
     pub multipliers: Vec<[f64; 2]>,
 }
 
-/// Work on the section of a search, on a system of any type.
+/// A computation on the section of a search, for a system of any type.
 pub(crate) trait Work {
     /// Its result.
     type Output;
 
-    /// Does the work, from the first arrival after a start.
+    /// Computes the result from the first arrival after a start.
     fn on<S: Instance + Scene + Variational>(
         self,
         system: &S,
@@ -77,7 +77,7 @@ pub(crate) trait Work {
     ) -> Result<Self::Output, OrbitError>;
 }
 
-/// Visitor that does some work from this state on.
+/// Visitor that makes a computation from this state on.
 pub(crate) struct Visit<'a, W> {
     pub search: &'a Search,
     pub q: &'a [f64],
@@ -86,7 +86,7 @@ pub(crate) struct Visit<'a, W> {
 }
 
 impl<W: Work> VariationalVisitor for Visit<'_, W> {
-    /// The inner error explains why the work was not done, the outer one why no run starts.
+    /// The inner error says why the computation fails, the outer one why no run starts.
     type Output = Result<Result<W::Output, OrbitError>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
@@ -136,7 +136,7 @@ impl Work for ForReturn {
     }
 }
 
-/// Computation of an exponent.
+/// Computation of a Lyapunov exponent.
 pub(crate) struct ForExponent;
 
 impl Work for ForExponent {
@@ -214,7 +214,7 @@ fn orbit<S: Instance + Scene + Variational>(
     section.periodic(&first.before, ITERATIONS)
 }
 
-/// The error, unless it is that no run starts.
+/// Separates a refused start from other errors.
 fn begun(error: OrbitError) -> Result<OrbitError, Refusal> {
     match error {
         OrbitError::Section(SectionError::Start(error)) => Err(error.into()),
@@ -231,7 +231,7 @@ fn started<S: Instance>(system: &S, q: &[f64], qdot: &[f64]) -> Result<S::State,
     Ok(start.map_err(StateError::from)?)
 }
 
-/// The section of a search, with one return, which takes at most the time `horizon`.
+/// The section of a search with a single return, which takes at most the time `horizon`.
 pub(crate) fn section<'a, S: Instance + Scene + Variational>(
     system: &'a S,
     search: &'a Search,
@@ -257,7 +257,7 @@ pub(crate) fn section<'a, S: Instance + Scene + Variational>(
 }
 
 impl Search {
-    /// The leading coordinates of an element, one for each symmetry.
+    /// The leading coordinates of an element, one per symmetry.
     pub(crate) fn factors(&self, element: &Element) -> Vec<f64> {
         let count = self.modulo.as_ref().map_or(0, Group::dimension);
         element[..count.min(element.len())].to_vec()

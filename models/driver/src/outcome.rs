@@ -13,7 +13,7 @@ pub enum Fact {
     Number(f64),
     /// An index.
     Index(usize),
-    /// A yes or no.
+    /// A truth value.
     Flag(bool),
     /// A declared name.
     Name(&'static str),
@@ -21,7 +21,7 @@ pub enum Fact {
     List(Vec<Fact>),
 }
 
-/// The facts of an outcome besides its kind and its time, in the model's names.
+/// The facts of an outcome apart from its kind and its time, in the model's names.
 pub fn details(description: &Description, outcome: &Outcome) -> Vec<(&'static str, Fact)> {
     let surface = |index: usize| ("surface", name(names::surfaces(description), index));
     let constraint = |index: usize| {
@@ -193,14 +193,14 @@ pub fn explanation(description: &Description, outcome: &Outcome) -> Option<Strin
     })
 }
 
-/// A declared name; the index itself past the last.
+/// A declared name; the index itself if it is past the last name.
 fn declared(mut names: impl Iterator<Item = &'static str>, index: usize) -> String {
     names
         .nth(index)
         .map_or_else(|| index.to_string(), str::to_owned)
 }
 
-/// A declared name as a fact; the index itself past the last.
+/// A declared name as a fact; the index itself if it is past the last name.
 fn name(mut names: impl Iterator<Item = &'static str>, index: usize) -> Fact {
     names.nth(index).map_or(Fact::Index(index), Fact::Name)
 }

@@ -17,7 +17,7 @@ pub(crate) trait Owner {
 
     fn system(&self) -> Self::System<'_>;
 
-    /// The form, of a model that has one.
+    /// The form, if the model has one.
     fn form(&self) -> Option<&erased::Form>;
 
     fn description(&self) -> &Description;
@@ -32,7 +32,7 @@ pub(crate) trait Owner {
     fn mode(&self) -> Option<(usize, Shared<erased::Form>)>;
 }
 
-/// The model of a type.
+/// Owner of a model by its type.
 pub(crate) struct OfType<M>(pub M);
 
 impl<M: Model + 'static> Owner for OfType<M> {
@@ -67,7 +67,7 @@ impl<M: Model + 'static> Owner for OfType<M> {
     }
 }
 
-/// The model of a form, whose vectors have at most `C` components.
+/// Owner of a model by its form, whose vectors have at most `C` components.
 pub(crate) struct OfForm<const C: usize> {
     form: Shared<erased::Form>,
     /// The values of all parameters, inputs included.
@@ -77,7 +77,7 @@ pub(crate) struct OfForm<const C: usize> {
 }
 
 impl<const C: usize> OfForm<C> {
-    /// The model with its declared values; `None` if the form has longer vectors.
+    /// The model with its declared parameter values; `None` if the form has longer vectors.
     pub fn of(form: &Shared<erased::Form>) -> Option<Self> {
         let values = TaylorField::parameters(&Erased::<C>::of(form)?);
         Some(Self {

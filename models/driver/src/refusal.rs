@@ -1,10 +1,10 @@
-//! Reasons for which a run does not start.
+//! Reasons why a run does not start.
 
 use dalembert::integrate::ToleranceError;
 use dalembert::{MaxStepError, StartError, StateError};
 use thiserror::Error;
 
-/// Reasons for which no motion of a model can be certified.
+/// Reasons why no motion of a model can be certified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Uncertified {
@@ -13,7 +13,7 @@ pub enum Uncertified {
         "certified motion needs a model that is loaded from a text, and this one is compiled into the program; give the file of its declaration"
     )]
     Compiled,
-    /// The form is the global one and the model has a reduced one.
+    /// The global form is requested for a model that can be certified in its reduced form only.
     #[error(
         "certified motion of this model needs the reduced form; leave out --form global and --off-constraint keep"
     )]
@@ -21,12 +21,12 @@ pub enum Uncertified {
     /// The scene was declared without `variations`, which the derivatives of a motion need.
     #[error("certified motion needs `variations`; add it to the declaration of the scene")]
     WithoutVariations,
-    /// The system refuses a thread with the stack that is needed.
+    /// The operating system does not provide a thread with the required stack.
     #[error("certified motion needs 16 MiB of stack, which the system does not give")]
     NoThread,
 }
 
-/// Reasons for which a run does not start.
+/// Reasons why a run does not start.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Refusal {

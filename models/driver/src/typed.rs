@@ -46,7 +46,7 @@ struct Typed<O> {
     code: Code,
 }
 
-/// The model of a type, with its declared values.
+/// The model of a type, with its declared parameter values.
 pub fn of_type<M: Model + Described + 'static>() -> Box<dyn AnyModel> {
     Box::new(Typed {
         owner: OfType(M::with_defaults()),
@@ -54,9 +54,9 @@ pub fn of_type<M: Model + Described + 'static>() -> Box<dyn AnyModel> {
     })
 }
 
-/// The model of a form, with its declared values, run by the system of the least sufficient capacity
-/// ([`erased::Form::capacity`]); `None` if the form exceeds every capacity. A form with owners is freed with the last of them.
-// NOTE: not generic, so that all that runs forms is compiled in this crate, once.
+/// The model of a form, with its declared parameter values, run by an erased system of the least sufficient capacity
+/// ([`erased::Form::capacity`]). `None` if the form exceeds every capacity. A shared form is freed with its last owner.
+// NOTE: not generic, so that the code that runs forms is compiled once, in this crate.
 pub fn of_form(form: Shared<erased::Form>, code: Code) -> Option<Box<dyn AnyModel>> {
     fn with_room<const C: usize>(
         form: &Shared<erased::Form>,
@@ -70,8 +70,8 @@ pub fn of_form(form: Shared<erased::Form>, code: Code) -> Option<Box<dyn AnyMode
         .or_else(|| with_room::<32>(&form, code))
 }
 
-/// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and may
-/// lie off the constraints.
+/// The given velocity, after all checks except that of the constraints. Momenta belong to the global form and need not
+/// satisfy the constraints.
 fn checked_velocity<M: Model>(
     model: &M,
     t: f64,
@@ -106,7 +106,7 @@ fn located<M: Model>(model: &M, origin: &Origin) -> Result<(M::Vector, M::Vector
     Ok((model.position(&state), qdot))
 }
 
-/// The state of a system in either form of a model.
+/// The initial state of a system, which is either form of a model.
 pub(crate) fn prepare<M: Model, S: System<Vector = M::Vector>>(
     model: &M,
     system: &S,
@@ -474,7 +474,7 @@ impl<O: Owner> Runs for Typed<O> {
 }
 
 impl<O: Owner> Typed<O> {
-    /// Does some work at the section of a search; `None` for a scene without variations.
+    /// Makes a computation on the section of a search; `None` for a scene without variations.
     fn at_section<W: Work>(
         &self,
         origin: &Origin,
@@ -493,7 +493,7 @@ impl<O: Owner> Typed<O> {
     }
 }
 
-/// A vector of the same length, with these components; missing components are 0.
+/// A vector of the length of `like` with these components. Missing components are 0.
 pub(crate) fn vector<V: StateVector>(like: &V, components: &[f64]) -> V {
     let mut vector = like.zeroed();
     for (component, &value) in vector.as_mut_slice().iter_mut().zip(components) {

@@ -1,6 +1,6 @@
 //! Derivatives of a run with respect to its start and its parameters, across impacts, as plain data.
 //!
-//! They are computed by the system of all forms with the largest capacity only, for which this code is compiled once.
+//! An erased system of the largest capacity computes them, for which this code is compiled once.
 
 use std::ops::ControlFlow;
 
@@ -32,11 +32,11 @@ type System<'f> = Erased<'f, 32>;
 pub enum Variable {
     /// An initial coordinate.
     Position(usize),
-    /// An initial velocity, by its coordinate; the constraints determine the dependent velocities.
+    /// An initial velocity, by the index of its coordinate. The constraints determine the dependent velocities.
     Velocity(usize),
     /// An initial quasi-velocity.
     Quasi(usize),
-    /// A parameter. The initial positions and velocities (in the reduced form: quasi-velocities) stay constant.
+    /// A parameter. The initial positions and velocities, or quasi-velocities in the reduced form, stay constant.
     Parameter(usize),
 }
 
@@ -51,11 +51,11 @@ pub struct Derivatives {
     pub qdot: Vec<Vec<f64>>,
 }
 
-/// Reasons for which a run has no derivatives.
+/// Reasons why a run has no derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VariationError {
-    /// The form exceeds the largest system.
+    /// The form exceeds the largest capacity.
     #[error(
         "derivatives need a model with vectors of at most 32 components and at most 64 parameters"
     )]
@@ -93,7 +93,7 @@ pub enum VariationError {
 }
 
 impl VariationError {
-    /// The reason for which no run with these settings has derivatives, if there is one.
+    /// The reason why no run with these settings has derivatives, if there is one.
     fn beforehand(description: &Description, settings: &Settings) -> Option<Self> {
         let is_free = description.constraints.is_empty();
         match settings.form {
@@ -112,7 +112,7 @@ impl From<Fault> for VariationError {
 }
 
 impl Variable {
-    /// The coordinate that it is about, if the mode does not have that one.
+    /// The coordinate of the variable, if the mode does not have it.
     fn absent(self, description: &Description, mode: usize) -> Option<usize> {
         let (Self::Position(coordinate) | Self::Velocity(coordinate)) = self else {
             return None;
@@ -121,7 +121,7 @@ impl Variable {
         (!mode.coordinates.contains(&coordinate)).then_some(coordinate)
     }
 
-    /// The variable of this name: a coordinate, a velocity, a quasi-velocity of the reduced form, or a parameter.
+    /// The variable with this name: a coordinate, a velocity, a quasi-velocity of the reduced form, or a parameter.
     ///
     /// # Errors
     /// [`Unknown`] if no variable has this name.
@@ -146,11 +146,11 @@ impl Variable {
     }
 }
 
-/// Derivatives of the last state of a run with respect to these variables. `values` are those of all parameters, inputs
-/// included; the run begins in the mode of this number. The run is given up once `is_over` returns true.
+/// Derivatives of the last state of a run with respect to these variables. `values` are the values of all parameters,
+/// inputs included. The run begins in the mode with the number `mode`. It is abandoned once `is_over` returns true.
 ///
 /// # Errors
-/// [`Refusal`] if the run does not start. The inner error explains why it has no derivatives.
+/// [`Refusal`] if the run does not start. The inner error says why it has no derivatives.
 // NOTE: a function and not a method of `Runs`, so that a program that does not call it is linked without it.
 pub fn differentiate(
     form: &erased::Form,
@@ -194,7 +194,7 @@ pub fn differentiate(
     varied.unwrap_or(Ok(Err(VariationError::WithoutVariations)))
 }
 
-/// Differentiates a run.
+/// Visitor that differentiates a run of any system.
 struct Differentiator<'a> {
     variables: &'a [Variable],
     settings: &'a Settings,
@@ -203,7 +203,7 @@ struct Differentiator<'a> {
     /// Positions and velocities of that state.
     q: &'a [f64],
     qdot: &'a [f64],
-    /// Returns true once the caller gives up the run.
+    /// Returns true once the caller abandons the run.
     is_over: &'a mut dyn FnMut() -> bool,
 }
 
@@ -317,7 +317,7 @@ impl Differentiator<'_> {
         }
         if let Variable::Velocity(coordinate) = variable {
             let reached = system.velocities(&parameters, Dual::of(0.0), &state)?;
-            // A velocity that the constraints determine is not free.
+            // A velocity that the constraints determine does not change by the full amount.
             if (reached.as_slice()[coordinate].slopes()[0] - 1.0).abs() > 1e-9 {
                 return Err(VariationError::Dependent { coordinate });
             }
@@ -326,7 +326,7 @@ impl Differentiator<'_> {
     }
 }
 
-/// Constants: numbers with derivative 0.
+/// A row of constants: dual numbers with derivative 0.
 pub(crate) fn constant<R: Row<Dual>>(values: &[f64]) -> R {
     let mut row = R::zeros(values.len());
     for (entry, value) in row.as_mut_slice().iter_mut().zip(values) {
@@ -352,7 +352,7 @@ fn parameters_along<S: Variational>(system: &S, tangent: &Tangent<S>) -> S::Para
     row
 }
 
-/// Derivatives of positions and velocities from those of the state.
+/// Derivatives of positions and velocities, from the derivatives of the state.
 fn derivatives<S: Instance + Variational>(
     system: &S,
     t: f64,
@@ -374,7 +374,7 @@ fn derivatives<S: Instance + Variational>(
         let parameters = parameters_along(system, tangent);
         let qdot = system.velocities(&parameters, Dual::of(t), &row)?;
         let slope = |value: &Dual| value.slopes()[0];
-        // Positions are components of the state, at places that its mode tells.
+        // Positions are components of the state. The mode determines their indices.
         let mut moved = tangent.state;
         if !system.description().modes.is_empty()
             && let Some((last, mode)) = moved
@@ -395,7 +395,7 @@ fn derivatives<S: Instance + Variational>(
     Ok(found)
 }
 
-/// Variations of a run that the caller may give up.
+/// Variations of a run that the caller may abandon.
 struct Interruptible<'a, 'b, S: Variational> {
     variations: Variations<'a, S>,
     is_over: &'b mut dyn FnMut() -> bool,

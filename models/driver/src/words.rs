@@ -15,7 +15,7 @@ pub struct Advice {
     pub off_position: &'static str,
 }
 
-/// Explains, in the model's names, why a run does not start.
+/// The reason why a run does not start, in the model's names.
 pub fn refusal_text(description: &Description, refusal: &Refusal, advice: &Advice) -> String {
     match refusal {
         Refusal::State(error) => state_text(description, error, advice),
@@ -23,7 +23,7 @@ pub fn refusal_text(description: &Description, refusal: &Refusal, advice: &Advic
     }
 }
 
-/// Explains, in the model's names, why a state was refused.
+/// The reason why a state was refused, in the model's names.
 pub fn state_text(description: &Description, error: &StateError, advice: &Advice) -> String {
     match *error {
         StateError::OffConstraint {
@@ -69,7 +69,7 @@ pub fn state_text(description: &Description, error: &StateError, advice: &Advice
     }
 }
 
-/// Explains, in the model's names, which quantity does not exist at a state.
+/// The reason why a quantity does not exist at a state, in the model's names.
 pub fn fault_text(description: &Description, fault: &Fault) -> String {
     match *fault {
         Fault::MetricNotPositive { pivot, value } => format!(

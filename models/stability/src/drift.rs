@@ -65,7 +65,7 @@ fn off_the_constraint(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Keeps the last state.
+/// Records the last state of a run.
 struct Last<S>(S);
 
 impl<M: System> Observer<M> for Last<M::State> {

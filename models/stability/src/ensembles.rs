@@ -38,7 +38,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// The rows of an ensemble of balls that start at these heights, as the command line writes them, and its exit status.
+/// The rows that the command line writes for an ensemble of balls starting at these heights, and its exit status.
 fn rows(heights: &[f64]) -> (Vec<String>, Exit) {
     let heights = heights.iter().map(|height| format!("{height}\n"));
     let table: String = std::iter::once("x\n".to_owned()).chain(heights).collect();
@@ -55,14 +55,14 @@ fn rows(heights: &[f64]) -> (Vec<String>, Exit) {
     (text.lines().skip(1).map(str::to_owned).collect(), exit)
 }
 
-/// H05
+/// Case H05: an ensemble without members.
 pub fn empty(report: &mut Report) {
     let (rows, exit) = rows(&[]);
     report.equal("rows", rows.len(), 0);
     report.equal("exit", exit, Exit::Reached);
 }
 
-/// H06
+/// Case H06: an ensemble in which one member of 10,000 is refused.
 pub fn one_bad_member(report: &mut Report) {
     let mut heights: Vec<f64> = (0..10_000).map(|k| 0.5 + 1e-4 * f64::from(k)).collect();
     let (good, exit) = rows(&heights);
@@ -76,7 +76,7 @@ pub fn one_bad_member(report: &mut Report) {
     report.equal("done", done, 9999);
 }
 
-/// Hash of the bits of the last states of an ensemble that this many threads run, combined in the order of the members.
+/// Hash of the bits of the last states of an ensemble run on `threads` threads, combined in the order of the members.
 fn hash(setting: Setting, threads: usize, backwards: bool) -> u64 {
     const MEMBERS: usize = 16;
     let member = |index: usize| {
@@ -184,7 +184,7 @@ fn uniform(report: &mut Report) {
     );
 }
 
-/// Area of each of 8 x 8 cells outside of the disk, by strips.
+/// Area outside the disk of each of 8 x 8 cells, by strips.
 fn free_areas() -> [f64; 64] {
     const STRIPS: usize = 4000;
     let mut areas = [0.0; 64];
@@ -210,7 +210,7 @@ fn resident_pages() -> Option<f64> {
     text.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// Adds up times of impacts.
+/// Sums the times of impacts.
 struct Sum(f64);
 
 impl Observer<Model> for Sum {

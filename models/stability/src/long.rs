@@ -91,7 +91,7 @@ pub const CASES: &[Case] = &[
         title: "one run of arithmetic and roots alone on several machines, 200 bounces off a disk in a square",
         right: "the same bits; with the feature `strict` those of every run, see `tests/strict.rs`",
         bound: "a hash kept with the sources",
-        // NOTE: without `strict` multiplication is fused where the program is built for machines that can.
+        // NOTE: without `strict`, multiplications and additions are fused in builds for machines that support it.
         pending: match cfg!(target_feature = "fma") {
             true => Some(
                 "built for fused multiplication without `strict`: the bits are those of such builds",
@@ -161,7 +161,7 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
     let walk = 16.0 * U * (bounces as f64).sqrt();
     report.error("energy", last[0].abs(), walk);
     report.error("angular momentum", last[1].abs(), walk);
-    // Impacts on one side only would be a bias that makes angles drift.
+    // Gaps of one sign would be a bias that makes angles drift.
     let lean = inwards.abs() / (bounces as f64 * squares).sqrt();
     report.error("mean gap over its root mean square", lean, 0.25);
     report.curve("position", ["bounce", "largest error"], marks);
@@ -231,7 +231,8 @@ fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
     report.curve("position", ["bounce", "error"], marks);
 }
 
-/// A chaotic run: a difference of one bit changes all later states. The hash is the 64-bit hash of Fowler, Noll and Vo.
+/// A chaotic run, in which a difference of one bit changes all later states. The hash is the 64-bit hash of Fowler,
+/// Noll and Vo.
 fn same_bits(setting: Setting, report: &mut Report) {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let table = SINAI.model();
@@ -375,8 +376,8 @@ impl Errors<'_> {
         self.system.position(state).as_slice()[0]
     }
 
-    /// Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time since the nearest even
-    /// multiple.
+    /// The error at a time. Between reflections at odd multiples of `t1`, the oscillator is at the cosine of the time
+    /// since the nearest even multiple.
     fn at(&self, t: f64, x: f64) -> f64 {
         let phase = (t + self.t1).rem_euclid(2.0 * self.t1) - self.t1;
         (x - phase.cos()).abs()

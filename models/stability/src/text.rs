@@ -1,4 +1,4 @@
-//! Models loaded from their texts, so that no case needs a compiler.
+//! Models loaded from their texts, so that cases need no compiler.
 
 use std::sync::OnceLock;
 
@@ -35,7 +35,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// The model of this text; the text is not read yet.
+    /// The model of this text. The text is read on first use.
     pub const fn new(text: &'static str) -> Self {
         Self {
             text,
@@ -59,7 +59,7 @@ impl Text {
         self.sized_with(values)
     }
 
-    /// The model as of [`Text::with`], for vectors too long for [`Model`].
+    /// Same as [`Text::with`], for vectors too long for [`Model`].
     ///
     /// # Panics
     /// The panics of [`Text::with`].
@@ -86,7 +86,7 @@ impl Text {
         Erased::of(&self.loaded().form).expect("vectors of no more components")
     }
 
-    /// The scene of this name with its declared values.
+    /// The scene with this name, with its declared values.
     ///
     /// # Panics
     /// The panics of [`Text::model`], and if there is no such scene.
@@ -123,7 +123,7 @@ impl Text {
     }
 }
 
-/// The shipped model of this name, such as `rolling_disk`.
+/// The shipped model with this name, such as `rolling_disk`.
 ///
 /// # Panics
 /// If no shipped model has this name.
@@ -136,7 +136,7 @@ pub fn shipped(name: &str) -> &'static Text {
     text
 }
 
-/// A mode of a model as a system of its own, without the other modes.
+/// A mode of a model as a separate system.
 ///
 /// # Panics
 /// If there is no such mode.
@@ -158,7 +158,7 @@ pub fn set<const C: usize>(model: &mut Erased<'_, C>, name: &str, value: f64) {
     model.set_parameter(place(model, name), value);
 }
 
-/// The value of the parameter of this name.
+/// The value of the parameter with this name.
 ///
 /// # Panics
 /// If there is no such parameter.

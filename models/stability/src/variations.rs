@@ -1,4 +1,4 @@
-//! First variations: the two-form and the volume of section F; saltation, traces and grazes of section G.
+//! First variations: two-form and volume (section F); saltation matrices, traces and grazing impacts (section G).
 
 use dalembert::variations::Section;
 use dalembert::{
@@ -192,7 +192,7 @@ fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
 }
 
 fn identity_reset(report: &mut Report) {
-    // The start lies on the line, so the differential is that of the reset alone.
+    // The start lies on the line, so that the derivative is the saltation matrix of the reset alone.
     let (x, y) = (0.75, 1.0);
     let switched = SWITCHED.model();
     let start: (&[f64], &[f64]) = (&[x, y, 0.0], &[0.0; 3]);

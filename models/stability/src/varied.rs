@@ -18,14 +18,14 @@ const TOLERANCE: f64 = 1e-15;
 
 /// Systems whose variations are compiled in this crate, so that a test only calls them.
 pub trait Varied: Driven + Instance + Variational {
-    /// Makes a run, and transports directions along it.
+    /// Makes a run, and propagates tangents along it.
     fn vary(
         &self,
         drive: &mut Drive<Self>,
         tangents: &mut [Tangent<Self>],
     ) -> (Run<Self::State>, Result<(), Undefined>);
 
-    /// Transports directions across one event.
+    /// Propagates tangents across one event.
     ///
     /// # Errors
     /// [`Undefined`] if the event has no derivative.
@@ -52,7 +52,7 @@ pub trait Varied: Driven + Instance + Variational {
     fn periodic(returns: &Returns<'_, Self>, near: &Self::State)
     -> Result<Orbit<Self>, OrbitError>;
 
-    /// The image of a point, with its derivative in a parameter (see [`Section::image`]).
+    /// The image of a point, with its derivative with respect to a parameter (see [`Section::image`]).
     ///
     /// # Errors
     /// [`OrbitError`] if there is none.
@@ -116,7 +116,7 @@ macro_rules! varied {
 varied!(Model Large);
 
 impl<M: Varied> Course<'_, M> {
-    /// Makes the run by an integrator, and transports directions along it.
+    /// Makes the run by an integrator, and propagates tangents along it.
     pub fn vary(
         self,
         integrator: Integrator,
@@ -139,7 +139,7 @@ pub struct Returns<'a, M> {
     pub count: u32,
     /// Longest time of a return.
     pub horizon: f64,
-    /// The law on the surface, instead of the declared one.
+    /// A law that replaces the declared one of the surface.
     pub law: Option<Law>,
 }
 
@@ -175,7 +175,7 @@ impl<'a, M: Varied> Returns<'a, M> {
         M::periodic(self, near)
     }
 
-    /// The image of a point of the section, with its derivative in a parameter.
+    /// The image of a point of the section, with its derivative with respect to a parameter.
     ///
     /// # Errors
     /// [`OrbitError`] if there is none.

@@ -1,7 +1,8 @@
-//! The functions that a generator derives from a model, by name: the agreement of generator and runtime.
+//! Names, arguments and values of the functions that the generator derives from a model, shared by generator and
+//! runtime.
 
-/// A function of a model in one form of its equations. Its values are numbers one after the other. It reads a time,
-/// numbers in a first place, numbers in a second place ([`Kernel::first`], [`Kernel::second`]), and the parameters.
+/// A function of a model in one form of its equations. Its arguments are the time, two lists of numbers
+/// ([`Kernel::first`], [`Kernel::second`]) and the parameters. It writes its values as one list of numbers.
 ///
 /// `n` is the number of coordinates, `m` that of constraints, `k` that of momenta or quasi-velocities in a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -14,9 +15,9 @@ pub enum Kernel {
     Velocity,
     /// The momenta of a state that does not hold them: n.
     Momentum,
-    /// Momenta or quasi-velocities for given velocities: k.
+    /// The momenta or quasi-velocities for given velocities: k.
     Motion,
-    /// Momenta or quasi-velocities of the allowed velocities nearest to given ones, in the metric: k.
+    /// The momenta or quasi-velocities of the allowed velocities nearest to given ones in the metric: k.
     Nearest,
     /// The quasi-velocities of the allowed momenta nearest to given ones: k.
     NearestMomenta,
@@ -28,9 +29,10 @@ pub enum Kernel {
     Multipliers,
     /// The residuals of the constraints, then the sums of the absolute values of their terms: 2 m.
     Residuals,
-    /// The constraint forms row after row, then their affine parts: m n + m. At velocities where constraints are not linear in them.
+    /// The constraint forms row by row, then their affine parts: m n + m. Forms of nonlinear constraints depend on the
+    /// velocities.
     Forms,
-    /// The momenta after a step, brought back to the constraints: k.
+    /// The momenta after a step, projected onto the constraints: k.
     Restore,
     /// The values of integrable constraints.
     Levels,
@@ -50,23 +52,24 @@ pub enum Kernel {
     GapRates,
     /// The second rates of all gaps, for given rates of the motion.
     GapAccelerations,
-    /// Changes of the rates of all gaps by an impulse.
+    /// The changes of the rates of all gaps by an impulse.
     GapResponses,
     /// The margins of the conditions of a surface: its own, then those of others that it depends on.
     Conditions(usize),
     /// The coefficient of the law of a surface.
     Coefficient(usize),
-    /// The blow by the law of a surface: size, share, direction.
+    /// The impulse by the law of a surface: size, share, direction.
     Blow(usize),
-    /// Quantities of an impact on a surface: gap rate, constrained rate, rate of the surface, constrained and free compliance, direction.
+    /// The quantities of an impact on a surface: gap rate, constrained rate, rate of the surface, constrained and free
+    /// compliance, direction.
     Contact(usize),
-    /// Positions and velocities after the reset of a surface: 2 n.
+    /// The positions and velocities after the reset of a surface: 2 n.
     Reset(usize),
-    /// Positions and velocities in the mode that a surface leads to.
+    /// The positions and velocities in the mode that a surface leads to.
     Entry(usize),
     /// The impulse after which the instantaneous constraints of a surface hold: k.
     Focus(usize),
-    /// Addition to rates of the motion that keeps the instantaneous constraints of a surface: k.
+    /// The correction of the rates of the motion that keeps the instantaneous constraints of a surface: k.
     Trace(usize),
     /// The divergence of the motion.
     Divergence,
@@ -78,7 +81,7 @@ pub enum Kernel {
     LogVolume,
     /// The gradient of the function that is integrated: n.
     DensityGradient,
-    /// Powers that change the energy, by cause.
+    /// The powers that change the energy, one per cause.
     Powers,
     /// The declared outputs.
     Outputs,
@@ -86,11 +89,11 @@ pub enum Kernel {
     ViewPath,
     /// The region of the view.
     ViewRegion,
-    /// Declared positions, then velocities: 2 n.
+    /// The declared initial positions, then velocities: 2 n.
     Initial,
-    /// The declared time.
+    /// The declared final time.
     Until,
-    /// All quantities derived at a state.
+    /// All geometric quantities derived at a state.
     Geometry,
 }
 
@@ -99,9 +102,9 @@ pub enum Kernel {
 pub enum Shape {
     /// One number.
     Scalar,
-    /// This count of numbers.
+    /// A list of this many numbers.
     Vector(usize),
-    /// Rows and columns; row after row.
+    /// A matrix with these numbers of rows and columns, row by row.
     Matrix(usize, usize),
 }
 
@@ -116,7 +119,7 @@ impl Shape {
     }
 }
 
-/// Numbers that a kernel reads in its first place.
+/// Content of the first list of numbers that a kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum First {
     /// Nothing.
@@ -127,7 +130,7 @@ pub enum First {
     State,
 }
 
-/// Numbers that a kernel reads in its second place.
+/// Content of the second list of numbers that a kernel reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Second {
     /// Nothing.
@@ -145,7 +148,7 @@ pub enum Second {
 }
 
 impl Kernel {
-    /// The numbers in its first place.
+    /// Content of its first list of numbers.
     pub const fn first(self) -> First {
         match self {
             Self::Scale
@@ -172,7 +175,7 @@ impl Kernel {
         }
     }
 
-    /// The numbers in its second place.
+    /// Content of its second list of numbers.
     pub const fn second(self) -> Second {
         match self {
             Self::Motion | Self::Nearest | Self::Force | Self::Residuals | Self::Forms => {

@@ -1,4 +1,4 @@
-//! Eight motions abreast: a number of each in a lane of a vector.
+//! SIMD vectors as numbers: each of eight lanes holds a number of one motion.
 
 use wide::f64x8;
 

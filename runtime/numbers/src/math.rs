@@ -51,7 +51,7 @@ pub fn sqrt(x: f64) -> f64 {
     }
 }
 
-/// `a b + c`. Rounded once where the processor does so in one instruction and `strict` is off.
+/// `a b + c`. It is rounded once if the processor has a fused instruction and `strict` is off, else twice.
 #[inline(always)]
 pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     #[cfg(all(target_feature = "fma", feature = "std", not(feature = "strict")))]
@@ -64,7 +64,7 @@ pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
-/// The largest integer that is not above a number.
+/// The largest integer not above a number.
 #[inline(always)]
 pub fn floor(x: f64) -> f64 {
     #[cfg(feature = "std")]

@@ -1,10 +1,11 @@
-//! Numbers along a stretch of motion: the interval of their values, and that of their rates.
+//! Quantities along a stretch of motion, as intervals of their values and of their rates.
 //!
-//! For a function `f` over numbers and a path `x(s)`, `f(x)` encloses the values of `f(x(s))` on the stretch, and its
-//! rates where it has one; where it has a kink, the slopes of all its chords. Its values therefore change along the
-//! stretch by no more than the rates allow, and with rates of one sign it has at most one root.
+//! For a function `f` over numbers and a path `x(s)`, `f(x)` encloses the values and the rates of `f(x(s))` on the
+//! stretch. The interval of the rates also holds the slopes of all chords, so that it is valid for functions with
+//! kinks. If all rates have one sign, the function has at most one root on the stretch.
 //!
-//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 6 (centred forms).
+//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 6 (centred
+//! forms).
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -30,7 +31,7 @@ impl Rated {
         }
     }
 
-    /// The value of a function, where its derivative lies in an interval.
+    /// A function of this quantity, with the given enclosures of its value and of its derivative.
     #[inline(always)]
     fn chain(self, value: Interval, derivative: Interval) -> Self {
         // A constant has the rate 0, however steep the function is.
@@ -112,7 +113,7 @@ impl Numbers for Rated {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A number inside. It says nothing about the rest of the stretch.
+    /// A number in the interval of values. It implies nothing for the rest of the stretch.
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.value.lane(lane)
@@ -152,7 +153,8 @@ impl Numbers for Rated {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are unbounded.
+    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are
+    /// unbounded.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {

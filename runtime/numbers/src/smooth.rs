@@ -1,5 +1,5 @@
-//! Values and derivatives of the functions of one number, each written once for all numbers that carry derivatives: [`crate::Rated`],
-//! [`crate::Bent`] and the dual numbers of variations.
+//! Values and derivatives of the functions of one number, each written once for all numbers that carry derivatives:
+//! [`crate::Rated`], [`crate::Bent`] and the dual numbers of variations.
 
 use crate::interval::Interval;
 use crate::numbers::Numbers;
@@ -20,7 +20,7 @@ pub trait Smooth: Numbers {
     #[must_use]
     fn reciprocal(self) -> Self;
 
-    /// The part of an interval between two ends; a double as it is.
+    /// The intersection of an interval with `[lo, hi]`. A double is unchanged.
     #[must_use]
     fn within(self, lo: f64, hi: f64) -> Self;
 }
@@ -155,7 +155,7 @@ macro_rules! functions_by_first_derivatives {
     )+};
 }
 
-/// The same for a type with two derivatives: `chain(value, first, second)`.
+/// The functions of one number for a type with two derivatives, from its `value` and `chain(value, first, second)`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! functions_by_derivatives {

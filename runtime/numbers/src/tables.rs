@@ -1,4 +1,4 @@
-//! Data of a form of a model besides its kernels.
+//! Data of a form of a model, apart from its kernels.
 
 use crate::description::{Documentation, ParameterInfo};
 use crate::held::Held;
@@ -15,7 +15,7 @@ pub enum Form {
     FirstOrder,
 }
 
-/// Counts.
+/// Sizes of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dimensions {
     /// Components of a state; one more than those of the longest mode for a model with modes.
@@ -50,14 +50,14 @@ pub struct Condition {
     pub is_closed: bool,
 }
 
-/// Relation of a surface to others of the same gap. A list of conditions holds where all of them hold.
+/// Relation of a surface to others of the same gap. A list of conditions holds where all its conditions hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
     /// It counts by its own conditions.
     Independent,
-    /// It counts where no other list holds.
+    /// It counts where no list of another surface holds.
     Otherwise,
-    /// It counts where its own conditions hold, or no other list does.
+    /// It counts where its own conditions hold, or where no list of another surface holds.
     Last,
 }
 
@@ -72,9 +72,9 @@ pub struct Surface {
     pub conditions: Held<[Condition]>,
     /// Conditions of the other surfaces of the same gap, list after list.
     pub others: Held<[Held<[Condition]>]>,
-    /// Rule by which both decide if the surface counts.
+    /// Rule by which `conditions` and `others` decide if the surface counts.
     pub beside: Beside,
-    /// The coordinates that the gap depends on, by bits; all from the last bit on share it.
+    /// Bit set of the coordinates that the gap depends on. The last bit stands for all coordinates from its index on.
     pub takes: u64,
 }
 
@@ -107,9 +107,10 @@ pub struct Transition {
     pub enters: usize,
     /// Rule of the entry.
     pub passage: Passage,
-    /// True if the surface counts from both sides: the opposite of its gap belongs to another transition of the same mode.
+    /// True if the motion may be on both sides of the surface: another transition of the same mode has the negative of
+    /// its gap.
     pub has_no_side: bool,
-    /// The surface of the model that leads back at once, between first-order modes.
+    /// Between first-order modes, the surface of the model whose transition can lead back at once.
     pub opposite: Option<usize>,
 }
 
@@ -120,19 +121,19 @@ pub struct Mode {
     pub tables: Held<Tables>,
     /// Its self-description.
     pub documentation: Held<Documentation>,
-    /// The place of its kernels among those of the model.
+    /// Index of its kernels among those of the model.
     pub kernels: usize,
-    /// The place of the kernels of its global form, which may be the same.
+    /// Index of the kernels of its global form, which may be the same.
     pub global: usize,
-    /// Coordinates.
+    /// Indices of its coordinates among those of the model.
     pub coordinates: Held<[usize]>,
-    /// Constraints.
+    /// Indices of its constraints.
     pub constraints: Held<[usize]>,
-    /// Surfaces.
+    /// Indices of its surfaces.
     pub surfaces: Held<[usize]>,
-    /// Outputs.
+    /// Indices of its outputs.
     pub outputs: Held<[usize]>,
-    /// The transition of each of its surfaces, where it leads to another mode.
+    /// One entry per surface of the mode: its transition, if it leads to another mode.
     pub transitions: Held<[Option<Transition>]>,
 }
 
@@ -141,7 +142,7 @@ pub struct Mode {
 pub struct Tables {
     /// Components of a state.
     pub form: Form,
-    /// Counts.
+    /// Sizes.
     pub dimensions: Dimensions,
     /// The parameters, without inputs.
     pub parameters: Held<[ParameterInfo]>,
@@ -153,30 +154,30 @@ pub struct Tables {
     pub can_be_narrow: bool,
     /// True if constraint forms may become dependent.
     pub can_lose_rank: bool,
-    /// True if states drift off constraints to which runs bring them back.
+    /// True if integration drifts off the constraints, so that runs project states back onto them.
     pub drifts: bool,
     /// True if constraints are linear or affine in the velocities.
     pub is_linear: bool,
-    /// True if its runs can be varied.
+    /// True if runs of the form can be differentiated.
     pub varies: bool,
-    /// The levels, where some are declared.
+    /// The position levels of constraints, if some are declared.
     pub levels: Held<[Level]>,
     /// The surfaces.
     pub surfaces: Held<[Surface]>,
     /// The configuration from which the density of the invariant volume is integrated, if it has no closed form.
     pub density_reference: Option<Held<[f64]>>,
-    /// The modes, of a model that has some.
+    /// The modes; empty for a model without modes.
     pub modes: Held<[Mode]>,
 }
 
 /// Work of the expansions of a system, in multiplications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Work {
-    /// Work of values at one moment: of a rate, and of gaps where there are surfaces.
+    /// Work of one evaluation of the rate, and of the gaps if there are surfaces.
     pub values: u32,
     /// Number of sums over products of coefficients. Each needs a multiplication for every pair of coefficients.
     pub sums: u32,
-    /// The order after which the series of motion and gaps end, if they end for all numbers.
+    /// Degree of the series of motion and gaps, if they are polynomials for all values of the parameters.
     pub degree: Option<u32>,
 }
 

@@ -1,12 +1,12 @@
-//! Functions along a stretch of motion: a cubic, and bounds of the distance from it.
+//! Taylor models: functions along a stretch of motion, as a cubic and bounds of the remainder.
 //!
 //! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)`
-//! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a function
-//! `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. On a stretch of half the length the error is a sixteenth:
-//! one model locates the fall of a flight, where a dozen intervals are needed otherwise.
+//! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a
+//! function `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. Halving the stretch divides the error by
+//! sixteen: one model locates the root of a gap during a flight, for which interval arithmetic needs a dozen stretches.
 //!
-//! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International Journal of Pure and
-//! Applied Mathematics 6 (2003).
+//! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International
+//! Journal of Pure and Applied Mathematics 6 (2003).
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -18,19 +18,19 @@ use crate::rated::Rated;
 /// Rounding of a few operations, relative to the sum of the absolute values of the operands.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// The same with elementary functions, which err by less than four units in the last place.
+/// Rounding of a few operations with elementary functions, whose errors are below four units in the last place.
 const CALL: f64 = 32.0 * f64::EPSILON;
 
-// NOTE: operations are calls: inlined they would be compiled again for every gap of every model.
+// NOTE: operations are not inlined. Otherwise they would be compiled again for every gap of every model.
 
 /// A cubic and a remainder; see the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TaylorModel {
     /// Coefficients of the cubic, in powers of `s`.
     pub powers: [f64; 4],
-    /// The largest remainder.
+    /// Bound of the remainder.
     pub error: f64,
-    /// The largest change of the remainder, by the change of `s`.
+    /// Bound of the remainder's change per unit of `s`.
     pub slope: f64,
     /// True if no value is negative, even where the remainder allows it.
     pub is_nonnegative: bool,
@@ -42,7 +42,7 @@ struct Expansion {
     fourth: f64,
 }
 
-/// The change of a model from its middle, with its powers: the input of series about the middle.
+/// Difference between a model and its value in the middle, with its square and cube. Series about the middle use it.
 struct Change {
     first: [f64; 3],
     square: [f64; 5],
@@ -55,7 +55,7 @@ struct Change {
 }
 
 impl Change {
-    /// The sum of a series.
+    /// Sum of a series in the change.
     #[inline(always)]
     fn summed(&self, Expansion { terms, fourth }: Expansion) -> TaylorModel {
         let Self {
@@ -108,7 +108,7 @@ impl Change {
 }
 
 impl TaylorModel {
-    /// The model of a function that may have no value.
+    /// Model of a function that may be undefined.
     pub const ANYTHING: Self = Self {
         powers: [0.0; 4],
         error: f64::INFINITY,
@@ -149,14 +149,14 @@ impl TaylorModel {
         }
     }
 
-    /// All rates by `s`, and all slopes of chords.
+    /// All derivatives with respect to `s`, and all slopes of chords.
     pub fn rates(&self) -> Interval {
         let [_, first, second, third] = self.powers;
         let turns = Interval::new(first + 3.0 * third.min(0.0), first + 3.0 * third.max(0.0));
         turns.widened((2.0 * second.abs() + self.slope) * (1.0 + ROUNDING))
     }
 
-    /// Values and rates by `s`.
+    /// Enclosures of the values and of the derivative with respect to `s`.
     pub fn rated(&self) -> Rated {
         Rated {
             value: self.range(),
@@ -176,14 +176,15 @@ impl TaylorModel {
         self.powers[1].abs() + 2.0 * self.powers[2].abs() + 3.0 * self.powers[3].abs()
     }
 
-    /// True for a quantity that does not change along the stretch, known or not.
+    /// True if the quantity does not change along the stretch; its value may be uncertain.
     #[inline(always)]
     fn is_steady(&self) -> bool {
         let [_, first, second, third] = self.powers;
         first == 0.0 && second == 0.0 && third == 0.0 && self.slope == 0.0
     }
 
-    // NOTE: rounding of the constant term is the same all along the stretch, and does not contribute to the slope.
+    // NOTE: the rounding error of the constant term is the same along the whole stretch and does not contribute to the
+    // slope.
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
         let sum = Self {
@@ -228,7 +229,7 @@ impl TaylorModel {
         let (number, doubt) = (self.powers[0], self.error);
         let least = (number.abs() - doubt) * (1.0 - ROUNDING);
         let inverse = 1.0 / number;
-        // Not a comparison that NaN passes.
+        // NaN fails this comparison.
         let error = match least > 0.0 {
             true => inverse.abs() * (doubt / least + ROUNDING) + f64::MIN_POSITIVE,
             false => f64::INFINITY,
@@ -258,7 +259,7 @@ impl TaylorModel {
         let [fourth, fifth, sixth] = [fourth.abs(), fifth.abs(), sixth.abs()];
         let [size, other_size] = [self, other].map(|model| model.powers[0].abs() + model.spread());
         let products = d * e;
-        // The square of a remainder is not negative: half of it is its middle.
+        // The square of a remainder lies between 0 and its maximum: the middle is half of the maximum.
         let lift = match is_square {
             true => 0.5 * products,
             false => 0.0,
@@ -315,7 +316,8 @@ impl TaylorModel {
         }
     }
 
-    /// The model from intervals of all values and rates, and of the value in the middle: a line, or a number where that is closer.
+    /// Model from enclosures of the values, of the rates and of the value in the middle: linear, or constant if its
+    /// error is smaller.
     fn of_rated(found: Rated, middle: Interval) -> Self {
         let (rate, value) = (found.rate.middle(), found.value.middle());
         let steady = Self {
@@ -336,13 +338,13 @@ impl TaylorModel {
         }
     }
 
-    /// A function by intervals.
+    /// A function, evaluated over intervals.
     fn enclosed(self, rated: fn(Rated) -> Rated, interval: fn(Interval) -> Interval) -> Self {
         let middle = Interval::point(self.powers[0]).widened(self.error);
         Self::of_rated(rated(self.rated()), interval(middle))
     }
 
-    /// A function by its series, or by intervals where they are closer.
+    /// A function, evaluated by its series, or over intervals if their error is smaller.
     fn function(
         self,
         expansion: impl FnOnce(f64, f64) -> Expansion,
@@ -360,16 +362,16 @@ impl TaylorModel {
         }
     }
 
-    /// True if the cubic is most of the change.
+    /// True if the cubic accounts for most of the change.
     #[inline(always)]
     fn is_sharp(&self) -> bool {
         self.error <= 0.5 * self.spread()
     }
 
-    /// The one of two models of the same function that is closer to it.
+    /// The more accurate of two models of the same function.
     #[inline(always)]
     fn or_closer(self, other: Self) -> Self {
-        // Not a comparison that NaN passes.
+        // NaN fails this comparison.
         match self.error < other.error {
             true => self,
             false => other,
@@ -456,7 +458,7 @@ impl Div for TaylorModel {
     }
 }
 
-/// The distance of the middle from the forbidden arguments of a function, if there is any.
+/// Lower bound of the arguments within `radius` of `middle`; `None` if they reach the singularity at 0.
 #[inline(always)]
 fn least(middle: f64, radius: f64) -> Option<f64> {
     let least = (middle - radius) * (1.0 - ROUNDING);
@@ -469,7 +471,7 @@ impl Numbers for TaylorModel {
 
     crate::numbers::constants_of_intervals!();
 
-    /// A number inside. It says nothing about the rest of the stretch.
+    /// The value of the cubic in the middle. It implies nothing for the rest of the stretch.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.powers[0]
@@ -533,7 +535,8 @@ impl Numbers for TaylorModel {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are unbounded.
+    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are
+    /// unbounded.
     fn turned(self, sign: Self) -> Self {
         let range = sign.range();
         match (range.lo < 0.0, range.hi < 0.0) {
@@ -604,7 +607,8 @@ impl Numbers for TaylorModel {
             summed([sine, cosine, -0.5 * sine, -cosine / 6.0]),
             summed([cosine, -sine, -0.5 * cosine, sine / 6.0]),
         ];
-        // Neither is most of the change where it turns; both are short of it on a stretch that is too long.
+        // Next to an extremum of one function its model is not sharp, but the other is. If neither is, the stretch is
+        // too long for the series.
         if !sines.is_sharp() && !cosines.is_sharp() {
             sines = sines.or_closer(self.enclosed(Rated::sin, Interval::sin));
             cosines = cosines.or_closer(self.enclosed(Rated::cos, Interval::cos));

@@ -1,12 +1,14 @@
-//! Audit of a run: shows that the motion meets no surface between recorded impacts, and that recorded impacts lie on their surfaces.
+//! Audit of a run: shows that the motion meets no surface between recorded impacts, and that recorded impacts lie on
+//! their surfaces.
 //!
 //! An audit observes a run and does not rely on the events that the run reports. It encloses all values of every gap
 //! along every step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). It shares no
 //! code with event location. A claim that it cannot prove within its budget is reported as a [`Finding`], in the same
 //! way as a surface that was passed.
 //!
-//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative, unless the system
-//! encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while it does.
+//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative,
+//! unless the system encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while
+//! it does.
 //!
 //! ```
 //! use dalembert::audit::{Audit, Finding};
@@ -53,7 +55,7 @@ use scan::Scan;
 /// Tolerance of the gap at a recorded impact, in multiples of its rounding.
 const NEAR: f64 = 64.0;
 
-/// The same tolerance for simultaneous impacts: the rounding errors of the steps before add up along the flight.
+/// The same tolerance for simultaneous impacts, where rounding errors of earlier steps add up along the flight.
 const BESIDE: f64 = 64.0 * NEAR;
 
 /// Allowed decrease of a gap in every step along a surface, as a fraction of its rounding.
@@ -63,14 +65,14 @@ const DRIFT: f64 = 1.0 / 16.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Finding {
-    /// A surface may be met where the run has no impact: its gap is negative, or no enclosure excludes it.
+    /// A surface may be met where the run has no impact: its gap is negative, or no enclosure excludes a root.
     MayBeMet {
         /// Index of the surface.
         surface: usize,
         /// Time.
         t: f64,
     },
-    /// A surface is recorded as hit, or as holding the motion, where its gap is not 0 or does not fall.
+    /// A recorded impact or contact does not lie on its surface, or the gap rises before a recorded impact.
     Misplaced {
         /// Index of the surface.
         surface: usize,
@@ -110,7 +112,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         Self::passing(system, |surface| system.is_passable(surface))
     }
 
-    /// The same, with the surfaces that allow motion on both sides given by `is_passable`.
+    /// An audit in which `is_passable` gives the surfaces that allow motion on both sides.
     pub(crate) fn passing(system: &'a Sys, is_passable: impl Fn(usize) -> bool) -> Self {
         let none = PerSurface::all(&system.zero_gaps(), false);
         let mut passable = none;

@@ -1,4 +1,4 @@
-//! The map of a box of states across an impact, to one time after it.
+//! The map of a box of states across an impact, to a common time after it.
 //!
 //! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface. If the gap
 //! is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface once. Interval
@@ -13,8 +13,9 @@
 //! along each axis `q` of the frame: the saltation matrix between the derivatives of the two flows. The centre alone
 //! is mapped to an enclosure as narrow as rounding allows.
 //!
-//! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic solution of a system of
-//! differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958).
+//! Reference: M. A. Aizerman, F. R. Gantmakher, *Determination of stability by linear approximation of a periodic
+//! solution of a system of differential equations with discontinuous right-hand sides*, Quarterly Journal of Mechanics
+//! and Applied Mathematics 11 (1958).
 
 use super::course::{Course, Part, Side, Sides, Surfaces};
 use super::departure::{Departure, ORDER, carried, together};
@@ -43,7 +44,7 @@ pub(super) struct Crossed<Sys: Variational + Impacting> {
     pub(super) time: Interval,
     pub(super) before: Bounds<Sys::State>,
     pub(super) after: Bounds<Sys::State>,
-    /// A time after all of these, and the states at that time.
+    /// A time after all impacts, and the states at that time.
     pub(super) t: f64,
     pub(super) frame: Frame<Sys>,
     pub(super) sides: Sides<Sys>,
@@ -61,10 +62,10 @@ struct Approach<'s, 'f, 'a, Sys: Variational + Impacting> {
     t: f64,
     unit: Interval,
     tube: Bounds<Sys::State>,
-    /// The motions of the box, and that of the centre.
+    /// The motion of the box, and the motion of the centre.
     all: Course<'f, 'a, Sys>,
     centre: Course<'f, 'a, Sys>,
-    /// Enclosures of the derivatives of the states at any time until `t_1` along each axis, and of those of the gap.
+    /// Enclosures of the derivatives of states and gap along each axis, at any time until `t_1`.
     turned: Turned<Sys>,
     slopes: Slopes<Sys>,
     /// Enclosures of all motions until `t_1`, and of the rate of the gap per unit of time.
@@ -89,7 +90,7 @@ struct Centre<S> {
     time: Interval,
     before: Bounds<S>,
     after: Bounds<S>,
-    /// Its states at the time after all impacts.
+    /// The state at the time after all impacts.
     moved: Bounds<S>,
 }
 
@@ -187,8 +188,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Some(approach)
     }
 
-    /// `Dphi q`: enclosure of the derivatives of the states along a direction, at any time until `t_1`, and of that
-    /// of the gap.
+    /// `Dphi q`: enclosures of the derivatives of the states and of the gap along a direction, at any time until `t_1`.
     fn swept(&self, direction: &Bounds<Sys::State>) -> Option<(Bounds<Sys::State>, Interval)> {
         let (field, whole) = (self.surfaces.field, &self.whole);
         let hull = self.frame.hull();
@@ -279,7 +279,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         })
     }
 
-    /// Passes all other surfaces until the last motion meets this one.
+    /// Proves that no motion meets another surface before the last motion meets this one. Returns the sides of all
+    /// surfaces.
     fn pass_others(
         &self,
         meeting: &Meeting<Sys>,
@@ -404,8 +405,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
 
     /// The impact of the centre, and its state `rest` units of time after `t_0`.
     ///
-    /// The result is a function of the time `tau` and of the state `x` there. It is evaluated at one time and one
-    /// state; its derivatives by both enclose the difference elsewhere.
+    /// The result is a function of the time `tau` of the impact and of the state `x` at that time. It is evaluated at
+    /// one time and one state. Its derivatives with respect to both enclose the difference at other times and states.
     fn struck_centre(
         &self,
         strike: &Strike,
@@ -482,7 +483,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         Ok(is_map)
     }
 
-    /// Enclosure of the law's result over a box.
+    /// Enclosure of the states that the law gives for a box of states.
     fn applied(
         &self,
         strike: &Strike,

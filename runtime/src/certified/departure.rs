@@ -29,7 +29,8 @@ pub(super) struct Departed<Sys: Variational + Impacting> {
 }
 
 impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
-    /// Passes all surfaces.
+    /// Proves that the motion meets no surface. Returns its tube, its rates at the impact, and the sides of all
+    /// surfaces.
     pub(super) fn departed(
         &self,
         after: &Bounds<Sys::State>,
@@ -50,7 +51,7 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
         Ok(Departed { tube, rates, sides })
     }
 
-    /// Derivatives of the state at the time after all impacts, from those at the surface.
+    /// Derivatives of the state at the time after all impacts, from the derivatives at the surface.
     pub(super) fn carried(
         &self,
         departed: &Departed<Sys>,
@@ -67,8 +68,8 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
     }
 }
 
-/// Enclosure of the derivatives of the states along directions after these units of time, over all states of a box
-/// with a tube.
+/// Enclosure of the derivatives of the flow along directions, after `units` of time, for all states of a box with a
+/// tube.
 pub(super) fn carried<Sys: Variational>(
     field: &Field<'_, Sys>,
     [from, tube, along]: [&Bounds<Sys::State>; 3],

@@ -44,8 +44,8 @@ pub enum Reason {
         /// The surface.
         surface: usize,
     },
-    /// The gap may not rise after the impact: the motion may stay on the surface, or the law may leave it
-    /// approaching.
+    /// The gap does not certainly rise after the impact: the motion may stay on the surface, or still approach it after
+    /// the law.
     MayStay {
         /// The surface.
         surface: usize,

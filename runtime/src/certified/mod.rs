@@ -3,7 +3,7 @@
 //!
 //! | file | job |
 //! |---|---|
-//! | `flow.rs` | steps: a tube that contains the motion, its Taylor series with remainder, the derivative by the start |
+//! | `flow.rs` | steps: a tube around the motion, its Taylor series with remainder, derivatives with respect to the start |
 //! | `frame.rs` | a box that is rotated with the motion (QR), against the wrapping effect |
 //! | `series.rs` | tubes, and series with remainder, of motions and of their derivatives |
 //! | `course.rs` | gaps along a step: surfaces that are certainly not met |
@@ -16,9 +16,10 @@
 //! The certificate is for the motion of the model's equations, surfaces and laws, with its parameters as doubles or
 //! in ranges about them. Intervals of coordinates (charts) are not checked, and no surface holds the motion.
 //!
-//! References: R. J. Lohner, *Computation of guaranteed enclosures for the solutions of ordinary initial and boundary value problems*,
-//! in Computational Ordinary Differential Equations (1992); N. S. Nedialkov, K. R. Jackson, G. F. Corliss, *Validated solutions of
-//! initial value problems for ordinary differential equations*, Applied Mathematics and Computation 105 (1999).
+//! References: R. J. Lohner, *Computation of guaranteed enclosures for the solutions of ordinary initial and boundary
+//! value problems*, in Computational Ordinary Differential Equations (1992); N. S. Nedialkov, K. R. Jackson, G. F.
+//! Corliss, *Validated solutions of initial value problems for ordinary differential equations*, Applied Mathematics
+//! and Computation 105 (1999).
 
 mod course;
 mod crossing;

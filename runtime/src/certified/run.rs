@@ -1,4 +1,4 @@
-//! Certified runs: smooth motion and impacts in turn.
+//! Certified runs: an alternation of smooth motion and impacts.
 
 use core::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ use crate::numbers::{Interval, Row};
 use crate::per_surface::PerSurface;
 use crate::variations::transition::Strike;
 
-/// Distances from an impact at which it is approached, as fractions of a step, tried in order.
+/// Distances before a surface at which a crossing begins, relative to the part of the step up to it. Tried in order.
 const MARGINS: [f64; 4] = [
     1.0 / (1_u64 << 40) as f64,
     1.0 / (1_u64 << 32) as f64,
@@ -33,7 +33,7 @@ pub struct CertifiedImpact<Sys: Variational> {
     pub time: Interval,
     pub(super) before: Bounds<Sys::State>,
     pub(super) after: Bounds<Sys::State>,
-    /// Enclosure of the derivative of the state after the impact by the start, if requested.
+    /// Enclosure of the derivative of the state after the impact with respect to the start, if requested.
     pub(super) derivative: Option<Matrix<Sys>>,
 }
 
@@ -91,7 +91,7 @@ pub struct CertifiedRun<'a, Sys: Variational + Impacting> {
 struct Progress<'a, Sys: Variational + Impacting> {
     flow: CertifiedFlow<'a, Sys>,
     sides: Sides<Sys>,
-    /// Enclosure of the derivative by the start, if requested.
+    /// Enclosure of the derivative with respect to the start, if requested.
     derivative: Option<Matrix<Sys>>,
 }
 
@@ -186,7 +186,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self
     }
 
-    /// Replaces the law of a surface by another that is an impulse; a surface past the end changes nothing.
+    /// Replaces the law of a surface by another law that is an impulse. An index past the last surface has no effect.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
         self.laws.set(surface, Some(law));
@@ -203,7 +203,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self.progress.flow.steps()
     }
 
-    /// Number of impacts so far.
+    /// Impacts so far.
     pub fn impacts(&self) -> u64 {
         self.impacts
     }
@@ -229,8 +229,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
     /// Propagates the box to the time `t_end`, or until `observer` breaks after an impact.
     ///
     /// # Errors
-    /// [`Lost`] with the condition that could not be proved; the box is that at the time up to which the motion is
-    /// certified.
+    /// [`Lost`] with the condition that could not be proved. The box then encloses the states at the time up to which
+    /// the motion is certified.
     pub fn run(
         &mut self,
         t_end: f64,
@@ -244,7 +244,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Ok(())
     }
 
-    /// Propagates the box to a time just after its next impact, or to the time `t_end` if there is none before.
+    /// Propagates the box to a time just after its next impact, or to the time `t_end` if no impact precedes it.
     ///
     /// # Errors
     /// The errors of [`CertifiedRun::run`].
@@ -267,7 +267,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Ok(None)
     }
 
-    /// Also encloses the derivative by the start, at the time [`CertifiedRun::t`].
+    /// Also encloses the derivative of the state at [`CertifiedRun::t`] with respect to the start.
     pub(super) fn with_derivative(mut self) -> Self {
         let n = self.field().system.state_len();
         self.progress.derivative = Some(Matrix::of(&identity::<Sys>(n)));
@@ -282,7 +282,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self.progress.flow.field = *field;
     }
 
-    /// Initial sides: at the start, surfaces whose gap is exactly 0 are known to be left or entered.
+    /// Sets the initial sides: above a surface if no gap is negative, below it if no gap is positive, else unknown.
     fn begin(&mut self) -> Result<(), Lost> {
         if self.is_begun {
             return Ok(());
@@ -334,7 +334,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Surfaces { field, passable }
     }
 
-    /// Crosses the surface that may be met in a step; `None` if the motion only went on to `t_end`.
+    /// Crosses the surface that may be met in a step. Returns `None` if the motion reaches `t_end` before it.
     fn meet(
         &mut self,
         step: &Step<Sys>,
@@ -371,7 +371,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Err(reason)
     }
 
-    /// The motion at a time before which no surface is met.
+    /// The motion at the time `t`; `None` if a surface may be met before it.
     fn brought_to(&self, t: f64) -> Option<Progress<'a, Sys>> {
         let mut progress = self.progress.clone();
         while progress.flow.t < t {
@@ -382,7 +382,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         Some(progress)
     }
 
-    /// The impact on a surface from the motion shortly before it, or on another surface that may be first.
+    /// The impact on a surface, from the motion shortly before it; or the impact on another surface that comes first.
     fn crossed(
         &self,
         near: &Progress<'a, Sys>,
@@ -431,7 +431,7 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         }
     }
 
-    /// Continues after an impact, if it is certainly not after `t_end`.
+    /// Continues after an impact that certainly precedes `t_end`, or to `t_end` if the impact is certainly later.
     fn take(
         &mut self,
         near: Progress<'a, Sys>,

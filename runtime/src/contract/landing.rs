@@ -1,4 +1,4 @@
-//! Resets: the declared map of positions and velocities, carried out on a state.
+//! Resets: applies the declared map of positions and velocities to a state.
 
 use crate::contract::Impacting;
 use crate::error::StateError;

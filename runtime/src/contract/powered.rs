@@ -33,7 +33,7 @@ pub trait Powered: System {
     /// One number per cause.
     type Powers: StateVector;
 
-    /// Number of causes. The default is correct for powers of fixed number.
+    /// Number of causes. The default is correct if `Powers` has a fixed length.
     #[inline(always)]
     fn power_count(&self) -> usize {
         Self::Powers::CAPACITY

@@ -1,4 +1,4 @@
-//! Data of first variations besides the power series of the motion: transitions, over any kind of number.
+//! Functions that first variations need besides the power series of the motion, over any kind of number.
 
 use super::{System, Tangent, TaylorField};
 use crate::error::Fault;
@@ -8,8 +8,8 @@ use crate::numbers::{Interval, Numbers, Row};
 /// A system whose states, gaps and transitions can be computed in any [`Numbers`], and therefore differentiated with
 /// dual numbers.
 ///
-/// Parameters are passed as numbers too, in the order of [`TaylorField::parameters`]. Every function here equals one
-/// of the system's own up to rounding, and is generic over `L`.
+/// Parameters are passed as numbers too, in the order of [`TaylorField::parameters`]. Every function has a counterpart
+/// over doubles in the other traits of the system, and agrees with it up to rounding.
 ///
 /// # Examples
 ///
@@ -36,7 +36,7 @@ use crate::numbers::{Interval, Numbers, Row};
 ///     *dual = Dual::new(*value, slopes);
 /// }
 ///
-/// // The gap and its derivatives by position and momentum.
+/// // The gap and its derivatives with respect to position and momentum.
 /// let parameters = Row::zeros(0);
 /// let gap = ball.clearances(&parameters, Dual::constant(0.0), &row)?.as_slice()[0];
 /// assert_eq!((gap.value, gap.slopes()[0], gap.slopes()[1]), (0.5, 1.0, 0.0));
@@ -112,8 +112,8 @@ pub trait Variational: TaylorField + System + Sized {
         qdot: &Self::Configuration<L>,
     ) -> Result<Self::Row<L>, Fault>;
 
-    /// The state of the same mode with the positions and velocities that `change` makes of those of a state, one of each
-    /// per coordinate of the model. Those of coordinates that the mode has not are 0 and stay unused.
+    /// The state in the same mode after `change` has modified its positions and velocities. Both slices have one entry
+    /// per coordinate of the model. Entries of coordinates that the mode lacks are 0, and their changes are ignored.
     ///
     /// # Errors
     /// A [`Fault`] where the velocities do not exist or the state cannot be formed.
@@ -224,11 +224,11 @@ pub trait Variational: TaylorField + System + Sized {
         }
     }
 
-    /// Writes the declared outputs, in order; `values` has their number of entries. An output that the mode does not have
-    /// stays as it is.
+    /// Writes the declared outputs, in order; `values` has their number of entries. An output that the mode does not
+    /// have stays as it is.
     ///
     /// # Errors
-    /// A [`Fault`] where an output does not exist. The default is that of a system without outputs:
+    /// A [`Fault`] where an output does not exist. The default, for systems without outputs, gives
     /// [`Fault::NotDerived`].
     fn declared_outputs<L: Numbers>(
         &self,

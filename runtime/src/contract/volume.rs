@@ -90,7 +90,7 @@ pub trait Divergence: System {
 )]
 pub trait InvariantVolume: System {
     /// Indices of the coordinates whose velocities, together with the positions, are the coordinates of the volume.
-    /// In increasing order, one for each dimension that the constraints leave.
+    /// They are in increasing order, one for each dimension that the constraints leave.
     const INDEPENDENT: &'static [usize];
 
     /// True if `G` is a function of the configuration. Otherwise it grows by a constant with each turn of some angle,

@@ -1,4 +1,4 @@
-//! Facts of the type of a declared model that need no instance: its description, its declared values, its scenes.
+//! Facts about a declared model that need no instance: its description, its declared values, its scenes.
 
 mod form;
 
@@ -38,13 +38,14 @@ pub trait Described: Instance {
     /// Names, docs, topology, parameters, surfaces, scenes, source text.
     const DESCRIPTION: &'static Description;
 
-    /// The inputs; their values are the parameters after those of the description.
+    /// Names of the inputs. Their values follow the described parameters.
     const INPUTS: &'static [&'static str] = &[];
 
     /// The model as data, for [`Erased`](crate::erased::Erased); `None` for a model that only its own type can run.
     const FORM: Option<&'static Form> = None;
 
-    /// Calls the visitor with the type of each declared scene, in order; without the model itself, the scene `all`.
+    /// Calls the visitor with the type of each declared scene, in order. The model itself, the scene `all`, is left
+    /// out.
     fn visit_scenes<Visitor: SceneVisitor>(visitor: &mut Visitor) {
         let _ = visitor;
     }
@@ -96,7 +97,7 @@ pub trait SceneVisitor {
 
 /// A form of a declared model or of a scene, as `model!` writes it: everything but the parameter values is constant.
 pub trait Emitted: Documented<Kernels: Given, Global: Described> + TaylorField + 'static {
-    /// Facts about the form besides its kernels.
+    /// Facts about the form apart from its kernels.
     const TABLES: &'static Tables;
 
     /// Documentation of the form.

@@ -16,13 +16,13 @@ pub const CAPACITIES: [usize; 3] = [4, 8, 32];
 /// Maximum number of parameters of an erased system, inputs included.
 pub const PARAMETERS: usize = 64;
 
-/// Number of rows of the capacity that store parameters over other kinds of number.
+/// Storage for parameters over other kinds of number, as a multiple of the capacity.
 pub(super) const ARGUMENTS: usize = 2;
 
-/// Number of rows of the capacity that store the values of kernels that give several quantities at once.
+/// Storage for the values of kernels that give several quantities at once, as a multiple of the capacity.
 pub(super) const ROWS: usize = 8;
 
-/// Number of rows of the capacity that store the initial values of a series.
+/// Storage for the initial values of a series, as a multiple of the capacity.
 pub(super) const FIRSTS: usize = 18;
 
 /// Maximum number of initial values of a series of an erased system.
@@ -44,13 +44,13 @@ pub enum Global {
     /// The form of a type.
     // NOTE: a function, as the constant of a type cannot refer to itself.
     OfType(fn() -> Option<&'static Form>),
-    /// A form of its own.
+    /// A separate form.
     Another(Shared<Form>),
 }
 
 /// A form of a model, or of a scene: tables, and pointers to its functions.
 pub struct Form {
-    /// Facts about the form besides its kernels.
+    /// Facts about the form apart from its kernels.
     pub tables: Held<Tables>,
     /// Documentation of the form.
     pub documentation: Held<Documentation>,
@@ -68,7 +68,7 @@ pub struct Form {
     pub series_gaps: usize,
     /// Number of initial values of a series.
     pub firsts: usize,
-    /// Writes the declared values of the parameters; NaN for one without.
+    /// Writes the declared values of the parameters, and NaN for a parameter without one.
     pub defaults: Held<Defaults>,
     /// The global form.
     pub global: Global,
@@ -140,7 +140,7 @@ impl Form {
     }
 }
 
-/// The value of type `T`: the first one, or one of the others.
+/// The table of type `T` among all tables of a form.
 #[inline(always)]
 fn found<'f, T: Any>(first: &'f dyn Any, others: &'f Kinds) -> Option<&'f T> {
     match first.downcast_ref() {

@@ -1,4 +1,4 @@
-//! Effects of an erased system: those of its form.
+//! Effects of an erased system, as its form declares them.
 
 use super::system::Erased;
 use crate::effects::Scene;

@@ -60,7 +60,7 @@ impl<'f, const C: usize> Erased<'f, C> {
         Part::start(self).tables.dimensions.constraints
     }
 
-    /// A mode as a system of its own.
+    /// A mode as a separate system.
     fn of_mode(&self, number: usize) -> Option<Self> {
         let mode = self.form.tables.modes.get(number)?;
         Some(Self {

@@ -1,22 +1,22 @@
-//! The first part of a step at which something begins to hold: stretches on which an enclosure rules it out are passed, others are
-//! halved.
+//! Search for the first fraction of a step at which a predicate holds. Stretches on which an enclosure excludes the
+//! predicate are skipped; others are halved.
 
-/// Halvings before the ends of a stretch decide: `2^-40` of a step; and fewer from where too many stretches beside each other cannot be ruled
-/// out, as where something holds by little more than rounding.
+/// Numbers of halvings after which the end of a stretch decides: `2^-40` of the step at first, then coarser stretches
+/// if too many cannot be excluded, for example where rounding decides the predicate.
 const DEPTHS: [u32; 3] = [40, 20, 10];
 
-/// Stretches looked at for each of them.
+/// Maximum number of stretches examined at each depth.
 const STRETCHES: u32 = 4096;
 
-/// Two neighbouring parts of a step: something does not hold at the first, and does at the second.
+/// Two neighbouring fractions of a step: the predicate does not hold at the first, and holds at the second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Onset {
     pub before: f64,
     pub after: f64,
 }
 
-/// Finds the first part up to `reach` at which something holds that does not hold at the start. `is_out` tells of a stretch whether it
-/// certainly holds nowhere on it, `holds` of a part whether it holds there.
+/// Finds the first fraction up to `reach` at which a predicate holds that does not hold at the start. `holds` evaluates
+/// the predicate at a fraction. `is_out` is true for a stretch on which it certainly holds nowhere.
 pub(crate) fn onset(
     reach: f64,
     mut is_out: impl FnMut([f64; 2]) -> bool,
@@ -38,13 +38,14 @@ pub(crate) fn onset(
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Walk<T> {
     Found(T),
-    /// There is nothing.
+    /// All stretches are excluded.
     Passed,
-    /// It looked at as many stretches as it may, and came up to here.
+    /// The maximum number of stretches is examined; the search came up to here.
     Stopped(f64),
 }
 
-/// Looks for something on stretches between two parts that are not ruled out, once they are halved so many times; looks at so many stretches.
+/// Walks over the stretches of a span from its start. Halves those that `is_out` does not exclude, up to `leaves`
+/// times, and calls `found` on the smallest. Examines at most `stretches` stretches.
 pub(crate) fn walk<T>(
     span: [f64; 2],
     [leaves, stretches]: [u32; 2],
@@ -74,7 +75,7 @@ pub(crate) fn walk<T>(
     Walk::Stopped(stretch(span, index, depth)[0])
 }
 
-/// The ends of a stretch.
+/// The ends of stretch `index` of the `2^depth` equal stretches of a span.
 fn stretch([from, to]: [f64; 2], index: u64, depth: u32) -> [f64; 2] {
     let count = (1_u64 << depth) as f64;
     [index, index + 1].map(|end| match end as f64 == count {
@@ -83,7 +84,7 @@ fn stretch([from, to]: [f64; 2], index: u64, depth: u32) -> [f64; 2] {
     })
 }
 
-/// Neighbouring numbers between these, at the second of which something holds that does not hold at the first.
+/// Bisects to neighbouring numbers: the predicate does not hold at the first, and holds at the second.
 pub(crate) fn narrowed(
     [mut before, mut after]: [f64; 2],
     mut holds: impl FnMut(f64) -> bool,
@@ -104,7 +105,7 @@ pub(crate) fn narrowed(
 mod tests {
     use super::*;
 
-    /// The first part at which `x` is in one of these windows.
+    /// The first fraction that lies in one of these windows.
     fn first_in(windows: &[[f64; 2]], reach: f64) -> Option<f64> {
         let is_out = |[from, to]: [f64; 2]| {
             windows
@@ -133,7 +134,7 @@ mod tests {
         assert_eq!(onset(1.0, |_| false, |_| false), None);
         let found = onset(1.0, |_| false, |x| x >= 0.25);
         assert_eq!(found.map(|found| found.after), Some(0.25));
-        // Nor where it holds for a part of the step.
+        // The predicate may also hold on a part of the step only.
         let found = onset(1.0, |_| false, |x| (0.25..0.5).contains(&x));
         assert_eq!(found.map(|found| found.after), Some(0.25));
     }

@@ -23,13 +23,13 @@ pub(crate) struct Haven<S> {
     room: Room<S>,
     /// Size of the next box, as a multiple of the distance covered in a step.
     margin: f64,
-    /// Number of steps to skip before the next trial, and the number that the last failure added.
+    /// Number of steps to skip before the next trial, and the number that the last trial set.
     wait: u32,
     patience: u32,
 }
 
 impl<S: StateVector> Haven<S> {
-    /// No box, for systems with this number of positions, and as many components as `like`.
+    /// A search without a box yet, for systems with this number of positions and as many components as `like`.
     pub(crate) fn new(positions: usize, like: &S) -> Self {
         Self {
             room: Room::new(positions, like),

@@ -1,16 +1,16 @@
 //! Event location: the first fall of a gap through zero inside a step, and its time to the last bits.
 //!
 //! The step is searched stretch by stretch from its start. A Taylor model of the gap on the stretch, or on a longer
-//! one, decides it: a gap that is enclosed away from zero has no fall there, and for one whose rates have one sign
-//! the ends show the number of falls. Undecided stretches are halved until rounding decides. A new model is computed
-//! where the remainder of the last one is the cause.
+//! one, decides each stretch. A gap that the model encloses away from zero has no fall there. For a gap whose rates
+//! have one sign, the signs at the ends show the fall. Undecided stretches are halved until rounding decides. A new
+//! model is computed if the remainder of the last one is the reason.
 
 use super::crossing::Signs;
 use super::piece::Piece;
 use super::stretches::{Region, Stretches};
 use crate::numbers::TaylorModel;
 
-/// Maximum number of halvings: a stretch of `2^-40` of a step is decided by its ends.
+/// Maximum number of halvings. The ends of a stretch of `2^-40` of a step decide it.
 const DEPTH: u32 = 40;
 
 /// Number of halvings after which the rounding of the gap is evaluated.
@@ -19,7 +19,7 @@ const DOUBTFUL: u32 = 3;
 /// Maximum number of stretches; the search stops there, and the step is cut.
 const STRETCHES: u32 = 4096;
 
-/// Ratio of a gap next to a change of sign to its values elsewhere in the step beyond which it belongs to a pole.
+/// A change of sign is a pole if the gap next to it exceeds the gap elsewhere in the step by this factor.
 const PEAK: f64 = (1 << 10) as f64;
 
 /// Start of a search.
@@ -37,7 +37,7 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// Start behind a fall or a pole, where the gap is negative.
+    /// Start after a fall or a pole, where the gap is negative.
     pub(crate) fn behind(from: f64, until: f64) -> Self {
         Self {
             from,
@@ -48,12 +48,12 @@ impl Start {
     }
 }
 
-/// Two fractions of a step that bracket a fall of the gap: not negative at `before`, negative at `after`.
+/// Two fractions of a step that bracket a fall: the gap is not negative at `before`, and negative at `after`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bracket {
     pub before: f64,
     pub after: f64,
-    /// The one of the two with the gap closer to 0.
+    /// The end of the bracket with the gap closer to 0.
     pub nearest: f64,
 }
 
@@ -64,16 +64,18 @@ pub(crate) enum Search {
     Clear,
     /// The first fall, bracketed by neighbouring numbers or nearly so.
     Falls(Bracket),
-    /// The gap went from zero within rounding to clearly negative, here; at 0 if it never rose from the surface.
+    /// The gap goes from zero (within rounding) to clearly negative at this fraction; 0 if it never rises from the
+    /// surface.
     Sinks(f64),
-    /// A change of sign through a pole, which ends here.
+    /// The gap changes sign at a pole before this fraction.
     Pole(f64),
-    /// Searched up to here only.
+    /// The search stopped at this fraction.
     Unfinished(f64),
 }
 
 /// The gap of one surface along a step.
-// NOTE: functions behind pointers: the long search is compiled once instead of for every system and integrator.
+// NOTE: the functions are behind pointers, so that the long search is compiled once instead of for every system and
+// integrator.
 pub(crate) struct Line<'a> {
     /// The gap at a fraction of the step.
     pub gap: &'a mut dyn FnMut(f64) -> f64,
@@ -83,15 +85,15 @@ pub(crate) struct Line<'a> {
     pub whole: Option<TaylorModel>,
     /// The gap at the start and at the end of the step.
     pub ends: [f64; 2],
-    /// The size of its rounding errors at a part of the step; asked for once or twice.
+    /// Size of the gap's rounding errors at a fraction of the step; evaluated once or twice.
     pub rounding: &'a mut dyn FnMut(f64) -> f64,
     /// Start of the search.
     pub start: Start,
-    /// A known fall; it is the first unless another precedes it.
+    /// A known fall. It is the first fall unless another precedes it.
     pub known: Option<Bracket>,
 }
 
-/// The rounding of the gap, as it was last asked for, and of which region.
+/// The region in which the rounding of the gap was last evaluated, and its value there.
 struct Floors(Option<(Region, f64)>);
 
 impl Floors {
@@ -369,8 +371,8 @@ impl Line<'_> {
         }
     }
 
-    /// Result for a gap that is negative beyond rounding at `low` although no stretch shows the fall: it fell between
-    /// two stretches or where it is flat, or never rose.
+    /// Result for a gap that is negative beyond rounding at `low` although no stretch shows the fall: the gap fell
+    /// between two stretches or where it is flat, or it never rose.
     fn sunk(
         [left, _]: [f64; 2],
         rose: bool,
@@ -398,7 +400,7 @@ impl Line<'_> {
         const NEAREST: f64 = 1.0 / 64.0;
         let trial = before.x + guess.clamp(NEAREST, 1.0 - NEAREST) * (after.x - before.x);
         let at_trial = value(trial);
-        // The newest point and one on the other side of the root, then the third.
+        // The first two points are the newest one and one on the other side of the root.
         let drop = match at_trial >= 0.0 {
             true => Drop {
                 x: [trial, after.x, before.x],
@@ -438,7 +440,7 @@ impl Line<'_> {
     }
 }
 
-/// True if the signs of a gap are decided on a piece, if its values at the ends are those of the cubic.
+/// True if a piece decides the signs of the gap, provided that the gap equals the cubic at the ends.
 fn is_clear(piece: &Piece, is_at_hand: bool) -> bool {
     let signs = match is_at_hand {
         true => piece.signs_from_zero(),
@@ -473,8 +475,7 @@ fn deflated(gap: f64, theta: f64, slope: Option<f64>) -> f64 {
     }
 }
 
-/// A bracket of a fall by two places, and a third place beside them: positions and values. The newest point comes
-/// first; the first and second enclose the root.
+/// Three points near a fall, with the values there. The newest point comes first; the first two enclose the root.
 #[derive(Debug, Clone, Copy)]
 struct Drop {
     x: [f64; 3],
@@ -744,7 +745,7 @@ mod tests {
         let Search::Falls(bracket) = found else {
             panic!("{found:?}")
         };
-        // Falls before the third minimum at 5 pi / 500; the level 1.2 - x first meets the minima there or later.
+        // The minima have the values `0.2 - x` at `x = (2 k + 1) pi/500`. The first negative one lies at `33 pi/500`.
         let mut x = 0.0;
         while 1.2 + (500.0_f64 * x).cos() - x >= 0.0 {
             x += 1e-6;

@@ -1,5 +1,5 @@
-//! The motion along a step: for each component a polynomial in the fraction of the step, and Taylor models of it on
-//! parts of the step.
+//! The motion along a step: a polynomial in the fraction of the step for each component, and its Taylor models on parts
+//! of the step.
 
 use super::polynomials::{FEW, Polynomials, ROUNDING};
 use crate::contract::System;
@@ -16,7 +16,7 @@ pub(crate) struct Path<S> {
     start: f64,
     length: f64,
     polynomials: Polynomials<S>,
-    /// The model of every component on the whole step.
+    /// Models of all components on the whole step.
     whole: Whole<S>,
     /// True for the dense output, false for the cubic through the ends.
     is_dense: bool,
@@ -30,7 +30,7 @@ struct Whole<S> {
     powers: [S; 4],
     error: S,
     slope: S,
-    /// Largest second derivatives of the polynomials, by the fraction of the step.
+    /// Bounds of the second derivatives of the polynomials with respect to the fraction of the step.
     bend: S,
 }
 
@@ -102,7 +102,7 @@ impl<S: StateVector> Path<S> {
         Ok(())
     }
 
-    /// Completes the error bounds, and computes the models of the whole step, unless that is done.
+    /// Completes the error bounds and computes the models of the whole step, if this is still to be done.
     #[inline]
     pub(crate) fn enclose(&mut self) {
         if !self.is_enclosed {
@@ -111,8 +111,8 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Replaces the cubic by the dense output of the step, which it prepares. Returns true if the path changed, and is
-    /// to be enclosed again.
+    /// Prepares the dense output of the step and replaces the cubic by it. Returns true if the path changed; it must
+    /// then be enclosed again.
     ///
     /// # Errors
     /// The [`Fault`](crate::Fault) of the dense output.
@@ -128,7 +128,7 @@ impl<S: StateVector> Path<S> {
         Ok(is_new)
     }
 
-    /// Takes in the dense output of the step, which is ready.
+    /// Sets the step to its dense output, which must be ready.
     pub(crate) fn follow_dense<Sys: System<State = S>, Step: Stepper<Sys>>(
         &mut self,
         step: &StepView<'_, Sys, Step>,
@@ -173,7 +173,7 @@ impl<S: StateVector> Path<S> {
         }
         self.polynomials.order = 3;
         self.polynomials.doubts = [*sway; 2];
-        // NOTE: at once, as the order is known here while compiling.
+        // NOTE: enclosed immediately, because the order is a compile-time constant here.
         self.add_rounding();
         (self.is_dense, self.is_enclosed) = (false, true);
     }
@@ -257,7 +257,8 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Enclosure of component `i` on a part of the step of positive length, and of its derivative by the fraction.
+    /// Enclosures of component `i` on a part of the step of positive length, and of its derivative with respect to the
+    /// fraction.
     pub(crate) fn rated(&self, i: usize, part: [f64; 2]) -> Rated {
         let model = self.component(i, part);
         let radius = Interval::point(0.5 * (part[1] - part[0]));
@@ -267,10 +268,10 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Bounds of the first and second derivative of component `i` on the whole step, by its fraction.
+    /// Bounds of the first and second derivative of component `i` on the whole step, with respect to its fraction `s`.
     ///
-    /// Path and polynomial meet at both ends of the step. A difference `d` of the rates keeps them apart by at most
-    /// `d min(s, 1 - s)`, less than `4 d s (1 - s)/2`: it counts as a second derivative of `4 d`.
+    /// Path and polynomial agree at both ends of the step. If their rates differ by at most `d`, their values differ by
+    /// at most `d min(s, 1 - s) <= 4 d s (1 - s)/2`. The difference therefore counts as a second derivative of `4 d`.
     #[inline]
     pub(crate) fn motion(&self, i: usize) -> [f64; 2] {
         debug_assert!(self.is_enclosed, "the path has no error bounds yet");
@@ -317,7 +318,7 @@ impl<S: StateVector> Path<S> {
         self.component(i, [0.0, 1.0]).range()
     }
 
-    /// Enclosure of the times on a part of the step, and of their rate by the fraction.
+    /// Enclosures of the times on a part of the step, and of their derivative with respect to the fraction.
     #[inline]
     pub(crate) fn time(&self, [from, to]: [f64; 2]) -> Rated {
         let length = Interval::point(self.length);

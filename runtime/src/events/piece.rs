@@ -43,7 +43,7 @@ impl Piece {
         }
     }
 
-    /// The piece of a cubic without remainder.
+    /// The piece with the remainder set to zero.
     pub(crate) fn without_remainder(self) -> Self {
         Self {
             error: 0.0,
@@ -52,7 +52,7 @@ impl Piece {
         }
     }
 
-    /// True if the gap has values, with a remainder below this size.
+    /// True if the gap is finite and its remainder is below this size.
     pub(crate) fn is_sharper_than(&self, size: f64) -> bool {
         let sum = self.hull.iter().fold(0.0, |sum, value| sum + value);
         sum.is_finite() && self.error < size
@@ -123,7 +123,7 @@ impl Piece {
 
     /// Signs of a gap after its zero at the start.
     ///
-    /// Division by the zero leaves a quadratic, whose coefficients must exceed the slope of the remainder.
+    /// Division by this zero leaves a quadratic, whose coefficients must exceed the slope of the remainder.
     #[inline]
     pub(crate) fn signs_from_zero(&self) -> Signs {
         let [start, a, b, c] = self.hull;
@@ -171,8 +171,8 @@ impl Piece {
         }
     }
 
-    /// True if a gap with these values at its ends, which are not negative, is positive inside by the bound from one
-    /// of them.
+    /// True if a gap with these nonnegative values at its ends is positive inside, by the bound of its change from one
+    /// of the ends.
     fn stays_above(&self, first: f64, last: f64) -> bool {
         const THIRDS: [f64; 3] = [1.0 / 3.0, 2.0 / 3.0, 1.0];
         let [start, a, b, end] = self.hull;
@@ -192,7 +192,7 @@ impl Piece {
         // `first + 2 (middle - first) x + bend x^2`
         let (half, bend) = (middle - first, first - 2.0 * middle + last);
         let root = crate::math::sqrt((half * half - bend * first).max(0.0));
-        // The form of the quotient without cancellation.
+        // This form of the quotient avoids cancellation.
         let part = match half <= 0.0 {
             true => first / (root - half),
             false => -(half + root) / bend,
@@ -213,8 +213,8 @@ impl Piece {
             y * y * (y * start + 3.0 * x * a) + x * x * (3.0 * y * b + x * end)
         };
         let (mut before, mut after) = ([0.0, start], [1.0, end]);
-        // The zero of the parabola through the ends and the middle, twice: accurate enough for a cubic with small
-        // curvature.
+        // Two steps to the zero of the parabola through the ends and the middle. They are accurate enough for a cubic
+        // with small curvature.
         for _ in 0..2 {
             let middle = 0.5 * (before[0] + after[0]);
             let (low, mid, high) = (before[1], value(middle), after[1]);

@@ -1,11 +1,11 @@
 //! A Taylor model of a function on a stretch, estimated from samples, for functions that are known at points only.
 //!
-//! Nine samples at Chebyshev-Lobatto points give an interpolant of degree 8, whose Chebyshev coefficients from the
-//! fourth on form the remainder. Its last two coefficients estimate the interpolation error. This is not an
-//! enclosure: features narrower than the distance of two samples may be missed.
+//! Nine samples at Chebyshev-Lobatto points give an interpolant of degree 8. Its Chebyshev terms of degree 4 and higher
+//! form the remainder, and its last two coefficients estimate the interpolation error. This is not an enclosure:
+//! features narrower than the distance of two samples may be missed.
 //!
-//! NOTE: gaps are enclosed ([`super::path`]). The contact forces of surfaces that hold the motion are not available
-//! over intervals.
+//! NOTE: gaps are enclosed instead ([`super::path`]). Contact forces of surfaces that hold the motion are sampled,
+//! because they are not available over intervals.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
@@ -97,7 +97,7 @@ fn chebyshev(samples: &[f64; SAMPLES]) -> [f64; SAMPLES] {
             let weight = if j == 0 || j == LAST { 0.5 } else { 1.0 };
             sum += weight * COSINES[k * j % COSINES.len()] * sample;
         }
-        // Samples go from -1 to 1.
+        // Samples go from -1 to 1, against the order of the nodes `cos(j pi / 8)`.
         let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
         let share = if k == 0 || k == LAST { 0.125 } else { 0.25 };
         sign * share * sum

@@ -4,13 +4,13 @@
 const BEFORE: f64 = 0.875;
 const BEHIND: f64 = 1.125;
 
-/// Fraction of the step below which an expected fall gets no cuts of its own: halving reaches it.
+/// Fraction of the searched part below which an expected fall gets no cuts: halving reaches it.
 const NEAR: f64 = 1.0 / (1_u64 << 36) as f64;
 
-/// Halvings from one region to the next smaller ones.
+/// Number of halvings from a region to the next smaller ones.
 const HALVINGS: u32 = 8;
 
-/// A region of a step about stretches beside each other.
+/// A part of the step that contains neighbouring stretches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Region {
     chosen: usize,
@@ -22,7 +22,7 @@ pub(super) struct Region {
 #[derive(Debug)]
 pub(super) struct Stretches {
     cuts: [f64; 4],
-    /// Index of the stretch between cuts, and of the present part of it.
+    /// Index of the stretch between cuts, and index of its present part.
     chosen: usize,
     index: u64,
     depth: u32,
@@ -50,7 +50,7 @@ impl Stretches {
         self.depth
     }
 
-    /// A region about the stretch, of which there is one more for every so many halvings.
+    /// The region of the present stretch. Regions become smaller after every [`HALVINGS`] halvings.
     pub(super) fn region(&self) -> Region {
         let halvings = self.depth % HALVINGS;
         Region {
@@ -79,7 +79,7 @@ impl Stretches {
         (self.index, self.depth) = (2 * self.index, self.depth + 1);
     }
 
-    /// Advances to the stretch behind. Returns false at the end.
+    /// Advances to the next stretch. Returns false at the end.
     pub(super) fn advance(&mut self) -> bool {
         self.index += 1;
         while self.index.is_multiple_of(2) && self.depth > 0 {

@@ -15,10 +15,10 @@
 //!   detect them.
 //!
 //! Parameters and laws chosen for a run are doubles; so is a start, unless it is given in more digits. A projection
-//! to constraints acts on the rounded states alone: the motion satisfies them to all its digits. A motion that passes
-//! a kink of `|x|` has no series there: the run ends as [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow).
-//! For a surface whose gap has a kink somewhere, grazing impacts within the rounding of doubles are decided in
-//! doubles and not refused.
+//! onto constraints acts on the rounded states alone: the extended motion satisfies them to all its digits. A motion
+//! that passes a kink of `|x|` has no series there: the run ends as
+//! [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow). For a surface whose gap has a kink somewhere, grazing
+//! impacts within the rounding of doubles are decided in doubles and not refused.
 //!
 //! ```
 //! use core::ops::ControlFlow;
@@ -43,7 +43,7 @@
 //!     ControlFlow::Continue(())
 //! })?;
 //! assert!(run.outcome.is_ok_and(|outcome| outcome.is_done()));
-//! // Flights of 2 and 9/5.
+//! // The flights take the times 2 and 9/5.
 //! let exact: Extended<3> = "3.8".parse()?;
 //! assert!((last - exact).nearest().abs() < 1e-46);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -28,9 +28,9 @@ pub(super) enum Ends {
 pub(super) struct Bounce {
     pub(super) surface: usize,
     pub(super) t: f64,
-    /// Gap rates before and after it; the latter is 0 if the motion does not bounce.
+    /// Gap rates before and after the impact; the latter is 0 if the motion does not bounce.
     pub(super) rates: [f64; 2],
-    /// True if the surface was struck at the same moment before: no flight lies in between.
+    /// True if the surface was already struck at the same moment, without a flight in between.
     pub(super) again: bool,
 }
 
@@ -54,8 +54,8 @@ impl<G: StateVector> Accumulation<G> {
         }
     }
 
-    /// Records an impact. `rounding` gives the size of the gap's rounding errors, `energy` the energy after the
-    /// impact, if there is one. Returns the accumulation of the impacts, if they accumulate.
+    /// Records an impact. `rounding` gives the size of the gap's rounding errors, `energy` the energy after the impact,
+    /// if known. Returns the accumulation if the impacts accumulate.
     pub(super) fn add(
         &mut self,
         bounce: Bounce,
@@ -83,7 +83,7 @@ impl<G: StateVector> Accumulation<G> {
         }
     }
 
-    /// Records an impact after which the motion goes on through the surface: no flight begins there.
+    /// Records a passage: an impact after which the motion goes on through the surface, so that no flight begins there.
     pub(super) fn pass(&mut self, surface: usize, t: f64) -> Option<Ends> {
         self.coincident.count(surface, t);
         self.hops[surface] = Hops::NONE;
@@ -93,14 +93,14 @@ impl<G: StateVector> Accumulation<G> {
         are_many.then_some(Ends::AtOneTime(t))
     }
 
-    /// True if impacts that the motion passed through, this one among them, followed each other faster and faster
-    /// until this time, at which two of them cannot be told apart.
+    /// True if passages through surfaces, this one among them, followed each other ever faster until the time `t`,
+    /// where two of them cannot be distinguished.
     pub(super) fn has_passed_on(&self, surface: usize, t: f64) -> bool {
         self.passing.has_accumulated(surface, t)
     }
 
-    /// The time of accumulation if the motion has just bounced off a surface at `t` and did not rise from it: the hop
-    /// is too small to be resolved. `None` if it had not bounced.
+    /// The time of accumulation of a motion that bounced off a surface at `t` but did not rise from it, because the hop
+    /// is too small to be resolved. `None` if it did not bounce.
     pub(super) fn ends_at(&self, surface: usize, t: f64) -> Option<f64> {
         let hops = &self.hops[surface];
         hops.has_bounced_at(t).then(|| hops.end(t))

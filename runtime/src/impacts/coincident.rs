@@ -1,4 +1,4 @@
-//! Impacts at one time: test for infinitely many.
+//! Impacts at one time: a test for infinitely many impacts.
 //!
 //! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner with an open exit have
 //! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of very different
@@ -15,13 +15,13 @@ const MANY: u32 = 100;
 /// Relative difference of the gap rates before and after an impact up to which it counts as reversing.
 const REVERSED: f64 = 1.0 / (1 << 20) as f64;
 
-/// Share of the largest gap rate at one time below which a rate counts as decayed.
+/// Fraction of the largest gap rate at one time below which a rate counts as decayed.
 const DIED: f64 = 1.0 / (1 << 20) as f64;
 
 /// Conclusion from the impacts at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Gathering {
-    /// They are few, or go on.
+    /// They are few, or may be finitely many.
     None,
     /// Almost all of them are hops on this surface.
     Hops(usize),
@@ -33,7 +33,7 @@ pub(super) enum Gathering {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Tally {
     count: u32,
-    /// Largest gap rate before them.
+    /// Largest gap rate before one of them.
     fastest: f64,
 }
 
@@ -78,7 +78,7 @@ impl<G: StateVector> Coincident<G> {
         *fastest = fastest.max(before.abs());
     }
 
-    /// Counts an impact, whatever its rates.
+    /// Counts an impact, regardless of its rates.
     pub(super) fn count(&mut self, surface: usize, t: f64) {
         if self.impacts.add(t) == 0 {
             self.unequal = 0;

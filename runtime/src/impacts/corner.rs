@@ -1,5 +1,4 @@
-//! Corners: several surfaces hit at one time. Impacts are carried out one after the other, and their order may
-//! matter.
+//! Corners: several surfaces hit at one time. Impacts act one after the other, and their order may matter.
 
 use super::hits::{Hits, Order};
 use super::impulse::{Impacts, STILL};
@@ -10,12 +9,12 @@ use crate::outcome::Outcome;
 use crate::policy::Corner;
 use crate::state::StateVector;
 
-/// Number of impacts in one corner from which its outcome counts as unknown. A corner of angle `pi / n` takes up to
-/// `n`.
+/// Number of impacts in one corner from which its outcome counts as unknown. A corner of angle `pi / n` takes up to `n`
+/// impacts.
 const LONGEST: u32 = 100;
 
-/// Relative energy of the difference of two changes of velocity, beside the larger of their own, below which they are
-/// the same: the square of `2^-40`, the rounding errors in corners of small angles.
+/// Two changes of velocity count as equal if the energy of their difference is below this multiple of the larger of
+/// their energies: the square of `2^-40`, the rounding errors in corners of small angles.
 const SAME: f64 = 1.0 / (1_u128 << 80) as f64;
 
 /// Knowledge of the order of the impacts at one moment.
@@ -32,7 +31,7 @@ pub(super) enum Verdict {
 enum Until {
     /// The end of the round.
     Round,
-    /// The state in which no surface at hand is approached.
+    /// The first state in which no surface at hand is approached.
     End,
 }
 
@@ -54,7 +53,7 @@ impl<S: StateVector> Recurrence<S> {
         }
     }
 
-    /// Records the state after an impact. Returns true if it is an earlier state.
+    /// Records the state after an impact. Returns true if it equals an earlier state.
     pub(super) fn add<Sys: Impacting<State = S>>(
         &mut self,
         now: &Moment<'_, Sys>,
@@ -130,7 +129,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         if self.orders_agree(hits, rates, Until::Round, now)? {
             return Ok(None);
         }
-        // Every order of the round leads to the same result.
+        // If the orders agree in the end, the order does not matter any more; otherwise the run ends.
         *verdict = Verdict::Settled;
         match self.orders_agree(hits, rates, Until::End, now)? {
             true => Ok(None),

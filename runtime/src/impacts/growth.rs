@@ -1,16 +1,16 @@
-//! Accumulations in which the energy grows: limit of their times, and the model of its extrapolation.
+//! Accumulations of impacts in which the energy grows, and the extrapolation of their time.
 //!
 //! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add
-//! a share of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
-//! The model is the one that predicts a flight in between better from the first and the last. The remaining flights
+//! a fraction of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
+//! The model that better predicts a flight in between from the first and the last one is used. The remaining flights
 //! take `f r/(1 - r)` in total, or `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
 
 use crate::math;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Length of a flight, relative to the time, below which it does not determine the next ones: for flights that shrink
-/// slowly, and for flights that shrink fast.
+/// Length of a flight, relative to the time, below which it does not determine the next ones. The first value is for
+/// flights that shrink slowly, the second for flights that shrink fast.
 const RESOLVED: [f64; 2] = [4096.0 * f64::EPSILON, 8.0 * f64::EPSILON];
 
 /// Ratio of successive flights below which they count as shrinking fast.
@@ -61,9 +61,9 @@ impl<G: StateVector> Growth<G> {
         self.0[surface] = Series::ENDLESS;
     }
 
-    /// Records a flight that ends at `t`, with the length of the one before it on this surface. Returns the time of
-    /// accumulation if flights have become too short to be resolved while the energy grew. `energy` is that of the
-    /// motion, or a substitute.
+    /// Records a flight that ends at `t`. `before` is the length of the previous flight on this surface, `energy` the
+    /// energy of the motion or a substitute. Returns the time of accumulation if flights have become too short to be
+    /// resolved while the energy grew.
     pub(super) fn add(
         &mut self,
         surface: usize,
@@ -84,7 +84,7 @@ impl Series {
         marks: [None; 2],
     };
 
-    /// The time before the first impact: a flight longer than all others.
+    /// Series in which the time before the first impact counts as a flight longer than all others.
     const ENDLESS: Self = Self {
         count: 1,
         ..Self::NONE
@@ -98,7 +98,7 @@ impl Series {
         length: f64,
         energy: impl FnOnce() -> Option<f64>,
     ) -> Option<f64> {
-        // Times are rounded: flights may seem to grow by that much.
+        // Times are rounded, so that flights may seem to grow.
         let shrinks = before.is_none_or(|before| length <= before + ROUNDED * t.abs());
         if !shrinks {
             *self = Self::NONE;
@@ -133,7 +133,7 @@ impl Series {
 
     /// Total time of all further flights.
     fn rest(&self, first: Flight, before: f64, last: Flight) -> f64 {
-        // The mark nearer to the middle: the last power of two is within a half of the end.
+        // The mark nearer to the middle: the last power of two exceeds half of the count.
         if let Some(middle) = self.marks[1]
             && middle.number > FIRST
             && algebraic_fits(first, middle, last)
@@ -154,7 +154,7 @@ impl Flight {
     }
 }
 
-/// True if the energy has grown; false if it is not known.
+/// True if the energy has grown; false if it is unknown.
 fn has_grown(first: Option<f64>, last: Option<f64>) -> bool {
     first
         .zip(last)
@@ -202,10 +202,7 @@ mod tests {
     }
 
     #[test]
-    #[cfg_attr(
-        miri,
-        ignore = "so many flights take an hour where each operation is watched"
-    )]
+    #[cfg_attr(miri, ignore = "so many flights take an hour under miri")]
     fn limits_of_algebraic_flights_are_found() {
         let algebraic = end(|n| 1.0 / (f64::from(n) * f64::from(n + 1))).expect("an end");
         assert!((algebraic - 1.0).abs() < 1e-9, "{algebraic}");

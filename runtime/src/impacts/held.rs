@@ -1,19 +1,19 @@
 //! Motion along surfaces: the contact forces that hold it there, and the correction of drift.
 //!
-//! A frictionless surface `c` pushes along `pi_D^* dh_c`. The sizes `lambda_c` of the forces of all surfaces held are
-//! those that keep every gap rate:
+//! A frictionless surface `c` pushes along `pi_D^* dh_c`. The sizes `lambda_c` of the forces keep the gap rates of all
+//! held surfaces constant:
 //!
 //! ```text
 //! sum_d dh_c(pi_D grad h_d) lambda_d = -d^2 h_c/dt^2
 //! ```
 //!
 //! The same equations with gap rates or gaps on the right-hand side correct velocities and positions. Their matrix is
-//! symmetric and positive semidefinite, so conjugate gradients solve them in at most as many steps as there are
-//! surfaces, in one step for one surface, and without storing a matrix.
+//! symmetric and positive semidefinite. In exact arithmetic, conjugate gradients solve them in at most one step per
+//! surface, without storing the matrix.
 //!
-//! Instantaneous constraints of a surface hold as long as it holds the motion
-//! ([`Impacting::trace`]). Their forces come first, and the surfaces push within them. At
-//! most one of the held surfaces has instantaneous constraints ([`super::resting`]).
+//! Instantaneous constraints of a surface hold as long as the surface holds the motion ([`Impacting::trace`]). Their
+//! forces come first, and the surfaces push within the constraints. At most one of the held surfaces has instantaneous
+//! constraints ([`super::resting`]).
 
 use super::instantaneous::{focused, is_rough};
 use super::sliding::Slide;
@@ -24,7 +24,7 @@ use crate::forces::Forces;
 use crate::per_surface::PerSurface;
 use crate::state::{StateVector, scaled};
 
-/// Share of the right-hand side that counts as rounding.
+/// Size of a residual that counts as rounding, relative to the right-hand side.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
 /// Surfaces along which the motion is held.
@@ -137,7 +137,7 @@ impl<G: StateVector> Held<G> {
         Ok(None)
     }
 
-    /// Correction of an impulse or a force for the instantaneous constraints, if it violates them.
+    /// The reaction of the instantaneous constraints to an impulse or a force; `None` without such constraints.
     fn reaction<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -152,7 +152,8 @@ impl<G: StateVector> Held<G> {
         Ok(without.map(|without| sum(&with, -1.0, &without)))
     }
 
-    /// Sizes of the impulses, or forces, on the held surfaces that cancel these gap rates, or second rates.
+    /// Sizes of the impulses on the held surfaces that cancel these gap rates, or of the forces that cancel these
+    /// second rates.
     fn against<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -165,7 +166,7 @@ impl<G: StateVector> Held<G> {
             let contact = system.contact(surface, t, state)?;
             weights.as_mut_slice()[surface] = 1.0 / contact.constrained_compliance;
         }
-        // The residual, in units of each surface's own impulse, and the search direction.
+        // The residual, and the search direction: the impulse with which each surface alone would cancel its residual.
         let mut missing = scaled(&self.only(rates), -1.0);
         let mut search = times(&weights, &missing);
         let mut squared = product(&search, &missing);
@@ -191,7 +192,7 @@ impl<G: StateVector> Held<G> {
         Ok(Some(sizes))
     }
 
-    /// Change of the gap rates of the held surfaces by impulses of these sizes.
+    /// Changes of the gap rates of the held surfaces by impulses of these sizes.
     fn response<Sys: Impacting<Gaps = G>>(
         &self,
         system: &Sys,
@@ -261,7 +262,7 @@ impl<G: StateVector> Held<G> {
         Ok(false)
     }
 
-    /// Brings the state back to the held surfaces: gaps and gap rates to 0, each to first order.
+    /// Corrects the drift from the held surfaces: brings gaps and gap rates to 0, each to first order.
     pub(super) fn settle<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,
@@ -280,7 +281,7 @@ impl<G: StateVector> Held<G> {
         Ok(Change::Changed)
     }
 
-    /// Moves positions in the way an impulse changes velocities.
+    /// Brings the gaps to 0: moves positions by the change of velocity that an impulse would make.
     fn settle_positions<Sys: Impacting<Gaps = G>>(
         &self,
         now: &mut Moment<'_, Sys>,

@@ -5,7 +5,7 @@ use super::accumulation::Bounce;
 /// Number of flights that must have shrunk in a row before their height is tested.
 pub(super) const SHRUNK: u32 = 3;
 
-/// Ratio of gap rates at the start of successive flights below which one flight suffices.
+/// Ratio of the gap rates at the start of successive flights below which a single shrinking flight suffices.
 const STEEP: f64 = 0.125;
 
 /// The impacts on one surface from which the motion bounced off.
@@ -42,17 +42,17 @@ pub(super) struct Flight {
 /// The time at which hops end, estimated as the limit of a geometric series.
 ///
 /// The estimate is inaccurate while the ratio of the gap rates still changes, and again when the flights consist of
-/// rounding errors. In between successive estimates agree best.
+/// rounding errors. Between these two phases, successive estimates agree best.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Estimate {
     /// The last estimate.
     last: f64,
     best: f64,
-    /// Difference of the best estimate from the one before it; `None` for the first.
+    /// Difference between the best estimate and its predecessor; `None` for the first.
     spread: Option<f64>,
 }
 
-/// True if a length is less than the one before, or the first.
+/// True if a length is less than the one before it, or if there is none before it.
 pub(super) fn is_shorter(length: f64, before: Option<f64>) -> bool {
     before.is_none_or(|before| length < before)
 }
@@ -97,14 +97,14 @@ impl Hops {
         self.last.is_some_and(|last| last.t == t && last.rate > 0.0)
     }
 
-    /// The time at which the hops end, not before the last impact at `t`.
+    /// The time at which the hops end; at least the time `t` of the last impact.
     pub(super) fn end(&self, t: f64) -> f64 {
         self.end.map_or(t, |end| end.best.max(t))
     }
 }
 
 impl Impact {
-    /// The flight from here to the next impact, at `t`, after which the gap rate is `rate`.
+    /// The flight from this impact to the next one at `t`, after which the gap rate is `rate`.
     fn flight(self, t: f64, rate: f64) -> Flight {
         let length = t - self.t;
         let shrunk = match is_shorter(length, self.length) {
@@ -127,7 +127,7 @@ impl Flight {
         self.rates[1] / self.rates[0]
     }
 
-    /// True if flights shrink and the next rises no higher than the rounding of the gap.
+    /// True if flights shrink, and the next one would rise no higher than the rounding of the gap.
     pub(super) fn is_last(&self, rounding: impl FnOnce() -> f64) -> bool {
         let [before, rate] = self.rates;
         let is_shrinking = self.shrunk > SHRUNK && rate < before;

@@ -1,4 +1,4 @@
-//! The effect of impacts: finds them in a step, and carries them out.
+//! The effect that finds impacts in a step and applies their laws.
 
 use core::ops::ControlFlow;
 
@@ -29,13 +29,13 @@ pub const IMPACT_BUDGET: u64 = 10_000_000;
 /// of a plastic impact in a metric of condition `1e4`.
 pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 
-/// Impacts of a system on its surfaces, each by its declared law unless another was chosen.
+/// Impacts of a system on its surfaces. Each surface has its declared law unless another was chosen.
 ///
-/// Simultaneous impacts (within rounding) are carried out in rounds, each in order of index, until no surface at hand
-/// is approached. Touching surfaces that an impact leaves approached join the next round, so that a wave of impacts
-/// passes through bodies that touch at one time. The [`Policies`] decide how to go on where the order of a round
+/// Simultaneous impacts (within rounding) act in rounds, each in order of index, until no surface at hand is
+/// approached. Touching surfaces that are approached after an impact join the next round, so that a wave of impacts
+/// passes through touching bodies at one time. The [`Policies`] decide the continuation where the order of a round
 /// matters, where a law leaves the state approaching, and where the motion presses into a surface. By default the run
-/// ends there; after an impact, with the state after it.
+/// ends there; after an impact, it ends with the state after the impact.
 ///
 /// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). If the state still
 /// approaches, the law acts within them; they hold while the motion goes on along the surface.
@@ -44,8 +44,8 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
 /// reset of positions, a surface at hand acts if it is approached. Such a surface does not hold the motion.
 ///
-/// A surface with the law [`Law::Stop`] ends the run as [`Outcome::StoppedAt`] when it is approached, before other surfaces
-/// at hand act.
+/// A surface with the law [`Law::Stop`] ends the run as [`Outcome::StoppedAt`] when it is approached, before other
+/// surfaces at hand act.
 ///
 /// # Examples
 ///
@@ -91,7 +91,7 @@ pub(super) struct Struck<Sys: Impacting> {
     is_graze: bool,
 }
 
-/// An impact to be carried out.
+/// An impact to apply.
 #[derive(Debug, Clone, Copy)]
 struct Strike {
     surface: usize,
@@ -114,7 +114,8 @@ enum Next {
     Rest,
 }
 
-/// Transitions at one moment. Finite sequences are short: each loses energy (Cortes and Vinogradov, Remark 5.8).
+/// Number of transitions at one moment. Finite sequences are short, because each transition loses energy (Cortes and
+/// Vinogradov, Remark 5.8).
 struct Passages(u32);
 
 impl Passages {
@@ -144,7 +145,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// Replaces the law of a surface. A surface past the end changes nothing.
+    /// Replaces the law of a surface. An index past the last surface has no effect.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
         self.overrides.set(surface, Some(law));
@@ -194,7 +195,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         if is_map && self.accumulation.has_passed_on(surface, t) {
             return Err(Outcome::Zeno { t, surface });
         }
-        // After a bounce, hops have become too small to rise from the surface at all.
+        // After a bounce: the hops have become too small to rise from the surface.
         let accumulation = self.accumulation.ends_at(surface, t);
         match (self.may_rest(surface), accumulation) {
             (false, None) => return Err(Outcome::Contact { surface }),
@@ -229,7 +230,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         self.law_of(system, surface).is_map() && system.is_passable(surface)
     }
 
-    /// Carries out impacts until none of the surfaces at hand is approached.
+    /// Applies impacts until none of the surfaces at hand is approached.
     pub(super) fn strike<O: Observer<Sys>>(
         &mut self,
         mut hits: Hits<Sys::Gaps>,
@@ -281,7 +282,7 @@ impl<Sys: Impacting> Impacts<Sys> {
                     self.slide(surface, &mut hits, &rates, now, observer)?;
                 }
             } else {
-                // A surface that is still approached here is so within rounding.
+                // A gap rate that is still negative here is a rounding error.
                 hits.set_still(surface, -rates.as_slice()[surface]);
                 self.watch.touch(&mut hits, &rates, now)?;
                 if recurrence.add(now)? {
@@ -378,8 +379,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         let mut after = before;
         system.kick(&mut after, blow.size, &blow.direction);
         // NOTE: `dh(pi_D grad h)` is rounded, for a constant metric always in the same direction. Without this
-        // correction the energy would drift like the number of impacts instead of its root. For an elastic law the
-        // rate half way is small; the rates before and after would be rounded coarsely beside their difference.
+        // correction, the energy would drift like the number of impacts instead of its square root. The error is
+        // measured half way: for an elastic law the gap rate there is small and has a small rounding error.
         let taken = blow.share * rate;
         let half = rate - 0.5 * taken;
         let middle = system.gap_rates(t, &between(&before, &after))?.as_slice()[surface];
@@ -400,7 +401,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// Carries out one impact. Returns the gap rates after it, and the next action.
+    /// Applies one impact. Returns the gap rates after it, and the next action.
     fn impact<O: Observer<Sys>>(
         &mut self,
         strike: Strike,
@@ -454,14 +455,14 @@ impl<Sys: Impacting> Impacts<Sys> {
 
     /// True if the state still approaches a surface after an impact.
     fn penetrates(&self, strike: Strike, rate_after: f64, now: &mut Moment<'_, Sys>) -> bool {
-        // Rounding errors, which the impact has multiplied, may decide the sign of the rate after a slow impact.
+        // After a slow impact, rounding errors that the impact has amplified may decide the sign of the rate.
         let watch = &self.watch;
         let surface = strike.surface;
         rate_after < -strike.still
             && !watch.is_slow(surface, 0.25 * rate_after, || watch.rounding(surface, now))
     }
 
-    /// Records an impact. Returns the gap rates and the action to go on with.
+    /// Records an impact in the accumulation. Returns the gap rates and the next action.
     fn accumulate(
         &mut self,
         strike: Strike,
@@ -471,7 +472,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         let Strike { surface, rate, .. } = strike;
         let (system, t) = (now.system, now.t);
         let rate_after = struck.rates.as_slice()[surface];
-        // A reset sets the rate to its last digit; an impulse leaves rounding errors of the rate that it removes.
+        // A reset sets the rate exactly. An impulse leaves rounding errors, relative to the rate that it removes.
         let still = match struck.by_impulse {
             true => strike.still,
             false => 0.0,
@@ -495,13 +496,13 @@ impl<Sys: Impacting> Impacts<Sys> {
             None => Ok((struck.rates, Next::Impacts)),
             Some(Ends::Spasmodic(t)) => Err(Outcome::Spasmodic { t, surface }),
             Some(Ends::Hops(t)) if may_rest => {
-                // Hops too small to be resolved: the rest of the last one is removed.
+                // The hops are too small to be resolved: the remaining rate of the last one is removed.
                 struck.take_rate(system, surface, now.t)?;
                 *now.state = struck.after;
                 self.resting.note_accumulation(surface, t);
                 Ok((struck.rates, Next::Impacts))
             }
-            // A surface off which the motion does not bounce is pressed.
+            // The motion does not bounce off the surface and presses into it.
             Some(Ends::AtOneTime(_)) if bounce.rates[1] == 0.0 => Ok((struck.rates, Next::Rest)),
             Some(Ends::AtOneTime(t)) if may_rest && bounce.rates[1] < rate.abs() => {
                 self.resting.note_accumulation(surface, t);

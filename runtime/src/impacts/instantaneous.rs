@@ -1,8 +1,8 @@
-//! Instantaneous constraints: they hold at the moment of an impact only, and while their surface holds the motion.
+//! Instantaneous constraints, which hold only at the moment of an impact and while their surface holds the motion.
 //!
-//! An impact first brings the state to them, by the smallest impulse in the metric. J. Cortes and A. M. Vinogradov
-//! call the result the instantaneous focusing point. If the state still approaches there, the law acts within the
-//! constraints.
+//! An impact first brings the state onto these constraints, by the smallest impulse in the metric. J. Cortes and A. M.
+//! Vinogradov call the result the instantaneous focusing point. If that state still approaches the surface, the law
+//! acts within the constraints.
 
 use crate::contract::Impacting;
 use crate::error::Fault;

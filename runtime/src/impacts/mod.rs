@@ -1,4 +1,4 @@
-//! Impacts: the effect that finds them and carries them out.
+//! Impacts: the effect that finds them and applies their laws.
 
 mod accumulation;
 mod coincident;

@@ -1,4 +1,4 @@
-//! Quantities at the place of a hit, kept for the impact there.
+//! Quantities at a hit, kept for the impact there.
 
 use super::glance::SAME_TIME;
 use crate::contract::Impacting;
@@ -38,7 +38,7 @@ impl<Sys: Impacting> Place<Sys> {
         })
     }
 
-    /// True if the place is this moment, within the rounding of times.
+    /// True if the place has this state and, within the rounding of times, this time.
     pub(super) fn is(&self, t: f64, state: &Sys::State) -> bool {
         (self.t - t).abs() <= SAME_TIME * t.abs() && self.state == *state
     }

@@ -1,6 +1,6 @@
 //! Counts of repeated events at one time.
 
-/// Number of repetitions of an event at the time of its last occurrence.
+/// Counter of the repetitions of an event at the time of its last occurrence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Repeats {
     /// Time of the last occurrence; `None` before the first.

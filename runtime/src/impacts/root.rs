@@ -1,5 +1,4 @@
-//! The fall of one gap on its polynomial along a step, corrected by one or two evaluations of the gap on the dense
-//! output.
+//! The fall of one gap, from its polynomial along a step. Evaluations of the gap on the dense output correct the root.
 
 use super::series::GapSeries;
 use crate::events::crossing::Signs;
@@ -10,20 +9,20 @@ use crate::state::StateVector;
 /// Maximum number of steps of Chebyshev's method. Each triples the number of correct digits.
 const STEPS: u32 = 10;
 
-/// Relative size of a step that is the last one, or the last but one: the remaining error is about its cube.
+/// Relative size of a step after which at most one more follows: the remaining error is about its cube.
 const SETTLED: f64 = 1.0 / (1 << 18) as f64;
 
-/// Number of steps on the first terms of a polynomial, and number of these terms.
+/// Number of first iterations that use the leading terms of a polynomial only, and number of these terms.
 const GUESSES: u32 = 2;
 const FIRST_TERMS: usize = 8;
 
-/// Ratio of a place behind the first root of a polynomial to the root, up to which the step is examined separately.
+/// The proof of a single first fall extends to this multiple of the estimated root.
 const BEHIND: f64 = 1.25;
 
 /// Maximum number of evaluations of the gap itself near a root of its polynomial.
 const SECANTS: u32 = 6;
 
-/// Share of the bracket below which the uncertainty from rounding makes a root certain.
+/// A root is accepted if its uncertainty from rounding is below this fraction of the bracket.
 const CLOSE: f64 = 1.0 / (1 << 10) as f64;
 
 /// The polynomial of a surface's gap, after division by a root at the start of the step.
@@ -38,7 +37,7 @@ pub(super) struct Polynomial<'a, G: StateVector> {
 }
 
 impl<'a, G: StateVector> Polynomial<'a, G> {
-    /// The polynomial of this surface; `at_hand` if it is at hand at the start of the step.
+    /// The polynomial of this surface. `at_hand` is true if the surface is at hand at the start of the step.
     pub(super) fn new(series: &'a GapSeries<G>, surface: usize, at_hand: bool) -> Self {
         let first = usize::from(at_hand);
         let known = &series.polynomials;
@@ -60,9 +59,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         (signs == Signs::Falls).then_some(end)
     }
 
-    /// The fall of the gap in a bracket in which the polynomial has one root, a fall: Chebyshev's method on the
-    /// polynomial, with the gap itself in the last step. `None` if it does not converge soon, or if the gap differs
-    /// from the polynomial. The second value is true if the gap has no other root in the bracket.
+    /// The fall of the gap in a bracket in which the polynomial has a fall and no other root, by Chebyshev's method on
+    /// the polynomial, with the gap itself in the last step. `None` if the method does not converge soon, or if the gap
+    /// differs from the polynomial. The second value is true if the gap provably has no other root in the bracket.
     pub(super) fn fall(
         &self,
         [mut before, mut after]: [f64; 2],
@@ -92,7 +91,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             root = near.root(near.value);
         }
         let size = self.series.sizes.as_slice()[self.surface];
-        // Width that neighbouring numbers and rounding cannot resolve.
+        // Distance that neighbouring numbers and rounding cannot resolve.
         let margin = 8.0 * f64::EPSILON * (root + size / self.slope(&near, root).abs());
         let is_only = self.falls_through(near.slope + 2.0 * near.bend * (root - near.part));
         let root = self.corrected(&near, root, margin, gap)?;
@@ -105,11 +104,12 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         is_plain.then_some((bracket, is_only))
     }
 
-    /// True if the gap, which has a root only where the polynomial is within its error of zero, falls there: `slope`
-    /// is that of the polynomial at its root.
+    /// True if the gap certainly falls once near the root of the polynomial. `slope` is the slope of the polynomial
+    /// there.
     ///
-    /// Within `4 d / |slope|` of the root, with `d` the error, the slope must change by at most half. The polynomial
-    /// then exceeds `d` outside, and inside half the slope must exceed the error of the derivative.
+    /// The gap has roots only where the polynomial is within its error `d` of zero. Within `4 d / |slope|` of the root,
+    /// the slope must change by at most half. The polynomial then exceeds `d` outside. Inside, half of the slope must
+    /// exceed the error of the derivative.
     #[inline(always)]
     fn falls_through(&self, slope: f64) -> bool {
         let doubt = self.series.doubt(self.surface, self.at_hand);
@@ -121,9 +121,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         slope < 0.0 && 8.0 * bend * doubt <= slope * slope && -0.5 * slope > drift
     }
 
-    /// True if a root is so near that rounding exceeds the error after a step to it: the error of the step itself,
-    /// about twice the step times the square of the relative change of the slope in it; and the error from the gap's
-    /// slope, which a last term as large as the polynomial's error would change.
+    /// True if the step to `root` leaves errors below rounding only. The error of the step itself is about twice the
+    /// step times the square of the relative change of the slope. The slope of the gap differs from that of the
+    /// polynomial by at most the slope of a last term as large as the polynomial's error.
     #[inline(always)]
     fn is_next(&self, near: &Near, root: f64) -> bool {
         let step = (root - near.part).abs();
@@ -135,9 +135,9 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             && degree * doubt * step <= f64::EPSILON * root * size
     }
 
-    /// The root of the gap itself, near the root `root` of its polynomial: the same step with the gap in place of the
-    /// polynomial, then secant steps. One evaluation suffices if the error of the polynomial is small; `None` if it
-    /// exceeds its bound.
+    /// The root of the gap itself, near the root `root` of its polynomial: the same step with the value of the gap,
+    /// then secant steps. One evaluation suffices if the error of the polynomial is small. `None` if that error exceeds
+    /// its bound, or if the secant steps do not converge.
     fn corrected(
         &self,
         near: &Near,
@@ -155,8 +155,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         }
         let mut next = near.root(value / divisor);
         let degree = self.series.polynomials.order as f64;
-        // Error of the slope: the change of the gap's slope between here and the point before; at first, the
-        // contribution of a last term that accounts for the error of the polynomial's root.
+        // `apart` measures the error of the slope: at first the distance between the roots of gap and polynomial, then
+        // the distance of the last two points.
         let mut apart = (next - root).abs();
         let mut step = apart.max((next - part).abs());
         for _ in 0..SECANTS {
@@ -176,8 +176,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         None
     }
 
-    /// Estimate of the fall of the polynomial in a bracket: the fall of its first terms, iterated from the fall of
-    /// the parabola with the same start, slope at the start and end.
+    /// Estimate of the fall of the polynomial in a bracket. It starts at the fall of the parabola with the same values
+    /// at both ends of the step and the same slope at the start, and iterates on the leading terms.
     #[inline(always)]
     fn guess(&self, [before, after]: [f64; 2]) -> f64 {
         let middle = 0.5 * (before + after);
@@ -190,7 +190,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             .map(|k| self.series.polynomials.coefficients[first + k].as_slice()[self.surface]);
         let end = self.series.last.as_slice()[self.surface];
         let root = math::sqrt((b * b - 4.0 * a * (end - a - b)).max(0.0));
-        // The form of the quotient without cancellation.
+        // This form of the quotient avoids cancellation.
         let mut part = inside(match b <= 0.0 {
             true => 2.0 * a / (root - b),
             false => -0.5 * (b + root) / (end - a - b),
@@ -204,7 +204,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         part
     }
 
-    /// Value and derivatives of these first terms at a fraction of the step.
+    /// Value and derivatives of these terms at a fraction of the step.
     ///
     /// Even and odd powers are summed side by side, which shortens the chain of dependent additions.
     #[inline(always)]
@@ -223,7 +223,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
                 values[i] = math::mul_add(values[i], square, term);
             }
         }
-        // Derivative by the fraction, of `E(part^2) + part O(part^2)`.
+        // Derivatives of `E(part^2) + part O(part^2)` with respect to `part`.
         let [even, odd] = slopes;
         Near {
             part,

@@ -1,7 +1,8 @@
-//! Sides of surfaces: where the conditions of a surface begin to hold while the motion is behind it, and which side it is on within rounding.
+//! Sides of surfaces: detects that a surface begins to count while the motion is behind it, and decides the side of a
+//! motion that is on a surface within rounding.
 //!
-//! Behind a wall that does not count the motion is free. Gap and conditions are enclosed along the step: on a stretch where the gap is not
-//! negative, or where the conditions do not hold, nothing begins; others are halved ([`onset`]).
+//! Behind a wall that does not count, the motion is free. Gap and conditions are enclosed along the step. A stretch on
+//! which the gap is not negative, or on which the conditions do not hold, is free; others are halved ([`onset`]).
 
 use core::cell::RefCell;
 
@@ -17,11 +18,12 @@ use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Relative amount by which rounding may move a component or time. Conditions have the same allowance as gaps.
+/// Relative rounding error of a component or of the time, for conditions as for gaps.
 const UNITS: f64 = 32.0 * f64::EPSILON;
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Proposes to cut the step where a surface first begins to count behind the motion, if that is before what is proposed already.
+    /// Proposes to cut the step where a surface first begins to count while the motion is behind it, if this precedes
+    /// the present proposal.
     pub(super) fn look_behind<Step: Stepper<Sys>>(
         &mut self,
         step: &mut StepView<'_, Sys, Step>,
@@ -37,7 +39,7 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// A surface that counts at the end of the step, with the motion behind it, began to count in the step: proposes to cut it there.
+    /// Proposes to cut the step where a surface began to count that counts at its end with the motion behind it.
     #[cold]
     pub(super) fn end_where_behind<Step: Stepper<Sys>>(
         &mut self,
@@ -64,7 +66,8 @@ impl<Sys: Impacting> Watch<Sys> {
         (self.proposed, self.behind) = (Some(found.after), Some(surface));
     }
 
-    /// The first part of the step up to `reach` at which the gap is negative and the surface counts, both beyond rounding.
+    /// The first fraction of the step up to `reach` at which the gap is negative and the surface counts, both beyond
+    /// rounding.
     fn begins_to_count<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -102,7 +105,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(found.map(|found| begin(surface, found.after, step)))
     }
 
-    /// True if on a part of the step the gap is nowhere below `-floor` where the surface counts.
+    /// True if the gap is certainly nowhere below `-floor` on a part of the step, or if the surface counts nowhere on
+    /// it.
     fn is_free<Step: Stepper<Sys>>(
         &self,
         part: [f64; 2],
@@ -126,8 +130,9 @@ impl<Sys: Impacting> Watch<Sys> {
         counts == Some(false)
     }
 
-    /// Surfaces that count have a gap that is not negative beyond rounding; within rounding they are at hand. One that
-    /// counts by rounding alone does not yet: so a ball that lands on a ledge is not inside the wall below.
+    /// Refuses a gap that is negative beyond rounding if the surface counts. Sets a gap that is negative within
+    /// rounding to 0, so that the surface is at hand. A surface that counts by rounding alone does not count yet: a
+    /// ball that lands on a ledge is not inside the wall below.
     pub(super) fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..self.gaps.count() {
             let gap = self.gaps.as_slice()[surface];
@@ -145,8 +150,9 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// A passable surface that is met within rounding at the end of the step, without a fall that counted, has not been
-    /// crossed: its gap gets the smallest number of the side that the motion came from.
+    /// Keeps the side of a passable surface that is met within rounding at the end of the step, without a fall that
+    /// counts. The motion has not crossed it: its gap becomes the smallest number of the side from which the motion
+    /// came.
     pub(super) fn keep_side<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -161,7 +167,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Ends the run where a surface begins to count behind the motion, if the step was cut at this part of it for that.
+    /// Ends the run if the step was cut at this fraction because a surface begins to count behind the motion.
     pub(super) fn check_behind(&self, part: f64, now: &Moment<'_, Sys>) -> Result<(), Outcome> {
         match self.behind {
             Some(surface) if self.proposed == Some(part) => {
@@ -173,8 +179,8 @@ impl<Sys: Impacting> Watch<Sys> {
     }
 }
 
-/// Time at which a surface begins to count that counts beyond rounding at a part of the step: shortly before it, by the
-/// allowance for rounding.
+/// The onset of a surface that counts beyond rounding at the fraction `after` of the step. It lies shortly before
+/// `after`, by the allowance for rounding.
 fn begin<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     after: f64,
@@ -188,7 +194,7 @@ fn begin<Sys: Impacting, Step: Stepper<Sys>>(
     narrowed([(after - back).max(0.0), after], counts)
 }
 
-/// The gap at a part of a step.
+/// The gap at a fraction of a step.
 fn gap_at<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,

@@ -1,4 +1,4 @@
-//! Gaps that are zero at gap rate zero: test if the motion presses into the surface, or crosses it.
+//! Gaps that are zero at gap rate zero: tests whether the motion presses into the surface or crosses it.
 
 use super::held::second_rates;
 use crate::contract::Impacting;
@@ -7,12 +7,12 @@ use crate::integrate::Stepper;
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Least fraction of a step over which the fall of a gap's rate is compared with its second rate: half the digits, so
-/// that rounding is not taken for a second rate.
+/// Least fraction of a step over which the decrease of a gap rate is compared with the second rate. It keeps half of
+/// the digits, so that rounding is not taken for a second rate.
 const LEAST_PART: f64 = 1.0 / (1 << 26) as f64;
 
-/// True if the second rate of a gap, which is 0 at the start of a step at rate 0, accounts for at least half of the
-/// fall of its rate in some small part of the step.
+/// True if the second rate of a gap accounts for at least half of the decrease of its rate over some small part of the
+/// step. Gap and gap rate are 0 at the start of the step.
 pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,
@@ -35,9 +35,9 @@ pub(super) fn is_accelerated<Sys: Impacting, Step: Stepper<Sys>>(
     Ok(false)
 }
 
-/// True if a gap that is 0 at this fraction of a step, at rate 0, continues like the cube of time. The square, which
-/// is a grazing impact or a contact, differs in the changes of the rate over an eighth and a quarter of the remaining
-/// step.
+/// True if a gap that is 0 at this fraction of a step, with gap rate 0, continues like the cube of time. A gap like the
+/// square is a grazing impact or a contact. The changes of the rate over an eighth and a quarter of the remaining step
+/// distinguish them.
 pub(super) fn crosses_at_rest<Sys: Impacting, Step: Stepper<Sys>>(
     surface: usize,
     step: &StepView<'_, Sys, Step>,

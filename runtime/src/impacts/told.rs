@@ -21,8 +21,8 @@ pub(super) enum Told {
 }
 
 impl<Sys: Impacting> Watch<Sys> {
-    /// Includes a bound of the terms that the polynomial of a gap lacks in its error, once a step. Returns true if
-    /// there is a polynomial, and a bound.
+    /// Adds a bound of the truncated terms to the error of a gap's polynomial, once per step. Returns true if the gap
+    /// has a polynomial and a bound.
     #[inline]
     pub(super) fn certify<Step: Stepper<Sys>>(
         &mut self,
@@ -56,7 +56,7 @@ impl<Sys: Impacting> Watch<Sys> {
         })
     }
 
-    /// True if the step passes this surface.
+    /// Applies the first tests of the step to this surface.
     #[inline]
     pub(super) fn told<Step: Stepper<Sys>>(
         &mut self,
@@ -70,8 +70,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let (first, last) = (at(&self.gaps), at(&glance.gaps));
         let is_at_hand = first == 0.0;
-        // NOTE: a surface at hand whose gap is negative throughout is pressed, not clear, unless the motion passes
-        // it.
+        // NOTE: the motion presses into a surface at hand whose gap is negative throughout, unless it passes through
+        // the surface.
         let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
         if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
             return Told::Unclear(None);

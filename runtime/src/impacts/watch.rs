@@ -6,7 +6,8 @@
 //! step marks a surface at hand, which was just hit, or touched within rounding. Its root there is divided out, so it
 //! is neither found again nor hides a later one.
 //!
-//! A surface is passable if its law is a reset: its gap may be negative, and only falls from above count.
+//! A surface is passable if its law is a reset, or a transition that counts from both sides. Its gap may be negative,
+//! and only falls from above count.
 
 use super::glance::{Glance, SAME_TIME, finite, glance};
 use super::held::Held;
@@ -26,11 +27,11 @@ use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Fraction of a step after a hit within which other surfaces are tested for simultaneous impacts, with their
-/// rounding.
+/// Fraction of a step after a hit within which other surfaces are tested for simultaneous impacts by the rounding of
+/// their gaps.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
-/// Number of surfaces up to which their gaps along a step that is a series are looked at as polynomials first.
+/// Maximum number of surfaces for which the polynomials of the gaps are tested first, if the step is a power series.
 const FEW: usize = 8;
 
 /// The gaps at the start of the next step, and the results for the last one.
@@ -60,13 +61,13 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) here: Option<Sys::Gaps>,
     /// Largest absolute values of the state's components since the last impact; they determine the rounding errors.
     pub(super) sizes: Sys::State,
-    /// The same at the start of the last step, for a cut: the motion behind the cut does not contribute.
+    /// The sizes at the start of the last step. A cut uses them, because the motion behind it does not contribute.
     sizes_at_start: Sys::State,
-    /// Number of steps since then, each of which has rounded the state.
+    /// Number of steps since the last impact. Each has rounded the state.
     pub(super) steps: u32,
-    /// Sum of their local errors, in units of the tolerance.
+    /// Sum of the local errors of these steps, in units of the tolerance.
     pub(super) errors: f64,
-    /// Surfaces that hold the motion: their gaps are 0, and are not tested.
+    /// Surfaces that hold the motion. Their gaps are 0 and are not tested.
     pub(super) held: Held<Sys::Gaps>,
     /// The surface that begins to count behind the motion where the last step is to be cut.
     pub(super) behind: Option<usize>,
@@ -80,9 +81,10 @@ pub(super) struct Watch<Sys: Impacting> {
     /// A box in which no gap vanishes, and a box with bounds of the gaps' derivatives.
     haven: Haven<Sys::State>,
     pub(super) limits: Bends<Sys::State, Sys::Gaps>,
-    /// Bounds of the terms that the power series of the gaps lack.
+    /// Bounds of the truncated terms of the gaps' power series.
     pub(super) tails: Tails<Sys::State, Sys::Gaps>,
-    /// True if the gaps kept are older than the start of the next step, because the last steps were not tested.
+    /// True if the stored gaps belong to an earlier time than the start of the next step, because the last steps were
+    /// not tested.
     is_stale: bool,
 }
 
@@ -144,18 +146,19 @@ impl<Sys: Impacting> Watch<Sys> {
         self.held = *held;
     }
 
-    /// Sets whether a surface is passable in the next run.
+    /// Makes a surface passable, or not, in the next run.
     pub(super) fn set_passable(&mut self, surface: usize, passable: bool) {
         self.passable[surface] = passable;
     }
 
-    /// Says whether a surface is a wall with conditions in the coming run.
+    /// Marks a surface as a wall with conditions, or not, in the next run.
     pub(super) fn set_guarded(&mut self, surface: usize, is_guarded: bool) {
         self.guarded[surface] = is_guarded;
         self.has_guarded = self.guarded.iter().any(|is_guarded| is_guarded);
     }
 
-    /// True if the motion may be behind this surface in the last step, where that has conditions and does not hold the motion.
+    /// True if the surface has conditions, does not hold the motion, and may have had the motion behind it in the last
+    /// step.
     pub(super) fn may_be_behind(&self, surface: usize) -> bool {
         let is_in_front = self.is_told[surface] && self.gaps.as_slice()[surface] >= 0.0;
         self.guarded[surface] && !is_in_front && !self.held.is_held(surface)
@@ -192,7 +195,7 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// The surfaces at hand at a position that the motion did not reach by itself.
+    /// The surfaces at hand at a position that smooth motion did not reach: at the start of a run or after a reset.
     pub(super) fn relocate(
         &mut self,
         hits: &mut Hits<Sys::Gaps>,
@@ -256,7 +259,7 @@ impl<Sys: Impacting> Watch<Sys> {
         for surface in (0..self.gaps.count()).filter(|&surface| !is_at_hand(surface)) {
             self.gaps.as_mut_slice()[surface] = gaps.as_slice()[surface];
         }
-        // A gap that should be 0 has the rounding errors of the last flight; later gaps have those of the next.
+        // The gaps now have the rounding errors of the last flight; later gaps have those of the next one.
         let checked = self.check_negative(now);
         self.sizes = *now.state;
         checked
@@ -360,7 +363,7 @@ impl<Sys: Impacting> Watch<Sys> {
         rounding(now, surface, &self.sizes)
     }
 
-    /// The same at the cut of the last step: the motion behind it does not contribute.
+    /// Size of a gap's rounding errors at the cut of the last step. The motion behind the cut does not contribute.
     pub(super) fn rounding_at_cut(&self, surface: usize, now: &mut Moment<'_, Sys>) -> f64 {
         let mut sizes = self.sizes_at_start;
         for (size, value) in sizes.as_mut_slice().iter_mut().zip(now.state.as_slice()) {
@@ -530,7 +533,7 @@ impl<Sys: Impacting> Watch<Sys> {
             counters,
         });
         match checked {
-            // It began to count within rounding of the end of the step, or where conditions are not enclosed.
+            // The surface began to count within rounding of the end of the step, or its conditions are not enclosed.
             Err(Outcome::StartsInside { surface, .. }) => self.end_where_behind(surface, step),
             checked => checked,
         }
@@ -543,7 +546,7 @@ fn measured<Sys: Impacting>(now: &mut Moment<'_, Sys>) -> Result<Sys::Gaps, Outc
     finite(now.system, now.system.gaps(now.t, now.state))
 }
 
-/// The size of a gap's rounding errors at a moment, from components that have had these sizes.
+/// The size of a gap's rounding errors at a moment, for components that reached these sizes.
 pub(super) fn rounding<Sys: Impacting>(
     now: &mut Moment<'_, Sys>,
     surface: usize,

@@ -1,5 +1,5 @@
-//! Variational collision integrator: an impact is part of a step of fixed size. The method itself solves for its time
-//! and place, and the step is completed to its original end.
+//! Variational collision integrator: an impact is part of a step of fixed size. The method itself solves for the time
+//! and position of the impact, and the step is completed to its original end.
 //!
 //! ```text
 //! S(q0, q1) = S_h'(q0, q) + S_(h-h')(q, q1),    q on the surface,    stationary in h' and in q along the surface
@@ -22,16 +22,19 @@ use super::stepper::{EnergyAt, GapAt, Rebound, Stepper};
 use crate::contract::VectorField;
 use crate::state::StateVector;
 
-/// Maximum number of iterations for the length of a step, and for the size of a jump. Each gains several digits.
+/// Maximum number of iterations for the length of a step, and for the size of a jump. Each iteration gains several
+/// digits.
 const LIMIT: u32 = 30;
 
-/// The solved length lies within this fraction of the step of the length from dense output.
+/// Largest accepted difference between the solved length of a step and the length from dense output, relative to the
+/// step; and between the scale of a jump and 1.
 const BESIDE: f64 = 1.0 / 16.0;
 
 /// Relative difference of the energies before and after an impact up to which it counts as elastic.
 const ELASTIC: f64 = 1e-12;
 
-/// Iterates `x -= correction(x)` while corrections decrease. `None` if they do not become small relative to `unit`.
+/// Iterates `x -= correction(x)` while corrections decrease. Returns `None` if they do not become small relative to
+/// `unit`.
 fn solve(mut x: f64, unit: f64, mut correction: impl FnMut(f64) -> Option<f64>) -> Option<f64> {
     let mut last = f64::INFINITY;
     for _ in 0..LIMIT {
@@ -95,7 +98,7 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
     step.ends.t[1] = start.after(length);
     step.is_crowded |= whole.pending.is_some();
     (step.made, step.dense_ready) = (length, false);
-    // If the step led to a point of the grid, its remainder does as well.
+    // The remainder of the step ends where the whole step would have ended.
     (step.has_met, step.target) = (true, whole.pending.or(Some(end)));
     step.prepare_dense(field, counters).is_ok() || {
         *step = whole;
@@ -103,11 +106,11 @@ pub(super) fn meet<F: VectorField, M: Advance<F>>(
     }
 }
 
-/// A part of a step, made in two pieces whose lengths add up to its length.
+/// A part of a step, in two pieces whose lengths add up to its length.
 #[derive(Debug, Clone, Copy)]
 struct Pieces {
     lengths: [f64; 2],
-    /// Derivatives of both lengths by their sum.
+    /// Derivatives of both lengths with respect to their sum.
     slopes: [f64; 2],
 }
 
@@ -144,7 +147,7 @@ impl Pieces {
         }
     }
 
-    /// Negative derivative of the action by the sum of the lengths.
+    /// Negative derivative of the action with respect to the sum of the lengths.
     fn energy<F: VectorField, M: Advance<F>>(
         &self,
         field: &mut Counted<'_, F>,
@@ -187,7 +190,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// Pieces of the step up to an impact. After another impact in the same step there is nothing to mirror.
+    /// Pieces of the step up to an impact. After an earlier impact in the same step, the part is one piece.
     fn arriving_pieces(&self, length: f64) -> Pieces {
         match M::KEEPS_ENERGY && self.pending.is_none() {
             true => Pieces::arriving(length, self.span),
@@ -231,8 +234,8 @@ pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     let mut after = *step;
     after.ends.place(now, Precise::new(arrived));
     let (h, _) = after.aim_within_run(step.step.min(rebound.limit));
-    // Where the next step does not end with this one, the energy at an impact at its end is that of the motion
-    // itself.
+    // If the next step does not end where this one would have ended, no discrete energy has to be kept: the jump of
+    // the law stands.
     if after.target.map(|target| target.since(now)) != Some(h) {
         return None;
     }
@@ -253,8 +256,8 @@ pub(super) fn rebound<F: VectorField, M: Advance<F>>(
     ((scale - 1.0).abs() < BESIDE).then(|| jump(scale))
 }
 
-/// Derivative of the energy by the size of a jump, at the end of the jump; the last state lies half way. `None` if
-/// the jump has size 0, moves the positions or changes the energy.
+/// Derivative of the energy with respect to the size of a jump, at the end of the jump. `middle` is the state half way.
+/// `None` if the jump has size 0, moves the positions or changes the energy.
 fn elastic_slope<S: StateVector>(
     rebound: &Rebound<'_, S>,
     t: f64,

@@ -24,7 +24,7 @@ pub struct Control {
 /// Safety factor of the predicted step size, so that most trials pass.
 const SAFETY: f64 = 0.9;
 
-/// Least error in the controller's memory: below it the last error does not predict the next.
+/// Least error in the controller's memory. Smaller errors do not predict the next one.
 const LEAST_ERROR: f64 = 1e-4;
 
 /// Factor after a trial without an error estimate: a fault, or numbers that are not finite.
@@ -121,8 +121,8 @@ impl<S: StateVector> Weights<S> {
     }
 }
 
-/// Shortest step that is chosen at a time: sixteen units in its last place. A tolerance relative to a component that
-/// is 0, for example at a wall, would ask for steps of length 0.
+/// Shortest step that the controller chooses: sixteen units in the last place of the time. Without this limit, a
+/// tolerance relative to a component that is 0, for example at a wall, would require steps of length 0.
 pub(crate) fn least_step(t: f64) -> f64 {
     (16.0 * f64::EPSILON * t.abs()).max(f64::MIN_POSITIVE)
 }
@@ -138,8 +138,8 @@ const LONG: f64 = 1024.0 * f64::EPSILON;
 
 /// Length and end of a step of about `h`. The end is `t_end` itself if a step one percent longer would reach it.
 ///
-/// A step that is long relative to the last place of the time keeps the low part of the time. Its length has no
-/// digits below that place: those of `h` depend on the units, and a run must not depend on them.
+/// A step that is long relative to the last place of the time keeps the low part of the time. Its length has no digits
+/// below that place: such digits of `h` depend on the units, and a run must not depend on the units.
 #[inline(always)]
 pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let end = Instant::new(t_end);
@@ -157,7 +157,7 @@ pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
 /// Factor by which a step may exceed the largest allowed one: rounding of its ends.
 const ROUNDED: f64 = 1.0 + 1e-9;
 
-/// Same as [`landing`], but in two steps where the one that reaches `t_end` is longer than `max_step`.
+/// Same as [`landing`], but in two steps if the step that reaches `t_end` is longer than `max_step`.
 #[inline(always)]
 pub(crate) fn landing_within(max_step: f64, start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     let (made, arrival) = landing(start, h, t_end);
@@ -200,8 +200,8 @@ pub(super) fn not_finite(components: &[f64]) -> Option<usize> {
 }
 
 /// Size of the first step, from the difference between the rates at both ends of an explicit Euler step (Hairer,
-/// Norsett, Wanner I, II.4). `rate_after(h)` writes the rate after an Euler step of `h`; where it fails, the cautious
-/// first guess is returned.
+/// Norsett, Wanner I, II.4). `rate_after(h)` returns the rate after an Euler step of `h`. If it fails, the result is
+/// the cautious first guess.
 ///
 /// The book's fallbacks are absolute numbers. Here they are fractions of the span, and time is measured in units of
 /// `|y| / |y'|`, so that the choice does not depend on units.

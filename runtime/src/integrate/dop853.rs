@@ -1,7 +1,7 @@
 //! Dormand-Prince pair of order 8 with error estimates of orders 5 and 3, and seventh-order dense output.
 //!
-//! Only steps that need dense output evaluate its three extra stages. (Hairer, Norsett, Wanner I, II.5, II.6;
-//! coefficients in the neighbouring table.)
+//! Only steps that need dense output evaluate its three extra stages. Reference: Hairer, Norsett, Wanner I, II.5, II.6.
+//! The coefficients are in `dop853_tableau.rs`.
 
 use super::controller::Control;
 use super::dense::{Cubic, Polynomial};
@@ -17,7 +17,7 @@ use crate::jet::LENGTH;
 use crate::math;
 use crate::state::StateVector;
 
-/// The integrator of choice at tolerances below 1e-6.
+/// Recommended integrator at tolerances below 1e-6.
 pub type Dop853<S> = Embedded<S, Dop853Scheme>;
 
 /// The coefficients of [`Dop853`].
@@ -66,7 +66,8 @@ impl Scheme for Dop853Scheme {
         Ok(())
     }
 
-    /// `|h| e5^2 / sqrt(n (e5^2 + e3^2 / 100))`: an estimate of order 8 from estimates of orders 5 and 3.
+    /// `|h| e5^2 / sqrt(e5^2 + e3^2 / 100)`, an estimate of order 8 from estimates of orders 5 and 3. `e5` and `e3` are
+    /// the largest ratios of estimated to allowed errors over all components.
     #[inline(always)]
     fn error<S: StateVector>(h: f64, stages: &[S], allowed: impl Fn(usize) -> f64) -> f64 {
         let (mut fifth, mut third) = (0.0, 0.0);

@@ -1,7 +1,7 @@
 //! Coefficients of the 8(5,3) pair of Dormand and Prince with its seventh-order dense output.
 //!
-//! E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, second edition, II.5, II.6 and
-//! the code `dop853` that belongs to it. A row is the list of its non-zero entries `(stage, coefficient)`.
+//! Reference: E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, second edition, II.5,
+//! II.6, and its code `dop853`. A row is the list of its non-zero entries `(stage, coefficient)`.
 
 use super::tableau::Term;
 
@@ -111,8 +111,9 @@ pub(super) const A11: [Term; 9] = [
     (10, 0.6433927460157636),
 ];
 
-/// Weights of the eighth-order solution, each within two units in its last place, chosen so that `sum b_i c_i` is 1/2
-/// to a small fraction of a rounding error. Its deviation would shift every step under constant forces alike.
+/// Weights of the eighth-order solution, each within two units in the last place of the exact value. They are chosen so
+/// that `sum b_i c_i` is 1/2 to a small fraction of a rounding error: under constant forces, a deviation would shift
+/// every step by the same amount.
 pub(super) const B: [Term; 8] = [
     (0, 0.054293734116568765),
     (5, 4.450312892752411),

@@ -1,4 +1,4 @@
-//! The two ends of a step and its cut: the data that integrators keep of a step besides its stages.
+//! The two ends of a step and its cut: the data of a step that integrators keep besides its stages.
 
 use super::instant::Instant;
 use super::precise::Precise;
@@ -56,13 +56,14 @@ impl<S: StateVector> Ends<S> {
         self.t[1].since(self.t[0])
     }
 
-    /// A state to restart from. Components that it shares with the last cut keep their rounding errors from there.
+    /// The state from which the integration restarts. Components equal to those of the last cut keep their rounding
+    /// errors.
     #[inline(always)]
     pub(super) fn kept(&self, state: &S) -> Precise<S> {
         self.cut.as_ref().unwrap_or(&self.end).kept(state)
     }
 
-    /// Cuts a step of this length at a fraction of it; `inside` is the state there unless it is the end.
+    /// Cuts a step of this length at the fraction `theta`. `inside` gives the state there if it is not the end.
     #[inline(always)]
     pub(super) fn cut(
         &mut self,

@@ -1,9 +1,9 @@
-//! Steps of fixed size: the common frame of the methods without error estimate.
+//! Steps of fixed size: the common code of the methods without error estimate.
 //!
 //! A run is a grid of steps of the given size, or of the automatic first step of the tolerance. Exceptions: the last
-//! step lands on the end; after an impact steps grow back from the length that the driver allows; a step in which the
-//! vector field does not exist is shortened until it does; and an implicit step that is not solved is made in 2, 4,
-//! 8, .. equal parts, which keeps the grid and the invariants of the method.
+//! step lands on the end. After an impact, steps grow back from the length that the driver allows. A step in which the
+//! vector field does not exist is shortened until it exists. An implicit step that cannot be solved is divided into 2,
+//! 4, 8, .. equal parts, which keeps the grid and the invariants of the method.
 
 use super::collision;
 use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
@@ -23,15 +23,15 @@ use crate::state::StateVector;
 /// Largest factor between successive steps while they grow back to the size of the run.
 const GROW: f64 = 4.0;
 
-/// Remainder of the way to the end, as a fraction of a step, that is joined to the step before: it is a rounding
-/// error of the number of steps.
+/// Remainder before the end of a run, as a fraction of a step, that is joined to the last step: it is a rounding error
+/// of the number of steps.
 const SLIVER: f64 = 1e-6;
 
 /// Maximum number of parts of an implicit step.
 const PARTS: u32 = 1 << 10;
 
-/// Maximum number of automatic steps in a run: a method of low order would make unreasonably many for a tight
-/// tolerance. A given step may be shorter.
+/// Maximum number of automatic steps in a run. Without this limit, a method of low order would make unreasonably many
+/// steps for a tight tolerance. A step set by the caller may be shorter.
 pub const AUTOMATIC_STEPS: f64 = (1_u32 << 22) as f64;
 
 /// A method of fixed step size: its names and orders. Implemented by the methods of this crate.
@@ -42,11 +42,11 @@ pub trait Method: Copy {
     const ORDER: usize;
     /// Order of the dense output between them.
     const DENSE_ORDER: usize;
-    /// Number of refinements of the cubic through the ends by two rates inside. Each raises its order by one, up to
-    /// 5.
+    /// Number of refinements of the cubic through the ends by two rates inside. Each raises its order by one, at
+    /// most to 5.
     const REFINEMENTS: u32;
 
-    /// Data that the method keeps from one step for the next besides the state.
+    /// Data besides the state that the method keeps for the next step.
     type Memory<S: StateVector>: Copy;
 
     /// True for implicit steps: shorter steps may have a solution where a longer one has none.
@@ -59,7 +59,7 @@ pub trait Method: Copy {
     const KEEPS_ENERGY: bool = false;
 
     /// Mean of an energy over the stages of the step from `start` over `h`: the negative derivative of the step's
-    /// action by `h`. For methods that come from a discrete action and keep their stages.
+    /// action with respect to `h`. For methods that follow from a discrete action and store their stages.
     #[doc(hidden)]
     fn mean_energy<S: StateVector>(
         (t, h): (f64, f64),
@@ -157,10 +157,10 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
     /// Order of the solution at the ends of steps.
     pub const ORDER: usize = M::ORDER;
 
-    /// An integrator that chooses its step at the start and then keeps it. The step is a power of two, at most as
-    /// long as the automatic first step of this tolerance and the method's order, from the rate at the start alone;
-    /// it is long enough for the run to take at most [`AUTOMATIC_STEPS`] steps. Prefer [`FixedStep::with_step`] where
-    /// the motion becomes faster.
+    /// An integrator that chooses its step at the start and then keeps it. The step is the automatic first step for
+    /// this tolerance and the method's order, rounded down to a power of two, but long enough for at most about
+    /// [`AUTOMATIC_STEPS`] steps. It depends on the motion at the start only: prefer [`FixedStep::with_step`] if the
+    /// motion becomes faster later.
     pub fn new(tolerance: Tolerance) -> Self {
         let zeros = S::zeros(0);
         Self {
@@ -193,7 +193,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         self
     }
 
-    /// Sets `(now, state)` as the end of a step, for a start.
+    /// Sets time and state as the end of a step of length 0, from which the next step starts.
     fn place<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
@@ -256,7 +256,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         self.rates[1] = self.rates[0];
     }
 
-    /// Length of a step of about `h`, and the time at its end: `t_end` if that is within reach.
+    /// Length of a step of about `h`, and the time at its end, which is `t_end` if the step reaches it.
     fn aim(&self, h: f64, t_end: f64) -> (f64, Instant) {
         let end = Instant::new(t_end);
         let rest = end.since(self.ends.t[0]);
@@ -289,7 +289,7 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// Makes the step in the smallest number of equal parts that can be solved.
+    /// Makes the step in the smallest number of equal parts, a power of two, that can be solved.
     fn cross<F: VectorField<State = S>>(
         &mut self,
         field: &mut Counted<'_, F>,
@@ -399,8 +399,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         }
     }
 
-    /// Records a step after an impact that ends on the grid again: at the end of the step that was cut, or one step
-    /// further. Returns true if it does.
+    /// True if a step after an impact ends on the grid again: at the end of the step that was cut, or one step further.
+    /// Records the return to the grid.
     fn reaches_grid(&mut self, arrival: Instant, target: Instant) -> bool {
         let next = self.grid.next(self.step);
         let reaches = arrival == target || arrival == next;
@@ -430,8 +430,7 @@ fn usable<S: StateVector>(mut units: S) -> S {
     units
 }
 
-/// One evaluation, never inlined: the code of a step is then shared by all methods, and a long rate is compiled once
-/// for all of them.
+/// Evaluates the rate. It is never inlined, so that a long rate is compiled once for all methods.
 #[inline(never)]
 pub(super) fn evaluate<F: VectorField>(
     field: &mut Counted<'_, F>,

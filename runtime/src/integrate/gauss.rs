@@ -1,11 +1,11 @@
-//! Collocation at Gauss points, orders 4 and 6: implicit, fixed step, symplectic and symmetric.
+//! Collocation at Gauss points, of orders 4 and 6: implicit, with fixed step, symplectic and symmetric.
 //!
 //! ```text
 //! Y_i = y + sum_j mu_ij L_j,    L_j = h b_j f(t + c_j h, Y_j),    y1 = y + sum_j L_j,    mu_ij = a_ij / b_j
 //! ```
 //!
 //! Written with `mu`, the method is symplectic iff `mu_ij + mu_ji = 1`, which holds exactly for the rounded numbers,
-//! whatever the rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
+//! for any rounding of `b`. The stages are solved by fixed-point iteration until the increments no longer
 //! decrease, and the sums over steps are compensated, so that rounding errors grow as a random walk (Brouwer's law).
 
 use super::controller::not_finite;
@@ -29,22 +29,23 @@ use crate::state::StateVector;
 /// drift beyond 4e-13, where [`Rk4`](super::Rk4) loses 5e-3 steadily. With [`Gauss6`] the error is 1.3e-11, and
 /// 1.1e-14 at `h = 0.005`.
 ///
-/// With constraints, in the form reduced to D it is symmetric there: the energy of regular reversible motion is
-/// bounded (steered knife edge of `models/src/stability/structure.rs`, `h = 0.05`, `H = 0.5`: 1.8e-10, drift 1e-14).
-/// In global form it keeps D to order 4 only, and the distance grows (energy error 6e-2, growing like `t^2`). The
-/// effect `Projection` returns to D but is not symmetric, and the energy drifts steadily (5e-6). Prefer
-/// [`Dla4`](super::Dla4) there.
+/// For systems with constraints in the form reduced to D, the method is symmetric, and the energy error of regular
+/// reversible motion is bounded (steered knife edge of `models/stability/src/structure.rs`, `h = 0.05`, `H = 0.5`:
+/// 1.8e-10, drift 1e-14). In global form the method stays on D to order 4 only, and the distance grows (energy error
+/// 6e-2, growing like `t^2`). The effect `Projection` returns to D but is not symmetric, and the energy drifts steadily
+/// (5e-6). Prefer [`Dla4`](super::Dla4) for the global form.
 ///
-/// The method solves for an impact inside the step, and completes the step to the grid. For systems without
-/// constraints and forces whose Lagrangian does not depend on time, single elastic impacts keep the discrete energy,
-/// and the step across is symplectic: a quartic well with a wall (`h = 0.05`) errs by 1.7e-7 at most over a million
-/// units of time, without drift beyond 3e-12. The velocity after the impact is that of the law to the order of the
-/// method. With several impacts in a step, other laws, forces or constraints the law alone acts.
+/// The method solves for an impact inside the step, and completes the step to the grid. For systems without constraints
+/// and forces whose Lagrangian does not depend on time, single elastic impacts keep the discrete energy, and the step
+/// across the impact is symplectic. In a quartic well with a wall (`h = 0.05`), the energy is off by 1.7e-7 at most
+/// over a million units of time, without drift beyond 3e-12. The velocity after the impact agrees with the law to the
+/// order of the method. For several impacts in one step, other laws, forces or constraints, the law acts without this
+/// correction.
 ///
-/// Each step takes one evaluation of the rate and two for each of about 5 to 12 iterations. Use it for long runs of
-/// smooth conservative systems; for a given error over a short time [`Dop853`](super::Dop853) takes less work. Where
-/// the fixed-point iteration does not contract (`h` times the fastest rate above about 1), the step is made in 2, 4,
-/// 8, .. equal parts, so that every step is still a symplectic map. If a thousand parts are not enough, the run ends
+/// Each step takes one evaluation of the rate, and two more for each of about 5 to 12 iterations. Use the method for
+/// long runs of smooth conservative systems. For a given error over a short time, [`Dop853`](super::Dop853) takes less
+/// work. Where the fixed-point iteration does not contract (`h` times the fastest rate above about 1), the step is made
+/// in 2, 4, 8, .. equal parts, so that every step is still a symplectic map. If 1024 parts are not enough, the run ends
 /// with [`StepFailure::NotConverged`](super::StepFailure::NotConverged).
 ///
 /// # References
@@ -56,7 +57,7 @@ pub type Gauss4<S> = FixedStep<S, Gauss<2>>;
 
 /// Gauss's method with three stages: order 6, dense output of order 5.
 ///
-/// Same properties as [`Gauss4`], with energy errors of size `h^6` and three evaluations per iteration.
+/// It has the properties of [`Gauss4`], with energy errors of size `h^6` and three evaluations per iteration.
 pub type Gauss6<S> = FixedStep<S, Gauss<3>>;
 
 /// The step of [`Gauss4`] and [`Gauss6`].
@@ -69,8 +70,8 @@ struct Table<const STAGES: usize> {
     weights: [f64; STAGES],
     /// `mu_ij`
     couplings: [[f64; STAGES]; STAGES],
-    /// Weights of the rates at the stages of a step, and of the rate at its end, in the extrapolation to the stages
-    /// of the next step by the polynomial through them.
+    /// Extrapolation to the stages of the next step, by the polynomial through the rates of this step: the weights of
+    /// the rates at the stages, and of the rate at the end.
     guess: [([f64; STAGES], f64); STAGES],
 }
 
@@ -101,7 +102,7 @@ impl<const STAGES: usize> Table<STAGES> {
 }
 
 impl<const STAGES: usize> Table<STAGES> {
-    /// The state at a stage; `weights` are those of the table times the length of the step.
+    /// The state at a stage. `weights` are the weights of the table times the length of the step.
     #[inline(always)]
     fn inside<S: StateVector>(
         &self,
@@ -120,8 +121,8 @@ impl<const STAGES: usize> Table<STAGES> {
         inside
     }
 
-    /// `sum_i b_i H(Y_i)`, the negative derivative by `h` of the action of a step. That action, from `q0` to `q1`, is
-    /// `h sum_i b_i L(Q_i, V_i)` at its stationary `V_i`.
+    /// `sum_i b_i H(Y_i)`, the negative derivative with respect to `h` of the action of a step. The action from `q0` to
+    /// `q1` is `h sum_i b_i L(Q_i, V_i)`, stationary in `V_i`.
     fn mean_energy<S: StateVector>(
         &self,
         (t, h): (f64, f64),
@@ -140,7 +141,7 @@ impl<const STAGES: usize> Table<STAGES> {
     }
 }
 
-/// Lagrange polynomials of the nodes and 1, at 1 plus each node.
+/// Lagrange polynomials for the nodes and 1, evaluated at 1 plus each node.
 const fn extrapolation<const STAGES: usize>(
     nodes: &[f64; STAGES],
 ) -> [([f64; STAGES], f64); STAGES] {
@@ -224,7 +225,7 @@ impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
     }
 }
 
-/// One step: iterates over the stages, each with the newest rates of the others.
+/// One step: fixed-point iteration over the stages. Each stage uses the newest rates of the others.
 fn advance<F: VectorField, const STAGES: usize>(
     table: &Table<STAGES>,
     field: &mut Counted<'_, F>,

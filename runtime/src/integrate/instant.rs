@@ -3,12 +3,12 @@
 /// A time and its rounding error.
 ///
 /// Late in a run, or where impacts accumulate, steps and flights may be shorter than a unit in the last place of the
-/// time. The sum of two parts is accurate to about 32 digits, and a step moves the time however short it is.
+/// time. The sum of two parts is accurate to about 32 digits, and even the shortest step moves the time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Instant {
     /// The time, in units of time.
     pub t: f64,
-    /// Number to be added: at most half a unit in the last place of `t`.
+    /// The low part, to be added to `t`: at most half a unit in its last place.
     pub rest: f64,
 }
 
@@ -32,7 +32,7 @@ impl Instant {
         }
     }
 
-    /// The time that has passed since another moment.
+    /// The time since another moment.
     #[inline(always)]
     pub fn since(self, other: Self) -> f64 {
         (self.t - other.t) + (self.rest - other.rest)

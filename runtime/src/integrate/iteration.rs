@@ -1,10 +1,10 @@
 //! Stopping rule of a fixed-point iteration that is solved to rounding.
 //!
 //! The iteration goes on while its changes decrease (E. Hairer, R. McLachlan, A. Razakarivony, *Achieving Brouwer's
-//! law with implicit Runge-Kutta methods*, 2008). Where they no longer decrease, either only rounding errors are
+//! law with implicit Runge-Kutta methods*, 2008). When they no longer decrease, either only rounding errors are
 //! left, or the iteration does not contract.
 
-/// Maximum number of iterations; the error halved in each would reach rounding in as many.
+/// Maximum number of iterations: enough to reach rounding if each halves the error.
 const LIMIT: u32 = 60;
 
 /// Size of changes, relative to the largest component, below which they may be rounding.
@@ -27,7 +27,7 @@ pub(super) struct Iteration {
     made: u32,
     /// The last change; `None` before the first.
     last: Option<f64>,
-    /// Number of changes that were no smaller than the one before.
+    /// Number of changes that were not smaller than their predecessor.
     grown: u32,
 }
 
@@ -54,7 +54,7 @@ impl Iteration {
             if change <= ROUNDING * size {
                 return Verdict::Solved;
             }
-            // NOTE: one growth is accepted: the first guess may be better than it looks in some direction.
+            // NOTE: one growth is accepted, because the first change may be small by chance.
             self.grown += 1;
         }
         self.last = Some(change);

@@ -1,9 +1,9 @@
 //! Integrators: one step of a [`VectorField`](crate::VectorField), with dense output.
 //!
-//! [`Stepper`] is the only interface that the driver uses. There are two frames: [`Embedded`] for Runge-Kutta pairs
-//! with an error estimate, whose coefficients come from a [`Scheme`], and [`FixedStep`] for methods that keep a step
-//! size, whose step comes from a [`Method`]. A frame contains the parts that its methods share: step sizes, failures,
-//! dense output. [`Taylor`] sums power series whose coefficients are generated with the vector field
+//! [`Stepper`] is the only interface that the driver uses. [`Embedded`] implements it for Runge-Kutta pairs with an
+//! error estimate, whose coefficients come from a [`Scheme`]; [`FixedStep`] for methods with a fixed step size, whose
+//! step comes from a [`Method`]. They contain the code that their methods share: step sizes, failures, dense output.
+//! [`Taylor`] sums power series whose coefficients are generated with the vector field
 //! ([`TaylorField`](crate::TaylorField)).
 
 mod chosen;

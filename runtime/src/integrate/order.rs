@@ -1,4 +1,4 @@
-//! Order of the power series with the least work per unit of time.
+//! Order of the power series that needs the least work per unit of time.
 //!
 //! A step of order `p` takes `a + c p^2` multiplications and reaches `e^(-l / p)` of the radius of convergence, where
 //! `l = 2.7 - ln(tol)`. Work per unit of time is least at
@@ -8,23 +8,22 @@
 //! ```
 //!
 //! If `a` is unknown or small, this is the order of Jorba and Zou, `p = 1 - ln(tol) / 2` up to constants, with a step
-//! of `e^-2` of the radius. Work that every step takes, independent of the order, favours higher orders. Series that
-//! terminate are computed to their ends.
+//! of `e^-2` of the radius. The work `a`, which every step takes at any order, favours higher orders. Series that
+//! terminate are computed to their last term.
 //!
 //! Reference: A. Jorba and M. Zou, Experimental Mathematics 14 (2005), sections 3.1 and 3.2.
 
 use crate::jet::{LENGTH, Work};
 use crate::math;
 
-/// Lowest order: the step size depends on two coefficients, and neither may be that of the rate.
+/// Lowest order. The step size depends on the last two coefficients, and neither may be the rate.
 pub(super) const LEAST_ORDER: usize = 3;
 
 /// Binary logarithm of `e^-2.7`, the fraction of the tolerance that is used: `e^-2` makes a step this fraction of the
 /// radius of convergence, and `e^-0.7` is the factor `e^(-0.7 / (p - 1))` by which Jorba and Zou shorten it.
 pub(super) const PART_OF_TOLERANCE: f64 = -3.895_276_610_400_201_5;
 
-/// Work of a step besides values and sums, in multiplications: step size, end of the step, and the effects that
-/// examine it.
+/// Work of a step apart from values and sums, in multiplications: step size, end of the step, and effects.
 const BOOKKEEPING: f64 = 200.0;
 
 /// Order for a tolerance.
@@ -39,10 +38,10 @@ pub(crate) fn order(tolerance: f64, work: Option<Work>) -> usize {
     while fixed > 0.0 && order < (LENGTH - 1) as f64 && pays(order) {
         order += 1.0;
     }
-    // NOTE: the conversion saturates and drops the fraction, `+ 1` makes it round up.
+    // NOTE: the conversion saturates and drops the fraction. `+ 1` rounds up.
     let order = (order as usize + 1).clamp(LEAST_ORDER, LENGTH - 1);
     match work.and_then(|work| work.degree) {
-        // The two coefficients that decide on the step are those that vanish.
+        // The two coefficients that determine the step then vanish.
         Some(degree) => order.min((degree as usize + 2).max(LEAST_ORDER)),
         None => order,
     }

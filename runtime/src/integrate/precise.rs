@@ -1,4 +1,4 @@
-//! Compensated sums: states with the low parts that their components cannot hold.
+//! Compensated sums: states with the low parts of their components, as in double-double arithmetic.
 
 use crate::state::StateVector;
 
@@ -20,7 +20,7 @@ impl<S: StateVector> Precise<S> {
         }
     }
 
-    /// This state, with the rounding errors of the components that it shares with `self`.
+    /// The state `state`, with the rounding errors of the components that equal those of `self`.
     #[inline]
     pub(super) fn kept(&self, state: &S) -> Self {
         let mut kept = Self::new(*state);
@@ -45,8 +45,8 @@ impl<S: StateVector> Precise<S> {
         (self.value.padded()[i] - other.value.padded()[i]) + rests
     }
 
-    /// The sum with `increment(i)` in each component, also in those of [`StateVector::padded`], with its rounding
-    /// error.
+    /// The state plus `increment(i)` in each component, also in those of [`StateVector::padded`], with the rounding
+    /// error of the sum.
     #[inline]
     pub(super) fn advanced(&self, increment: impl Fn(usize) -> f64) -> Self {
         let mut sum = *self;
@@ -68,10 +68,7 @@ mod tests {
     use nalgebra::SVector;
 
     #[test]
-    #[cfg_attr(
-        miri,
-        ignore = "a million steps take an hour where each operation is watched"
-    )]
+    #[cfg_attr(miri, ignore = "a million steps take an hour under miri")]
     fn nothing_is_lost_over_a_million_steps() {
         let mut sum = Precise::new(SVector::<f64, 1>::new(1.0));
         let mut naive = 1.0_f64;

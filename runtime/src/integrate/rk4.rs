@@ -1,12 +1,12 @@
-//! Classical Runge-Kutta method, order 4: explicit, fixed step, for teaching and for comparison.
+//! Classical Runge-Kutta method of order 4: explicit, with fixed step, for teaching and for comparison.
 //!
 //! ```text
 //! k1 = f(t, y),  k2 = f(t + h/2, y + h k1/2),  k3 = f(t + h/2, y + h k2/2),  k4 = f(t + h, y + h k3)
 //! y1 = y + h (k1 + 2 k2 + 2 k3 + k4)/6
 //! ```
 //!
-//! W. Kutta, *Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen*, 1901; Hairer, Norsett, Wanner I,
-//! II.1.
+//! References: W. Kutta, *Beitrag zur naeherungsweisen Integration totaler Differentialgleichungen*, 1901; Hairer,
+//! Norsett, Wanner I, II.1.
 
 use super::embedded::Counted;
 use super::fixed::{Advance, Departure, FixedStep, Method, evaluate};

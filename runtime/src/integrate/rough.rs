@@ -1,5 +1,5 @@
-//! Logarithms and powers of two to two or three digits, from the bits of a number: accurate enough to choose a step,
-//! and the same on every machine.
+//! Logarithms and powers of two to two or three digits, from the bits of a number. They are accurate enough to choose a
+//! step, and the same on every machine.
 
 /// Bits of the exponent.
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
@@ -8,7 +8,7 @@ const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 const BIAS: u64 = 1023;
 const PLACE: u32 = 52;
 
-/// The largest power of two that is not above a positive number.
+/// The largest power of two not above a positive number.
 pub(crate) fn power_of_two(x: f64) -> f64 {
     f64::from_bits(normal(x).to_bits() & EXPONENT)
 }

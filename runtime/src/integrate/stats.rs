@@ -4,14 +4,14 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Counters {
-    /// Evaluations of the vector field, including those of rejected steps. A discrete principle evaluates the force
-    /// and solves for a velocity instead, which takes as much work and counts as one.
+    /// Evaluations of the vector field, including those of rejected steps. An evaluation of the force with a solution
+    /// for a velocity, as in a discrete principle, takes as much work and counts as one.
     pub rate_evaluations: u64,
     /// Expansions of the motion in a power series.
     pub expansions: u64,
     /// Sum of the orders of these expansions. Their cost grows with the squares of the orders.
     pub coefficients: u64,
-    /// Accepted steps: their error estimate passed, or they have none.
+    /// Accepted steps: their error estimate is within the tolerance, or they have none.
     pub accepted: u64,
     /// Rejected trial steps: error too large, a fault, a number that is not finite, or an implicit step that was not
     /// solved.
@@ -22,10 +22,10 @@ pub struct Counters {
     pub event_evaluations: u64,
     /// Enclosures of one gap along a part of a step.
     pub enclosures: u64,
-    /// Roots of a gap that were located, whatever the direction of the motion afterwards.
+    /// Roots of a gap that were located, for any direction of the motion afterwards.
     pub crossings: u64,
-    /// Impacts carried out.
+    /// Impacts.
     pub impacts: u64,
-    /// Projections back to the constraints.
+    /// Projections onto the constraints.
     pub projections: u64,
 }

@@ -1,12 +1,12 @@
-//! The kernels of several modes; a number selects one.
+//! The kernels of several modes, selected by an index.
 
 use core::marker::PhantomData;
 
 use super::{Given, Kernels, NoKernels};
 
-/// Kernels selected by a place in a list.
+/// Kernels selected by their index in a list.
 pub trait Chosen: Kernels {
-    /// The kernels at this place; [`NoKernels`] past the end.
+    /// The kernels with this index; [`NoKernels`] past the end.
     fn at(place: usize) -> Self;
 }
 
@@ -17,7 +17,7 @@ impl Chosen for NoKernels {
     }
 }
 
-/// The kernels `A` at place 0, those of `B` from place 1 on: `Choice<A, Choice<B, NoKernels>>`.
+/// The kernels `A` at index 0 and the list `B` from index 1 on, as in `Choice<A, Choice<B, NoKernels>>`.
 #[derive(Debug, Clone, Copy)]
 pub struct Choice<A, B> {
     place: usize,
@@ -25,7 +25,7 @@ pub struct Choice<A, B> {
 }
 
 impl<A, B: Chosen> Choice<A, B> {
-    /// The kernels after the first, if one of them is selected.
+    /// The selected kernels if they are not the first.
     #[inline(always)]
     pub(super) fn others(&self) -> Option<B> {
         self.place.checked_sub(1).map(B::at)
@@ -42,7 +42,7 @@ impl<A: Given, B: Chosen> Chosen for Choice<A, B> {
     }
 }
 
-// NOTE: as `GIVEN` of a form the list selects no kernels: those of its modes are selected by place.
+// NOTE: as `GIVEN` of a form, the list selects no kernels. Those of its modes are selected by index.
 impl<A: Given, B: Chosen> Given for Choice<A, B> {
     const GIVEN: Self = Self {
         place: usize::MAX,

@@ -47,10 +47,10 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync {
     /// True if some system of this type has modes.
     const HAS_MODES: bool = false;
 
-    /// The kernels. A model with modes has none itself: its modes have them.
+    /// The kernels. A model with modes has no kernels; its modes have them.
     fn kernels(&self) -> Self::Kernels;
 
-    /// The kernels at a place in the list of the modes and their global forms
+    /// The kernels with this index in the list of the modes and their global forms
     /// ([`Mode::kernels`](super::Mode::kernels)).
     #[inline(always)]
     fn kernels_at(&self, place: usize) -> Self::Kernels {
@@ -64,14 +64,14 @@ pub trait Declared: Copy + Debug + PartialEq + Send + Sync {
         0
     }
 
-    /// The same system, with another mode in which states are made.
+    /// The same system with another mode in which states are made.
     #[inline(always)]
     fn starting_in(&self, mode: usize) -> Self {
         let _ = mode;
         *self
     }
 
-    /// Facts about the form besides its kernels: sizes, laws, conditions.
+    /// Facts about the form apart from its kernels: sizes, laws, conditions.
     fn tables(&self) -> &Tables;
 
     /// The values of the parameters.

@@ -1,4 +1,5 @@
-//! Independence of constraint forms on a stretch of motion: all pivots of their Gram matrix are enclosed above zero.
+//! Test that constraint forms are independent on a stretch of motion: all pivots of their Gram matrix are certainly
+//! positive.
 
 use super::part::{has_modes, number_of};
 use super::system::over_numbers;
@@ -6,7 +7,7 @@ use super::{At, Declared, Kernels, Part};
 use crate::contract::{Along, VectorField};
 use crate::numbers::{Numbers, Row, TaylorModel};
 
-/// True if the forms are certainly independent all along a motion.
+/// True if the forms are certainly independent along the whole stretch.
 pub(super) fn keeps_rank<S: Declared>(system: &S, (t, component): Along<'_>) -> bool {
     let number = match has_modes(system) {
         true => number_of(Some(&component(system.state_len() - 1))),
@@ -42,7 +43,7 @@ pub(super) fn keeps_rank<S: Declared>(system: &S, (t, component): Along<'_>) -> 
     written.is_ok() && has_pivots(gram, m)
 }
 
-/// True if all pivots of a symmetric matrix, of which the lower half is given, are positive: by elimination.
+/// True if elimination finds positive pivots only. The symmetric matrix is given by its lower half.
 fn has_pivots(matrix: &mut [TaylorModel], m: usize) -> bool {
     (0..m).all(|k| {
         let pivot = matrix[k * m + k];
@@ -69,7 +70,7 @@ mod tests {
     use super::*;
     use crate::numbers::Interval;
 
-    /// True if a matrix of two rows, with a range in place of the entry off the diagonal, has positive pivots.
+    /// True if a 2 by 2 matrix, with a range as its off-diagonal entry, has positive pivots.
     fn has_two(first: f64, second: f64, between: [f64; 2]) -> bool {
         let between = TaylorModel::steady(Interval::new(between[0], between[1]));
         let [first, second] = [first, second].map(TaylorModel::of);

@@ -97,13 +97,13 @@ macro_rules! kernels {
     ) => {
         $(#[$doc])*
         pub trait Kernels {
-            /// Type of the kernels that this form shares with another.
+            /// Type of the kernels that this form shares with another form.
             type Base: Given;
 
             /// The kernels that this form shares with another.
             const BASE: Self::Base;
 
-            /// Names of the kernels that it does not share.
+            /// Names of the kernels that this form does not share.
             const OWN: KernelSet;
 
             $(
@@ -210,10 +210,10 @@ macro_rules! kernels {
         /// Kernels over one kind of number behind pointers; `None` for a kernel that the form does not have.
         pub type KernelTable<L> = Table<Held<Plain<L>>, Held<OfSurface<L>>>;
 
-        /// The same of a constant.
+        /// Constant pointers to kernels over one kind of number.
         pub type ConstantTable<L> = Table<&'static Plain<L>, &'static OfSurface<L>>;
 
-        /// Pointers to kernels, by kernel; `None` for a kernel that the form does not have.
+        /// One entry per kernel: a pointer, or `None` for a kernel that the form does not have.
         #[derive(Clone, Copy)]
         pub struct Table<P, S> {
             $(
@@ -232,7 +232,7 @@ macro_rules! kernels {
                 $($of_surface: None,)*
             };
 
-            /// The table as forms hold it.
+            /// The table in the type that forms store.
             pub const fn held(self) -> KernelTable<L> {
                 Table {
                     $($plain: match self.$plain {
@@ -246,7 +246,7 @@ macro_rules! kernels {
                 }
             }
 
-            /// The selected kernels of a form; shared kernels are pointers to the same functions.
+            /// Pointers to the selected kernels of a form. Kernels that forms share point to the same functions.
             pub const fn of<K: Given>(which: KernelSet) -> Self {
                 if K::IS_NONE {
                     return Self::NONE;
@@ -293,7 +293,8 @@ macro_rules! kernels {
                 }
             }
 
-            /// Builds a table by looking up every kernel by name; a kernel of surfaces by the name of its kind.
+            /// Builds a table by looking up every kernel by name. A kernel of surfaces is looked up by the constructor
+            /// of its names.
             pub fn found(
                 plain: impl Fn(Kernel) -> Option<Held<Plain<L>>>,
                 of_surface: impl Fn(fn(usize) -> Kernel) -> Option<Held<OfSurface<L>>>,
@@ -402,14 +403,14 @@ pub type Plain<L> = dyn Fn(At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sy
 /// A kernel of surfaces behind a pointer.
 pub type OfSurface<L> = dyn Fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sync;
 
-/// Kernels of a form without any, and the base of a form that shares none: every kernel is [`Fault::NotDerived`].
+/// Kernels of a form without any, and base of a form that shares none. Every kernel gives [`Fault::NotDerived`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoKernels;
 
 kernels! {
-    /// The kernels of one form of a model. Each writes its values; `values` has exactly as many places as it writes.
-    /// A slice shorter than a kernel reads or writes is an error of the caller and panics. A kernel without its own
-    /// function is that of [`Kernels::BASE`].
+    /// The kernels of one form of a model. Each writes its values to `values`, which has exactly as many entries. A
+    /// slice shorter than a kernel reads or writes is an error of the caller and panics. A kernel that a form does not
+    /// define is the kernel of [`Kernels::BASE`].
     plain {
         rate: Rate,
         scale: Scale,

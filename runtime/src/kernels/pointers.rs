@@ -5,11 +5,11 @@ use crate::numbers::Numbers;
 
 /// A source of tables of pointers to kernels, one table per kind of number.
 pub trait Tabled: Copy {
-    /// The table over these numbers, if there is one.
+    /// The table over this kind of number, if there is one.
     fn table<L: Numbers>(&self) -> Option<&KernelTable<L>>;
 }
 
-/// The kernels of these tables.
+/// The kernels of tables of pointers.
 #[derive(Debug, Clone, Copy)]
 pub struct Pointers<T>(pub T);
 

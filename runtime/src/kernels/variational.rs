@@ -1,4 +1,4 @@
-//! `Variational` for every declared model whose runs can be varied.
+//! [`Variational`] for every declared model whose runs can be differentiated.
 
 use super::impacting::{counts, counts_throughout, no_impulse};
 use super::part::has_modes;
@@ -16,7 +16,7 @@ type Arguments<'a, L> = (&'a [L], L);
 /// A state over numbers.
 type RowOf<S, L> = <S as TaylorField>::Row<L>;
 
-/// The kernels of a part over numbers.
+/// The kernels of a part over any kind of number.
 impl<S: Declared> Part<'_, S> {
     fn write_over<L: Numbers>(
         &self,
@@ -34,7 +34,7 @@ impl<S: Declared> Part<'_, S> {
         kernel(&self.kernels, at, values).map_err(|fault| self.fault(fault))
     }
 
-    /// The first values of a kernel, in a given number, at the beginning of a row of this length.
+    /// A row of `length` numbers that begins with the `count` values of a kernel.
     fn row<L: Numbers, R: Row<L>>(
         &self,
         (kernel, [length, count]): (
@@ -61,7 +61,8 @@ impl<S: Declared> Part<'_, S> {
         self.row((kernel, counts), arguments, places)
     }
 
-    /// Positions, and momenta or quasi-velocities from a kernel of positions and velocities, of the part.
+    /// A state of the part: the positions, then the momenta or quasi-velocities that a kernel gives for positions and
+    /// velocities.
     fn row_by<L: Numbers, R: Row<L>>(
         &self,
         kernel: impl Fn(&S::Kernels, At<'_, L>, &mut [L]) -> Result<(), Fault>,
@@ -156,8 +157,8 @@ impl<S: Declared> Part<'_, S> {
         })))
     }
 
-    /// The state in the mode that a surface of this one leads to. `None` where the Lagrangian changes and the state
-    /// of either mode holds no momenta.
+    /// The state after the transition through a surface of the part. `None` if refraction is not available
+    /// ([`Self::refracted`]).
     fn passed_into<L: Numbers, R: Row<L>>(
         &self,
         (local, transition): (usize, Transition),
@@ -190,8 +191,8 @@ impl<S: Declared> Part<'_, S> {
         Ok(Some(entered))
     }
 
-    /// Refraction of momenta, or reflection where no refraction exists, by the formulas of `passage.rs`. `None` where
-    /// the decision is not certain, and where the state of either mode holds no momenta.
+    /// Refraction of momenta, or reflection where no refraction exists, by the formulas of `passage.rs`. `None` if the
+    /// decision between them is uncertain, or if the state of either mode does not contain momenta.
     fn refracted<L: Numbers, R: Row<L>>(
         &self,
         right: &Part<'_, S>,
@@ -365,7 +366,7 @@ impl<S: HasVariations> Variational for S {
             part.write_over(S::Kernels::levels, arguments, [state, &[]], levels)?;
         }
         if has_modes(self) {
-            // The components that the mode does not use, and its number.
+            // The components that the mode does not use, and the number of the mode.
             let unused = &state[dimensions.state..];
             let places = values.as_mut_slice()[count..].iter_mut();
             places

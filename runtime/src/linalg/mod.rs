@@ -1,3 +1,3 @@
-//! Dense linear algebra of the runtime itself; generated code contains its own.
+//! Dense linear algebra for the runtime itself. Generated code contains its own.
 
 pub(crate) mod qr;

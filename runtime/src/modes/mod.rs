@@ -1,12 +1,12 @@
 //! Hybrid systems with modes: at every time the motion follows one mode, and transitions lead from one mode to
 //! another.
 //!
-//! The state of the model is the state of the present mode, padded with zeros to the length of the longest, followed
-//! by the number of the mode, which no motion changes. A run passes transitions with the same integrator, event
-//! location and effects as impacts: a transition is a surface at which the state becomes one of another mode.
+//! The state of the model is the state of the present mode, padded with zeros to the length of the longest mode and
+//! followed by the number of the mode, which no motion changes. A transition is a surface at which the state becomes a
+//! state of another mode. A run passes it with the same integrator, event location and effects as an impact.
 //!
-//! [`Part`](crate::kernels::Part) selects the mode for every kernel. This module contains the functions of a mode as
-//! a system of its own.
+//! [`Part`](crate::kernels::Part) selects the mode for every kernel. This module contains the functions that treat a
+//! mode as a separate system.
 //!
 //! | file | job |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Tests of neighbouring motions to first order: they lie on the same surface, or meet it at the same time.
+//! Tests, to first order, that neighbouring motions stay in contact with the surface that holds the motion.
 
 use super::flow::{dual_parameters, dual_state};
 use super::held::Holder;
@@ -46,7 +46,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         still
     }
 
-    /// Neighbours that each differ in one of the arguments only.
+    /// Neighbours that each differ from the motion in one argument only.
     fn parts(&self) -> impl Iterator<Item = Self> {
         let still = self.still();
         let by_time = Self { t: self.t, ..still };
@@ -77,7 +77,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         Ok(pairs.all(|(sum, size): (f64, f64)| sum.abs() <= ROUNDING * size))
     }
 
-    /// True if all neighbours are on a surface whenever the motion is.
+    /// True if all neighbours lie on a surface if the motion does.
     pub(super) fn share_gap(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         self.share(|dual| {
             let gaps = system.clearances(&dual.parameters, dual.t, &dual.state)?;
@@ -92,7 +92,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         })
     }
 
-    /// True if all neighbours satisfy the instantaneous constraints of a surface whenever the motion does.
+    /// True if all neighbours satisfy the instantaneous constraints of a surface if the motion does.
     fn are_focused(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         let Some(focused) = system.focus(&self.parameters, surface, self.t, &self.state)? else {
             return Ok(true);
@@ -111,8 +111,8 @@ impl<Sys: Variational> Neighbours<Sys> {
 }
 
 impl Holder {
-    /// Refuses directions that lead off the surface or the surfaces of a sliding motion: neighbours along them are
-    /// not held.
+    /// Refuses directions that lead off the surface that holds the motion, or off the surface along which it slides:
+    /// neighbours along them are not held.
     pub(super) fn check_along<Sys: Variational>(
         self,
         system: &Sys,

@@ -1,4 +1,4 @@
-//! Directions along a section, and linear equations between them. Matrices are arrays of columns.
+//! Directions along a section, and linear equations in them. Matrices are arrays of columns.
 
 use super::group::{Group, generators};
 use super::slice::Slice;
@@ -9,20 +9,20 @@ use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 use crate::variations::flow::{dual_parameters, dual_state};
 
-/// Singular values below this share of the largest, or of 1, count as 0.
+/// Singular values below this multiple of the largest one, or of 1 if that is larger, count as 0.
 const RANK: f64 = 1e-7;
 
-/// Share of a direction that must remain after projection on those before it.
+/// A direction is dependent on others if its orthogonal part is at most this fraction of its length.
 pub(super) const DEPENDENT: f64 = 1e-10;
 
-/// Maximum number of sweeps over all pairs of columns.
+/// Maximum number of sweeps of Jacobi rotations over all pairs of columns.
 const SWEEPS: usize = 60;
 
-/// Maximum number of Newton steps back to the section.
+/// Maximum number of Newton steps onto the section.
 const STEPS: usize = 12;
 
-/// Tangent directions of a section at a point: those along which neither the gap nor the constraints change, across the
-/// directions of a group.
+/// Tangent directions of a section at a point. Along them, neither the gap nor the constraints change. The directions
+/// of a group are excluded.
 pub(super) struct Chart<Sys: Variational> {
     /// Orthonormal basis, in units of the components: first the excluded directions, then those of the section.
     frame: Sys::Columns,
@@ -40,7 +40,7 @@ impl<Sys: Variational> Clone for Chart<Sys> {
 
 impl<Sys: Variational> Copy for Chart<Sys> {}
 
-/// Equations of a section: a surface, and the values that the constraints conserve.
+/// Equations of a section: the gap of a surface is 0, and the deviations from the constraints keep their values.
 pub(super) struct Fixed<Sys: Variational> {
     surface: usize,
     kept: Sys::Deviations<f64>,
@@ -64,7 +64,8 @@ impl<Sys: Variational> Fixed<Sys> {
         Ok(Self { surface, kept })
     }
 
-    /// Residual of a point in each equation, and its derivatives along some directions.
+    /// Calls `take` with the index of each equation and its residual at a point, with derivatives along some
+    /// directions.
     fn excess(
         &self,
         system: &Sys,
@@ -87,8 +88,8 @@ impl<Sys: Variational> Fixed<Sys> {
 }
 
 impl<Sys: Variational> Chart<Sys> {
-    /// The directions at a point, and a step to first order: without a parameter the step that moves the point onto the
-    /// section, with one the step that keeps it there, per unit of the parameter.
+    /// The directions at a point, and a step to first order. Without a parameter, the step moves the point onto the
+    /// section. With a parameter, it keeps the point on the section, per unit of the parameter.
     fn at(
         system: &Sys,
         (fixed, group): (&Fixed<Sys>, Option<&dyn Group>),
@@ -209,14 +210,14 @@ impl<Sys: Variational> Chart<Sys> {
         direction
     }
 
-    /// The components of a change of the state along the directions.
+    /// The components of a change of the state along the directions of the section.
     pub(super) fn components(&self, change: &Sys::State) -> Sys::State {
         let mut scaled = self.scaled(change);
         self.slice.project(&mut scaled);
         products(&scaled, &self.frame.as_ref()[self.left_out..])
     }
 
-    /// The values on a change of the state of the functions that are 0 on the slice across the group.
+    /// The values of the functions that define the slice across the group, for a change of the state.
     pub(super) fn along_group(&self, change: &Sys::State) -> Sys::State {
         products(&self.scaled(change), self.slice.functions())
     }
@@ -255,8 +256,8 @@ pub(super) fn columns<Sys: Variational>(system: &Sys) -> Sys::Columns {
     columns
 }
 
-/// Orthonormalises the first `count` rows, drops dependent ones, and returns the number of the others. Also computes
-/// the smallest vector whose products with the rows are `values`.
+/// Orthonormalises the first `count` rows, drops dependent ones, and returns the number of rows that remain. Also
+/// computes the `correction` of least norm whose products with the original rows are `-values`.
 fn orthonormalise<S: StateVector>(
     rows: &mut [S],
     count: usize,
@@ -276,8 +277,8 @@ fn orthonormalise<S: StateVector>(
     kept
 }
 
-/// Adds a row to the first `kept`, which are orthonormal, unless it depends on them. Returns its length at right angles
-/// to them.
+/// Orthonormalises a row against the first `kept`, which are orthonormal, and appends it unless it depends on them.
+/// Returns the length of its orthogonal part.
 pub(super) fn adjoin<S: StateVector>(rows: &mut [S], kept: usize, mut row: S) -> Option<f64> {
     let before = math::sqrt(dot(&row, &row));
     for _ in 0..2 {
@@ -297,7 +298,7 @@ pub(super) fn adjoin<S: StateVector>(rows: &mut [S], kept: usize, mut row: S) ->
     Some(left)
 }
 
-/// Completes `count` orthonormal rows to a basis, with the unit vectors that have the largest remainders.
+/// Completes `count` orthonormal rows to a basis, with the unit vectors that have the largest orthogonal parts.
 fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     let dimension = rows.first().map_or(0, StateVector::count);
     for kept in count..dimension {
@@ -312,7 +313,7 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
                 }
             }
             let left = dot(&row, &row);
-            // A small factor, so that of equal remainders the first is taken.
+            // The factor selects the first of several equal remainders.
             if left > 1.000_001 * best.0 {
                 best = (left, row);
             }
@@ -326,10 +327,10 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
     }
 }
 
-/// The `x` of least `|A x - b|^2 + damping |x|^2`, without singular values that count as 0. `A`, the leading square
-/// of `size`, is overwritten, and so is `turned`.
+/// The `x` that minimises `|A x - b|^2 + damping |x|^2`, without singular values that count as 0. `A` is the leading
+/// square of size `size`. `columns` and `turned` are overwritten.
 ///
-/// One-sided Jacobi rotations (Hestenes): columns are rotated in pairs until all are orthogonal.
+/// One-sided Jacobi method (Hestenes): pairs of columns are rotated until all are orthogonal.
 pub(super) fn least_squares<S: StateVector>(
     columns: &mut [S],
     turned: &mut [S],

@@ -14,10 +14,10 @@ use crate::numbers::{Numbers, Row};
 use crate::record::Segment;
 use crate::state::StateVector;
 
-/// Allowed size of the last two terms of a series beside the first ones: below the rounding of the sum.
+/// Allowed size of the last two terms of a series relative to the first ones, below the rounding of the sum.
 const LAST: f64 = 0.25 * f64::EPSILON;
 
-/// Power series of the motion, with their derivatives.
+/// Power series of the motion and of its derivatives.
 pub(super) struct Flow<Sys: Variational> {
     pub(super) expansion: Expansion<Sys, Dual>,
     order: usize,
@@ -35,7 +35,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// Propagates all directions along a stretch of motion, free or held.
+    /// Propagates all directions along a segment of free or held motion.
     pub(super) fn follow(
         &mut self,
         system: &Sys,
@@ -59,7 +59,7 @@ impl<Sys: Variational> Flow<Sys> {
         tangents.chunks_mut(DIRECTIONS).try_for_each(follow_some)
     }
 
-    /// Propagates up to [`DIRECTIONS`] directions side by side.
+    /// Propagates up to [`DIRECTIONS`] directions together along free motion.
     fn follow_some(
         &mut self,
         system: &Sys,
@@ -93,7 +93,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(())
     }
 
-    /// Expands the motion from a state, and returns the part of `length` that the series reach, in units of time.
+    /// Expands the motion from a state. Returns the length of the step that the series allow, at most `length`, in
+    /// units of time.
     fn step(
         &mut self,
         system: &Sys,
@@ -117,7 +118,8 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// The part of `wished` units of time that the series reach; `None` if they must be computed in a shorter unit.
+    /// The step that the series allow, at most `wished` units of time; `None` if they must be computed in a shorter
+    /// unit.
     fn reach(&self, wished: f64) -> Option<f64> {
         let mut sizes = [[0.0; DIRECTIONS + 1]; LENGTH];
         for (sizes, row) in sizes
@@ -138,7 +140,7 @@ impl<Sys: Variational> Flow<Sys> {
     }
 }
 
-/// A dual number with the derivative `of` each tangent; at most [`DIRECTIONS`] tangents.
+/// A dual number whose derivative along each tangent is `of(tangent)`, for at most [`DIRECTIONS`] tangents.
 fn along<T>(value: f64, tangents: &[T], of: impl Fn(&T) -> f64) -> Dual {
     let mut slopes = [0.0; DIRECTIONS];
     for (slope, tangent) in slopes.iter_mut().zip(tangents) {

@@ -1,4 +1,4 @@
-//! Grazing impacts along power series, where the rounding of doubles decides if a surface is met.
+//! Detection of grazing impacts along power series, where the rounding of doubles decides if a surface is met.
 
 use super::Undefined;
 use crate::contract::Variational;
@@ -6,8 +6,8 @@ use crate::integrate::taylor::expansion::Expansion;
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// Number of places in a step at which the rate of a gap is evaluated: between two of them it falls and rises at most
-/// once.
+/// Number of parts of a step at whose ends the rate of a gap is evaluated. The test assumes that a gap has at most one
+/// minimum in a part.
 const PLACES: usize = 16;
 
 /// Rounding errors of a gap, in units of the sum of the absolute values of its terms.
@@ -23,7 +23,7 @@ pub(crate) struct Seen<'a, Sys: Variational, L: Numbers> {
 }
 
 impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
-    /// Refuses a step from `t`, of `theta` units, in which the gap of a surface falls to 0 within rounding, and rises
+    /// Refuses a step from `t` over `theta` units in which the gap of a surface falls to 0 within rounding and rises
     /// again.
     pub(crate) fn look_for_grazes(&self, t: f64, theta: f64) -> Result<(), Undefined> {
         for surface in 0..self.system.series_gap_count() {
@@ -46,7 +46,7 @@ impl<Sys: Variational, L: Numbers> Seen<'_, Sys, L> {
         Ok(())
     }
 
-    /// Place at which the least gap between two places is 0 within rounding.
+    /// The place of the minimum of the gap between two fractions, if the minimum is 0 within rounding.
     fn touch(&self, surface: usize, [mut low, mut high]: [f64; 2]) -> Option<f64> {
         loop {
             let middle = 0.5 * (low + high);

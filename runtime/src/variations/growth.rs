@@ -1,4 +1,4 @@
-//! Growth of small deviations from return to return: the largest Lyapunov exponent of a section.
+//! Growth of small deviations per return: the largest Lyapunov exponent of a section.
 
 use super::Tangent;
 use super::chart::{Chart, Fixed, add};
@@ -10,7 +10,7 @@ use crate::effects::Effect;
 use crate::integrate::Stepper;
 use crate::math;
 
-/// Number of returns that turn a deviation to the direction of fastest growth before its growth counts.
+/// Number of returns before the growth of a deviation counts. They turn it to the direction of fastest growth.
 const TURNING: u32 = 8;
 
 impl<'a, Sys, Step, Effects> Section<'a, Sys, Step, Effects>
@@ -19,18 +19,20 @@ where
     Step: Stepper<Sys>,
     Effects: Effect<Sys>,
 {
-    /// The mean logarithm of the growth of a small deviation per image of the section, over `images` of them from the
-    /// first arrival after a state. It tends to the largest Lyapunov exponent; of a periodic orbit that is the logarithm
-    /// of the largest modulus of its multipliers. Minus infinity where deviations vanish.
+    /// The mean logarithm of the growth of a small deviation per image of the section, over `images` images from the
+    /// first arrival after a state. It tends to the largest Lyapunov exponent. For a periodic orbit, this is the
+    /// logarithm of the largest modulus of its multipliers. It is minus infinity where deviations vanish.
     ///
     /// # Errors
-    /// [`OrbitError::Section`] where the section is not met again or the way to it has no derivative,
-    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time.
+    /// [`OrbitError::Section`] where the section is not met again or the motion to it has no derivative,
+    /// [`OrbitError::DependsOnTime`] for a system or a transition that depends on time, [`OrbitError::NoMultipliers`]
+    /// if the growth is not finite.
     pub fn exponent(&mut self, state: &Sys::State, images: u32) -> Result<f64, OrbitError> {
         let first = self.arrive(state, &mut [])?.before;
         let fixed = Fixed::of(self.system, self.surface, 0.0, &first)?;
         let (chart, mut point) = Chart::onto(self.system, (&fixed, None), 0.0, first)?;
-        // Along every direction of the section, so that hardly any orbit grows at right angles to it.
+        // The deviation has a part along every direction of the section: it is rarely orthogonal to the direction of
+        // growth.
         let mut deviation = self.system.zero_state();
         for index in 0..chart.dimension() {
             let share = 1.0 / (index + 1) as f64;
@@ -50,7 +52,7 @@ where
         Ok(sum / f64::from(images.max(1)))
     }
 
-    /// Moves a point to its image; returns the growth of a deviation, and its image.
+    /// Moves a point to its image. Returns the growth of a deviation, and the image of the deviation.
     fn grown(
         &mut self,
         chart: &Chart<Sys>,
@@ -59,7 +61,7 @@ where
         is_first: bool,
     ) -> Result<(f64, Sys::State), OrbitError> {
         let length = chart.size(deviation);
-        // A section of a single point has no deviations, but may depend on time.
+        // A section of a single point has no deviations. Its first return only tests for a dependence on time.
         if length == 0.0 && !is_first {
             return Ok((0.0, *deviation));
         }

@@ -7,10 +7,10 @@
 //! f_b + s (f_a - f_b),  s = r_b/(r_a + r_b)            sliding between modes a and b
 //! ```
 //!
-//! with the second rate `h''` along `f`, and the gap rates `r`, from the first coefficients of the gaps' series.
+//! with the second rate `h''` along `f` and the gap rates `r` from the first coefficients of the gaps' series.
 //!
-//! At the beginning of such motion neighbours begin it on the surface: their variations jump as at any transition,
-//! with the held field for `f+`. If it ends by itself the field is continuous, and they do not jump.
+//! Where held motion begins, variations jump as at any transition, with the held field as `f+`: neighbouring motions
+//! begin on the surface as well. Where the contact force vanishes, the field is continuous and variations do not jump.
 
 use super::flow::{Flow, dual_parameters, dual_state};
 use super::{Dual, Undefined};
@@ -75,7 +75,7 @@ impl<Sys: Variational> Flow<Sys> {
         }
     }
 
-    /// The rate of a state without variations; held if there is a holder.
+    /// The rate of a state without variations: that of held motion if there is a holder.
     pub(super) fn rate_of(
         &mut self,
         system: &Sys,
@@ -112,7 +112,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok((self.expansion.coefficients[1], gap))
     }
 
-    /// The rate along a surface that pushes.
+    /// The rate of motion that a surface holds.
     fn pressed(
         &mut self,
         system: &Sys,
@@ -129,8 +129,8 @@ impl<Sys: Variational> Flow<Sys> {
         };
         let mut second = half + half;
         if let Some(traced) = system.trace(parameters, surface, now, state, &rate)? {
-            // A gap rate is affine in the velocity variables, so its change by a force is a difference of two gap
-            // rates.
+            // A gap rate is affine in the velocity variables, so that its change by a force is the difference of two
+            // gap rates.
             let forced = sum(state, &sum(&traced, &rate, -1.0), 1.0);
             let collision = system.collision(parameters, surface, now, &forced)?;
             second = second + (collision.as_slice()[0] - gap_rate);
@@ -166,7 +166,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(rate)
     }
 
-    /// Refuses an end of held motion at which the field jumps: another cause than the contact force has ended it.
+    /// Refuses an end of held motion at which the field jumps: it ends for another reason than a vanishing contact
+    /// force.
     pub(super) fn check_release(
         &mut self,
         system: &Sys,

@@ -11,8 +11,8 @@ use crate::record::{Event, Hold, Observer, Segment};
 
 /// Propagates first variations along the run that it observes.
 ///
-/// The caller provides the directions: any number of them, each with variations of state and parameters. Observe one
-/// run, then call [`Variations::tangents`]. Any integrator may be used; derivatives are those of the motion from the
+/// The caller provides any number of directions, each with variations of state and parameters. Observe one run, then
+/// call [`Variations::tangents`]. Any integrator may be used: the derivatives are computed by power series from the
 /// states that it gives.
 ///
 /// # Examples
@@ -29,7 +29,7 @@ use crate::record::{Event, Hold, Observer, Segment};
 ///     }
 /// }
 ///
-/// // Columns: derivatives of the end by each component of the start.
+/// // Columns: derivatives of the end with respect to each component of the start.
 /// let ball = Ball::default();
 /// let state = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
 /// let mut directions = Ball::tangents();
@@ -50,9 +50,10 @@ pub struct Variations<'a, Sys: Variational> {
     system: &'a Sys,
     tangents: &'a mut [Tangent<Sys>],
     flow: Flow<Sys>,
-    /// The cause of held motion.
+    /// The cause of held motion; `None` while the motion is free.
     holder: Option<Holder>,
-    /// Transitions at one moment, and the holder before them. The holder after them is known when the motion goes on.
+    /// Transitions at one moment, and the holder before them. The holder after them is known only when the motion goes
+    /// on.
     crossing: Option<(Sequence<Sys::State>, Option<Holder>)>,
     /// The end of the last stretch of motion.
     end: Option<Sys::State>,
@@ -85,7 +86,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         }
     }
 
-    /// Moves the directions from a fixed time to the surface that is met there.
+    /// Projects the directions, which are at a fixed time, along the motion onto the surface that is met.
     pub(super) fn arrive(&mut self, event: &Event<Sys::State>) {
         self.go_on();
         if self.undefined.is_none() {
@@ -95,7 +96,7 @@ impl<'a, Sys: Variational> Variations<'a, Sys> {
         }
     }
 
-    /// Propagates the directions across the last transitions, unless an earlier place had no derivative.
+    /// Propagates the directions across the last transitions, unless the run had no derivative at an earlier place.
     fn go_on(&mut self) {
         if let Some((sequence, before)) = self.crossing.take()
             && self.undefined.is_none()

@@ -20,15 +20,15 @@ pub const ITERATIONS: u32 = 50;
 /// Maximum number of halvings of one step.
 const HALVINGS: u32 = 12;
 
-/// Residual that counts as 0: this many units of rounding of the state, times the amplification of the orbit; or as
-/// many local errors of the integrator.
+/// Residual that counts as 0, relative to the size of the state times the amplification of the orbit.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// The same in units of the integrator's tolerance.
 const STEPS: f64 = 16.0;
 
-/// A closed point is final if its residual exceeds this share of the residual before it.
+/// A closed point is final if its residual exceeds this multiple of the residual before it.
 const LAST_GAIN: f64 = 0.25;
 
-/// Allowed residual of a closed orbit, as a share of the length of the way along it.
+/// Allowed residual of a closed orbit, relative to its length.
 const CLOSED: f64 = 1e-6;
 
 /// A periodic orbit: a point of a section that returns to itself.
@@ -46,9 +46,9 @@ pub struct Orbit<Sys: Variational> {
     /// The leading square of size `dimension` is the derivative of the Poincare map in these directions: the
     /// monodromy matrix, without the direction of the motion.
     pub derivative: Sys::Columns,
-    /// Eigenvalues of that derivative, the Floquet multipliers of the orbit without the one along the motion. Every
-    /// conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1. Of an orbit modulo a
-    /// group the directions of the group are left out.
+    /// Eigenvalues of that derivative: the Floquet multipliers of the orbit, without the multiplier 1 along the motion.
+    /// Every conserved quantity, and every coordinate that nothing depends on, gives a multiplier 1. For an orbit
+    /// modulo a group, the directions of the group are left out.
     pub multipliers: Multipliers<Sys::State>,
     /// The element of the group that takes the point to its image, see [`Section::modulo`].
     pub element: Element,
@@ -60,7 +60,7 @@ pub struct Orbit<Sys: Variational> {
 pub enum OrbitError {
     /// A trial point is not mapped back to the section, or its map has no derivative.
     Section(SectionError),
-    /// The motion or its transitions depend on time, so the end of a return is not the start of the next.
+    /// The motion or its transitions depend on time, so that successive returns have different maps.
     DependsOnTime,
     /// Newton's method does not converge.
     NotConverged {
@@ -118,9 +118,9 @@ pub(super) struct Trial<Sys: Variational> {
     pub(super) derivative: Sys::Columns,
     /// The element of the group whose inverse was applied to the image.
     pub(super) element: Element,
-    /// Per unit of the parameter, if there is one: the change of the point that keeps it on the section, and the change
-    /// of the miss along the directions.
+    /// Change of the point that keeps it on the section, per unit of the parameter; 0 without a parameter.
     pub(super) shift: Sys::State,
+    /// Change of the miss along the directions, per unit of the parameter; 0 without a parameter.
     pub(super) slope: Sys::State,
 }
 
@@ -133,8 +133,8 @@ where
     /// The periodic orbit near a point on or near the section, by Newton's method in at most `iterations` steps
     /// ([`ITERATIONS`] is enough).
     ///
-    /// Angles close up to full turns. If an orbit belongs to a family, like all orbits of a conservative system, the
-    /// iteration approaches one near the point. A step that does not bring point and image closer is halved.
+    /// Angles close up to full turns. If orbits form a family, as in every conservative system, the iteration converges
+    /// to a member near the point. A step that does not bring point and image closer is halved.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where a point is not mapped back or the map has no derivative,
@@ -171,8 +171,8 @@ where
         }
     }
 
-    /// True if a point is its own image, up to rounding and relative to the distance between them along the orbit. A
-    /// motion that comes to rest returns to its point without being an orbit.
+    /// True if a point is its own image, up to rounding and relative to the length of the orbit. A motion that comes to
+    /// rest returns to its point without being an orbit.
     pub(super) fn is_closed(&self, trial: &Trial<Sys>) -> Result<bool, Undefined> {
         let mut rate = self.system.zero_state();
         self.system.rate(0.0, &trial.point, &mut rate)?;
@@ -224,7 +224,8 @@ where
         let mut shift = self.system.zero_state();
         let mut carried = dimension;
         if let Some(parameter) = parameter {
-            // The surface is one equation at least, so that there is room for one direction more.
+            // The section has at least one equation less than the state has components, so that there is room for one
+            // direction more.
             shift = Chart::shift(self.system, fixed, 0.0, &point, parameter)?;
             tangents.as_mut()[dimension] = Tangent {
                 state: shift,
@@ -296,8 +297,8 @@ fn finish<Sys: Variational>(
 
 /// Newton step from a point: `(derivative - 1) step = -miss`, damped by the size of the miss (Levenberg-Marquardt).
 ///
-/// Along a family of orbits `derivative - 1` is as small as the miss, not 0: undamped steps would wander along the
-/// family. With this damping they converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74 (2005)).
+/// Along a family of orbits, `derivative - 1` is as small as the miss, but not 0: undamped steps would wander along the
+/// family. Damped steps converge quadratically to a nearby orbit (J. Fan, Y. Yuan, Computing 74 (2005)).
 fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     let dimension = trial.chart.dimension();
     let (mut matrix, mut turned) = (trial.derivative, columns(system));
@@ -314,14 +315,15 @@ fn newton<Sys: Variational>(system: &Sys, trial: &Trial<Sys>) -> Sys::State {
     step
 }
 
-/// True if a point is nearer to its image than another one: in its largest component, or in length, which a short Newton
-/// step always lowers.
+/// True if a point is closer to its image than another point, in the largest component or in length. A short Newton
+/// step always lowers the length.
 fn is_nearer<Sys: Variational>(better: &Trial<Sys>, trial: &Trial<Sys>) -> bool {
     let [length, before] = [better, trial].map(|trial| dot(&trial.miss, &trial.miss));
     better.residual < trial.residual || length < before
 }
 
-/// Largest ratio of the length of the image of a direction to that of the direction.
+/// Upper bound of the ratio between the lengths of the image of a direction and of the direction (Frobenius norm); at
+/// least 1.
 fn amplification<Sys: Variational>(trial: &Trial<Sys>) -> f64 {
     let columns = trial.derivative.as_ref()[..trial.chart.dimension()].iter();
     let squares = columns.map(|column| dot(column, column)).sum::<f64>();

@@ -5,8 +5,8 @@ use crate::error::Fault;
 use crate::integrate::taylor::expansion::Expansion;
 use crate::numbers::{Numbers, Row};
 
-/// The first and the second derivative of a state in time, for these parameters. Over [`Dual`](super::Dual) numbers they
-/// have the derivatives of the motion's equations in state and parameters.
+/// The first and the second time derivative of a state, for these parameters. Over [`Dual`](super::Dual) numbers they
+/// carry the derivatives of the equations of motion with respect to state and parameters.
 ///
 /// # Errors
 /// A [`Fault`] where the rate does not exist.

@@ -1,16 +1,16 @@
-//! Slices across the directions of a group, on which a return map acts modulo the group.
+//! Slices across the directions of a symmetry group, on which a return map acts modulo the group.
 
 use super::chart::{DEPENDENT, add, adjoin, dot, least_squares, products};
 use super::group::GENERATORS;
 use crate::math;
 use crate::state::StateVector;
 
-/// A slice across the directions of a group: linear functions that are 0 on it, and the directions along which points are
-/// brought to it.
+/// A slice across the directions of a group: linear functions that are 0 on the slice, and directions along which the
+/// group moves points to it.
 #[derive(Clone, Copy)]
 pub(super) struct Slice<S> {
     functions: [S; GENERATORS],
-    /// Combinations of the directions of the group on which these functions are 1, each on its own.
+    /// For each function, the combination of the group's directions on which it is 1 and the others are 0.
     back: [S; GENERATORS],
     count: usize,
 }
@@ -33,15 +33,15 @@ impl<S: StateVector> Slice<S> {
         self.count += 1;
     }
 
-    /// Adds a function for each independent direction of the group; the first `kept` rows of the frame are gradients of
-    /// the section's equations. Returns the number of excluded directions.
+    /// Adds a function for each independent direction of the group. The first `kept` rows of the frame are an
+    /// orthonormal basis of the gradients of the section's equations. Returns the number of excluded directions.
     ///
-    /// A direction along which an equation changes leads to other levels of a constraint: the level itself is the function,
-    /// and the section stays as it is. Any other direction is along the section, and excluded from it.
+    /// A direction along which an equation changes leads to other levels of a constraint: the level itself is the
+    /// function, and the section does not change. Any other direction lies along the section and is excluded from it.
     pub(super) fn cut(&mut self, frame: &mut [S], kept: usize, rates: [S; GENERATORS]) -> usize {
         let (mut left_out, mut leaving) = (kept, self.back);
         for rate in rates {
-            // What is left of the rate keeps the levels that earlier ones change.
+            // The remainder of the rate does not change the levels that earlier directions change.
             let (mut left, size) = (rate, math::sqrt(dot(&rate, &rate)));
             for _ in 0..2 {
                 for (function, direction) in self.functions().iter().zip(&leaving) {
@@ -72,7 +72,7 @@ impl<S: StateVector> Slice<S> {
         left_out
     }
 
-    /// Finds the directions back to the slice.
+    /// Computes the directions back to the slice.
     pub(super) fn solve(&mut self, rates: &[S; GENERATORS], columns: &mut [S], turned: &mut [S]) {
         let size = GENERATORS.min(columns.len());
         for j in 0..self.count {
@@ -90,7 +90,7 @@ impl<S: StateVector> Slice<S> {
         }
     }
 
-    /// Moves a vector along the group to the slice.
+    /// Moves a vector along the directions of the group to the slice.
     pub(super) fn project(&self, vector: &mut S) {
         let values = products(vector, self.functions());
         for (value, back) in values.as_slice().iter().zip(&self.back[..self.count]) {

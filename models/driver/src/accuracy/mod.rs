@@ -1,5 +1,5 @@
-//! The cost of accuracy: measured errors of integrators over tolerances, with work and time, and the choice of the
-//! cheapest integrator for a wanted error.
+//! The cost of accuracy: measured errors of integrators at several tolerances, with work and time, and the choice of
+//! the fastest integrator for a wanted error.
 //!
 //! Errors are measured, never estimated. The error of a run is the largest difference of a position from a reference
 //! run, compared at [`TIMES`] equally spaced times and at the end. It is relative to the largest absolute value that
@@ -50,7 +50,7 @@ pub(crate) use verdict::verify;
 /// Equally spaced times at which positions are compared.
 pub const TIMES: u64 = 64;
 
-/// The tolerances of the two reference runs: below rounding, so that their steps differ and nothing else does.
+/// The tolerances of the two reference runs. Both are below rounding, so that the runs differ in their steps only.
 pub const FINEST: [f64; 2] = [1e-16, 1e-18];
 
 /// Plan of the measurements.
@@ -65,9 +65,10 @@ pub struct Plan {
     pub tolerances: Vec<f64>,
     /// Number of timings of each case. The cases take turns, so that a slow moment of the machine affects all of them.
     pub rounds: u32,
-    /// The shortest time of one timing: shorter runs are repeated.
+    /// The least duration of one timing. Shorter runs are repeated.
     pub least: Duration,
-    /// Longest time of a run. An integrator that exceeds it is not run at tighter tolerances, which take longer still.
+    /// Longest duration of a run. An integrator that exceeds it is not run at tighter tolerances, which take even
+    /// longer.
     pub patience: Duration,
     /// An error that is small enough: an integrator that reaches it is not run at tighter tolerances.
     pub enough: Option<f64>,
@@ -104,7 +105,7 @@ pub struct Sample {
     pub step: Option<f64>,
     /// The measured error.
     pub error: f64,
-    /// True if it meets the same surfaces as the reference and ends for the same reason.
+    /// True if the run meets the same surfaces as the reference and ends for the same reason.
     pub agrees: bool,
     /// The outcome of its run.
     pub outcome: Outcome,
@@ -112,7 +113,7 @@ pub struct Sample {
     pub t: f64,
     /// The work.
     pub counters: Counters,
-    /// Microseconds per unit of time of the model, the median of several.
+    /// Microseconds per unit of time of the model, as the median of several timings.
     pub microseconds: f64,
 }
 
@@ -123,7 +124,7 @@ pub struct Study {
     pub until: f64,
     /// Difference between the two reference runs: errors below it cannot be distinguished from 0.
     pub floor: f64,
-    /// The reason, in words, for which the impacts of the reference are not confirmed; there are no cases then.
+    /// The reason, in words, for which the impacts of the reference are not confirmed. `samples` is then empty.
     pub doubt: Option<String>,
     /// The outcome of the reference.
     pub outcome: Outcome,
@@ -160,10 +161,10 @@ pub enum NoChoice {
 }
 
 impl Study {
-    /// The fastest case that reaches an error and ends as the reference does.
+    /// The fastest case with an error of at most `wanted` that agrees with the reference.
     ///
     /// # Errors
-    /// [`NoChoice::OutOfReach`] if no case reaches the error, or if the reference is less accurate than that;
+    /// [`NoChoice::OutOfReach`] if no case reaches the error, or if the reference itself is less accurate;
     /// [`NoChoice::Unconfirmed`] without a confirmed reference.
     pub fn choose(&self, wanted: f64) -> Result<&Sample, NoChoice> {
         if let Some(doubt) = &self.doubt {
@@ -185,7 +186,7 @@ impl Study {
             })
     }
 
-    /// The fastest case for each decade of errors that a case reaches, from loose to tight.
+    /// The fastest case for each error `10^-1` to `10^-16` that a case reaches, from loose to tight.
     pub fn cheapest(&self) -> Vec<(f64, &Sample)> {
         let decades = (1..=16).map(power_of_ten);
         decades
@@ -196,7 +197,7 @@ impl Study {
 
 /// Chooses integrator and tolerance for a wanted error over a horizon by measuring all of them.
 ///
-/// The state is one of the scene. Scene and state are not changed.
+/// `state` is a state of `scene`.
 ///
 /// # Errors
 /// [`NoChoice`] if the runs do not start, the reference is not confirmed, or no case reaches the error.
@@ -243,8 +244,8 @@ struct Case {
     times: Vec<f64>,
 }
 
-/// Makes the measurements of a plan with all settings but integrator and tolerance from `base`; calls `tell` before
-/// each one.
+/// Makes the measurements of a plan. All settings except integrator and tolerance come from `base`. Calls `tell` before
+/// each measurement.
 pub(crate) fn study<M: Model>(
     model: &M,
     state: &M::State,
@@ -300,8 +301,8 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// Runs the cases, up to the first that is accurate enough or takes too long. The error explains why tighter
-    /// tolerances are left out.
+    /// Runs the cases up to the first that is accurate enough or takes too long. The error says why tighter tolerances
+    /// are left out.
     fn climb<M: Model>(
         &mut self,
         model: &M,
@@ -320,7 +321,7 @@ impl<'a> Ladder<'a> {
             let begun = Instant::now();
             let track = track(model, state, &settings).map_err(|refusal| refusal.to_string())?;
             let once = begun.elapsed();
-            // Steps are halved or doubled to suit a tolerance, so two tolerances may have the same step.
+            // Automatic steps are powers of two, so that two tolerances may have the same step.
             let last = self.cases.last().and_then(|case| case.sample.step);
             if track.step.is_some() && track.step == last {
                 continue;

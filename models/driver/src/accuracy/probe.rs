@@ -49,7 +49,7 @@ impl<'a, M: Model> Probe<'a, M> {
         self.times.time(self.positions.len() as u64)
     }
 
-    /// The track of the run that this probe has watched, with the result of its audit.
+    /// The track of the run that this probe has observed, with the result of its audit.
     pub fn track(self, solved: &Solved<M::State>, audit: Audited) -> Track {
         let last = self.model.position(&solved.run.state);
         let description = self.model.description();
@@ -101,7 +101,7 @@ impl<M: Model> Observer<M> for Probe<'_, M> {
 pub enum Audited {
     /// The run was not audited.
     Not,
-    /// The scene has surfaces, and no audit of them.
+    /// The scene has surfaces that cannot be audited.
     Impossible,
     /// No surface is met between impacts.
     Confirmed,
@@ -151,7 +151,7 @@ enum Difference {
 pub struct Track {
     /// The names of the surfaces.
     surfaces: Vec<&'static str>,
-    /// The sets that the coordinates run through.
+    /// The topologies of the coordinates.
     topologies: Vec<Topology>,
     /// Positions at each time that the run reached.
     positions: Vec<Vec<f64>>,
@@ -236,8 +236,8 @@ impl Track {
             && pairs.all(|(left, right)| left == right || right.is_nan())
     }
 
-    /// The largest relative difference of a position or of the time at the end, with respect to `reference`. Infinite
-    /// if a position is not a number.
+    /// The largest relative difference from `reference` of a position, or of the time at the end. It is infinite if a
+    /// position is NaN.
     pub fn distance(&self, reference: &Self) -> f64 {
         let scales: Vec<f64> = (0..self.topologies.len())
             .map(|i| reference.scale(i))

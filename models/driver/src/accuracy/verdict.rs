@@ -1,4 +1,4 @@
-//! Verification of a run: its measured error, or the reason for which it cannot be measured.
+//! Verification of a run: its measured error, or the reason why the error cannot be measured.
 //!
 //! The run is repeated bit for bit, and the reference is run twice. All three are audited, and all must meet the same
 //! surfaces in the same order: no error is reported if an impact may have been missed, even by all of them.
@@ -12,7 +12,7 @@ use crate::run::Ending;
 pub enum Verified {
     /// The error was measured.
     Measured {
-        /// The largest error of a position, as a share.
+        /// The largest relative error of a position or of the end time.
         error: f64,
         /// Accuracy of the reference.
         floor: f64,
@@ -37,8 +37,8 @@ pub(crate) fn verify<M: Model>(
     ending: &Ending,
 ) -> Result<Verified, Refusal> {
     let until = match settings.impacts {
-        // The horizon lies far beyond the last requested impact. Positions are compared up to a time slightly after it,
-        // since the last impact of other runs may come later.
+        // The end time of the settings lies far beyond the last requested impact. Positions are compared up to a time
+        // slightly after that impact, because it may come later in other runs.
         Some(_) => ending.t * 1.01,
         None => settings.until,
     };

@@ -1,44 +1,44 @@
-//! Questions of a search about the motions of a problem.
+//! The interface between a search and the boundary-value problem that it solves.
 
 /// Course of a motion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Course {
-    /// It reaches the time of the end, with impacts on these surfaces.
+    /// It reaches the end time, with impacts on these surfaces.
     Reached(Vec<usize>),
     /// It has more impacts than allowed.
     Beyond,
-    /// It takes too many steps to be followed.
+    /// It was given up after too many steps.
     GivenUp,
     /// It ends early for another reason, or begins with an impact.
     Lost,
 }
 
-/// A motion from given unknowns.
+/// The motion from given unknowns.
 #[derive(Debug, Clone)]
 pub(crate) struct Shot {
     pub course: Course,
-    /// Differences between the given coordinates of the end and those of the motion.
+    /// Coordinates of the motion at the end minus their given values.
     pub misses: Vec<f64>,
-    /// Derivatives of these differences, a column for each unknown; empty if they were not asked for or do not exist.
+    /// Derivatives of the misses, one column per unknown; empty if they were not requested or do not exist.
     pub slopes: Vec<Vec<f64>>,
 }
 
-/// Questions of a search about a model, for any type of system.
+/// A boundary-value problem as a search sees it, for any type of system.
 pub(crate) trait Aim {
     /// The motion from these unknowns, with derivatives if `with_slopes`.
     fn shoot(&mut self, w: &[f64], with_slopes: bool) -> Shot;
 
-    /// Number of further starts that [`guess`](Self::guess) may know.
+    /// Number of starts that [`guess`](Self::guess) may find.
     fn guesses(&self) -> usize {
         0
     }
 
-    /// Unknowns that another method finds from a guess with this index.
+    /// Unknowns that another method finds, from its initial guess with this index.
     fn guess(&mut self, index: usize) -> Option<Vec<f64>> {
         let _ = index;
         None
     }
 
-    /// Number of steps of the integrator that were made.
+    /// Number of integrator steps so far.
     fn steps(&self) -> u64;
 }

@@ -1,23 +1,24 @@
-//! Conjugate points: zeros of the determinant along a motion, between impacts, of even order too. An impact turns its
-//! sign, which is no zero.
+//! Conjugate points: zeros of the determinant along a motion between impacts, of odd or even order. A change of its
+//! sign at an impact is not a zero.
 
-/// Longest step along which the determinant is compared, as a fraction of the time.
+/// Longest step between two evaluations of the determinant, as a fraction of the time of the motion.
 pub(super) const LONGEST: f64 = 1.0 / 128.0;
 
-/// Time after an impact at which the determinant is first looked at, as a fraction of the time.
+/// Time between an impact and the next evaluation of the determinant, as a fraction of the time of the motion.
 const AFTER: f64 = 1e-9;
 
-/// Largest value of the parabola through three values of the determinant, as a fraction of the outer ones, from which on its least
-/// value is sought.
+/// A minimum of the absolute determinant is sought if the parabola through three values falls below this fraction of
+/// the larger outer value.
 const SHALLOW: f64 = 0.2;
 
-/// Number of sections of an interval with a least value, the ratio of a section, and the largest least value that counts as 0, as
-/// a fraction of the values at the ends of the interval.
+/// Number of golden sections of an interval with a minimum.
 const SECTIONS: u32 = 60;
+/// Ratio of a golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105;
+/// Largest minimum that counts as 0, as a fraction of the larger value at the ends of the interval.
 const TOUCHING: f64 = 1e-10;
 
-/// Number of halvings of an interval with a zero.
+/// Maximum number of evaluations for a zero.
 const HALVINGS: u32 = 60;
 
 /// The determinant at a time of a motion.
@@ -25,11 +26,11 @@ const HALVINGS: u32 = 60;
 pub(super) struct Mark {
     pub t: f64,
     pub determinant: f64,
-    /// True for the side before an impact.
+    /// True if the determinant is the one just before an impact.
     pub is_cut: bool,
 }
 
-/// The times in (0, `time`) at which the determinant is 0. `at` computes it at any time.
+/// The times in (0, `time`) at which the determinant is 0. `at` evaluates it at any time.
 pub(super) fn zeros(marks: &[Mark], time: f64, at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     let mut zeros = Vec::new();
     // The last two times since the last impact, with their values.
@@ -57,8 +58,9 @@ pub(super) fn zeros(marks: &[Mark], time: f64, at: &mut dyn FnMut(f64) -> f64) -
     zeros
 }
 
-/// The zeros near the middle of three times, at which the determinant is nearer to 0 than before and after: two where it
-/// passes through 0 and back, one where it touches 0, as it does where two neighbouring motions meet the first one at once.
+/// The zeros near the middle of three times, if the absolute determinant has its minimum there: two zeros if it changes
+/// sign and changes back, one if it touches 0. It touches 0 where motions in two independent directions are conjugate
+/// at once.
 fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     let [(from, first), (middle, least), (to, last)] = three;
     let is_alike = first * least > 0.0 && least * last > 0.0;
@@ -72,7 +74,7 @@ fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     let (mut low, mut high) = (from, to);
     let mut best = (middle, least.abs());
     for _ in 0..SECTIONS {
-        // The golden section of the longer side.
+        // Golden section of the longer side.
         let is_left = best.0 - low > high - best.0;
         let t = match is_left {
             true => best.0 - GOLDEN * (best.0 - low),
@@ -92,7 +94,7 @@ fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     if best.1.is_nan() || best.1 > TOUCHING * size {
         return Vec::new();
     }
-    // The root of the determinant passes through 0 there.
+    // The square root of the determinant is linear on both sides of the zero.
     let mut t = best.0;
     for share in [1e-2, 1e-3] {
         let distance = share * (to - from);
@@ -114,12 +116,12 @@ fn lowest([(a, first), (b, middle), (c, last)]: [(f64, f64); 3]) -> f64 {
     }
 }
 
-/// The zero between two times of different sign; `before` is the value at the first of them.
+/// The zero between two times at which the determinant has different signs. `before` is its value at the first time.
 fn zero([mut from, mut to]: [f64; 2], before: f64, at: &mut dyn FnMut(f64) -> f64) -> f64 {
     let mut before = before;
     let mut after = at(to);
     for round in 0..HALVINGS {
-        // False position, and every third time the middle.
+        // Every third step is a bisection, the others are false positions.
         let share = before / (before - after);
         let share = match round % 3 == 2 || !(share > 0.0 && share < 1.0) {
             true => 0.5,
@@ -150,7 +152,7 @@ mod tests {
 
     #[test]
     fn zeros_between_impacts_count_and_turns_at_impacts_do_not() {
-        // sin(t) that an impact at 1 turns; zeros at pi and 2 pi.
+        // An impact at t = 1 changes the sign of sin(t). The zeros are pi and 2 pi.
         let value = |t: f64| if t <= 1.0 { t.sin() } else { -t.sin() };
         let marks: Vec<Mark> = (1..=70)
             .map(|k| 0.1 * f64::from(k))
@@ -189,7 +191,7 @@ mod tests {
         for (found, expected) in found.iter().zip(expected) {
             assert!((found - expected).abs() < 1e-8, "{found}");
         }
-        // Two zeros between neighbouring marks, and none.
+        // Two zeros between neighbouring marks, then none.
         let close = |t: f64| (t - 3.02) * (t - 3.05);
         let found = zeros(&marks(close), 7.0, &mut { close });
         assert_eq!(found.len(), 2, "{found:?}");

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 /// The golden ratio.
 const GOLDEN: f64 = 1.618_033_988_749_895;
 
-/// Number of directions for this number of unknowns, unless it is given.
+/// Default number of directions for a number of unknowns.
 pub(super) const fn default_count(unknowns: usize) -> usize {
     match unknowns {
         0 | 1 => 2,
@@ -15,12 +15,12 @@ pub(super) const fn default_count(unknowns: usize) -> usize {
     }
 }
 
-/// The angle by which a seed turns the first of the directions in the plane.
+/// The angle of the first direction in the plane, which depends on the seed.
 pub(super) fn turn(seed: u64) -> f64 {
     TAU * fraction(seed as f64 / GOLDEN + 0.137_035_999)
 }
 
-/// Unit vectors in a space of three dimensions or more.
+/// `count` unit vectors in a space of three dimensions or more.
 pub(crate) fn on_sphere(dimension: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
     match dimension {
         3 => on_spiral(count, seed),
@@ -39,7 +39,7 @@ fn on_spiral(count: usize, seed: u64) -> Vec<Vec<f64>> {
     (0..count).map(at).collect()
 }
 
-/// Normally distributed vectors, made unit vectors, in opposite pairs.
+/// Random unit vectors from the normal distribution, in opposite pairs.
 fn at_random(dimension: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut state = seed ^ 0x9e37_79b9_7f4a_7c15;
     let mut next = || {
@@ -65,7 +65,7 @@ fn at_random(dimension: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
     directions
 }
 
-/// The part behind the point of a number that is not negative.
+/// The fractional part of a nonnegative number.
 fn fraction(value: f64) -> f64 {
     value - value.floor()
 }

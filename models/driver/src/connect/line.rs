@@ -1,5 +1,5 @@
-//! Starts along a line, for one unknown: every change of sign of the miss is a bracket, and so is every turn of its
-//! derivative that leads it to 0.
+//! Starts along a line, for one unknown. A change of sign of the miss brackets a root. An extremum of the miss near 0
+//! is bracketed by the signs of its derivative.
 
 use super::aim::{Aim, Course};
 use super::scan::Sample;
@@ -7,10 +7,10 @@ use super::scan::Sample;
 /// Least number of intervals of a stretch.
 const INTERVALS: f64 = 16.0;
 
-/// Largest number of steps in a bracket.
+/// Maximum number of steps in a bracket.
 const STEPS: u32 = 200;
 
-/// A start on the line, with the miss and its derivative by the unknown.
+/// A start on the line, with the miss and its derivative with respect to the unknown.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     w: f64,
@@ -18,9 +18,9 @@ struct Place {
     slope: f64,
 }
 
-/// Looks for all starts with miss 0 in a stretch of starts with one sequence of impacts, for one of the equations; `unit` is
-/// the value of the unknown at speed 1. Returns them with the number of intervals that were not resolved. A miss up to `near` counts where
-/// it turns without a change of sign.
+/// Finds the starts with miss 0 in one equation, on a stretch of starts with one sequence of impacts. `unit` is the
+/// value of the unknown at speed 1. An extremum of the miss is a root if its size is at most `near`. Also returns the
+/// number of intervals that were not resolved.
 pub(super) fn roots(
     aim: &mut dyn Aim,
     window: &[Sample],
@@ -62,7 +62,7 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Looks between the last start and the next.
+    /// Adds the roots between the last start and the next one, `w`.
     fn follow(&mut self, last: Option<Place>, w: f64) -> Option<Place> {
         let place = self.place(w)?;
         match last {
@@ -73,7 +73,7 @@ impl Line<'_> {
         Some(place)
     }
 
-    /// The miss at a start; `None` with another sequence of impacts or without a derivative.
+    /// The miss at a start; `None` if it has another sequence of impacts or no derivative.
     fn place(&mut self, w: f64) -> Option<Place> {
         let shot = self.aim.shoot(&[w], true);
         let miss = *shot.misses.get(self.equation)?;
@@ -82,7 +82,7 @@ impl Line<'_> {
         is_usable.then_some(Place { w, miss, slope })
     }
 
-    /// All roots after `left` up to `right`.
+    /// Adds the roots after `left` up to `right`.
     fn between(&mut self, left: Place, right: Place) {
         if right.miss == 0.0 {
             self.roots.push(right.w);
@@ -93,13 +93,13 @@ impl Line<'_> {
         }
     }
 
-    /// True if the absolute miss falls into the interval from both ends.
+    /// True if the absolute miss decreases from both ends into the interval.
     fn turns(&self, left: Place, right: Place) -> bool {
         let span = right.w - left.w;
         left.miss * left.slope * span < 0.0 && right.miss * right.slope * span > 0.0
     }
 
-    /// Newton's method, with bisection where it leaves the bracket or converges slowly.
+    /// Newton's method, with bisection if it leaves the bracket or converges slowly.
     fn bracket(&mut self, mut left: Place, mut right: Place) {
         let mut best = if left.miss.abs() < right.miss.abs() {
             left
@@ -133,7 +133,8 @@ impl Line<'_> {
             if !is_better && (place.w - best.w).abs() <= 4.0 * f64::EPSILON * best.w.abs() {
                 break;
             }
-            // Newton's method goes on from the last place, so that a bad one is left.
+            // Newton's method continues from the new start if its miss is smaller, else from the better end of the
+            // bracket.
             best = if is_better {
                 place
             } else {
@@ -146,7 +147,7 @@ impl Line<'_> {
         self.keep(best);
     }
 
-    /// Follows the turn of the miss, and brackets the roots on both sides if it passes through 0.
+    /// Bisects to the extremum of the miss, and brackets the roots on both sides if the miss changes sign.
     fn fold(&mut self, mut left: Place, mut right: Place) {
         for _ in 0..STEPS {
             let w = 0.5 * (left.w + right.w);

@@ -1,19 +1,19 @@
-//! Boundary-value problems: all motions found that join two configurations in a given time, with given numbers of
-//! impacts.
+//! Boundary-value problems: a search for the motions that join two configurations in a given time, with given numbers
+//! of impacts.
 //!
-//! The unknowns are the velocity components of the start in its reduced form (momenta without constraints), the equations
-//! are the given coordinates of the end. A motion and its derivatives by the unknowns, across impacts, are those of
-//! [`Variations`](dalembert::Variations).
+//! The unknowns are the quasi-velocities of the start in the reduced form, or its momenta for a model without
+//! constraints. The equations are the given coordinates of the end. [`Variations`](dalembert::Variations) computes the
+//! derivatives of a motion with respect to the unknowns, across impacts.
 //!
 //! | file | job |
 //! |---|---|
-//! | `shooter.rs` | one motion from given unknowns, and what is asked of a motion that was found |
-//! | `aim.rs` | questions of a search about a problem |
+//! | `shooter.rs` | one motion from given unknowns, and the properties of a motion that was found |
+//! | `aim.rs` | the interface between a search and a problem |
 //! | `observers.rs` | observers of a motion: impacts, action, derivatives |
 //! | `units.rs` | units of the unknowns, and the energies that a problem suggests |
 //! | `scan.rs` | motions along rays of the space of unknowns, with every change of their sequence of impacts |
-//! | `line.rs` | all ends that agree along a line of starts, by brackets |
-//! | `newton.rs` | a start that agrees, by Newton's method within one sequence of impacts |
+//! | `line.rs` | all roots along a line of starts, by brackets |
+//! | `newton.rs` | a root by Newton's method within one sequence of impacts |
 //! | `search.rs` | the search: rays, starts, deflation |
 //! | `directions.rs` | directions that cover a sphere |
 //! | `conjugate.rs` | conjugate points of a motion |
@@ -40,7 +40,7 @@ use crate::refusal::Refusal;
 use search::{Plan, Search};
 use shooter::Shooter;
 
-/// Relative difference of two actions that are one up to rounding.
+/// Relative difference below which two actions count as equal.
 const SAME_ACTION: f64 = 1e-9;
 
 /// Request for all motions between two configurations.
@@ -48,27 +48,28 @@ const SAME_ACTION: f64 = 1e-9;
 pub struct Boundary {
     /// Positions at `t = 0`, one per coordinate.
     pub from: Vec<f64>,
-    /// Positions at the end; a coordinate without one is free.
+    /// Positions at the end, one per coordinate; `None` for a free coordinate.
     pub to: Vec<Option<f64>>,
-    /// The time of the end.
+    /// The end time; the start is at 0.
     pub time: f64,
     /// Least and largest number of impacts.
     pub impacts: [usize; 2],
-    /// The tolerance of the integrator, a Taylor series.
+    /// The tolerance of the integrator, `Taylor`.
     pub tolerance: Tolerance,
-    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
+    /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
     /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
-    /// Number of directions in which starts are scanned, for two unknowns or more; by default by their number.
+    /// Number of directions in which starts are scanned, for two unknowns or more. The default depends on the number of
+    /// unknowns.
     pub directions: Option<usize>,
-    /// Seed that turns the directions.
+    /// Seed of the directions.
     pub seed: u64,
-    /// Largest kinetic energy of a start; by default the scan goes on until every start has too many impacts, or to
-    /// a large multiple of the energies that the problem suggests.
+    /// Largest kinetic energy of a start. By default the scan continues until every start has too many impacts, or up
+    /// to a large multiple of the energies that the problem suggests.
     pub kinetic: Option<f64>,
-    /// Number of starts in each direction whose conjugate points are sought, for one unknown: they lie on the envelope of
-    /// all motions from the first configuration.
+    /// Number of starts in each direction whose conjugate points are sought, for one unknown. The points lie on the
+    /// envelope of all motions from the first configuration.
     pub envelope: usize,
 }
 
@@ -85,7 +86,7 @@ pub struct Bounce {
     pub after: Point,
 }
 
-/// A conjugate point: the derivative of the configuration by the velocity of the start is singular there.
+/// A conjugate point: the derivative of the configuration with respect to the velocity at the start is singular there.
 #[derive(Debug, Clone)]
 pub struct Conjugate {
     /// The time.
@@ -109,14 +110,16 @@ pub struct Connection {
     pub action: f64,
     /// Largest difference between a coordinate of the end and its given value.
     pub residual: f64,
-    /// Points after the start and before the end at which the determinant of the derivative of the configuration by the
-    /// velocity of the start passes through 0.
+    /// Points between start and end at which the determinant of the derivative of the configuration with respect to the
+    /// velocity at the start is 0.
     pub conjugate: Vec<Conjugate>,
-    /// The determinant at the end, divided by that of free motion with the same start to first order.
+    /// The determinant at the end, divided by its value for motion at constant velocity.
     pub determinant: f64,
-    /// False if the determinant at the end is 0 up to rounding: neighbouring starts reach the end too, to first order.
+    /// False if the determinant at the end is 0 up to rounding: to first order, neighbouring starts reach the end as
+    /// well.
     pub is_isolated: bool,
-    /// Number of motions that are not isolated, with the same surfaces and the same action, of which this is one.
+    /// Number of motions in the family that this motion represents: they are not isolated, and have the same surfaces
+    /// and the same action. 1 for an isolated motion.
     pub family: usize,
 }
 
@@ -125,7 +128,7 @@ pub struct Connection {
 pub struct Connected {
     /// The motions, by number of impacts, then by time of the impacts.
     pub connections: Vec<Connection>,
-    /// Conjugate points of other starts, by number of impacts, then by time.
+    /// Conjugate points of the starts of the envelope, by number of impacts, then by time.
     pub envelope: Vec<Conjugate>,
     /// Number of unknowns.
     pub unknowns: usize,
@@ -133,13 +136,13 @@ pub struct Connected {
     pub directions: usize,
     /// Largest kinetic energy of a scanned start.
     pub kinetic: f64,
-    /// True if at that energy every direction has too many impacts or no motion to the end.
+    /// True if the starts at that energy have too many impacts or no motion to the end, in every direction.
     pub is_bounded: bool,
     /// Number of motions that were computed.
     pub runs: u64,
-    /// Intervals of a scan with a change that was not resolved.
+    /// Number of intervals of the scan that were not resolved.
     pub unresolved: usize,
-    /// Number of starts whose motion took too many steps to be followed.
+    /// Number of starts whose motion was given up after too many steps.
     pub given_up: usize,
 }
 
@@ -155,12 +158,12 @@ impl Plan {
     }
 }
 
-/// Stage of a search, for its progress.
+/// Progress of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
-    /// Number of directions, then of starts, that were worked off.
+    /// Number of finished tasks: directions first, then starts.
     pub done: usize,
-    /// Number of all of them.
+    /// Number of all tasks.
     pub all: usize,
     /// Number of motions found.
     pub found: usize,
@@ -170,15 +173,15 @@ pub struct Stage {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unjoined {
-    /// The model has no velocities of its start to choose.
+    /// The model has no free velocities at the start.
     #[error("a first-order system has no free velocities: its motion follows from its start")]
     FirstOrder,
-    /// The equations are solved in the global form and there are constraints.
+    /// The model has constraints and no reduced form.
     #[error(
         "motions of a model with constraints are sought in its reduced form, and this one has none"
     )]
     Unreduced,
-    /// The number of equations differs from that of the unknowns.
+    /// The number of equations differs from the number of unknowns.
     #[error(
         "{equations} coordinates are given at the end, and the velocity at the start has {unknowns} free components"
     )]
@@ -188,7 +191,7 @@ pub enum Unjoined {
         /// Number of free velocities of the start.
         unknowns: usize,
     },
-    /// An envelope of motions with several unknowns.
+    /// An envelope was requested for several unknowns.
     #[error("envelopes are known for one free velocity, and the start has {unknowns}")]
     Envelope {
         /// Number of free velocities of the start.
@@ -209,7 +212,7 @@ pub enum Unjoined {
     Level {
         /// The constraint.
         constraint: usize,
-        /// The difference of its value between both configurations.
+        /// The difference of its values at both configurations.
         difference: f64,
     },
     /// The configuration at the end is refused.
@@ -223,14 +226,14 @@ pub enum Unjoined {
     Undefined(#[from] Undefined),
 }
 
-/// Searches motions of a model of any type.
+/// Visitor that searches the motions of a model of any type.
 pub(crate) struct Joiner<'a, 'b> {
     pub boundary: &'a Boundary,
     pub tell: &'b mut dyn FnMut(Stage),
 }
 
 impl VariationalVisitor for Joiner<'_, '_> {
-    /// The inner error explains why no motion can be sought, the outer one why no run starts.
+    /// The inner error says why no motion can be sought, the outer one why no run starts.
     type Output = Result<Result<Connected, Unjoined>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
@@ -269,7 +272,7 @@ impl VariationalVisitor for Joiner<'_, '_> {
     }
 }
 
-/// One motion of each family of motions that are not isolated.
+/// Replaces each family of motions that are not isolated by one of them.
 fn families(connections: Vec<Connection>) -> Vec<Connection> {
     let mut kept: Vec<Connection> = Vec::new();
     for connection in connections {

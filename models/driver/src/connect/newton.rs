@@ -1,36 +1,36 @@
-//! Newton's method for a start that agrees, within one sequence of impacts: steps that change the sequence are shortened.
+//! Newton's method for a root within one sequence of impacts: steps that change the sequence are shortened.
 //!
-//! Roots that are known are divided out (deflation): the miss is multiplied by `M = prod(1 + 1/|y - y_i|^2)`, which
+//! Known roots are divided out (deflation): the miss is multiplied by `M = prod(1 + |y_i|^2/|y - y_i|^2)`, which
 //! multiplies the step by `1/(1 - dM(step)/M)`.
 
 use super::aim::{Aim, Course, Shot};
 use crate::least_squares::solve;
 use crate::linear::norm;
 
-/// Largest number of steps.
+/// Maximum number of steps.
 const STEPS: u32 = 60;
 
-/// Number of halvings of a step.
+/// Maximum number of trial lengths of a step, each half of the last.
 const HALVINGS: u32 = 14;
 
-/// Least relative decrease of the miss, as a fraction of that of a whole step.
+/// Least relative decrease of the miss in a step, as a multiple of the fraction of the whole step that is made.
 const DECREASE: f64 = 1e-4;
 
-/// End of Newton's method.
+/// Result of Newton's method.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Arrival {
-    /// At a start that agrees, with its miss.
+    /// A new root, in units.
     Root(Vec<f64>),
-    /// Near a root that is known.
+    /// A known root.
     Known,
-    /// Nowhere.
+    /// No root.
     Nowhere,
 }
 
-/// Problem of Newton's method.
+/// Parameters of Newton's method.
 pub(super) struct Newton<'a> {
     pub aim: &'a mut dyn Aim,
-    /// The values of unknowns at speed 1.
+    /// The value of each unknown at speed 1.
     pub units: &'a [f64],
     pub course: &'a Course,
     /// Largest speed.
@@ -42,7 +42,7 @@ pub(super) struct Newton<'a> {
 }
 
 impl Newton<'_> {
-    /// Searches from a start, given in units; roots of `known` are recognised, and divided out if `deflated`.
+    /// Searches from a start in units. Roots of `known` are recognised, and divided out if `deflated`.
     pub fn search(&mut self, start: &[f64], known: &[Vec<f64>], deflated: bool) -> Arrival {
         let mut y = start.to_vec();
         let mut shot = self.shoot(&y, true);
@@ -74,7 +74,7 @@ impl Newton<'_> {
         }
     }
 
-    /// Takes the last step, if it does not make the miss larger.
+    /// Makes the last step unless it increases the miss.
     fn finish(&mut self, y: Vec<f64>, step: &[f64], shot: &Shot, known: &[Vec<f64>]) -> Arrival {
         let next = moved(&y, step, 1.0);
         let last = self.shoot(&next, false);
@@ -84,7 +84,7 @@ impl Newton<'_> {
         }
     }
 
-    /// The root, unless it is known.
+    /// Result for a root, which may be known.
     fn named(&self, y: Vec<f64>, known: &[Vec<f64>]) -> Arrival {
         match known.iter().any(|root| is_same(&y, root, self.least)) {
             true => Arrival::Known,
@@ -97,7 +97,7 @@ impl Newton<'_> {
         self.aim.shoot(&w, with_slopes)
     }
 
-    /// The whole step, not longer than the largest speed.
+    /// The Newton step, at most as long as the largest speed.
     fn step(&self, shot: &Shot) -> Option<Vec<f64>> {
         let scaled =
             |(column, unit): (&Vec<f64>, &f64)| column.iter().map(|it| it * unit).collect();
@@ -112,7 +112,7 @@ impl Newton<'_> {
         norm(step) <= 1e-9 * norm(y).max(1e-6 * self.most)
     }
 
-    /// The start after the longest part of a step that keeps the sequence of impacts and decreases the miss.
+    /// The start after the longest fraction of a step that keeps the sequence of impacts and decreases the miss.
     fn advance(
         &mut self,
         y: &[f64],
@@ -135,26 +135,26 @@ impl Newton<'_> {
     }
 }
 
-/// True for two approximations of one root; `speed` is one of the problem.
+/// True for two approximations of one root. `speed` is a typical speed of the problem.
 pub(super) fn is_same(left: &[f64], right: &[f64], speed: f64) -> bool {
     let size = norm(left).max(norm(right)).max(1e-3 * speed);
     norm(&difference(left, right)) <= 1e-6 * size
 }
 
-/// True if a step leads to a root, from near it.
+/// True if a step from near a root leads to it.
 fn is_captured(y: &[f64], step: &[f64], root: &[f64]) -> bool {
     let away = norm(&difference(root, y));
     away <= 0.05 * norm(root) && norm(&difference(root, &moved(y, step, 1.0))) <= 0.05 * away
 }
 
-/// The factor that keeps the miss away from 0 at known roots.
+/// The factor of the deflated miss, which keeps it away from 0 at known roots.
 fn factor(y: &[f64], known: &[Vec<f64>]) -> f64 {
     let near =
         |root: &Vec<f64>| (norm(&difference(y, root)) / norm(root).max(f64::MIN_POSITIVE)).powi(-2);
     known.iter().map(|root| 1.0 + near(root)).product()
 }
 
-/// The step of the deflated miss for a step of the miss itself.
+/// The Newton step of the deflated miss, from the Newton step of the miss.
 fn deflate(y: &[f64], step: Vec<f64>, known: &[Vec<f64>]) -> Vec<f64> {
     let mut growth = 0.0;
     for root in known {
@@ -193,7 +193,7 @@ fn difference(left: &[f64], right: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// The intersections of a circle with a hyperbola: four of them.
+    /// A circle and a hyperbola with four intersections.
     struct Curves;
 
     impl Aim for Curves {

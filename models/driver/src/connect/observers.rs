@@ -9,7 +9,7 @@ use dalembert::{Action, Event, Hold, Instance, Observer, Segment, StateVector, V
 use super::Bounce;
 use crate::model::point;
 
-/// Notes the impacts of a run, and varies it.
+/// Records the impacts of a run, and propagates variations on request.
 pub(crate) struct Marksman<'a, S: Variational> {
     pub variations: Option<Variations<'a, S>>,
     pub hits: Vec<(f64, usize)>,
@@ -39,7 +39,7 @@ impl<S: Variational> Observer<S> for Marksman<'_, S> {
     }
 }
 
-/// Keeps action and impacts of a run.
+/// Records the action and the impacts of a run.
 pub(super) struct Film<'a, S> {
     pub system: &'a S,
     pub action: Action<'a, S>,
@@ -62,16 +62,16 @@ impl<S: Instance> Observer<S> for Film<'_, S> {
     }
 }
 
-/// The end of a step: time, state, and the derivatives of the state by the unknowns.
+/// The end of a step: time, state, and the derivatives of the state with respect to the unknowns.
 pub(crate) struct Stand<S> {
     pub t: f64,
     pub state: S,
     pub columns: Vec<Vec<f64>>,
-    /// True before an impact.
+    /// True if an impact follows.
     pub is_cut: bool,
 }
 
-/// Keeps the derivatives of the configuration at the end of every step.
+/// Records the state and its derivatives at the end of every step.
 pub(crate) struct Determinants<'a, S: Variational> {
     pub variations: Variations<'a, S>,
     pub states: Vec<Stand<S::State>>,

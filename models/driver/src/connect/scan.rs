@@ -1,4 +1,4 @@
-//! Starts along a ray of the space of unknowns, from rest on, with every change of their sequence of impacts.
+//! Scan of the starts along a ray from rest in the space of unknowns, with every change of their sequence of impacts.
 
 use super::aim::{Aim, Course, Shot};
 use crate::linear::norm;
@@ -6,13 +6,13 @@ use crate::linear::norm;
 /// A start on a ray.
 #[derive(Debug, Clone)]
 pub(super) struct Sample {
-    /// Its speed: the root of twice its kinetic energy.
+    /// Its speed: the square root of twice its kinetic energy.
     pub speed: f64,
     pub shot: Shot,
 }
 
 impl Sample {
-    /// The distance between the end and the given one.
+    /// The distance between the end of the motion and the given end.
     pub fn miss(&self) -> f64 {
         norm(&self.shot.misses)
     }
@@ -21,33 +21,33 @@ impl Sample {
 /// Density of a scan.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Density {
-    /// Number of equal intervals up to the first speed.
+    /// Number of equal intervals up to [`Speeds::first`].
     pub first: usize,
     /// Number of intervals in each doubling of the speed.
     pub doubling: usize,
-    /// Number of halvings of an interval at whose ends the sequences of impacts differ.
+    /// Maximum number of halvings of an interval at whose ends the sequences of impacts differ.
     pub halvings: u32,
-    /// Number of steps of the integrator after which the speed is no longer doubled.
+    /// Number of integrator steps after which the speed is no longer doubled.
     pub steps: u64,
 }
 
 /// Speeds of a scan.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Speeds {
-    /// End of the equal intervals.
+    /// The speed at the end of the equal intervals.
     pub first: f64,
     /// Largest speed.
     pub most: f64,
-    /// True if the scan may end before, where faster starts lead away from the end.
+    /// True if the scan may stop at a lower speed, where faster starts lead away from the end.
     pub is_open: bool,
 }
 
 /// The starts along a ray.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ray {
-    /// In order of their speed.
+    /// The starts in order of speed.
     pub samples: Vec<Sample>,
-    /// True if at the last of them no motion can reach the end with few enough impacts.
+    /// True if no motion of the fastest starts reaches the end with few enough impacts, and none was given up.
     pub is_bounded: bool,
 }
 
@@ -66,7 +66,7 @@ fn count(samples: &[Sample]) -> usize {
     given_up.count()
 }
 
-/// Scans the ray of a direction; `units` are the values of unknowns at speed 1.
+/// Scans the ray of a direction. `units` are the values of the unknowns at speed 1.
 pub(super) fn ray(
     aim: &mut dyn Aim,
     direction: &[f64],
@@ -112,24 +112,24 @@ pub(super) fn ray(
     ray
 }
 
-/// True for a motion that gets to the end with few enough impacts.
+/// True for a motion that reaches the end with few enough impacts.
 fn reaches(sample: &Sample) -> bool {
     matches!(sample.shot.course, Course::Reached(_))
 }
 
-/// Number of quiet doublings after which faster starts lead away from the end.
+/// Number of successive quiet doublings after which faster starts are assumed to lead away from the end.
 const QUIET: u32 = 5;
 
-/// Number of doublings without a motion to the end after which a ray without any is given up. Slow starts may have too many
-/// impacts where fast ones have few.
+/// Number of doublings after which a ray without any motion to the end is given up. It is above 1, because slow starts
+/// may have too many impacts where fast ones have few.
 const VAIN: u32 = 5;
 
-/// Record of the last doublings of the speed of a ray.
+/// Record of the doublings of the speed along a ray.
 #[derive(Debug, Default)]
 struct Doublings {
-    /// Number of the last of them along which the sequence of impacts stayed and the miss grew.
+    /// Number of successive last doublings along which the sequence of impacts did not change and the miss grew.
     quiet: u32,
-    /// Number of all of them.
+    /// Number of all doublings.
     made: u32,
     /// True once the sequence of impacts has changed.
     has_changed: bool,
@@ -146,7 +146,7 @@ impl Doublings {
         self.made += 1;
     }
 
-    /// True if a ray without a motion to the end was followed far enough.
+    /// True if a ray without a motion to the end was scanned far enough.
     fn are_in_vain(&self) -> bool {
         self.made >= VAIN
     }
@@ -157,7 +157,7 @@ impl Doublings {
     }
 }
 
-/// A ray that is scanned.
+/// A scan along a direction.
 struct Scan<'a> {
     aim: &'a mut dyn Aim,
     direction: &'a [f64],
@@ -171,7 +171,8 @@ impl Scan<'_> {
         Sample { speed, shot }
     }
 
-    /// Adds the start of a speed, after those between it and the last with other sequences of impacts.
+    /// Adds the start at a speed, after the starts between it and the last one that resolve changes of the sequence of
+    /// impacts.
     fn extend(&mut self, samples: &mut Vec<Sample>, speed: f64, halvings: u32) {
         let sample = self.sample(speed);
         if let Some(last) = samples.last() {
@@ -201,7 +202,7 @@ pub(super) fn unknowns(speed: f64, direction: &[f64], units: &[f64]) -> Vec<f64>
     pairs.map(|(part, unit)| speed * part * unit).collect()
 }
 
-/// The stretches of starts with one sequence of impacts that reaches the end, with at least `least` impacts.
+/// The stretches of starts with one sequence of impacts that reach the end with at least `least` impacts.
 pub(super) fn windows(samples: &[Sample], least: usize) -> impl Iterator<Item = &[Sample]> {
     let stretches = samples.chunk_by(|left, right| left.shot.course == right.shot.course);
     stretches.filter(move |stretch| match &stretch[0].shot.course {
@@ -214,7 +215,7 @@ pub(super) fn windows(samples: &[Sample], least: usize) -> impl Iterator<Item = 
 mod tests {
     use super::*;
 
-    /// Motions that reach the end between two speeds, and end in this way elsewhere.
+    /// Motions that reach the end for speeds between two values, and have the given course elsewhere.
     struct Ends(Course, [f64; 2]);
 
     impl Aim for Ends {

@@ -1,10 +1,11 @@
-//! The search for all starts whose motion ends as given.
+//! The search for roots: starts whose motion ends as given.
 //!
-//! With one unknown both rays of starts are scanned, and every stretch of one sequence of impacts is searched by brackets
-//! ([`line`](super::line)). With more unknowns rays in many directions are scanned; each stretch gives the start that
-//! comes nearest, and Newton's method goes on from there. In the plane, directions between which the sequences of impacts differ
-//! are halved; with three unknowns or more, starts that the problem guesses itself ([`Aim::guess`]) are tried too. At last known roots
-//! are divided out, and the nearest starts are tried again.
+//! With one unknown, both rays of starts are scanned, and every stretch with one sequence of impacts is searched by
+//! brackets ([`line`](super::line)). With more unknowns, rays in many directions are scanned. Newton's method continues
+//! from the starts of each stretch that come closest to the end. With two unknowns, the angle between directions is
+//! halved where their sequences of impacts differ. With three unknowns or more, the search also tries starts that the
+//! problem itself guesses ([`Aim::guess`]). Finally, known roots are divided out, and the closest starts are tried
+//! again.
 
 use super::Stage;
 use super::aim::{Aim, Course};
@@ -15,26 +16,27 @@ use super::scan::{self, Density, Ray, Sample, Speeds, windows};
 use super::units::Units;
 use crate::linear::norm;
 
-/// First speeds of a scan, in multiples of the speed that the problem suggests.
+/// [`Speeds::first`] in multiples of the speed that the problem suggests.
 const FIRST: f64 = 4.0;
 
-/// Largest speed of a scan, in multiples of the first: with surfaces that faster starts may meet, and without.
+/// Largest speed of a scan in multiples of the first: with surfaces, which faster starts may meet, and without.
 const MOST: [f64; 2] = [65_536.0, 4.0];
 
 /// Largest miss of a root, in multiples of the size of the coordinates.
 const NEAR: f64 = 1e-9;
 
-/// Number of halvings of the angle between neighbouring directions in the plane.
+/// Maximum number of halvings of the angle between neighbouring directions in the plane.
 const TURNS: u32 = 3;
 
-/// Number of starts of each sequence of impacts that are tried again with known roots divided out.
+/// Maximum number of starts per sequence of impacts that are tried again with known roots divided out.
 const AGAIN: usize = 6;
 
-/// Number of starts of each sequence of impacts from which Newton's method goes on.
+/// Maximum number of starts per sequence of impacts from which Newton's method starts.
 const TRIED: usize = 240;
 
-/// Number of steps of the integrator after which no further direction is scanned, and after which no further start of a scan is
-/// tried, if the problem has guesses of its own. With surfaces a scan finds the sequences of impacts, and goes on.
+/// Number of integrator steps after which no further direction is scanned, and after which no further start is tried.
+/// This limit holds only if the problem has guesses and no surfaces: with surfaces, the scan is needed to find the
+/// sequences of impacts.
 const SPENT: u64 = 50_000;
 
 /// Extent of a search.
@@ -42,22 +44,22 @@ const SPENT: u64 = 50_000;
 pub(crate) struct Plan {
     /// Least number of impacts.
     pub least: usize,
-    /// Number of directions, for two unknowns or more; by default by their number.
+    /// Number of directions, for two unknowns or more. The default depends on the number of unknowns.
     pub directions: Option<usize>,
-    /// Seed that turns the directions.
+    /// Seed of the directions.
     pub seed: u64,
-    /// Half the square of the largest speed; by default as the scan suggests.
+    /// Half the square of the largest speed. By default the scan determines it.
     pub kinetic: Option<f64>,
     /// Number of starts of an envelope in each direction.
     pub envelope: usize,
 }
 
-/// A start that agrees.
+/// A root of the search.
 #[derive(Debug, Clone)]
 pub(crate) struct Root {
     /// The unknowns.
     pub w: Vec<f64>,
-    /// The same in units.
+    /// The unknowns in units.
     y: Vec<f64>,
 }
 
@@ -75,7 +77,7 @@ pub(crate) struct Found {
     pub given_up: usize,
 }
 
-/// A start from which Newton's method goes on.
+/// A start for Newton's method.
 #[derive(Debug, Clone)]
 struct Candidate {
     course: Course,
@@ -94,7 +96,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// The search among the motions of a problem, with units of its unknowns.
+    /// A search over the motions of a problem, with the units of its unknowns.
     pub fn of(
         aim: &'a mut dyn Aim,
         plan: &'a Plan,
@@ -114,7 +116,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// All starts that are found.
+    /// Runs the search.
     pub fn found(mut self) -> Found {
         match self.unknowns {
             0 => self.fixed(),
@@ -148,7 +150,7 @@ impl<'a> Search<'a> {
         NEAR * self.units.size
     }
 
-    /// Without unknowns there is one motion.
+    /// The search without unknowns: there is one motion.
     fn fixed(&mut self) {
         let shot = self.aim.shoot(&[], false);
         let is_near = shot.misses.iter().all(|miss| miss.abs() <= self.near());
@@ -161,7 +163,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Scans a ray, and notes its end.
+    /// Scans a ray, and records its extent.
     fn scan(&mut self, direction: &[f64], density: Density) -> Ray {
         let speeds = self.speeds();
         let ray = scan::ray(self.aim, direction, &self.units.unknowns, density, speeds);
@@ -193,7 +195,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Keeps the starts of a stretch that satisfy one of the equations, if they satisfy all.
+    /// Solves one of the equations on a stretch, and keeps the solutions that satisfy all equations.
     fn solve(&mut self, window: &[Sample], unit: f64, equation: usize) {
         let near = self.near();
         let (roots, unresolved) = line::roots(self.aim, window, unit, near, equation);
@@ -206,7 +208,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Takes the starts of an envelope: evenly up to the fastest that meets a surface.
+    /// Chooses the starts of an envelope: evenly up to the fastest start that meets a surface.
     fn spread(&mut self, ray: &Ray, unit: f64) {
         let meets = |it: &&Sample| match &it.shot.course {
             Course::Reached(surfaces) => !surfaces.is_empty(),
@@ -221,7 +223,7 @@ impl<'a> Search<'a> {
         self.found.fan.extend(fan);
     }
 
-    /// Keeps a root, given in units, that is not known.
+    /// Keeps a root, given in units, unless it is known. Returns true if it is new.
     fn keep(&mut self, y: &[f64]) -> bool {
         let speed = self.units.speed;
         let is_known = |root: &Root| is_same(&root.y, y, speed);
@@ -259,7 +261,7 @@ impl<'a> Search<'a> {
         self.pursue(candidates);
     }
 
-    /// Scans the ray of an angle; returns its sequences of impacts.
+    /// Scans the ray at an angle. Returns its sequences of impacts.
     fn fan(&mut self, angle: f64, candidates: &mut Vec<Candidate>) -> Vec<Course> {
         self.gather(&[angle.cos(), angle.sin()], candidates)
     }
@@ -299,13 +301,13 @@ impl<'a> Search<'a> {
         self.pursue(candidates);
     }
 
-    /// True if enough steps have been made since there were as many as `begun`.
+    /// True if the limit [`SPENT`] holds and is exceeded since the number of steps was `begun`.
     fn is_spent(&self, begun: u64) -> bool {
         let relies_on_guesses = self.aim.guesses() > 0 && !self.units.has_surfaces;
         relies_on_guesses && self.aim.steps() - begun > SPENT
     }
 
-    /// Takes the starts that another method finds.
+    /// Adds the starts that another method finds.
     fn guess(&mut self, candidates: &mut Vec<Candidate>) {
         let count = self.aim.guesses();
         for index in 0..count {
@@ -328,7 +330,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Scans a ray, and takes from each stretch the starts that come nearest.
+    /// Scans a ray, and adds the local minima of the miss on each stretch. Returns the sequences of impacts.
     fn gather(&mut self, direction: &[f64], candidates: &mut Vec<Candidate>) -> Vec<Course> {
         let density = Density {
             first: 24,
@@ -356,7 +358,7 @@ impl<'a> Search<'a> {
         courses
     }
 
-    /// Goes on from all candidates, those of each sequence of impacts by their miss.
+    /// Runs Newton's method from the candidates of each sequence of impacts, in order of their miss.
     fn pursue(&mut self, mut candidates: Vec<Candidate>) {
         let key = |it: &Candidate| match &it.course {
             Course::Reached(surfaces) => (surfaces.len(), surfaces.clone()),
@@ -369,7 +371,7 @@ impl<'a> Search<'a> {
         let groups = || candidates.chunk_by(|left, right| left.course == right.course);
         let all: usize = groups().map(|group| group.len().min(TRIED)).sum();
         let mut done = 0;
-        // The last of the parts of a search: guesses in space, the scan, this.
+        // Stages of a search: guesses (three unknowns or more), the scan, Newton's method.
         let parts = if self.unknowns > 2 { 3 } else { 2 };
         let begun = self.aim.steps();
         for group in groups() {
@@ -391,7 +393,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Goes on from a candidate; true if that gives a root that was not known.
+    /// Runs Newton's method from a candidate. Returns true if it finds a new root.
     fn try_from(
         &mut self,
         candidate: &Candidate,

@@ -23,16 +23,16 @@ use crate::refusal::Refusal;
 use crate::typed::vector;
 use crate::variation::constant;
 
-/// Impacts within this fraction of the time after the start or before the end are those of a configuration on a surface.
+/// Impacts within this fraction of the time after the start or before the end belong to a configuration on a surface.
 const AT_ENDS: f64 = 1e-9;
 
 /// Largest determinant that counts as 0, as a fraction of the largest along the motion.
 const SINGULAR: f64 = 1e-7;
 
-/// Number of steps after which a motion is given up: at least, and in multiples of those of the motion from rest.
+/// Number of steps after which a motion is given up: a minimum, and a multiple of the steps of the motion from rest.
 const STEPS: [u64; 2] = [4000, 50];
 
-/// Largest gap behind a surface that is rounding, as a fraction of the largest coordinate.
+/// Largest distance behind a surface that counts as rounding, relative to the largest coordinate (or to 1).
 const ROUNDING: f64 = 1e-9;
 
 /// The motions of a system between two configurations.
@@ -55,7 +55,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     /// The motions of a system, after all checks of the configurations.
     ///
     /// # Errors
-    /// [`Refusal`] for a start that the system refuses; the inner error for a problem that has no answer.
+    /// [`Refusal`] for a start that the system refuses; the inner error for a problem that cannot be solved.
     pub fn aimed(system: &'a S, boundary: &'a Boundary) -> Result<Result<Self, Unjoined>, Refusal> {
         let description = system.description();
         if description.is_first_order {
@@ -91,7 +91,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Ok(shooter.check().map(|()| shooter.with_budget()))
     }
 
-    /// The same with a limit to the steps of a motion.
+    /// Limits the steps of a motion.
     fn with_budget(mut self) -> Self {
         let rest = self.run(
             &vec![0.0; self.motion[1]],
@@ -145,7 +145,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.check_gaps(true, t, &end)
     }
 
-    /// Refuses an end at which a constraint of positions has another value than at the start.
+    /// Refuses an end at which the level of a constraint differs from its value at the start.
     fn check_levels(&self, t: f64, end: &S::State) -> Result<(), Unjoined> {
         let constraints = self.system.description().constraints.iter();
         let named = constraints.enumerate();
@@ -169,7 +169,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Ok(())
     }
 
-    /// Refuses a configuration behind a surface that lets nothing pass.
+    /// Refuses a configuration behind a surface that is not passable.
     fn check_gaps(&self, is_end: bool, t: f64, state: &S::State) -> Result<(), Unjoined> {
         let q = self.system.position(state);
         let size = q
@@ -188,14 +188,14 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Ok(())
     }
 
-    /// The effects with the laws and policies of the request, ended by the first impact too many.
+    /// The effects with the laws and policies of the request. The first impact too many ends the run.
     fn effects(&self) -> S::Effects {
         let mut effects = self.system.effects();
         for &(surface, law) in &self.boundary.laws {
             effects.set_law(surface, law);
         }
         effects.set_policies(self.boundary.policies);
-        // One on the surface of the end and one too many.
+        // One more impact may lie on the surface of the end, and one more shows that there are too many.
         let most = self.boundary.impacts[1] as u64 + 2;
         effects.set_impact_budget(Some(most));
         effects
@@ -219,13 +219,13 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         state
     }
 
-    /// The variations by the unknowns.
+    /// The directions of the unknowns.
     pub fn tangents(&self) -> Vec<Tangent<S>> {
         let [start, count] = self.motion;
         (start..start + count).map(Tangent::of_component).collect()
     }
 
-    /// Runs from these unknowns to a time, observed.
+    /// Runs from these unknowns to a time.
     fn run(
         &mut self,
         w: &[f64],
@@ -254,28 +254,28 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             _ if counted.clone().any(|(t, _)| *t <= time * AT_ENDS) => Course::Lost,
             Some(Outcome::Done | Outcome::ImpactBudget) | None if is_beyond => Course::Beyond,
             Some(Outcome::Done) => Course::Reached(counted.by_ref().map(|hit| hit.1).collect()),
-            // Accumulating impacts are too many too.
+            // Impacts that accumulate are too many as well.
             Some(Outcome::Zeno { .. }) => Course::Beyond,
             Some(Outcome::StepBudget) => Course::GivenUp,
             _ => Course::Lost,
         }
     }
 
-    /// Derivatives of the configuration by the unknowns, a column for each.
+    /// Derivatives of the configuration with respect to the unknowns, one column per unknown.
     fn columns(&self, tangents: &[Tangent<S>]) -> Vec<Vec<f64>> {
         let n = self.system.coordinate_count();
         let column = |tangent: &Tangent<S>| tangent.state.as_slice()[..n].to_vec();
         tangents.iter().map(column).collect()
     }
 
-    /// The determinant of the derivative of the configuration by the unknowns; along the velocities that the constraints
-    /// allow if all coordinates of the end are given.
+    /// The determinant of the derivative of the configuration with respect to the unknowns. If all coordinates of the
+    /// end are given, the configuration is projected onto the velocities that the constraints allow.
     pub fn determinant(&self, t: f64, state: &S::State, tangents: &[Tangent<S>]) -> f64 {
         let columns = self.columns(tangents);
         self.projected(t, state, &columns)
     }
 
-    /// The determinant of columns of the configuration, in the same frame.
+    /// The determinant of changes of the configuration, projected as in [`Self::determinant`].
     fn projected(&self, t: f64, state: &S::State, columns: &[Vec<f64>]) -> f64 {
         let n = self.system.coordinate_count();
         let rows: Vec<Vec<f64>> = match self.given.len() == n {
@@ -292,7 +292,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         determinant(columns.iter().map(column).collect())
     }
 
-    /// The velocities that the unknowns cause at a state, one by one.
+    /// The change of the velocity per unit of each unknown, at the position of a state.
     fn frame(&self, t: f64, state: &S::State) -> Vec<Vec<f64>> {
         let [start, count] = self.motion;
         let velocity = |index: Option<usize>| {
@@ -313,7 +313,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         (0..count).map(difference).collect()
     }
 
-    /// The determinant at a time, just as [`conjugate::zeros`] asks for it; NaN where it does not exist.
+    /// The determinant at a time; NaN where it does not exist.
     pub fn determinant_at(&mut self, w: &[f64], t: f64) -> f64 {
         let mut tangents = self.tangents();
         let system = self.system;
@@ -334,7 +334,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Some(point(self.system, t, &run.state))
     }
 
-    /// Everything about a motion that was found.
+    /// The properties of a motion that was found.
     pub fn connection(&mut self, w: &[f64]) -> Result<Connection, Unjoined> {
         let (system, time) = (self.system, self.boundary.time);
         let mut film = Film {
@@ -349,7 +349,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             ..
         } = film;
         let last = ended.map_or_else(|| self.rest, |run| run.state);
-        // An impact at the end is not counted, and the velocity is that of the arrival.
+        // An impact at the end does not count. The velocity at the end is then the one before this impact.
         let counted = bounces
             .iter()
             .take_while(|bounce| bounce.t < time * (1.0 - AT_ENDS))
@@ -389,7 +389,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         }
     }
 
-    /// The determinant along any motion, and the reason for which it ends early.
+    /// The determinant along any motion, and the reason why it ends early.
     fn followed(&mut self, w: &[f64]) -> (Vec<Mark>, Option<Undefined>) {
         let (system, time) = (self.system, self.boundary.time);
         let mut tangents = self.tangents();
@@ -424,7 +424,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         zeros.into_iter().filter_map(point).collect()
     }
 
-    /// The conjugate points of any motion, as long as it has a derivative and no impact too many.
+    /// The conjugate points of any motion, as long as it has a derivative and not too many impacts.
     pub fn envelope(&mut self, w: &[f64]) -> Vec<Conjugate> {
         let marks = self.followed(w).0;
         let mut points = self.conjugate(w, &marks);
@@ -432,7 +432,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         points
     }
 
-    /// The mechanical units of a search: the length of each unknown at kinetic energy 1/2, and the least speed that the
+    /// The mechanical units of a search: the value of each unknown at kinetic energy 1/2, and the speed that the
     /// problem suggests.
     pub fn units(&self) -> Units {
         units(self.system, self.boundary, &self.rest, self.motion)
@@ -475,7 +475,7 @@ impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
     }
 }
 
-/// The surfaces that let nothing pass and count at a state, with their gaps.
+/// The surfaces that are not passable and count at a state, with their gaps.
 fn gaps<S: Instance + Scene + Variational>(
     system: &S,
     effects: &S::Effects,
@@ -492,7 +492,7 @@ fn gaps<S: Instance + Scene + Variational>(
         .collect()
 }
 
-/// The values of the constraints of positions.
+/// The position levels of the constraints.
 fn levels<S: Instance + Scene + Variational>(
     system: &S,
     t: f64,

@@ -8,12 +8,12 @@ use super::Boundary;
 use crate::linear::norm;
 use crate::typed::vector;
 
-/// Units of the unknowns and of their size.
+/// Units of the unknowns, and scales of the problem.
 #[derive(Debug, Clone)]
 pub(crate) struct Units {
-    /// The value of each unknown whose kinetic energy is 1/2.
+    /// The value of each unknown at kinetic energy 1/2.
     pub unknowns: Vec<f64>,
-    /// Root of twice the kinetic energy that the problem suggests.
+    /// Square root of twice the kinetic energy that the problem suggests.
     pub speed: f64,
     /// Size of the coordinates of the problem.
     pub size: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Units {
     pub has_surfaces: bool,
 }
 
-/// Number of places on a circle or a line at which the potential energy is compared.
+/// Number of intervals along a coordinate at whose ends the potential energy is evaluated.
 const PLACES: usize = 32;
 
 /// The units of a problem.
@@ -55,7 +55,7 @@ pub(super) fn units<S: Instance + Scene + Variational>(
     }
 }
 
-/// A problem whose energies are estimated.
+/// A problem, for estimates of its energies.
 struct Problem<'a, S: Instance + Scene + Variational> {
     system: &'a S,
     rest: &'a S::State,
@@ -64,7 +64,7 @@ struct Problem<'a, S: Instance + Scene + Variational> {
 }
 
 impl<S: Instance + Scene + Variational> Problem<'_, S> {
-    /// The value of an unknown whose kinetic energy is 1/2.
+    /// The value of an unknown at kinetic energy 1/2.
     fn unit(&self, index: usize) -> f64 {
         let [start, count] = self.motion;
         let energy = |value: f64| {
@@ -80,9 +80,9 @@ impl<S: Instance + Scene + Variational> Problem<'_, S> {
         }
     }
 
-    /// The largest of the speeds that the problem suggests: of uniform motion from one configuration to the other, of the
-    /// velocity that the forces at the start give in the time, and of the differences of the potential about the
-    /// configurations.
+    /// The largest of three speeds that the problem suggests: the speed of uniform motion from one configuration to the
+    /// other, the speed that the forces at the start give in the time, and the speed that climbs the potential near the
+    /// start.
     fn speed(&self, units: &[f64], ways: &[f64]) -> f64 {
         let [start, count] = self.motion;
         let size = |state: &S::State| {
@@ -117,8 +117,8 @@ impl<S: Instance + Scene + Variational> Problem<'_, S> {
     }
 }
 
-/// The largest rise of the potential energy above the start, on whole turns of angles and on lines through both
-/// configurations.
+/// The largest rise of the potential energy above the start along each coordinate, over a whole turn of an angle and
+/// over twice the difference of the configurations in both directions otherwise.
 fn climb<S: Instance + Scene + Variational>(system: &S, q: &S::Vector, ways: &[f64]) -> f64 {
     let potential = |q: &S::Vector| {
         let state = system.state_unchecked(0.0, q, &system.zero_vector());
@@ -152,7 +152,7 @@ fn climb<S: Instance + Scene + Variational>(system: &S, q: &S::Vector, ways: &[f
     most
 }
 
-/// A unit vector.
+/// The unit vector of this length along the axis `index`.
 pub(super) fn unit(length: usize, index: usize) -> Vec<f64> {
     let mut unit = vec![0.0; length];
     unit[index] = 1.0;

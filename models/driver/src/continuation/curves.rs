@@ -1,8 +1,8 @@
 //! Curves of bifurcations over two parameters: zeros of the return map together with a test function.
 //!
-//! The first parameter is the last component of the state. The derivatives of the map are exact. Those of the test
-//! function need second derivatives of the map and are differences: they decide how fast Newton's method converges, not
-//! where.
+//! The first parameter is the last component of the state. The derivatives of the map are exact. The derivatives of the
+//! test function need second derivatives of the map and are finite differences: they affect the speed of Newton's
+//! method, not its result.
 
 use dalembert::contract::Variational;
 use dalembert::{Instance, Scene};
@@ -14,10 +14,11 @@ use super::trace::{Tracer, Watch, ended};
 use super::{Bifurcation, BifurcationCurve, Branch, BranchEnd, Extent, Member};
 use crate::linear::{add, determinant, norm};
 
-/// Displacement in a difference, in the units of the state and in the ranges of the parameters.
+/// Displacement of finite differences, in the units of the state and in the ranges of the parameters.
 const APART: f64 = 1e-5;
 
-/// Imaginary part of multipliers that are about to meet. It falls as the root of the distance.
+/// Imaginary part below which a pair of multipliers is about to meet. It decreases like the square root of the
+/// distance.
 const MEETING: f64 = 1e-3;
 
 /// The plane of two parameters.
@@ -26,7 +27,7 @@ pub(crate) struct Plane {
     pub extents: [Extent; 2],
     /// The value of the second parameter on the branch.
     pub value: f64,
-    /// Largest number of points of a curve in either direction.
+    /// Maximum number of points of a curve in either direction.
     pub points: u32,
 }
 
@@ -74,7 +75,7 @@ struct Bifurcations<'f, 'a, S: Variational> {
 }
 
 impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
-    /// The curve through a bifurcation, and for each of some others, whether it passes through them.
+    /// The curve through a bifurcation, and for each of the others, true if the curve passes through it.
     fn curve(
         &mut self,
         member: &Member,
@@ -108,7 +109,8 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
                 let points = branch.points.iter();
                 let ends = [branch.points.first(), branch.points.last()];
                 let ends = [0, 1].map(|side| match (branch.ends[side], ends[side]) {
-                    // Beside other bifurcations, which meet the curve there, Newton's method may fail first.
+                    // Newton's method may fail before the resonance, because curves of other bifurcations meet this one
+                    // there.
                     (BranchEnd::NotConverged, Some(member)) if meets(member) => {
                         BranchEnd::Resonance
                     }
@@ -130,7 +132,8 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
         let columns = local.columns(self.plane.extents[1].width());
         let gradient: Vec<f64> = columns.iter().filter_map(|it| it.last().copied()).collect();
         let unit = 1.0 / norm(&gradient);
-        // A test function that is 0 for all orbits, such as those of a family at a constant parameter, has no derivative.
+        // The derivative of a test function that is 0 for all orbits, as in a family at a constant parameter, is 0 up
+        // to rounding.
         match unit.is_finite() && unit < 1.0 / APART {
             true => self.unit = unit,
             false => return Err(Failure::NotKnown),
@@ -138,7 +141,7 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
         Ok(())
     }
 
-    /// The return map at values of both parameters, with its derivative in one of them.
+    /// The return map at values of both parameters, with its derivative with respect to one of them.
     fn at(&mut self, state: &[f64], values: [f64; 2], along: usize) -> Result<Local, Failure> {
         let [first, second] = self.plane.extents.map(|extent| extent.parameter);
         match along {
@@ -153,7 +156,7 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
         }
     }
 
-    /// The test function, which is 0 at a bifurcation and smooth beside it.
+    /// The test function, which is 0 at a bifurcation and smooth near it.
     fn test(&self, local: &Local) -> Result<f64, Failure> {
         let mut columns = local.derivative.clone();
         let value = match self.bifurcation {
@@ -178,8 +181,8 @@ impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
         }
     }
 
-    /// The derivative of the test function along a change of the state and of the parameters. Where the map ends at one
-    /// side, it is one-sided.
+    /// The derivative of the test function along a change of the state and of the parameters. The difference is
+    /// one-sided if the map does not exist on one side.
     fn slope(
         &mut self,
         state: &[f64],

@@ -1,4 +1,4 @@
-//! One member of a family and its neighbours, without the type of the system.
+//! One member of a family and its neighbours, independent of the type of the system.
 
 use dalembert::{OrbitError, ParameterError};
 
@@ -6,39 +6,39 @@ use super::Member;
 use super::rotated::Rotated;
 use crate::linear::{add, dot, norm};
 
-/// Members of a family over a parameter: the zeros of a map along a section.
+/// A family over a parameter: its members are the zeros of a map along a section.
 pub(crate) trait Family {
     /// The map at the point of the section near a state.
     fn local(&mut self, state: &[f64], parameter: f64) -> Result<Local, Failure>;
 
-    /// Prepares for members near this one, however different the last one was.
+    /// Prepares for members near this one, which may be far from the last one.
     fn begin(&mut self, member: &Member);
 }
 
-/// Reason why a point is no member.
+/// Reason why a point is not a member, or why a step fails.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Failure {
-    /// The parameter has a value that its declaration refuses.
+    /// The declaration of the parameter refuses its value.
     Parameter(ParameterError),
     /// The map is not defined, or has no derivative.
     Missed(OrbitError),
-    /// Multipliers, or what is computed of them, are no numbers.
+    /// Multipliers, or numbers computed from them, are not finite.
     NotKnown,
     /// No complex pair of multipliers is left.
     Real,
     /// Newton's method does not converge, or ends elsewhere.
     Diverged,
-    /// The orbit meets this surface more or less often than those before it.
+    /// The orbit meets this surface more or less often than its predecessor.
     Itinerary(usize),
     /// The step has to be shorter.
     TooLong,
 }
 
-/// The map near a point of the section. A step has a component for each direction of the section, and a last one for the
+/// The map near a point of the section. A step has one component per direction of the section, and a last one for the
 /// parameter in units of `width`.
 #[derive(Debug, Clone)]
 pub(crate) struct Local {
-    /// The point as a member, if it is one.
+    /// The point as a member; it is one if the map is 0 there.
     pub member: Member,
     /// The units of the components of the state.
     pub scale: Vec<f64>,
@@ -70,14 +70,14 @@ pub(crate) enum Unknowns {
 }
 
 impl Local {
-    /// The derivative in all components of a step.
+    /// The derivatives with respect to all components of a step, column by column.
     pub fn columns(&self, width: f64) -> Vec<Vec<f64>> {
         let mut columns = self.derivative.clone();
         columns.push(self.slope.iter().map(|entry| width * entry).collect());
         columns
     }
 
-    /// The Newton step, the shortest one where several lead to a zero.
+    /// The Newton step; the shortest one if there are several.
     pub fn newton(&self, width: f64, unknowns: Unknowns) -> Vec<f64> {
         let mut step = match unknowns {
             Unknowns::All => Rotated::of(self.columns(width)).solve(&self.miss),
@@ -118,7 +118,7 @@ impl Local {
         change
     }
 
-    /// The components of a change along the section and in the parameter.
+    /// The step of a change: its components along the section, and in the parameter.
     pub fn step(&self, change: &[f64]) -> Vec<f64> {
         let along = |direction: &Vec<f64>| {
             let scaled = direction.iter().zip(&self.scale);
@@ -130,14 +130,14 @@ impl Local {
         step
     }
 
-    /// Directions in which the map is 0 to first order.
+    /// Orthonormal directions in which the map is 0 to first order.
     pub fn kernel(&self, width: f64) -> Vec<Vec<f64>> {
         let rotated = Rotated::of(self.columns(width));
         rotated.kernel().map(<[f64]>::to_vec).collect()
     }
 }
 
-/// A member with the direction in which its branch goes on.
+/// A member with the direction of its branch.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub local: Local,
@@ -145,15 +145,15 @@ pub(crate) struct Node {
     pub tangent: Vec<f64>,
     /// The direction as a change of length 1.
     pub heading: Vec<f64>,
-    /// Dimension of the set of members near by: 1 for a branch, more for orbits that belong to a family at a constant
-    /// parameter, 2 where branches cross.
+    /// Dimension of the set of neighbouring members: 1 for a branch, 2 where branches cross, more than 1 for orbits
+    /// that belong to a family at a constant parameter.
     pub dimension: usize,
-    /// Distance from the member before.
+    /// Distance from the preceding member.
     pub distance: f64,
 }
 
 impl Node {
-    /// The member with the direction that is nearest to a heading.
+    /// The member with the direction closest to a heading.
     pub fn new(local: Local, width: f64, heading: &[f64]) -> Self {
         let kernel = local.kernel(width);
         let wanted = local.step(heading);
@@ -163,7 +163,8 @@ impl Node {
         }
         let length = norm(&tangent);
         match kernel.first() {
-            // At right angles to the heading, which is that of the parameter: the branch turns back here.
+            // The direction is orthogonal to the heading, which is the direction of the parameter: the branch turns
+            // back here.
             Some(direction) if length < 1e-9 => tangent.clone_from(direction),
             _ => tangent.iter_mut().for_each(|entry| *entry /= length),
         }

@@ -1,20 +1,21 @@
-//! Test functions: numbers along a branch that change their sign at bifurcations.
+//! Test functions: numbers along a branch that change sign at bifurcations.
 
 use super::family::{Failure, Node};
 use super::{Bifurcation, Stability};
 use crate::linear::determinant;
 
-/// Distances below which numbers along a branch count as their limits, by the tolerance of the integrator. Multipliers have an
-/// error of about the tolerance, double ones of its square root.
+/// Distances below which numbers along a branch count as their limits. They depend on the tolerance of the integrator:
+/// multipliers have an error of about the tolerance, double multipliers of its square root.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Precision {
     /// Distance from the unit circle at which multipliers count as lying on it.
     on_circle: f64,
-    /// Factors of test functions below this at both ends of a step are 0 all along it, such as those of conserved quantities.
+    /// Bound for the ends of a step. Smaller factors of test functions count as 0 along the whole step and are left
+    /// out, for example factors of conserved quantities.
     always: f64,
-    /// The same between the ends, where a factor that passes 0 is as small.
+    /// Bound for members between the ends, where a factor that changes sign may be small.
     within: f64,
-    /// Distance of the multipliers, and of the direction, of a located bifurcation from their values there.
+    /// Accepted distance of the multipliers, and of the direction, at a located bifurcation from their exact values.
     near: f64,
 }
 
@@ -24,12 +25,12 @@ impl Precision {
         1e-3 * self.on_circle
     }
 
-    /// A narrow and a wide distance from the unit circle beyond which multipliers lie outside.
+    /// A narrow and a wide margin of the unit circle, beyond which multipliers count as outside.
     pub const fn margins(&self) -> [f64; 2] {
         [self.always, self.on_circle]
     }
 
-    /// The distances at a tolerance; those at 1e-14 are the least.
+    /// The distances for a tolerance. They do not decrease below a tolerance of 1e-14.
     pub fn of(tolerance: f64) -> Self {
         let on_circle = f64::max(1e-6, 10.0 * tolerance.sqrt());
         Self {
@@ -46,11 +47,11 @@ impl Precision {
 pub(super) enum Test {
     /// The component of the direction in the parameter.
     Rise,
-    /// Determinant of the derivative together with the direction.
+    /// The determinant of the derivative bordered by the direction.
     Crossing,
-    /// Product of `m + 1` over all multipliers `m`.
+    /// The product of `m + 1` over all multipliers `m`.
     Flip,
-    /// Product of `m n - 1` over all pairs of multipliers.
+    /// The product of `m n - 1` over all pairs of multipliers.
     Circle,
 }
 
@@ -68,7 +69,7 @@ impl Test {
         }
     }
 
-    /// Most multipliers that pass the unit circle at a zero.
+    /// Largest number of multipliers that cross the unit circle at a zero.
     pub const fn passing(self) -> usize {
         match self {
             Self::Circle => 2,
@@ -79,14 +80,14 @@ impl Test {
     /// The values at both ends of a step, if a bifurcation lies between them.
     ///
     /// # Errors
-    /// [`Failure::NotKnown`] where one of them is no number.
+    /// [`Failure::NotKnown`] if one of them is NaN.
     pub fn change(
         self,
         ends: [&Node; 2],
         width: f64,
         precision: Precision,
     ) -> Result<Option<[f64; 2]>, Failure> {
-        // Where orbits are a family at a constant parameter the determinant is 0 everywhere.
+        // If orbits form a family at a constant parameter, the determinant is 0 everywhere.
         if self == Self::Crossing && ends.iter().all(|node| node.dimension > 1) {
             return Ok(None);
         }
@@ -98,12 +99,12 @@ impl Test {
         Ok(changes.then_some(values))
     }
 
-    /// The value at a member between those ends.
+    /// The value at a member between the ends of a step.
     pub fn value(self, node: &Node, width: f64, precision: Precision) -> f64 {
         self.value_above(precision.within, node, width)
     }
 
-    /// The value at a member, without factors below a bound.
+    /// The value at a member, without factors below `least`.
     fn value_above(self, least: f64, node: &Node, width: f64) -> f64 {
         let multipliers = &node.local.member.multipliers;
         match self {
@@ -124,8 +125,8 @@ impl Test {
         }
     }
 
-    /// True if a member is that of the bifurcation. The product of two real multipliers may pass 1 too, and beside a crossing
-    /// a member of the other branch has another direction.
+    /// True if a member at a zero is the bifurcation. Other causes of a zero: the product of two real multipliers
+    /// passes 1, or near a crossing the member lies on the other branch and has another direction.
     pub fn is_met(self, node: &Node, precision: Precision) -> bool {
         let (near, on_circle) = (precision.near, precision.on_circle);
         let mut multipliers = node.local.member.multipliers.iter();
@@ -139,7 +140,7 @@ impl Test {
     }
 }
 
-/// True if a member is a bifurcation up to rounding, or lies among a family.
+/// True if a member is a bifurcation up to rounding, or belongs to a family at a constant parameter.
 pub(super) fn is_degenerate(node: &Node, tests: &[Test], width: f64, precision: Precision) -> bool {
     let is_zero = |test: &Test| {
         let value = test.value(node, width, precision);
@@ -148,7 +149,7 @@ pub(super) fn is_degenerate(node: &Node, tests: &[Test], width: f64, precision: 
     node.dimension > 1 || tests.iter().any(is_zero)
 }
 
-/// Pairs of different multipliers.
+/// All pairs of multipliers with different indices.
 fn pairs(multipliers: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     let numbered = multipliers.iter().enumerate();
     numbered.flat_map(|(index, one)| {
@@ -158,7 +159,8 @@ fn pairs(multipliers: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     })
 }
 
-/// The sign of a product of complex numbers that are real or come in conjugate pairs, times the least modulus above a bound.
+/// The sign of a product of complex numbers, which are real or come in conjugate pairs, times their least modulus.
+/// Factors with a modulus below `least` are left out.
 fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
     factors.fold(f64::INFINITY, |value, [re, im]| {
         let modulus = f64::hypot(re, im);
@@ -176,7 +178,7 @@ pub(super) fn outside(multipliers: &[[f64; 2]], margin: f64) -> usize {
     moduli.filter(|modulus| *modulus > 1.0 + margin).count()
 }
 
-/// The bifurcation at which the multiplier farthest from 1, among those near the unit circle, passes it.
+/// The bifurcation by the multiplier farthest from 1 among those near the unit circle.
 pub(super) fn passing(multipliers: &[[f64; 2]], precision: Precision) -> Option<Bifurcation> {
     let on_circle = multipliers
         .iter()
@@ -189,9 +191,9 @@ pub(super) fn passing(multipliers: &[[f64; 2]], precision: Precision) -> Option<
     })
 }
 
-/// The stability by the multipliers; `None` if one of them is no number.
+/// The stability by the multipliers; `None` if one of them is NaN.
 pub(super) fn stability(multipliers: &[[f64; 2]], precision: Precision) -> Option<Stability> {
-    // NOTE: the larger of a number and NaN is the number.
+    // NOTE: `f64::max` ignores NaN.
     if multipliers.iter().flatten().any(|part| part.is_nan()) {
         return None;
     }

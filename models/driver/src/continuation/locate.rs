@@ -1,4 +1,4 @@
-//! Bifurcations between two members of a branch: zeros of test functions.
+//! Location of bifurcations between two members of a branch, as zeros of test functions.
 
 use super::family::{Failure, Node, Unknowns};
 use super::indicator::{Test, outside, passing};
@@ -6,20 +6,21 @@ use super::trace::{REACH, Tracer};
 use super::{Bifurcation, Member};
 use crate::linear::norm;
 
-/// Length of steps down to which bifurcations that were not seen are looked for.
+/// Length of a step below which unexplained changes of the stability are no longer resolved by shorter steps.
 const REFINED: f64 = 1e-4;
 
-/// Largest number of steps to a bifurcation, and the length of the last one.
+/// Maximum number of steps to a bifurcation.
 const ZOOM: usize = 100;
+/// Length of the last step to a bifurcation.
 const LOCATED: f64 = 1e-13;
 
 /// Largest distance of the members between which a branch point is interpolated.
 const BESIDE: f64 = 1e-3;
 
-/// Distance of a fold from a branch point, along the branch, below which they are one: a pitchfork.
+/// Distance along the branch below which a fold and a branch point are one bifurcation: a pitchfork.
 const SAME: f64 = 1e-4;
 
-/// A bifurcation between two members, at a fraction of the way.
+/// A bifurcation between two members, at a fraction of the step.
 pub(super) struct Located {
     pub fraction: f64,
     pub member: Member,
@@ -40,7 +41,7 @@ impl Tracer<'_, '_> {
         }
         for &test in self.tests {
             if let Some(values) = test.change([node, next], self.width, self.precision)? {
-                // A sign may change without a bifurcation, as where the product of two real multipliers passes 1.
+                // A sign may change without a bifurcation, for example if the product of two real multipliers passes 1.
                 if let Some(found) = self.zero(test, [node, next], values, length)? {
                     passed += test.passing();
                     located.push(found);
@@ -51,7 +52,7 @@ impl Tracer<'_, '_> {
         let [before, after] =
             [node, next].map(|node| outside(&node.local.member.multipliers, on_circle));
         if before.abs_diff(after) > passed {
-            // Two test functions, or one of them twice, have changed their sign inside.
+            // Several multipliers have crossed the unit circle inside without a change of sign at the ends.
             if length > REFINED {
                 return Err(Failure::TooLong);
             }
@@ -72,7 +73,7 @@ impl Tracer<'_, '_> {
         Ok(located)
     }
 
-    /// The member between two others at which a test function is 0; `None` if it is not that of a bifurcation.
+    /// The member between two others at which a test function is 0; `None` if it is not a bifurcation.
     fn zero(
         &mut self,
         test: Test,
@@ -87,7 +88,7 @@ impl Tracer<'_, '_> {
             best = match self.on_arc([node, next], fraction, REACH * length) {
                 Ok(found) => found,
                 Err(failure) if length > REFINED => return Err(failure),
-                // Beside a crossing members of the other branch may be nearer.
+                // Near a crossing, members of the other branch may be closer.
                 Err(_) => break,
             };
             let value = test.value(&best, self.width, self.precision);
@@ -110,8 +111,9 @@ impl Tracer<'_, '_> {
         Ok(Some(Located { fraction, member }))
     }
 
-    /// The member between two others at which several multipliers pass the unit circle at once, as those of equal parts
-    /// of a system do: an even number leaves the sign of a test function. `None` if none of them is near the circle.
+    /// The member between two others at which several multipliers cross the unit circle at once, as in a system with
+    /// equal parts: an even number of crossings does not change the sign of a test function. `None` if no multiplier is
+    /// near the circle.
     fn together(
         &mut self,
         [node, next]: [&Node; 2],
@@ -120,7 +122,7 @@ impl Tracer<'_, '_> {
         let precision = self.precision;
         let count = |node: &Node, margin| outside(&node.local.member.multipliers, margin);
         let change = |margin| count(node, margin).abs_diff(count(next, margin));
-        // Multipliers that lie on the circle all along may be seen on either side of it by the narrow margin.
+        // With the narrow margin, rounding may move multipliers that always lie on the circle to either side.
         let [narrow, wide] = precision.margins();
         let margin = if change(narrow) == change(wide) {
             narrow
@@ -163,8 +165,8 @@ impl Tracer<'_, '_> {
         Err(Failure::Diverged)
     }
 
-    /// The place where another branch crosses, between members on both sides of it. Nearer to that place members of both
-    /// branches differ by rounding alone, and a test function has half the digits.
+    /// The crossing with another branch, interpolated from members on both sides. Closer to the crossing, members of
+    /// both branches differ by rounding only, and a test function has half of the digits.
     fn crossing(
         &mut self,
         near: f64,
@@ -186,7 +188,7 @@ impl Tracer<'_, '_> {
         Ok(self.family.local(&state, parameter)?.member)
     }
 
-    /// The place among members on both sides at which the determinant is 0.
+    /// The zero of the determinant, interpolated from members on both sides, in units of their distance.
     fn root(&self, sides: &[Node]) -> f64 {
         let values = sides
             .iter()
@@ -205,7 +207,7 @@ impl Tracer<'_, '_> {
         place
     }
 
-    /// The member nearest to a fraction of the way between two others, along an arc with their directions.
+    /// The member closest to a fraction of the arc between two others.
     fn on_arc(&mut self, ends: [&Node; 2], fraction: f64, reach: f64) -> Result<Node, Failure> {
         let (state, along) = arc(ends, fraction, self.width);
         let local = self.corrected(&state, along, Unknowns::All, reach)?;
@@ -213,8 +215,8 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// State and parameter on the cubic arc between two members (Hermite). On a chord, the other branch of a crossing may be
-/// nearer than this one.
+/// State and parameter on the cubic Hermite arc between two members. From a chord, the other branch of a crossing may
+/// be closer than this one.
 pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f64>, f64) {
     let rest = 1.0 - fraction;
     let ends = [
@@ -240,7 +242,7 @@ pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f
     (state.collect(), parameter)
 }
 
-/// Places of members beside a crossing.
+/// Places of members on both sides of a crossing.
 const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 
 /// The polynomial through the values at these places.
@@ -253,7 +255,7 @@ fn interpolated(at: f64, value: impl Fn(usize) -> f64) -> f64 {
     (0..SIDES.len()).map(|k| weight(k) * value(k)).sum()
 }
 
-/// Fractions of a step with values of different signs, for false position with halved values (Illinois).
+/// A bracket of a zero in a step, for the Illinois variant of false position.
 struct Bracket {
     /// Fraction and value at both ends.
     ends: [(f64, f64); 2],
@@ -269,7 +271,7 @@ impl Bracket {
         }
     }
 
-    /// The next fraction: the zero of the secant, or the middle if that has none inside.
+    /// The next fraction: the zero of the secant, or the middle if the zero lies outside.
     fn guess(&self) -> f64 {
         let [low, high] = self.ends;
         let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
@@ -279,7 +281,8 @@ impl Bracket {
         }
     }
 
-    /// Moves the end whose value has the same sign; returns how far it was moved, at most the length of the bracket.
+    /// Moves the end whose value has the same sign. Returns the distance of the move, or the new length of the bracket
+    /// if that is less.
     fn narrow(&mut self, fraction: f64, value: f64) -> f64 {
         let is_first = value.is_sign_negative() == self.ends[0].1.is_sign_negative();
         let end = usize::from(!is_first);

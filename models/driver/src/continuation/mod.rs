@@ -1,15 +1,15 @@
 //! Continuation: a branch of periodic orbits over one parameter, with its bifurcations, and the curves of these
 //! bifurcations over two parameters.
 //!
-//! | file | |
+//! | file | job |
 //! |---|---|
-//! | `family` | one member of a branch and its neighbours, without the type of the system |
+//! | `family` | one member of a branch and its neighbours, independent of the type of the system |
 //! | `orbits` | the members that are periodic orbits of a section |
 //! | `curves` | the members that are bifurcations over two parameters |
 //! | `trace` | pseudo-arclength continuation with steps adapted to the branch |
 //! | `indicator` | test functions of bifurcations |
-//! | `locate` | the places where they are 0 |
-//! | `rotated` | linear equations with more unknowns than equations |
+//! | `locate` | zeros of the test functions |
+//! | `rotated` | underdetermined linear equations |
 
 pub(crate) mod curves;
 pub(crate) mod family;
@@ -28,7 +28,7 @@ use crate::model::Point;
 pub struct Extent {
     /// The index of the parameter.
     pub parameter: usize,
-    /// Both ends of the range; the second one may be the lower one.
+    /// Both ends of the range. The second one may be lower than the first.
     pub range: [f64; 2],
 }
 
@@ -52,19 +52,19 @@ pub struct Continuation {
     pub extent: Extent,
     /// A second parameter, over which the bifurcations of the branch are followed.
     pub across: Option<Extent>,
-    /// Largest number of points in either direction.
+    /// Maximum number of points in either direction.
     pub points: u32,
 }
 
 /// A branch of periodic orbits.
 #[derive(Debug, Clone)]
 pub struct Branch {
-    /// Its points in their order along the branch. The first ones lie towards the first end of the range.
+    /// Its points in order along the branch, from the side of the first end of the range.
     pub points: Vec<Member>,
     /// Both ends of the branch.
     pub ends: [BranchEnd; 2],
-    /// The curves of its bifurcations over two parameters, if they are asked for. A curve on which several of them lie is
-    /// here once.
+    /// The curves of its bifurcations over two parameters, if requested. A curve through several of them is listed
+    /// once.
     pub curves: Vec<BifurcationCurve>,
 }
 
@@ -73,7 +73,7 @@ pub struct Branch {
 pub struct BifurcationCurve {
     /// The bifurcation.
     pub bifurcation: Bifurcation,
-    /// Its points in their order along the curve. The first ones lie towards the first end of the second range.
+    /// Its points in order along the curve, from the side of the first end of the second range.
     pub points: Vec<Member>,
     /// Both ends of the curve.
     pub ends: [BranchEnd; 2],
@@ -153,10 +153,10 @@ impl Bifurcation {
     }
 }
 
-/// Reason for which a branch was followed no further.
+/// Reason why a branch ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BranchEnd {
-    /// An end of the range was reached, exactly.
+    /// The branch reaches an end of the range exactly.
     Range,
     /// The orbit grazes a surface.
     Grazing {
@@ -165,17 +165,17 @@ pub enum BranchEnd {
     },
     /// The branch has returned to its first point.
     Closed,
-    /// The parameter leaves the values that its declaration allows.
+    /// The declaration of the parameter refuses the next value.
     Parameter(ParameterError),
-    /// The return map is not defined beyond.
+    /// The return map is not defined beyond this point.
     Missed(OrbitError),
-    /// Multipliers of the next point, or its test functions, are no finite numbers: its stability is not known.
+    /// Multipliers or test functions of the next point are not finite, so that its stability is unknown.
     NotKnown,
     /// The two multipliers of a Neimark-Sacker bifurcation meet at 1 or -1: a strong resonance.
     Resonance,
     /// Newton's method does not converge at the smallest step.
     NotConverged,
-    /// The largest number of points was reached.
+    /// The maximum number of points was reached.
     Points,
     /// The branch turns back before it reaches the range.
     Turned,

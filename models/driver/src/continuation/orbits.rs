@@ -61,17 +61,17 @@ impl<S: Instance + Scene + Variational> Family for Orbits<'_, S> {
 }
 
 impl<S: Instance + Scene + Variational> Orbits<'_, S> {
-    /// Gives a parameter a value, at which it stays.
+    /// Sets a parameter, which keeps this value.
     pub fn hold(&mut self, parameter: usize, value: f64) {
         self.system.set_parameter(parameter, value);
     }
 
-    /// Expects returns that take about as long as this period.
+    /// Limits the time of a return by this period.
     fn expect(&mut self, period: f64) {
         self.horizon = f64::min(self.search.horizon, PATIENCE * period);
     }
 
-    /// The return map near a state at a value of a parameter, with its derivative in that parameter.
+    /// The return map near a state at a value of a parameter, with its derivative with respect to that parameter.
     pub fn along(&mut self, state: &[f64], parameter: usize, value: f64) -> Result<Local, Failure> {
         self.hold(parameter, value);
         self.system.check_parameters().map_err(Failure::Parameter)?;
@@ -100,7 +100,8 @@ fn local<S: Instance + Variational>(
     precision: Precision,
 ) -> Result<Local, Failure> {
     if image.delay > DELAY * image.image.time {
-        // The point leaves the surface, so that its image is not the one of its neighbours on the other side.
+        // The motion from the point leaves the surface first, so that its image differs from that of neighbours on the
+        // other side.
         return Err(Failure::TooLong);
     }
     let multipliers = image.multipliers.as_ref();

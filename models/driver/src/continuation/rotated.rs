@@ -1,15 +1,15 @@
-//! Linear equations with more unknowns than equations: least solutions and kernels, by one-sided Jacobi rotations
-//! (Hestenes). A matrix is a list of columns.
+//! Underdetermined linear equations: solutions of least norm, and kernels, by one-sided Jacobi rotations (Hestenes). A
+//! matrix is a list of columns.
 
 use crate::linear::{add, dot};
 
-/// Singular values below this share of the largest, or of 1, count as 0.
+/// Singular values below this multiple of the largest one, or of 1 if that is larger, count as 0.
 const RANK: f64 = 1e-7;
 
 /// Maximum number of sweeps over all pairs of columns.
 const SWEEPS: usize = 60;
 
-/// A matrix `A` with a rotation `V` for which the columns of `A V` are orthogonal.
+/// A matrix `A` and an orthogonal matrix `V` such that the columns of `A V` are orthogonal.
 pub(super) struct Rotated {
     columns: Vec<Vec<f64>>,
     directions: Vec<Vec<f64>>,
@@ -58,7 +58,7 @@ impl Rotated {
         square(column) > RANK * RANK * self.largest
     }
 
-    /// The shortest of the vectors `x` with least `|A x - b|`.
+    /// The shortest of the vectors `x` that minimise `|A x - b|`.
     pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut solution = vec![0.0; self.directions.len()];
         for (column, direction) in self.columns.iter().zip(&self.directions) {

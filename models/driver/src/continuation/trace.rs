@@ -1,8 +1,8 @@
-//! Pseudo-arclength continuation: steps along the branch, corrected at right angles to it.
+//! Pseudo-arclength continuation: steps along the branch with orthogonal corrections.
 //!
-//! Lengths are measured in the units of the state and, for the parameter, in the length of its range. The correction is the
-//! shortest Newton step (Moore and Penrose), so that it needs no further equation, and converges where orbits are families
-//! at a constant parameter too.
+//! Lengths are measured in the units of the state and, for the parameter, in the length of its range. A correction is
+//! the shortest Newton step (Moore-Penrose inverse). It needs no additional equation, and also converges where orbits
+//! form a family at a constant parameter.
 
 use super::family::{Failure, Family, Local, Node, Unknowns};
 use super::indicator::{Precision, Test, is_degenerate};
@@ -10,48 +10,52 @@ use super::locate::{Located, arc};
 use super::{Branch, BranchEnd, Extent, Member};
 use crate::linear::{dot, norm};
 
-/// First, largest and smallest length of a step.
+/// Length of the first step.
 const FIRST: f64 = 0.01;
+/// Largest length of a step.
 const LONGEST: f64 = 0.2;
+/// Smallest length of a step.
 const SHORTEST: f64 = 1e-9;
 
-/// Largest change of the parameter in a step, as a share of the range.
+/// Largest change of the parameter in a step, as a fraction of the range.
 const WIDEST: f64 = 0.04;
 
-/// Least cosine of the angle between the directions at both ends of a step (10 degrees), and the one above which the next
-/// step is longer (3 degrees).
+/// Cosine of the largest angle between the directions at both ends of a step (10 degrees).
 const TURN: f64 = 0.984_8;
+/// Cosine of the angle below which the next step is longer (3 degrees).
 const STRAIGHT: f64 = 0.998_6;
 
-/// Largest correction, as a share of the step.
+/// Largest correction, as a fraction of the step.
 pub(super) const REACH: f64 = 0.1;
 
-/// Largest number of steps to the first member of a branch that may be closed, and the distance at which it is that one.
+/// Maximum number of steps from a member to another one that may be the same.
 const RETURNS: usize = 8;
+/// Distance below which two members are the same.
 const SAME: f64 = 1e-6;
 
-/// Largest number of Newton steps.
+/// Maximum number of Newton steps.
 const NEWTON: usize = 12;
 
-/// Distance along the branch to arrivals without speed, below which arrivals graze.
+/// Distance along the branch to an arrival at speed 0 below which the end of the branch is a grazing orbit.
 const GRAZING: f64 = 1e-5;
 
-/// Distance along the branch to an end inside of the range, below which points are left out.
+/// Distance along the branch to an end inside the range below which points are left out.
 const CROWDED: f64 = 1e-3;
 
-/// Largest departure of a step from an arc of a circle, as a share of the arc's height and of the step. A member of a
-/// neighbouring sheet lies off the arc that its direction asks for.
+/// Largest deviation of a step from the arc of a circle that its directions imply, as a fraction of the arc's height. A
+/// member of a neighbouring sheet lies off this arc.
 const UNEVEN: f64 = 0.25;
+/// The same as a fraction of the step; both deviations are added.
 const CROOKED: f64 = 1e-3;
 
 /// Observer of the points of a branch.
 pub(crate) type Watch<'a> = &'a mut dyn FnMut(&Member);
 
-/// Continuation under way.
+/// State of a continuation.
 pub(crate) struct Tracer<'a, 'w> {
     pub(super) family: &'a mut dyn Family,
     extent: Extent,
-    /// Largest number of steps in either direction.
+    /// Maximum number of steps in either direction.
     points: u32,
     /// The unit of the parameter: the length of the range.
     pub(super) width: f64,
@@ -59,7 +63,7 @@ pub(crate) struct Tracer<'a, 'w> {
     pub(super) precision: Precision,
     /// The test functions whose zeros are located.
     pub(super) tests: &'static [Test],
-    /// The range of the last component of the state, if it has one.
+    /// The range of the last component of the state, if it is limited.
     window: Option<[f64; 2]>,
     /// Members that may lie on the branch.
     sought: Vec<Sought>,
@@ -67,7 +71,7 @@ pub(crate) struct Tracer<'a, 'w> {
 
 /// A member that may lie on a branch.
 struct Sought {
-    /// The member; `None` if there is none near the given state.
+    /// The member; `None` if no member is near the given state.
     local: Option<Local>,
     is_met: bool,
 }
@@ -93,13 +97,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// The branch ends where the last component of the state leaves this range too, and no bifurcations are located on it.
+    /// Also ends the branch where the last component of the state leaves this range, and locates no bifurcations.
     pub fn within(&mut self, window: [f64; 2]) {
         self.window = Some(window);
         self.tests = &[];
     }
 
-    /// Watches whether the branch passes through the members near these states, all at one value of the parameter.
+    /// Records if the branch passes through the members near these states, all at one value of the parameter.
     pub fn seek(&mut self, states: &[Vec<f64>], parameter: f64) {
         let found = states.iter().map(|state| {
             let local = self.corrected(state, parameter, Unknowns::State, f64::INFINITY);
@@ -111,7 +115,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         self.sought = found.collect();
     }
 
-    /// For each of the members that were sought, whether the branch passes through it.
+    /// One value per member that was sought: true if the branch passes through it.
     pub fn met(&self) -> impl Iterator<Item = bool> {
         self.sought.iter().map(|sought| sought.is_met)
     }
@@ -141,11 +145,12 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Ok(self.both_ways(&start))
     }
 
-    /// The member at the nearest end of the range, on the branch through a member outside of it; or the end of the way there.
+    /// Follows the branch from a member outside the range to the nearer end of the range. Returns the member there, or
+    /// the end of the branch if it does not reach the range.
     fn approached(&mut self, start: Node) -> Result<Result<Node, BranchEnd>, Failure> {
         let [low, high] = self.extent.limits();
         let from = start.parameter();
-        // As far to the other side.
+        // The branch may move away from the range by the same distance.
         let (limits, is_rising) = match from < low {
             true => ([from - (low - from), low], true),
             false => ([high, from + (from - high)], false),
@@ -165,7 +170,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         })
     }
 
-    /// The member, or the next one if it is a bifurcation itself, so that this lies between two members.
+    /// The member, or a neighbour if the member is a bifurcation: bifurcations are located between two members.
     fn shifted(&mut self, start: Node) -> Node {
         if !is_degenerate(&start, self.tests, self.width, self.precision) {
             return start;
@@ -184,7 +189,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         };
         let (before, first) = self.side(back);
         let (after, last) = match first {
-            // The other side would go around once more.
+            // The other side is the same closed branch.
             BranchEnd::Closed => (Vec::new(), BranchEnd::Closed),
             _ => self.side(forth),
         };
@@ -198,7 +203,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// The branch from a member on, with its bifurcations, and its end.
+    /// The branch from a member in its direction, with its bifurcations, and its end.
     fn side(&mut self, start: &Node) -> (Vec<Member>, BranchEnd) {
         let limits = self.extent.limits();
         let mut side: Vec<(Member, f64)> = Vec::new();
@@ -222,7 +227,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         (kept.map(|(_, (member, _))| member).collect(), end)
     }
 
-    /// Steps from a member on until the branch ends.
+    /// Follows the branch from a member until it ends. Calls `take` with the bifurcations of each step and its end.
     fn followed(
         &mut self,
         start: &Node,
@@ -268,12 +273,12 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// True if the branch leads from a member, within a step, to the first one in the same direction.
+    /// True if the branch leads from a member, within a step, to the first member in the same direction.
     fn is_back(&mut self, node: &Node, start: &Node, length: f64) -> bool {
         dot(&node.heading, &start.heading) > TURN && self.leads(node, &start.local, length)
     }
 
-    /// True if the branch leads from a member, within a step, to another one: not to a neighbouring sheet.
+    /// True if the branch leads from a member, within a step, to another given member, and not to a neighbouring sheet.
     fn leads(&mut self, node: &Node, to: &Local, length: f64) -> bool {
         let width = self.width;
         let way = |node: &Node| to.change_to(width, &node.local.member.state, node.parameter());
@@ -294,7 +299,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         norm(&way(&near)) < SAME
     }
 
-    /// Notes which of the members that are sought lie within a step of this one.
+    /// Records the members that are sought and lie on the branch within a step of this one.
     fn meet(&mut self, node: &Node, length: f64) {
         for index in 0..self.sought.len() {
             let sought = &self.sought[index];
@@ -305,7 +310,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// True if a member at a limit of the parameter, or of the window, is about to leave.
+    /// True if the branch leaves the limits of the parameter, or the window, at this member.
     fn leaves(&self, node: &Node, limits: [f64; 2]) -> bool {
         let is_leaving = |at: f64, rate: f64, [low, high]: [f64; 2]| {
             (at >= high && rate > 0.0) || (at <= low && rate < 0.0)
@@ -317,7 +322,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         beyond || is_leaving(node.parameter(), node.rise(), limits)
     }
 
-    /// The next member, at this distance or at a limit of the parameter, and the bifurcations before it.
+    /// The next member, at this distance or at a limit of the parameter, and the bifurcations in between.
     fn stride(
         &mut self,
         node: &Node,
@@ -348,7 +353,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Ok((next, located))
     }
 
-    /// The next member, or the one between where the last component of the state leaves its window.
+    /// The next member, or the member in between at which the last component of the state leaves its window.
     fn inside(&mut self, node: &Node, next: Node, length: f64) -> Result<Node, Failure> {
         let at = next.last();
         let mut window = self.window.into_iter().flatten();
@@ -363,7 +368,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Ok(place)
     }
 
-    /// The member at a distance along the direction of another, or nearest to that at a value of the parameter.
+    /// The member at a distance along the direction of another, or the closest one to it at a value of the parameter.
     fn reached(
         &mut self,
         node: &Node,
@@ -386,7 +391,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         self.neighbour(node, (&state, limit), Unknowns::State, length)
     }
 
-    /// The member near a place, if it continues the branch.
+    /// The member near a predicted state and parameter, if it continues the branch.
     fn neighbour(
         &mut self,
         node: &Node,
@@ -397,7 +402,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let reach = REACH * length.abs();
         let local = match self.corrected(state, parameter, unknowns, reach) {
             Err(Failure::Diverged) => {
-                // Beyond a grazing orbit the map has no smooth continuation, so that Newton's method goes astray.
+                // Beyond a grazing orbit the map has no smooth continuation, so that Newton's method fails.
                 let local = self.family.local(state, parameter)?;
                 let other = other_surface(&node.local, &local);
                 return Err(other.map_or(Failure::Diverged, Failure::Itinerary));
@@ -418,7 +423,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// The member near a place, not further away than `reach`.
+    /// The member near a state and a parameter, at a distance of at most `reach`, by Newton's method.
     pub(super) fn corrected(
         &mut self,
         state: &[f64],
@@ -442,7 +447,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 Unknowns::State => parameter,
             };
             let better = self.family.local(&to, along)?;
-            // A last step takes what rounding allows.
+            // One step after convergence reduces the residual to rounding.
             let is_better = better.member.residual < local.member.residual;
             if is_better || !was_closed {
                 local = better;
@@ -459,7 +464,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 }
 
-/// The reason why no step from the second of two members is short enough.
+/// The end of a branch at which no step from the second of two members is short enough.
 fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     let grazed = failures.iter().rev().find_map(|failure| match failure {
         Failure::Itinerary(surface) => Some(*surface),
@@ -474,7 +479,7 @@ fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     told.unwrap_or(BranchEnd::NotConverged)
 }
 
-/// The end of a branch at which this is why no step is short enough.
+/// The end of a branch that this failure causes at the shortest step.
 pub(super) const fn ended(failure: &Failure) -> BranchEnd {
     match failure {
         Failure::Parameter(error) => BranchEnd::Parameter(*error),
@@ -491,7 +496,7 @@ fn other_surface(one: &Local, other: &Local) -> Option<usize> {
     counts.position(|(one, other)| one != other)
 }
 
-/// The surface at which the slowest arrival is about to lose its speed, if there is one.
+/// The surface at which the speed of the slowest arrival is about to vanish, if there is one.
 fn slowing([before, last]: [&Node; 2]) -> Option<usize> {
     let mut speeds = before.local.speeds.iter().zip(&last.local.speeds);
     speeds.position(|(before, speed)| {
@@ -500,7 +505,7 @@ fn slowing([before, last]: [&Node; 2]) -> Option<usize> {
     })
 }
 
-/// The surface that is grazed, if that is the error.
+/// The grazed surface, if a grazing impact is the error.
 fn grazed(error: &dalembert::OrbitError) -> Option<usize> {
     use dalembert::{OrbitError, SectionError, Undefined};
     match error {
@@ -511,7 +516,8 @@ fn grazed(error: &dalembert::OrbitError) -> Option<usize> {
     }
 }
 
-/// True if a step leads along an arc: the angle between the directions at its ends says how far it is from the tangent.
+/// True if a step follows an arc of a circle: the angle between the directions at its ends determines its distance from
+/// the tangent.
 fn bends_evenly(way: &[f64], node: &Node, next: &Node) -> bool {
     let length = norm(way);
     let along = dot(way, &node.heading);

@@ -1,14 +1,14 @@
-//! Optimal control: all extremals found of a model with a cost, with given numbers of impacts.
+//! Optimal control: a search for the extremals of a model with a cost, with given numbers of impacts.
 //!
-//! The system is the first-order model of the extremals that the generator makes: state `x`, costate `p` and the cost so far.
-//! The unknowns are the costate at the start. The equations are the given components of the state at the end, and
-//! `p = dg` for the others, with `g` the terminal cost. A motion and its derivatives across impacts are those of
-//! [`Variations`](dalembert::Variations), and the search is that of [`connect`](crate::connect).
+//! The system is the first-order model of the extremals that the generator makes: state `x`, costate `p` and the cost
+//! so far. The unknowns are the costate at the start. The equations are the given components of the state at the end,
+//! and `p = dg` for the other components, with the terminal cost `g`. [`Variations`](dalembert::Variations) computes
+//! the derivatives of a motion across impacts; the search is the one of [`connect`](crate::connect).
 //!
 //! | file | job |
 //! |---|---|
 //! | `shooter.rs` | one extremal from a costate at the start |
-//! | `multiple_shooting.rs` | further starts of the search, by multiple shooting |
+//! | `multiple_shooting.rs` | additional starts of the search, by multiple shooting |
 //! | `second_order.rs` | the second-order test of an extremal that was found |
 
 mod multiple_shooting;
@@ -32,17 +32,18 @@ pub use second_order::SecondOrder;
 pub struct Task {
     /// The state at `t = 0`.
     pub from: Vec<f64>,
-    /// Components of the state at the end; one without a value is free.
+    /// The state at the end, one entry per component; `None` for a free component.
     pub to: Vec<Option<f64>>,
-    /// The time of the end.
+    /// The end time; the start is at 0.
     pub time: f64,
     /// Least and largest number of impacts.
     pub impacts: [usize; 2],
-    /// The tolerance of the integrator, a Taylor series.
+    /// The tolerance of the integrator, `Taylor`.
     pub tolerance: Tolerance,
-    /// Number of directions in which starts are scanned, for two unknowns or more; by default by their number.
+    /// Number of directions in which starts are scanned, for two unknowns or more. The default depends on the number of
+    /// unknowns.
     pub directions: Option<usize>,
-    /// Seed that turns the directions.
+    /// Seed of the directions.
     pub seed: u64,
 }
 
@@ -57,7 +58,7 @@ pub struct Moment {
     pub costate: Vec<f64>,
     /// The optimal inputs.
     pub inputs: Vec<f64>,
-    /// `H*`
+    /// The minimised Hamiltonian `H*`.
     pub hamiltonian: f64,
 }
 
@@ -66,9 +67,9 @@ pub struct Moment {
 pub struct Kick {
     /// The index of the surface.
     pub surface: usize,
-    /// Before.
+    /// State and costate before the impact.
     pub before: Moment,
-    /// After.
+    /// State and costate after the impact.
     pub after: Moment,
 }
 
@@ -81,11 +82,11 @@ pub struct Extremal {
     pub last: Moment,
     /// The impacts, in order of time.
     pub kicks: Vec<Kick>,
-    /// The whole cost.
+    /// The total cost, including the terminal cost.
     pub cost: f64,
-    /// The part of it that is due to the end.
+    /// The terminal cost.
     pub terminal: f64,
-    /// Largest difference in an equation of the end.
+    /// Largest residual of an equation at the end.
     pub residual: f64,
     /// The second-order test.
     pub second_order: SecondOrder,
@@ -102,20 +103,20 @@ pub struct Controlled {
     pub runs: u64,
     /// True if the scan of every direction ended where larger costates have too many impacts or no motion to the end.
     pub is_bounded: bool,
-    /// Intervals of a scan with a change that was not resolved.
+    /// Number of intervals of the scan that were not resolved.
     pub unresolved: usize,
-    /// Number of starts whose motion took too many steps to be followed.
+    /// Number of starts whose motion was given up after too many steps.
     pub given_up: usize,
 }
 
-/// Reasons for which no extremals are sought.
+/// Reasons why no extremals are sought.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unsought {
-    /// The model is not one of extremals.
+    /// The model is not the model of extremals of another one.
     #[error("the model is not that of the extremals of a model with a cost")]
     Other,
-    /// The second derivative of the running cost by the inputs is not positive.
+    /// The second derivative of the running cost with respect to the inputs is not positive.
     #[error(
         "the running cost has no least value at the start: its second derivative by the inputs is not positive there"
     )]
@@ -135,14 +136,14 @@ pub enum Unsought {
     Fault(#[from] Fault),
 }
 
-/// Searches the extremals of a model of any type.
+/// Visitor that searches the extremals of a model of any type.
 pub(crate) struct Controller<'a, 'b> {
     pub task: &'a Task,
     pub tell: &'b mut dyn FnMut(Stage),
 }
 
 impl VariationalVisitor for Controller<'_, '_> {
-    /// The inner error explains why nothing can be sought, the outer one why no run starts.
+    /// The inner error says why no extremals can be sought, the outer one why no run starts.
     type Output = Result<Result<Controlled, Unsought>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {

@@ -1,12 +1,13 @@
-//! Multiple shooting: an extremal as a chain of motions, each from a state and a costate of its own.
+//! Multiple shooting: an extremal as a chain of motions, each from its own state and costate.
 //!
 //! ```text
 //! z_{k+1} = Phi_k(z_k),  k = 0 .. M - 2,      the equations of the end hold for Phi_{M-1}(z_{M-1})
 //! ```
 //!
-//! `z = (x, p)`, and `Phi_k` is the motion from one node to the next. The unknowns are the costate at the start, and state and
-//! costate at the further nodes. As errors grow over one stretch alone, Newton's method, damped by the natural
-//! monotonicity test (Deuflhard 2004, section 3.3), gets from a rough guess to an extremal that no guess of the costate at the start alone leads to.
+//! `z = (x, p)`, and `Phi_k` is the motion from one node to the next. The unknowns are the costate at the start, and
+//! state and costate at the further nodes. Errors grow over a single stretch only. Newton's method, damped by the
+//! natural monotonicity test (Deuflhard 2004, section 3.3), therefore converges from rough guesses, where single
+//! shooting from a guess of the costate at the start fails.
 
 use std::f64::consts::{PI, TAU};
 
@@ -24,22 +25,22 @@ const STRETCHES: usize = 12;
 /// Number of guesses.
 pub(super) const GUESSES: usize = 24;
 
-/// Deviations of the guesses from a straight line, in sizes of the state.
+/// Deviations of the guesses from a straight line, in multiples of the size of the state.
 const HEIGHTS: [f64; 3] = [0.25, 1.0, 2.0];
 
-/// Largest number of steps.
+/// Maximum number of steps.
 const STEPS: usize = 60;
 
-/// Largest change of an extremal by the next step, in units of the unknowns.
+/// Length of a Newton step, in units of the unknowns, below which the equations are solved.
 const SOLVED: f64 = 1e-8;
 
 /// Least unit of a costate.
 const SMALL: f64 = 1e-3;
 
-/// First and least share of a Newton step.
+/// First and least damping factor of a Newton step.
 const SHARES: [f64; 2] = [0.25, 1e-3];
 
-/// Residuals and their derivatives, a column for each unknown.
+/// Residuals and their derivatives, one column per unknown.
 struct Equations {
     residuals: Vec<f64>,
     columns: Vec<Vec<f64>>,
@@ -60,7 +61,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         }
     }
 
-    /// The costate at the start of the extremal that a guess leads to.
+    /// The costate at the start of the extremal to which Newton's method converges from a guess.
     pub fn solve(&mut self, guess: usize) -> Option<Vec<f64>> {
         let mut unknowns = self.guess(guess);
         let mut equations = self.equations(&unknowns)?;
@@ -85,7 +86,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
                 }
                 let next = unknowns.iter().zip(&step);
                 let next: Vec<f64> = next.map(|(value, step)| value - share * step).collect();
-                // The step that the same derivatives ask for next must be shorter.
+                // The next step with the same derivatives must be shorter.
                 if let Some(there) = self.equations(&next)
                     && let Some(again) = solve(&equations.columns, &there.residuals)
                     && length(&again) <= (1.0 - 0.25 * share) * size
@@ -99,7 +100,8 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         None
     }
 
-    /// The units of the unknowns: sizes of the state, and the largest costates at any node.
+    /// The units of the unknowns: the largest absolute values of states and costates at the nodes, at least the sizes
+    /// of the state and [`SMALL`].
     fn units(&self, unknowns: &[f64]) -> Vec<f64> {
         let n = self.n;
         let (_, _, sizes) = self.shooter.ends();
@@ -113,7 +115,8 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         units[n..].iter().copied().chain(nodes).collect()
     }
 
-    /// A guess: states on a line from the start to the end, or on a sum of two half waves beside it; costates 0.
+    /// A guess. The first one has states on a line from start to end; the others add a half wave and a full wave. All
+    /// costates are 0.
     fn guess(&self, index: usize) -> Vec<f64> {
         let n = self.n;
         let (from, to, sizes) = self.shooter.ends();
@@ -148,7 +151,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         let mut columns = vec![vec![0.0; rows]; unknowns.len()];
         for k in 0..STRETCHES {
             let z = self.node(unknowns, k);
-            // The first node has no free state, and its costate comes first.
+            // The state of the first node is fixed, and its costate comes first among the unknowns.
             let (first, fixed) = match k {
                 0 => (0, n),
                 k => (n + 2 * n * (k - 1), 0),
@@ -189,7 +192,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
     }
 }
 
-/// The share of the time at a node.
+/// The fraction of the time at a node.
 fn place(node: usize) -> f64 {
     node as f64 / STRETCHES as f64
 }

@@ -1,13 +1,15 @@
-//! The second-order test of an extremal: with its endpoint fixed, is the cost of neighbouring motions larger?
+//! The second-order test of an extremal: it is a local minimum if the cost of neighbouring motions with the same start
+//! is larger.
 //!
-//! Over a stretch of time the derivative of the flow is `(dx', dp') = (A dx + B dp, C dx + D dp)`. The least cost of a stretch as a
-//! function of its ends has the second derivatives `S_xx = -B^-1 A`, `S_xx' = B^-1`, `S_x'x' = -D B^-1`. Backwards from the second derivative
-//! `K` of the terminal cost, `S_x'x' + K` must be positive, and the second derivative of the cost to go becomes
-//! `S_xx - S_xx' (S_x'x' + K)^-1 S_x'x`. Given components of the end do not vary. This is the Riccati equation in
-//! steps, in which nothing becomes infinite before a focal point, and impacts are parts of stretches.
+//! Over a stretch of time the derivative of the flow is `(dx', dp') = (A dx + B dp, C dx + D dp)`. The least cost of a
+//! stretch as a function of its ends has the second derivatives `S_xx = -B^-1 A`, `S_xx' = B^-1`, `S_x'x' = -D B^-1`.
+//! The test runs backwards from the second derivative `K` of the terminal cost. In each step, `S_x'x' + K` must be
+//! positive, and the second derivative of the cost to go becomes `S_xx - S_xx' (S_x'x' + K)^-1 S_x'x`. Given components
+//! of the end do not vary. This is the Riccati equation in steps. It remains finite up to a focal point, and stretches
+//! may contain impacts.
 //!
-//! Every stretch has derivatives of its own. Those between two times that follow from the derivatives by the start lose their digits, as over a
-//! short time an input hardly moves the states that it acts on through others.
+//! The derivatives of every stretch are computed from its own start. Derivatives with respect to the start of the whole
+//! motion would lose digits: over a short time, an input hardly moves the states on which it acts through others.
 
 use crate::least_squares::solve;
 
@@ -16,38 +18,39 @@ use crate::least_squares::solve;
 pub enum SecondOrder {
     /// The extremal is a strict local minimum among motions with its sequence of impacts.
     Minimum,
-    /// It is not: near this time the second variation takes negative values.
+    /// The extremal is not a minimum: near this time the second variation takes negative values.
     Fails {
         /// The time.
         t: f64,
     },
-    /// The test does not tell: some directions of the state are not controlled, or the derivatives have lost their digits.
+    /// The test is inconclusive: some directions of the state are not controlled, or the derivatives have lost their
+    /// digits.
     Open,
 }
 
 /// The derivatives of the flow over a stretch of time.
 #[derive(Debug, Clone)]
 pub(super) struct Flow {
-    /// The time of its end.
+    /// The end time of the stretch.
     pub t: f64,
-    /// A column for each component of state and costate at its start.
+    /// One column per component of state and costate at the start of the stretch.
     pub columns: Vec<Vec<f64>>,
 }
 
 /// Largest residual of `A D^T - B C^T = 1`.
 const CANONICAL: f64 = 1e-5;
 
-/// Error of the derivatives, as a fraction of them.
+/// Relative error of the derivatives.
 const ROUNDING: f64 = 1e-12;
 
-/// Largest error of the inverse of `B`, as a fraction of it.
+/// Largest accepted relative error of the inverse of `B`.
 const RESOLVED: f64 = 1e-2;
 
 /// Rows of a matrix.
 type Matrix = Vec<Vec<f64>>;
 
-/// Tests an extremal by the flows of its stretches, in order of time; `terminal` is the second derivative of the terminal cost, `free` are the
-/// components that vary at the end.
+/// Tests an extremal by the flows of its stretches, in order of time. `terminal` is the second derivative of the
+/// terminal cost; `free` lists the components that vary at the end.
 pub(super) fn test(flows: &[Flow], terminal: &Matrix, free: &[usize]) -> SecondOrder {
     let everything: Vec<usize> = (0..terminal.len()).collect();
     let mut cost = terminal.clone();
@@ -66,7 +69,7 @@ pub(super) fn test(flows: &[Flow], terminal: &Matrix, free: &[usize]) -> SecondO
     SecondOrder::Minimum
 }
 
-/// Second derivatives of the least cost of a stretch by its ends.
+/// Second derivatives of the least cost of a stretch with respect to its ends.
 struct Stretch {
     first: Matrix,
     mixed: Matrix,
@@ -77,12 +80,12 @@ struct Stretch {
 enum Step {
     /// Second derivative of the cost to go.
     Cost(Matrix),
-    /// There is no minimum.
+    /// The second variation takes negative values.
     Negative,
     Open,
 }
 
-/// A factor of a symmetric matrix.
+/// Result of the Cholesky factorisation of a symmetric matrix.
 enum Factor {
     Of(Matrix),
     NotPositive,
@@ -91,7 +94,7 @@ enum Factor {
 }
 
 impl Stretch {
-    /// `None` if the stretch does not control the state, or digits are lost.
+    /// The derivatives of a stretch; `None` if it does not control the state, or if digits are lost.
     fn of(flow: &Flow) -> Option<Self> {
         let n = flow.columns.len() / 2;
         let block = |row: usize, column: usize| -> Matrix {
@@ -125,7 +128,7 @@ impl Stretch {
         })
     }
 
-    /// The second derivative of the cost to go at the first end.
+    /// The second derivative of the cost to go at the start of the stretch.
     fn before(&self, after: &Matrix, varied: &[usize]) -> Step {
         let sum = combined(&self.last, after, 1.0);
         let chosen = |matrix: &Matrix| -> Matrix {
@@ -158,7 +161,7 @@ impl Stretch {
     }
 }
 
-/// The factor `L` of a positive symmetric matrix `L L^T`.
+/// The Cholesky factor `L` of a positive definite matrix `L L^T`.
 fn factor(matrix: &Matrix) -> Factor {
     let n = matrix.len();
     let mut factor = vec![vec![0.0; n]; n];
@@ -223,8 +226,8 @@ fn combined(left: &Matrix, right: &Matrix, factor: f64) -> Matrix {
     left.iter().zip(right).map(row).collect()
 }
 
-/// The inverse of a matrix; `None` if the errors of its entries may change it. Components have units of their own, so rows and columns
-/// are divided by what makes the diagonal 1.
+/// The inverse of a matrix; `None` if errors of the entries may change it. Components have different units, so that
+/// rows and columns are scaled to make the diagonal 1.
 fn resolved_inverse(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let units: Vec<f64> = (0..n).map(|i| matrix[i][i].abs().sqrt()).collect();
@@ -241,12 +244,12 @@ fn resolved_inverse(matrix: &Matrix) -> Option<Matrix> {
         sums.fold(0.0, f64::max)
     };
     let inverse = inverse(&scaled(matrix))?;
-    // NaN is not resolved either.
+    // NaN fails this comparison.
     let is_resolved = ROUNDING * size(&scaled(matrix)) * size(&inverse) < RESOLVED;
     is_resolved.then(|| scaled(&inverse))
 }
 
-/// `None` for a singular matrix.
+/// The inverse of a matrix; `None` if it is singular.
 fn inverse(matrix: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let columns = transposed(matrix);
@@ -263,7 +266,8 @@ fn inverse(matrix: &Matrix) -> Option<Matrix> {
 mod tests {
     use super::*;
 
-    /// `x' = -p, p' = -k x`: extremals of the cost `u^2/2 + k x^2/2`, with `k = -1` those of a spring that is short.
+    /// Flows of `x' = -p, p' = -k x`, the extremals of the cost `u^2/2 + k x^2/2`. For `k = -1` the cost is the action
+    /// of an oscillator.
     fn flows(k: f64, time: f64) -> Vec<Flow> {
         let t = time / 40.0;
         let columns = match k < 0.0 {
@@ -292,7 +296,7 @@ mod tests {
         let SecondOrder::Fails { t } = test(&flows(-1.0, 3.3), &terminal, &[]) else {
             panic!("passes");
         };
-        // Backwards from the end, pi before it.
+        // The test runs backwards and fails at the time pi before the end.
         assert!((t - (3.3 - std::f64::consts::PI)).abs() < 0.1, "{t}");
         assert_eq!(test(&flows(1.0, 9.0), &terminal, &[]), SecondOrder::Minimum);
     }
@@ -305,7 +309,7 @@ mod tests {
             test(&flows(-1.0, 1.7), &flat, &[0]),
             SecondOrder::Fails { .. }
         ));
-        // tan(1.7 - pi/2) is 0.13: a second derivative of the terminal cost above it helps.
+        // The extremal is a minimum if the second derivative of the terminal cost exceeds tan(1.7 - pi/2) = 0.13.
         assert_eq!(
             test(&flows(-1.0, 1.7), &vec![vec![0.2]], &[0]),
             SecondOrder::Minimum
@@ -316,7 +320,7 @@ mod tests {
         ));
     }
 
-    /// The exponential of a matrix of 8 rows, by its series.
+    /// The exponential of an 8 by 8 matrix, by its series.
     fn exponential(matrix: &Matrix, time: f64) -> Matrix {
         let unit = |size: f64| -> Matrix {
             (0..8)
@@ -331,8 +335,8 @@ mod tests {
         sum
     }
 
-    /// Four integrators in a chain behind one input, the fourth derivative of `x`, with the cost `u^2/2 - k x^2/2`. Over a 128th of the
-    /// time, what the input does to `x` is below the rounding of what it does to the third derivative.
+    /// A chain of four integrators: the input is the fourth derivative of `x`, and the cost is `u^2/2 - k x^2/2`. Over
+    /// a 128th of the time, the effect of the input on `x` is below the rounding of its effect on the third derivative.
     #[test]
     fn a_long_chain_behind_an_input_is_tested_too() {
         let chain = |k: f64| -> Matrix {
@@ -351,7 +355,7 @@ mod tests {
         };
         let terminal = vec![vec![0.0; 4]; 4];
         assert_eq!(test(&flows(0.0, 2.0), &terminal, &[]), SecondOrder::Minimum);
-        // The conjugate point: costates of the start that do not change the end.
+        // At the conjugate point, a change of the costate at the start does not change the state at the end.
         let reach = |time: f64| {
             let flow = exponential(&chain(1.0), time);
             let block = flow[..4].iter().map(|row| row[4..].to_vec()).collect();

@@ -1,4 +1,4 @@
-//! One extremal from a costate at the start: its sequence of impacts, its end, its derivatives.
+//! One extremal from a costate at the start: its sequence of impacts, its end and its derivatives.
 
 use std::ops::ControlFlow;
 
@@ -22,20 +22,21 @@ use crate::linear::norm;
 use crate::refusal::Refusal;
 use crate::typed::vector;
 
-/// Impacts within this fraction of the time from an end belong to no sequence.
+/// A motion with an impact within this fraction of the time from its start or end is not accepted.
 const AT_ENDS: f64 = 1e-9;
 
-/// Number of steps after which a motion is given up: at least, and in multiples of those with costate 0 at the start. The second
-/// pair is for three unknowns and more without surfaces, where a scan has many motions that run away.
+/// Number of steps after which a motion is given up: a minimum, and a multiple of the steps with costate 0 at the
+/// start.
 const STEPS: [u64; 2] = [4000, 50];
+/// The same for three unknowns or more without surfaces, where many motions of a scan diverge.
 const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 
-/// Numbers of stretches of the second-order test. Short stretches tell conjugate points apart, long ones control what an input acts on
-/// through others.
+/// Numbers of stretches of the second-order test, tried in order. Short stretches resolve conjugate points. Long
+/// stretches control states on which an input acts through others.
 const STRETCHES: [usize; 4] = [64, 32, 16, 8];
 
-/// Places of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative, and for each
-/// input a minor that is positive where the optimal input is a minimum.
+/// Positions of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative,
+/// and one minor per input. All minors are positive if the optimal inputs minimise the Hamiltonian.
 #[derive(Debug, Clone, Copy)]
 struct Layout {
     inputs: usize,
@@ -59,7 +60,7 @@ impl Layout {
         self.inputs + 2 + index
     }
 
-    /// True if the optimal inputs are a minimum, and finite.
+    /// True if the optimal inputs are finite and minimise the Hamiltonian.
     fn is_best(self, values: &[f64]) -> bool {
         let minors = &values[values.len() - self.inputs..];
         let chosen = &values[..=self.inputs];
@@ -78,7 +79,7 @@ pub(super) struct Shooter<'a, S: Instance + Scene + Variational> {
     layout: Layout,
     /// The start with costate 0.
     rest: S::State,
-    /// Sizes of the components of state and costate.
+    /// Typical sizes of the components of state and costate.
     sizes: Vec<f64>,
     runs: u64,
     steps: u64,
@@ -89,7 +90,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     /// The extremals of a system, after all checks of the task.
     ///
     /// # Errors
-    /// [`Refusal`] for a start that the system refuses; the inner error for a problem without extremals.
+    /// [`Refusal`] for a start that the system refuses; the inner error for a problem that cannot be solved.
     pub fn aimed(system: &'a S, task: &'a Task) -> Result<Result<Self, Unsought>, Refusal> {
         let outputs = system.description().outputs.len();
         let Some(layout) = Layout::of(system.coordinate_count(), outputs) else {
@@ -119,7 +120,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         }))
     }
 
-    /// Refuses ends that no motion joins, and a start without a best input.
+    /// Refuses a start without an optimal input, and a start or an end behind a surface.
     fn check(&self) -> Result<(), Unsought> {
         let values = self.outputs(0.0, &self.rest)?;
         if !self.layout.is_best(&values) {
@@ -148,20 +149,20 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         }
     }
 
-    /// A surface that a state lies behind, with its gap.
+    /// A surface behind which a state lies, with its gap.
     fn behind(&self, t: f64, state: &S::State) -> Option<(usize, f64)> {
         let size = domain::size(&state.as_slice()[..self.layout.states]);
         domain::behind(self.system, t, state, size).ok()?
     }
 
-    /// True for a state behind no surface, with a best input.
+    /// True for a state that is not behind a surface and has an optimal input.
     fn is_valid(&self, t: f64, state: &S::State) -> bool {
         let values = self.outputs(t, state);
         self.behind(t, state).is_none() && values.is_ok_and(|values| self.layout.is_best(&values))
     }
 
-    /// Finds the sizes of state and costate, and the number of steps of a usual motion. A costate of size 1 moves the end by
-    /// about the size of the state.
+    /// Determines the sizes of state and costate, and the limit of the steps of a motion. A costate of its size moves
+    /// the end by about the size of the state.
     fn measure(&mut self) {
         let n = self.layout.states;
         let still = vec![0.0; n];
@@ -197,7 +198,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         }
     }
 
-    /// The units of the search: sizes of the costate, and how much of it the problem suggests.
+    /// The units of the search: sizes of the costate, and the size of the costate that the problem suggests.
     pub fn units(&mut self) -> Units {
         let n = self.layout.states;
         let still = vec![0.0; n];
@@ -224,7 +225,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.layout.states
     }
 
-    /// The state at the start, the given components of that at the end, and the sizes of the components.
+    /// The state at the start, the given components of the state at the end, and the sizes of the components.
     pub fn ends(&self) -> (&[f64], &[Option<f64>], &[f64]) {
         let sizes = &self.sizes[..self.layout.states];
         (&self.task.from, &self.task.to, sizes)
@@ -235,8 +236,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.task.seed
     }
 
-    /// The motion from a state with a costate between two shares of the time, with its derivatives by all of them; `None` if it does
-    /// not get there.
+    /// The motion from a state and a costate between two fractions of the time, with its derivatives with respect to
+    /// both; `None` if it ends early or has no derivatives.
     pub fn stretch(&mut self, shares: [f64; 2], z: &[f64]) -> Option<Stretch<S>> {
         let n = self.layout.states;
         let (system, span) = (self.system, shares.map(|share| share * self.task.time));
@@ -261,7 +262,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         })
     }
 
-    /// The differences in the equations of the end, and their derivatives by state and costate at the start of the last stretch.
+    /// The residuals of the equations at the end, and their derivatives with respect to state and costate at the start
+    /// of the last stretch.
     pub fn arrival(&self, last: &Stretch<S>) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let values = self.outputs(self.task.time, &last.end).ok()?;
         let columns = last.columns.iter();
@@ -282,7 +284,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         state
     }
 
-    /// Runs from a costate at the start, observed.
+    /// Runs from a costate at the start.
     fn run(&mut self, w: &[f64], observer: &mut dyn Observer<S>) -> Option<Run<S::State>> {
         self.run_between([0.0, self.task.time], self.state(w), observer)
     }
@@ -322,7 +324,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         }
     }
 
-    /// A motion with its derivatives by the costate at the start, if they are asked for.
+    /// A motion, with its derivatives with respect to the costate at the start if requested.
     fn flight(&mut self, w: &[f64], with_slopes: bool) -> (Flight, Option<Run<S::State>>) {
         let (system, n) = (self.system, self.layout.states);
         let mut tangents: Vec<Tangent<S>> = match with_slopes {
@@ -347,7 +349,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         (Flight { course, columns }, run)
     }
 
-    /// The differences in the equations of the end, and a function that gives their derivatives of a column.
+    /// The residuals of the equations at the end. `values` are the outputs there.
     fn misses(&self, end: &S::State, values: &[f64]) -> Vec<f64> {
         let n = self.layout.states;
         let state = end.as_slice();
@@ -358,6 +360,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.task.to.iter().enumerate().map(miss).collect()
     }
 
+    /// The derivatives of the residuals, from a column of derivatives of state and costate at the end.
     fn slopes(&self, column: &[f64], values: &[f64]) -> Vec<f64> {
         let n = self.layout.states;
         let slope = |(index, to): (usize, &Option<f64>)| match to {
@@ -371,7 +374,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.task.to.iter().enumerate().map(slope).collect()
     }
 
-    /// Differences in units: those of the state, or of the costate.
+    /// Residuals in units of the state, or of the costate.
     fn scaled(&self, rows: &[f64]) -> Vec<f64> {
         let n = self.layout.states;
         let to = self.task.to.iter().enumerate();
@@ -385,7 +388,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             .collect()
     }
 
-    /// State, costate and inputs.
+    /// State, costate, optimal inputs and Hamiltonian at a time.
     fn moment(&self, t: f64, state: &S::State) -> Result<Moment, Fault> {
         let n = self.layout.states;
         let values = self.outputs(t, state)?;
@@ -399,7 +402,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         })
     }
 
-    /// Everything about an extremal that was found.
+    /// The properties of an extremal that was found.
     pub fn extremal(&mut self, w: &[f64]) -> Result<Extremal, Unsought> {
         let time = self.task.time;
         let mut film = Film { events: Vec::new() };
@@ -453,7 +456,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         told.unwrap_or(SecondOrder::Open)
     }
 
-    /// The derivatives of the flow over this many equal stretches of an extremal; `None` if one has none.
+    /// The derivatives of the flow over `count` equal stretches of an extremal; `None` if one of them does not exist.
     fn flows(&mut self, w: &[f64], count: usize) -> Option<Vec<Flow>> {
         let n = self.layout.states;
         let mut z = [&*self.task.from, w].concat();
@@ -471,13 +474,13 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
     }
 }
 
-/// The end of a motion over a part of the time, and its derivatives by state and costate at the start.
+/// The end of a motion over a part of the time, and its derivatives with respect to state and costate at its start.
 pub(super) struct Stretch<S: Instance + Scene + Variational> {
     pub end: S::State,
     pub columns: Vec<Vec<f64>>,
 }
 
-/// A motion, shot without its misses.
+/// The sequence of impacts of a motion, and its derivatives at the end.
 struct Flight {
     course: Course,
     columns: Vec<Vec<f64>>,
@@ -519,7 +522,7 @@ impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
     }
 }
 
-/// Keeps the impacts of a run.
+/// Records the impacts of a run.
 struct Film<S> {
     events: Vec<Event<S>>,
 }

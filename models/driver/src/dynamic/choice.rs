@@ -1,8 +1,8 @@
-//! The best input of a state: the least of the sums of the cost of a step and the least cost after it.
+//! The best input of a state: it minimises the sum of the cost of a step and the least cost after it.
 
 use super::lattice::{Lattice, ROUNDING};
 
-/// The margin of a motion that does not get to the end of its step.
+/// The margin of a motion that does not reach the end of its step.
 const LOST: f64 = -1.0;
 
 /// The end of a motion over a step, with one of the inputs.
@@ -10,17 +10,17 @@ const LOST: f64 = -1.0;
 pub struct Move {
     /// The state after the step.
     pub state: [f64; 2],
-    /// The cost of the step; infinite for a motion that does not get there, NaN if there is no state to start from.
+    /// The cost of the step; infinite for a motion that does not reach its end, NaN if there is no initial state.
     pub cost: f64,
-    /// Number of impacts in it.
+    /// Number of impacts in the step.
     pub impacts: u32,
 }
 
 impl Move {
-    /// There is no state to start from.
+    /// The value if there is no initial state.
     pub const NOWHERE: Self = Self::without_end(f64::NAN);
 
-    /// A motion that does not get to the end of the step.
+    /// The value for a motion that does not reach the end of the step.
     pub const LOST: Self = Self::without_end(f64::INFINITY);
 
     const fn without_end(cost: f64) -> Self {
@@ -35,15 +35,16 @@ impl Move {
 /// Least costs and margins of all nodes at one time.
 #[derive(Debug, Clone, Default)]
 pub struct Layer {
-    /// The least costs from here on.
+    /// The least costs from this time on.
     pub costs: Vec<f64>,
-    /// The margins: the largest distance to the edges of the grid that motions from here on can keep, in steps of the axes. Where it is
-    /// negative every motion leaves the grid, and the cost is that of a motion along its edge.
+    /// The margins: the largest distance to the edges of the grid that motions can keep from this time on, in steps of
+    /// the axes. Where the margin is negative, every motion leaves the grid, and the cost is the cost of a motion along
+    /// its edge.
     pub margins: Vec<f64>,
 }
 
 impl Layer {
-    /// The last layer: terminal costs.
+    /// The last layer, with the terminal costs.
     pub fn last(lattice: &Lattice, terminal: impl Fn([f64; 2]) -> f64) -> Self {
         let nodes = || (0..lattice.count()).map(|node| lattice.node(node));
         Self {
@@ -52,7 +53,7 @@ impl Layer {
         }
     }
 
-    /// The least cost of a node; NaN if every motion from there leaves the grid.
+    /// The least cost of a node; NaN if every motion from it leaves the grid.
     pub fn cost(&self, node: usize) -> f64 {
         match is_kept(self.margins[node]) {
             true => self.costs[node],
@@ -60,7 +61,7 @@ impl Layer {
         }
     }
 
-    /// The least cost at a place, interpolated; NaN where every motion leaves the grid.
+    /// The interpolated least cost at a state; NaN if every motion leaves the grid.
     pub fn cost_at(&self, lattice: &Lattice, at: [f64; 2]) -> f64 {
         match is_kept(self.margin_at(lattice, at)) {
             true => lattice.between(&self.costs, at),
@@ -68,7 +69,7 @@ impl Layer {
         }
     }
 
-    /// Outside of the grid, motions are taken to go on as from the edge.
+    /// The margin at a state. Outside the grid, motions are assumed to continue as from the edge.
     fn margin_at(&self, lattice: &Lattice, at: [f64; 2]) -> f64 {
         let here = lattice.margin(at);
         let later = lattice.linear(&self.margins, at);
@@ -78,7 +79,7 @@ impl Layer {
         }
     }
 
-    /// The margin with a motion as the next one.
+    /// The margin of a motion that begins with this step.
     fn margin_after(&self, lattice: &Lattice, next: &Move) -> f64 {
         match next.cost.is_finite() {
             true => self.margin_at(lattice, next.state),
@@ -88,7 +89,7 @@ impl Layer {
     }
 }
 
-/// True if a motion of this margin stays on the grid.
+/// True if a motion with this margin stays on the grid.
 fn is_kept(margin: f64) -> bool {
     margin >= -ROUNDING
 }
@@ -96,27 +97,29 @@ fn is_kept(margin: f64) -> bool {
 /// The best input of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// The least cost from here on; if every motion leaves the grid, that of the one of largest margin. NaN if there is no motion.
+    /// The least cost; if every motion leaves the grid, the cost of the motion with the largest margin. NaN if there is
+    /// no motion.
     pub cost: f64,
-    /// The largest margin of the motions; negative if all of them leave the grid, NaN if there is no state.
+    /// The largest margin of the motions; negative if all of them leave the grid, NaN if there is no initial state.
     pub margin: f64,
-    /// The place of the input, in steps of its axis; NaN if there is no motion.
+    /// The position of the input on its axis, in steps; NaN if there is no motion.
     pub place: f64,
 }
 
 impl Choice {
-    /// The index of the input of the axis that is nearest to the best one.
+    /// The index of the input of the axis that is closest to the best one.
     pub fn nearest(&self) -> Option<usize> {
         (!self.place.is_nan()).then(|| self.place.round() as usize)
     }
 }
 
-/// Chooses among motions with equally spaced inputs; `after` is the layer after the step.
+/// Chooses among motions with equally spaced inputs. `after` is the layer after the step.
 ///
-/// Only motions that stay on the grid count, if there are such; otherwise only those of the largest margin.
+/// Only motions that stay on the grid count. If there are none, only motions with the largest margin count.
 ///
-/// The sum of costs may be least between two inputs. If the motions of the best one and its neighbours have the same number of impacts, the motion at
-/// the least value of the parabola through their sums is tried too; it is interpolated.
+/// The sum of costs may have its minimum between two inputs. If the motions of the best input and of its neighbours
+/// have the same number of impacts, an interpolated motion at the minimum of the parabola through their sums is tried
+/// as well.
 pub fn choose(moves: &[Move], lattice: &Lattice, after: &Layer) -> Choice {
     let margins = moves.iter().map(|it| after.margin_after(lattice, it));
     let margin = margins.fold(f64::NAN, f64::max);
@@ -153,14 +156,14 @@ pub fn choose(moves: &[Move], lattice: &Lattice, after: &Layer) -> Choice {
     }
 }
 
-/// The least of some numbers and those beside it.
+/// The least of several numbers, with its neighbours.
 struct Best {
     index: usize,
     sums: [f64; 3],
 }
 
 impl Best {
-    /// `None` if all are unknown.
+    /// `None` if all numbers are NaN.
     fn of(numbers: impl Iterator<Item = f64>) -> Option<Self> {
         let mut best: Option<Self> = None;
         let mut before = f64::NAN;
@@ -185,7 +188,8 @@ impl Best {
     }
 }
 
-/// The place of the least value of a parabola through three equally spaced values, from the middle one; 0 if there is none.
+/// The place of the minimum of a parabola through three equally spaced values, relative to the middle one; 0 if it has
+/// no minimum.
 fn vertex([before, middle, after]: [f64; 3]) -> f64 {
     let bend = before - 2.0 * middle + after;
     match bend > 0.0 {
@@ -194,7 +198,7 @@ fn vertex([before, middle, after]: [f64; 3]) -> f64 {
     }
 }
 
-/// A motion between three with equally spaced inputs.
+/// A motion interpolated between three motions with equally spaced inputs.
 fn between(moves: &[Move], shift: f64) -> Move {
     let at = |value: &dyn Fn(&Move) -> f64| {
         let [before, middle, after] = [0, 1, 2].map(|index| value(&moves[index]));
@@ -221,7 +225,7 @@ mod tests {
         Lattice { axes: [axis; 2] }
     }
 
-    /// Inputs -2, -1, .., 2 move the first component by half of it, at the cost `u^2`.
+    /// Inputs `u` of -2, -1, .., 2 move the first component by `u/2`, at the cost `u^2`.
     fn moves(from: f64) -> Vec<Move> {
         let to = |u: i32| Move {
             state: [from + 0.5 * f64::from(u), 0.0],
@@ -239,7 +243,7 @@ mod tests {
     fn the_best_input_lies_between_two_others() {
         let lattice = lattice();
         let after = layer(|[x, _]| 4.0 * x * x);
-        // u^2 + 4 (x + u/2)^2 is least at u = -x, where it is 2 x^2.
+        // u^2 + 4 (x + u/2)^2 has its minimum 2 x^2 at u = -x.
         for x in [0.3, 0.8, -0.55] {
             let chosen = choose(&moves(x), &lattice, &after);
             assert!((chosen.place - (2.0 - x)).abs() < 1e-12, "{chosen:?}");
@@ -284,11 +288,11 @@ mod tests {
     fn of_motions_that_all_leave_the_grid_the_one_of_the_largest_margin_goes_on_along_the_edge() {
         let lattice = lattice();
         let after = layer(|[x, _]| x);
-        // Ends at 2.25, 2.75, .. of the edge 2, in steps of 0.5.
+        // The motions end at 2.25, 2.75, .., beyond the edge 2. Steps are 0.5.
         let chosen = choose(&moves(3.25), &lattice, &after);
         assert_eq!((chosen.place, chosen.margin), (0.0, -0.5));
         assert_eq!(chosen.cost, 4.0 + 2.0);
-        // One that stays is taken though it costs more than those that leave.
+        // A motion that stays is chosen, although it costs more than those that leave.
         let chosen = choose(&moves(2.9), &lattice, &after);
         assert_eq!(chosen.place, 0.0);
         assert!(chosen.margin > 0.0);

@@ -1,13 +1,13 @@
-//! A rectangle of nodes, and values between them.
+//! A rectangular grid of nodes, and interpolation between them.
 //!
-//! Values are interpolated by weighted parabolas (WENO of fourth order; Carlini, Ferretti, Russo 2005): between two nodes the parabolas
-//! through the node before and the node after have weights that make a cubic of smooth values, and leave out the parabola across an edge. A least
-//! cost has edges where two ways are equally good.
+//! Values are interpolated by weighted parabolas (WENO of fourth order; Carlini, Ferretti, Russo 2005). Between two
+//! nodes, one parabola uses the node before, the other the node after. For smooth values, the weights combine them into
+//! a cubic. At a kink, they leave out the parabola across it. A least cost has kinks where two ways are equally good.
 
-/// Added to squares of second differences, as a fraction of their sum.
+/// Number added to the squares of second differences, as a fraction of their sum.
 const FLOOR: f64 = 1e-6;
 
-/// Distance outside of a rectangle that is rounding, in steps.
+/// Distance outside the grid that counts as rounding, in steps.
 pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Equally spaced values.
@@ -20,7 +20,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The value of an index.
+    /// The value at an index.
     pub fn value(&self, index: usize) -> f64 {
         let [first, last] = self.ends;
         match index + 1 == self.count {
@@ -29,12 +29,12 @@ impl Axis {
         }
     }
 
-    /// The distance of two values.
+    /// The distance between two neighbouring values.
     pub fn step(&self) -> f64 {
         (self.ends[1] - self.ends[0]) / (self.count - 1) as f64
     }
 
-    /// The index below a value and the fraction of a step above it. A value outside is moved to the nearer end.
+    /// The index below a value, and the fraction of a step above it. A value outside is moved to the nearer end.
     fn place(&self, value: f64) -> (usize, f64) {
         let steps = ((value - self.ends[0]) / self.step()).clamp(0.0, (self.count - 1) as f64);
         let index = (steps as usize).min(self.count - 2);
@@ -48,7 +48,7 @@ impl Axis {
     }
 }
 
-/// Nodes of a rectangle, those of the second axis first.
+/// The nodes of a rectangular grid. The index of the second axis runs fastest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
     /// Both axes.
@@ -61,7 +61,7 @@ impl Lattice {
         self.axes[0].count * self.axes[1].count
     }
 
-    /// The place of a node.
+    /// The coordinates of a node.
     pub fn node(&self, index: usize) -> [f64; 2] {
         let rows = self.axes[1].count;
         [
@@ -70,25 +70,27 @@ impl Lattice {
         ]
     }
 
-    /// The distance of a place to the nearest edge, in steps of the axis across that edge; negative outside.
+    /// The distance of a place to the nearest edge, in steps of the axis orthogonal to that edge; negative outside.
     pub fn margin(&self, at: [f64; 2]) -> f64 {
         let [x, y] = [0, 1].map(|index| self.axes[index].margin(at[index]));
         x.min(y)
     }
 
-    /// True for a place on the rectangle, up to rounding.
+    /// True for a place on the grid, up to rounding.
     pub fn contains(&self, at: [f64; 2]) -> bool {
         self.margin(at) >= -ROUNDING
     }
 
-    /// The value at a place, from those of the nodes around. Outside, it is the value at the nearest place of the edge.
+    /// The value at a place, interpolated by parabolas. Outside the grid, it is the value at the nearest place of the
+    /// edge.
     ///
-    /// Nodes may have no value (NaN): the values of the others are continued by lines to them. The result is NaN if no corner of the cell has one.
+    /// Nodes without a value are NaN. The values of other nodes are extrapolated linearly to them. The result is NaN if
+    /// no corner of the cell has a value.
     pub fn between(&self, values: &[f64], at: [f64; 2]) -> f64 {
         self.combined(values, at, parabolas)
     }
 
-    /// Same as [`between`](Self::between), on lines.
+    /// Same as [`between`](Self::between), with linear interpolation.
     pub fn linear(&self, values: &[f64], at: [f64; 2]) -> f64 {
         self.combined(values, at, line)
     }
@@ -99,7 +101,7 @@ impl Lattice {
         }
         let [(i, a), (j, b)] = [0, 1].map(|index| self.axes[index].place(at[index]));
         let [columns, rows] = self.axes.map(|axis| axis.count);
-        // Indices are one ahead, so that none is negative.
+        // Indices are shifted by one, so that none is negative.
         let value = |i: usize, j: usize| match (1..=columns).contains(&i) && (1..=rows).contains(&j)
         {
             true => values[(i - 1) * rows + j - 1],
@@ -113,7 +115,7 @@ impl Lattice {
     }
 }
 
-/// The value at a fraction between the second and the third of four; NaN are unknown.
+/// The value at a fraction between the second and the third of four values. NaN stands for a missing value.
 fn parabolas(values: [f64; 4], s: f64) -> f64 {
     let [before, first, last, after] = values;
     if first.is_nan() || last.is_nan() {
@@ -134,7 +136,7 @@ fn parabolas(values: [f64; 4], s: f64) -> f64 {
                 let it = it + floor;
                 it * it
             });
-            // Weights (2 - s)/small and (1 + s)/large, without their common factor.
+            // The weights (2 - s)/small and (1 + s)/large, times `small large`.
             let weights = [(2.0 - s) * large, (1.0 + s) * small];
             let sum = weights[0] + weights[1];
             match sum > 0.0 {
@@ -154,7 +156,7 @@ fn line(values: [f64; 4], s: f64) -> f64 {
     }
 }
 
-/// The line of the known side, where the second or the third of four values is unknown.
+/// Linear extrapolation from the known side if the second or the third of four values is missing.
 fn continued([before, first, last, after]: [f64; 4], s: f64) -> f64 {
     let slope = |rise: f64| if rise.is_nan() { 0.0 } else { rise };
     match first.is_nan() {

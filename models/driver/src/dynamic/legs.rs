@@ -1,4 +1,5 @@
-//! Motions over a step from many states, with each of some inputs, of the first-order model of state, held inputs and cost.
+//! Motions over a step from many states, with each of several inputs. The first-order model has the components state,
+//! held inputs and cost.
 
 use std::ops::ControlFlow;
 
@@ -14,10 +15,10 @@ use crate::domain;
 use crate::refusal::Refusal;
 use crate::typed::vector;
 
-/// Largest number of impacts in a step.
+/// Maximum number of impacts in a step.
 const IMPACTS: u64 = 64;
 
-/// Largest number of integration steps in a step.
+/// Maximum number of integration steps in a step.
 const STEPS: u64 = 4096;
 
 /// Number of components of the state.
@@ -26,9 +27,9 @@ const STATE: usize = 2;
 /// A step in time, with the inputs of its motions.
 #[derive(Debug, Clone, Copy)]
 pub struct Leg<'a> {
-    /// Its first and its last time.
+    /// The times at its start and at its end.
     pub span: [f64; 2],
-    /// The tolerance of the integrator, a Taylor series.
+    /// The tolerance of the integrator, `Taylor`.
     pub tolerance: Tolerance,
     /// The inputs.
     pub inputs: &'a [f64],
@@ -56,23 +57,23 @@ pub struct Landing {
     pub hits: Vec<Hit>,
 }
 
-/// There is no end of a motion.
+/// Reason why a motion has no end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unlanded {
-    /// There is no state to start from, such as behind a surface.
+    /// There is no initial state, for example behind a surface.
     NoState,
-    /// The motion does not get to the end of the step.
+    /// The motion does not reach the end of the step.
     Lost,
 }
 
-/// Makes motions of a model of any type.
+/// Visitor that computes motions of a model of any type.
 pub(crate) struct Walker<'a> {
     pub leg: &'a Leg<'a>,
     pub from: &'a [[f64; 2]],
 }
 
 impl VariationalVisitor for Walker<'_> {
-    /// The motions of each state, one for each input.
+    /// The motions of the first state, one per input, then those of the next state.
     type Output = Result<Vec<Result<Landing, Unlanded>>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
@@ -91,7 +92,7 @@ impl VariationalVisitor for Walker<'_> {
     }
 }
 
-/// The start of a motion; `None` behind a surface, or where there is no state.
+/// The initial state of a motion; `None` if it lies behind a surface or does not exist.
 fn start<S: Instance + Scene + Variational>(
     system: &S,
     leg: &Leg<'_>,
@@ -137,7 +138,7 @@ fn first<V: StateVector>(state: &V) -> [f64; 2] {
     [state[0], state[1]]
 }
 
-/// Keeps the impacts of a run.
+/// Records the impacts of a run.
 struct Hits(Vec<Hit>);
 
 impl<S: Instance> Observer<S> for Hits {

@@ -5,13 +5,14 @@
 //! J_N(x) = g(x),   J_k(x) = min_u [ integral of l from t_k to t_{k+1} + J_{k+1}(x') ]
 //! ```
 //!
-//! `x'` is where the motion from `x` with the input `u` is after the step, with the impacts in it. A motion must stay on the
-//! grid. The *margin* of a node tells whether one does: it is the largest distance to the edges that motions from there can keep,
-//! negative if all of them leave. It is continuous, where the least cost of motions that stay has an end; so it is what is
-//! interpolated (level sets for problems with state constraints; Altarovici, Bokanowski, Zidani 2013). Nodes of negative margin
-//! keep the cost of the motion that stays longest, along the edge from there on, so that costs can be interpolated beside them.
+//! `x'` is the end of the motion from `x` with the input `u` over the step, including impacts. A motion must stay on
+//! the grid. The *margin* of a node is the largest distance to the edges that motions from the node can keep. It is
+//! negative if all motions leave the grid. The margin is continuous at the boundary of the set of nodes with a finite
+//! cost, so that it can be interpolated (level sets for problems with state constraints; Altarovici, Bokanowski, Zidani
+//! 2013). Nodes with negative margin have the cost of the motion with the largest margin, continued along the edge, so
+//! that costs can be interpolated near them.
 //!
-//! All of it is plain data except the motions, so that a caller may share the work among threads.
+//! Everything except the motions is plain data, so that a caller can distribute the work over threads.
 //!
 //! | file | job |
 //! |---|---|

@@ -1,18 +1,18 @@
-//! Exact sums of numbers and of their squares: the same from any order and any division of the terms.
+//! Exact sums of numbers and of their squares. They do not depend on the order or on the grouping of the terms.
 //!
-//! A finite `f64` is a whole multiple of `2^-1074`, and its square one of `2^-2148`. Sums of such multiples are whole
-//! numbers, kept in digits of 32 bits with room for carries.
+//! A finite `f64` is an integer multiple of `2^-1074`, and its square an integer multiple of `2^-2148`. The sums of
+//! these integers are stored in digits of 32 bits with room for carries.
 
-/// Whole multiples of this power of two, negated, are the terms of a sum.
+/// Terms of a sum are integer multiples of `2^-UNIT`.
 pub const UNIT: u32 = 1074;
 
-/// Digits of a sum: 2098 bits of a term, and room for 2^60 terms.
+/// Number of digits of a sum: 2098 bits of a term, and room for `2^60` terms.
 const DIGITS: usize = 69;
 
-/// Digits of a sum of squares.
+/// Number of digits of a sum of squares.
 const SQUARES: usize = 135;
 
-/// Largest number of terms between two passes of carries; a term adds less than 2^32 to a digit.
+/// Maximum number of terms between two passes of carries. A term adds less than `2^32` to a digit.
 const LOOSE: u32 = 1 << 30;
 
 /// The exact sum of finite numbers, and of their squares.
@@ -43,7 +43,7 @@ impl Default for ExactSum {
 }
 
 impl ExactSum {
-    /// Adds a term; one that is not finite is left out.
+    /// Adds a term. A term that is not finite is ignored.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
             return;
@@ -74,12 +74,12 @@ impl ExactSum {
         }
     }
 
-    /// The sum in units of `2^-1074`: a whole number in two's complement, the lowest byte first.
+    /// The sum in units of `2^-1074`: an integer in two's complement, lowest byte first.
     pub fn sum(&self) -> Vec<u8> {
         bytes(self.sum)
     }
 
-    /// The sum of the squares in units of `2^-2148`, in the same way.
+    /// The sum of the squares in units of `2^-2148`, in the same format.
     pub fn squares(&self) -> Vec<u8> {
         bytes(self.squares)
     }
@@ -101,7 +101,7 @@ fn spread(digits: &mut [i64], mantissa: u128, shift: usize, sign: i64) {
     }
 }
 
-/// Brings all digits but the last into 0 to 2^32 - 1.
+/// Carries, so that all digits but the last are in the range from 0 to `2^32 - 1`.
 fn carry(digits: &mut [i64]) {
     let mut over = 0;
     let (last, lower) = digits.split_last_mut().expect("a sum has digits");
@@ -124,7 +124,7 @@ fn bytes<const N: usize>(mut digits: [i64; N]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// The value of a sum near enough to 1 for its lowest bits not to matter.
+    /// The value of a sum of size about 1, for which the lowest bits do not matter.
     fn value(bytes: &[u8], unit: i32) -> f64 {
         let negative = bytes.last().is_some_and(|byte| *byte >= 128);
         let mut magnitude: Vec<u8> = bytes.to_vec();
@@ -138,7 +138,7 @@ mod tests {
         }
         let digits = magnitude.iter().enumerate().filter(|(_, byte)| **byte != 0);
         let terms = digits.map(|(place, byte)| {
-            // Two factors, so that neither leaves the range.
+            // Two factors avoid overflow and underflow.
             let exponent = 8 * place as i32 - unit;
             f64::from(*byte) * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
         });

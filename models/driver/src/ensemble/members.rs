@@ -14,11 +14,11 @@ pub struct Members {
 /// Source of the values of members.
 #[derive(Debug, Clone)]
 pub enum Source {
-    /// Cartesian product of the values of all quantities; the last runs fastest.
+    /// Cartesian product of the values of all quantities. The last quantity runs fastest.
     Product {
         /// The values of each quantity.
         values: Vec<Values>,
-        /// The seed of values that are drawn.
+        /// The seed of random values.
         seed: Option<u64>,
     },
     /// Values row by row.
@@ -31,7 +31,7 @@ pub enum Source {
 }
 
 impl Members {
-    /// Members whose values are drawn, or run through all combinations of values.
+    /// `count` members with random values, or with the combinations of the listed values.
     pub fn product(varied: Vec<(String, Quantity, Values)>, seed: Option<u64>, count: u64) -> Self {
         let (mut names, mut quantities, mut values) = (Vec::new(), Vec::new(), Vec::new());
         for (name, quantity, its_values) in varied {
@@ -47,7 +47,7 @@ impl Members {
         }
     }
 
-    /// Members from a list, with a row of values for each; the first row is that of the member `first`.
+    /// Members from a list with one row of values per member. The first row belongs to the member `first`.
     pub fn listed(named: Vec<(String, Quantity)>, rows: Vec<f64>, first: u64) -> Self {
         let count = first + (rows.len() / named.len().max(1)) as u64;
         let (names, quantities) = named.into_iter().unzip();
@@ -82,7 +82,7 @@ impl Members {
     /// The values of a member, in the order of the quantities.
     ///
     /// # Panics
-    /// For a member without a row of its own, of members from a list.
+    /// If the members come from a list and the member has no row.
     pub fn values(&self, member: u64) -> Vec<f64> {
         let width = self.quantities.len();
         match &self.source {

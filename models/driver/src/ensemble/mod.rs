@@ -1,6 +1,6 @@
 //! Ensembles: many members of one scene, each with its own start or parameters.
 //!
-//! | file | |
+//! | file | job |
 //! |---|---|
 //! | `values`, `random`, `members` | the start of each member, as a function of its index |
 //! | `runner` | runs members and makes their rows, also after a refusal or a panic |
@@ -9,8 +9,8 @@
 //! | `pilot` | ranges of a density without given ranges |
 //! | `tally`, `exact` | sums over all members |
 //!
-//! A row depends on its member alone. Sums are whole numbers, exact, or formed in the order of members, so that nothing
-//! depends on how members are divided among threads, shards or machines.
+//! A row depends on its member alone. Sums are integers, exact, or formed in the order of members. Therefore no result
+//! depends on the division of members among threads, shards or machines.
 
 pub mod density;
 pub mod exact;

@@ -1,5 +1,4 @@
-//! Ranges of a density without given ranges, from short runs of a few members. They depend on the whole ensemble, not
-//! on the shard.
+//! Default ranges of a density, from short runs of a few members. They depend on the whole ensemble, not on the shard.
 
 use super::density::{Axis, Density, count_samples};
 use super::runner::{Runner, Shared};
@@ -15,7 +14,7 @@ const SAMPLES: f64 = 256.0;
 /// Margin beyond the visited range, as a fraction of it.
 const ROOM: f64 = 0.05;
 
-/// The density over these axes, with its ranges; `None` if a run ends before the first counted state.
+/// The density over these axes, with all ranges set; `None` if the end time lies before the first counted state.
 ///
 /// # Errors
 /// An error of the model of the members.
@@ -73,7 +72,7 @@ fn visited(shared: Shared<'_>, axes: &[Axis; 2], discard: f64) -> Result<[[f64; 
         .map(|values| rounded(padded(values.into_iter(), ROOM))))
 }
 
-/// A slightly wider range whose ends have few digits.
+/// A slightly larger range whose ends have few digits.
 fn rounded([low, high]: [f64; 2]) -> [f64; 2] {
     let decade = (high - low).log10().floor() as i32 - 1;
     // Quotients of integers round to the nearest decimals; products with 0.01 do not.
@@ -84,7 +83,7 @@ fn rounded([low, high]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Keeps the least and the greatest value over the ends of steps.
+/// Records the least and the greatest value of each axis over the ends of steps.
 struct Seen<'a> {
     axes: &'a [Axis; 2],
     discard: f64,

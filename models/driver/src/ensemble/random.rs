@@ -1,6 +1,6 @@
-//! Random numbers as a function of their index, independent of the order of use: the generator Philox 4x32-10 (Salmon,
-//! Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011), with the seed as key, and member and
-//! quantity as counter.
+//! Random numbers as a function of their index, independent of the order of use. The generator is Philox 4x32-10
+//! (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", 2011), with the seed as key, and
+//! member and quantity as counter.
 
 use dalembert::math;
 
@@ -40,7 +40,7 @@ pub fn uniform(seed: u64, member: u64, quantity: u32) -> f64 {
     uniform_pair(seed, member, quantity)[0]
 }
 
-/// A normal number of mean 0 and standard deviation 1 (Box and Muller).
+/// A normally distributed number with mean 0 and standard deviation 1 (Box-Muller).
 pub fn normal(seed: u64, member: u64, quantity: u32) -> f64 {
     let [radius, angle] = uniform_pair(seed, member, quantity);
     (-2.0 * math::ln(radius)).sqrt() * math::cos(core::f64::consts::TAU * angle)

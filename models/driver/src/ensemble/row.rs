@@ -82,7 +82,7 @@ impl Columns {
         Self { columns }
     }
 
-    /// Columns of these names and types.
+    /// Columns with these names and types.
     pub fn new(columns: Vec<(String, Kind)>) -> Self {
         Self { columns }
     }

@@ -1,4 +1,4 @@
-//! Runs members; every member has a row, also after a refusal or a panic.
+//! Runs members. Every member has a row, even after a refusal or a panic.
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -31,19 +31,19 @@ pub trait Common: Sync {
     /// The model, with the parameters that members share.
     ///
     /// # Errors
-    /// A text that explains why there is none.
+    /// A text that says why there is none.
     fn model(&self) -> Result<Box<dyn AnyModel>, String>;
 
-    /// The start that members share, of a model that may have parameters of one of them.
+    /// The start that members share. `model` may have the parameters of one of them.
     ///
     /// # Errors
-    /// A text that explains why there is none.
+    /// A text that says why there is none.
     fn beginning(&self, model: &dyn AnyModel) -> Result<Beginning, String>;
 
     /// Advice about starts that are refused.
     fn advice(&self) -> &Advice;
 
-    /// True once the runs are to end, whose rows are then of no use.
+    /// True if the runs must stop. Their rows are then discarded.
     fn is_over(&self) -> bool {
         false
     }
@@ -62,8 +62,8 @@ pub struct Shared<'a> {
     pub members: &'a Members,
     /// The density, if states are counted.
     pub density: Option<&'a Density>,
-    /// Components of the start that are outputs of the model, by their index, where the other components are as they
-    /// were given.
+    /// Components of the start that are set to outputs of the model, each with the index of the output. The outputs are
+    /// evaluated at the start with the other components as given.
     pub starts: &'a [(Component, usize)],
 }
 
@@ -82,10 +82,10 @@ pub struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    /// A runner.
+    /// A runner with the model of the members.
     ///
     /// # Errors
-    /// A text that explains why there is no model.
+    /// A text that says why there is no model.
     pub fn new(shared: Shared<'a>) -> Result<Self, String> {
         let model = shared.common.model()?;
         Ok(Self { shared, model })
@@ -96,8 +96,8 @@ impl<'a> Runner<'a> {
         self.model.as_ref()
     }
 
-    /// Runs members, in SIMD lanes if the integrator supports it; every row is the same as from a run alone. If a run
-    /// panics, all members of the block are run one by one.
+    /// Runs members, in SIMD lanes if the integrator supports it. Every row is the same as from a single run. If a run
+    /// panics, all members are run one by one.
     pub fn run(&mut self, members: Range<u64>) -> Vec<Done> {
         let is_taylor = self.shared.settings.integrator == Integrator::Taylor;
         if is_taylor && members.end - members.start > 1 {
@@ -192,7 +192,7 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Runs a member observed by a watch. A member whose start is refused or whose run panics has an outcome and a
+    /// Runs a member under observation. A member whose start is refused or whose run panics gives an outcome and a
     /// reason instead of an ending.
     pub fn watched(
         &mut self,
@@ -209,14 +209,14 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Runs a member; the error explains, as text, why it does not start.
+    /// Runs a member. The error says why it does not start.
     fn attempt(&mut self, member: u64, watch: &mut dyn Watch) -> Result<Ending, String> {
         let origin = self.origin(member)?;
         let ended = self.model.simulate(&origin, self.shared.settings, watch);
         ended.map_err(|refusal| self.told(&refusal))
     }
 
-    /// Explains, in the model's names, why a member does not start.
+    /// The reason why a member does not start, in the model's names.
     fn told(&self, refusal: &Refusal) -> String {
         words::refusal_text(
             self.model.description(),
@@ -225,7 +225,7 @@ impl<'a> Runner<'a> {
         )
     }
 
-    /// Sets the model's parameters to those of a member, and returns its initial state; the error explains why there is
+    /// Sets the model's parameters to those of a member, and returns its initial state. The error says why there is
     /// none.
     fn origin(&mut self, member: u64) -> Result<Origin, String> {
         let Shared {

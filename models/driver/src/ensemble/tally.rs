@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::row::{Columns, Field, Row};
 
-/// Largest number of members without the requested end that are listed.
+/// Maximum number of listed members that did not reach their end.
 const TOLD: usize = 5;
 
 /// A member that did not reach its end.
@@ -70,7 +70,7 @@ impl Tally {
         }
     }
 
-    /// Adds a row; `reached` is true for requested outcomes.
+    /// Adds a row. `reached` is true for outcomes that are the requested end.
     pub fn add(&mut self, row: &Row, reached: impl Fn(&str) -> bool) {
         let text = |place: Option<usize>| match place.and_then(|place| row.get(place)) {
             Some(Field::Text(text)) => text.as_ref(),

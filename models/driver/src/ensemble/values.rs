@@ -45,7 +45,7 @@ impl Quantity {
 /// The values of one quantity over the members.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Equally spaced, both ends included.
+    /// Equally spaced values, both ends included.
     Spaced {
         /// The first and the last value.
         ends: [f64; 2],
@@ -54,9 +54,9 @@ pub enum Values {
     },
     /// Listed values.
     List(Vec<f64>),
-    /// Drawn uniformly between these ends.
+    /// Random values, uniformly distributed between these ends.
     Uniform([f64; 2]),
-    /// Drawn from a normal distribution.
+    /// Random values from a normal distribution.
     Normal {
         /// Its mean.
         mean: f64,
@@ -66,7 +66,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// Number of values; 1 if every member draws its value.
+    /// Number of values; 1 for random values.
     pub fn count(&self) -> u64 {
         match self {
             Self::Spaced { count, .. } => *count,
@@ -83,7 +83,7 @@ impl Values {
         }
     }
 
-    /// The value of this index, below [`count`](Self::count); for drawn values, the value of the member.
+    /// The value at an index below [`count`](Self::count). For random values, the value of the member.
     pub fn value(&self, index: u64, draw: Draw) -> f64 {
         let Draw {
             seed,
@@ -118,7 +118,7 @@ pub struct Draw {
 fn spaced([first, last]: [f64; 2], index: u64, count: u64) -> f64 {
     match count.saturating_sub(1) {
         0 => first,
-        // The last value is exact, and a constant stays constant.
+        // The last value is exact, and equal ends give equal values.
         gaps if index == gaps => last,
         gaps => first + (last - first) * (index as f64 / gaps as f64),
     }

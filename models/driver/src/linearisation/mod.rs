@@ -1,11 +1,11 @@
-//! Linearisation of the equations of motion at a state, which may be an equilibrium that is found first.
+//! Linearisation of the equations of motion at a state, or at an equilibrium near it.
 //!
 //! ```text
-//! d/dt y = A y + B u,   z = C y + D u       small deviations y of the state, u of the inputs, z of the outputs
+//! d/dt y = A y + B u,   z = C y + D u       for small deviations y of the state, u of the inputs, z of the outputs
 //! ```
 //!
-//! The state is `(q, qdot)` without constraints, positions and quasi-velocities with them, and the coordinates of a
-//! system of first order. All derivatives are exact to rounding.
+//! The state consists of `(q, qdot)` without constraints, of positions and quasi-velocities with constraints, and of
+//! the coordinates of a first-order system. All derivatives are exact to rounding.
 //!
 //! | file | job |
 //! |---|---|
@@ -31,10 +31,11 @@ use sample::{Plant, Sample};
 pub use sampled::{Sampling, Stride};
 pub use trim::Trim;
 
-/// Largest rate of an equilibrium, as a fraction of the rates of its terms.
+/// Largest rate at an equilibrium, as a fraction of its largest term.
 const AT_REST: f64 = 1e-9;
 
-/// Distance of the neighbours of an equilibrium, in Newton steps. At a double root one step leads half of the way.
+/// Distance between an equilibrium and the neighbours at which its stability is compared, in Newton steps. At a double
+/// root, one Newton step covers half of the distance to the root.
 const BEYOND: f64 = 4.0;
 
 /// Largest real part that counts as 0, as a fraction of the largest entry of A.
@@ -51,55 +52,57 @@ pub struct Linearisation {
     pub state: Vec<f64>,
     /// The values of the inputs.
     pub inputs: Vec<f64>,
-    /// The rates of the state there.
+    /// The rates of the state.
     pub rates: Vec<f64>,
-    /// The names of the outputs; those that are integrals along a run have no value at a state and are left out.
+    /// The names of the outputs. Outputs that are integrals along a run have no value at a state and are left out.
     pub output_names: Vec<&'static str>,
-    /// The values of the outputs there.
+    /// The values of the outputs.
     pub outputs: Vec<f64>,
-    /// `A`, row by row: derivatives of the rates by the state.
+    /// `A`, row by row: derivatives of the rates with respect to the state.
     pub a: Vec<Vec<f64>>,
-    /// `B`: derivatives of the rates by the inputs.
+    /// `B`, row by row: derivatives of the rates with respect to the inputs.
     pub b: Vec<Vec<f64>>,
-    /// `C`: derivatives of the outputs by the state.
+    /// `C`, row by row: derivatives of the outputs with respect to the state.
     pub c: Vec<Vec<f64>>,
-    /// `D`: derivatives of the outputs by the inputs.
+    /// `D`, row by row: derivatives of the outputs with respect to the inputs.
     pub d: Vec<Vec<f64>>,
-    /// The eigenvalues of A, real and imaginary parts; `None` if they are not found.
+    /// The eigenvalues of `A`, as real and imaginary parts; `None` if they are not found.
     pub eigenvalues: Option<Vec<[f64; 2]>>,
-    /// The eigenvalues at states on both sides of this one, beyond the equilibrium that Newton's next step leads to. Where
-    /// two equilibria meet, the rates hardly tell which state is one, and the stability of the neighbours differs.
+    /// The eigenvalues at states on both sides of this one, several Newton steps away. Where two equilibria meet,
+    /// rounding leaves the equilibrium uncertain, and its stability differs between these states.
     pub(crate) nearby: Vec<Vec<[f64; 2]>>,
-    /// Indices of the components whose rates are not 0 up to rounding, without those of [`Trim::moving`].
+    /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`].
     pub unsteady: Vec<usize>,
-    /// Number of equations that keep the positions on the constraints: as many eigenvalues 0 belong to directions off them.
+    /// Number of position levels that the constraints conserve. The same number of eigenvalues is 0; these belong to
+    /// directions off the constraints.
     pub levels: usize,
-    /// Number of steps to the equilibrium; `None` if none was asked for.
+    /// Number of steps to the equilibrium; `None` without a search.
     pub steps: Option<u32>,
     /// The sampled motion from this state on.
     pub strides: Vec<Stride>,
 }
 
-/// Stability of an equilibrium, as far as its linearisation tells.
+/// Stability of an equilibrium by its linearisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tendency {
     /// All eigenvalues have negative real parts: small deviations decay.
     Stable,
     /// This many eigenvalues have positive real parts: some deviations grow.
     Unstable(usize),
-    /// None has a positive real part, as many have the real part 0 up to rounding: the linearisation does not tell.
+    /// No eigenvalue has a positive real part, and this many have the real part 0 up to rounding: the linearisation
+    /// does not decide the stability.
     Neutral(usize),
 }
 
 impl Linearisation {
-    /// The stability that the eigenvalues show; `None` if the state is no equilibrium, or if they are not known.
+    /// The stability by the eigenvalues; `None` if the state is not an equilibrium, or if the eigenvalues are unknown.
     pub fn tendency(&self) -> Option<Tendency> {
         let eigenvalues = self
             .eigenvalues
             .as_ref()
             .filter(|_| self.unsteady.is_empty())?;
         let margin = NEUTRAL * largest(self.a.iter().flatten());
-        // What is the same at all states that may be the equilibrium.
+        // The number of eigenvalues that count at all states that may be the equilibrium.
         let least = |is_counted: &dyn Fn(f64) -> bool| {
             let count = |spectrum: &Vec<[f64; 2]>| {
                 let real = spectrum.iter().map(|[re, _]| *re);
@@ -110,7 +113,7 @@ impl Linearisation {
         };
         let growing = least(&|re| re > margin);
         let decaying = least(&|re| re < -margin);
-        // Eigenvalues of directions off the constraints are 0, and belong to no motion.
+        // The eigenvalues of directions off the constraints are 0 and belong to no motion.
         let moving = eigenvalues.len().saturating_sub(self.levels);
         let neutral = moving.saturating_sub(growing + decaying);
         Some(match (growing, neutral) {
@@ -126,26 +129,26 @@ impl Linearisation {
 pub struct Place {
     /// The time, for equations that depend on it.
     pub t: f64,
-    /// Search for an equilibrium, from the given state.
+    /// The search for an equilibrium from the given state; `None` to linearise at that state.
     pub trim: Option<Trim>,
-    /// The sampled motion from there on.
+    /// The sampled motion from the state or equilibrium on, if requested.
     pub sampling: Option<Sampling>,
 }
 
-/// Reasons for which there is no linearisation.
+/// Reasons why there is no linearisation.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unlinear {
     /// The model has modes.
     #[error("a model with modes has no linearisation here")]
     Modes,
-    /// The motion is not reduced to the constraints.
+    /// The model has constraints and no reduced form.
     #[error("the motion is not reduced to its constraints, so there are no independent velocities")]
     Unreduced,
     /// A rate, an output or a derivative does not exist.
     #[error("the equations have no derivative at this state")]
     Fault(Fault),
-    /// A rate, an output or a derivative is not a finite number.
+    /// A rate, an output or a derivative is not finite.
     #[error("the equations are not finite at this state")]
     NotFinite,
     /// The sampled motion ends early.
@@ -196,7 +199,8 @@ impl From<Fault> for Unlinear {
     }
 }
 
-/// The names of the components of a linearised state: coordinates, then velocities, or quasi-velocities with constraints.
+/// The names of the components of a linearised state: coordinates, then velocities or, with constraints,
+/// quasi-velocities.
 pub fn components(description: &Description) -> Vec<String> {
     let coordinates = names::coordinates(description);
     let motion: Vec<String> = match description.is_first_order {
@@ -212,7 +216,7 @@ pub fn components(description: &Description) -> Vec<String> {
     coordinates.map(str::to_owned).chain(motion).collect()
 }
 
-/// Linearises a system.
+/// Visitor that linearises a system of any type.
 pub(crate) struct Lineariser<'a> {
     /// Positions and velocities.
     pub given: [&'a [f64]; 2],
@@ -220,7 +224,7 @@ pub(crate) struct Lineariser<'a> {
 }
 
 impl VariationalVisitor for Lineariser<'_> {
-    /// The inner error explains why there is no linearisation, the outer one why the state is refused.
+    /// The inner error says why there is no linearisation, the outer one why the state is refused.
     type Output = Result<Result<Linearisation, Unlinear>, Refusal>;
 
     fn visit<S: Instance + Scene + Variational>(self, system: &S) -> Self::Output {
@@ -237,7 +241,7 @@ impl VariationalVisitor for Lineariser<'_> {
     }
 }
 
-/// The linearisation at the equilibrium that is asked for, or at the state itself.
+/// The linearisation at the requested equilibrium, or at the state itself.
 fn linearise<S: Instance + Scene + Variational>(
     system: &S,
     place: &Place,
@@ -293,7 +297,7 @@ fn linearise<S: Instance + Scene + Variational>(
     })
 }
 
-/// The first columns of a matrix, and the others; by rows.
+/// Splits the rows of a matrix after its first `columns` entries.
 fn split(rows: &[Vec<f64>], columns: usize) -> [Vec<Vec<f64>>; 2] {
     let pairs = rows.iter().map(|row| row.split_at(columns));
     let (left, right) = pairs
@@ -325,8 +329,8 @@ fn sizes(sample: &Sample, state: &[f64], inputs: &[f64]) -> Vec<f64> {
     sample.by_rates.iter().map(size).collect()
 }
 
-/// The eigenvalues at the states a few Newton steps away in both directions, where the equations are defined. A rate counts
-/// as at least the rounding of its terms.
+/// The eigenvalues at the states [`BEYOND`] Newton steps away in both directions, where the equations are defined. The
+/// residual of a Newton step is at least the rounding of the rate's terms.
 fn nearby<S: Instance + Variational>(
     plant: &Plant<'_, S>,
     sample: &Sample,
@@ -358,7 +362,7 @@ fn nearby<S: Instance + Variational>(
     [-BEYOND, BEYOND].into_iter().filter_map(beside).collect()
 }
 
-/// The eigenvalues of a square matrix, by rows.
+/// The eigenvalues of a square matrix, given by rows.
 fn spectrum<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
     let mut columns = S::columns();
     for (j, column) in columns.as_mut().iter_mut().enumerate().take(rows.len()) {

@@ -1,4 +1,4 @@
-//! The rates and the outputs at a state, with their derivatives by state and inputs.
+//! The rates and the outputs at a state, with their derivatives with respect to state and inputs.
 
 use dalembert::contract::Variational;
 use dalembert::numbers::{Numbers, Row};
@@ -14,7 +14,7 @@ use crate::variation::constant;
 /// Meaning of the components of a linearised state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// Positions and velocities; the state of the system holds momenta.
+    /// Positions and velocities, for a system whose state contains momenta.
     Velocities,
     /// The state of the system itself.
     State,
@@ -31,15 +31,15 @@ pub(super) struct Plant<'a, S: Instance + Variational> {
     levels: usize,
 }
 
-/// Values at a state, and their derivatives: a row for each value, with an entry for each component of the state, then
-/// for each input.
+/// Values at a state, and their derivatives: one row per value, with one entry per component of the state, then one per
+/// input.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sample {
     pub rates: Vec<f64>,
     pub by_rates: Vec<Vec<f64>>,
     pub outputs: Vec<f64>,
     pub by_outputs: Vec<Vec<f64>>,
-    /// Functions of the positions that the constraints keep.
+    /// Functions of the positions that the constraints conserve.
     pub levels: Vec<f64>,
     pub by_levels: Vec<Vec<f64>>,
 }
@@ -127,7 +127,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
         }
     }
 
-    /// True if a state is within its charts and behind no surface.
+    /// True if a state lies inside its charts and not behind a surface.
     pub fn is_allowed(&self, state: &[f64], inputs: &[f64]) -> bool {
         let Ok(seeded) = self.seeded(self.t, state, inputs, 0) else {
             return false;
@@ -141,7 +141,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
             && domain::behind(self.system, self.t, &whole, domain::size(state)) == Ok(None)
     }
 
-    /// Parameters and state as dual numbers, with derivatives by [`DIRECTIONS`] variables from `first` on.
+    /// Parameters and state as dual numbers, with derivatives with respect to [`DIRECTIONS`] variables from `first` on.
     fn seeded(
         &self,
         t: f64,
@@ -179,7 +179,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
         })
     }
 
-    /// Rates, outputs and levels, with derivatives by [`DIRECTIONS`] variables from `first` on.
+    /// Rates, outputs and levels, with derivatives with respect to [`DIRECTIONS`] variables from `first` on.
     fn along(
         &self,
         state: &[f64],
@@ -209,7 +209,8 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
         Ok([rates, outputs, levels])
     }
 
-    /// The state of the system with these components, and its variations by each of them, then by each input.
+    /// The state of the system with these components, and its variations with respect to each component, then to each
+    /// input.
     ///
     /// # Errors
     /// [`Unlinear::Fault`] if there is no such state.
@@ -239,7 +240,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
         Ok((start, tangents))
     }
 
-    /// The components of a state of the system, and a row of derivatives by all tangents for each.
+    /// The components of a state of the system, and for each component a row of derivatives along all tangents.
     ///
     /// # Errors
     /// [`Unlinear::Fault`] if the velocities do not exist.
@@ -294,7 +295,7 @@ struct Seeded<S: Variational> {
     seeds: Vec<Dual>,
 }
 
-/// Takes the derivatives of a row by one variable.
+/// Copies the derivatives of a row with respect to variable `k`.
 fn take(entries: &mut [f64], row: &[Dual], k: usize) {
     for (entry, dual) in entries.iter_mut().zip(row) {
         *entry = dual.slopes()[k];

@@ -1,5 +1,5 @@
-//! The sampled motion: what small deviations become from one sample to the next, across impacts, with inputs held between
-//! samples.
+//! The sampled motion: propagation of small deviations from one sample to the next, across impacts, with inputs
+//! constant between samples.
 
 use std::ops::ControlFlow;
 
@@ -21,16 +21,16 @@ pub struct Sampling {
     pub every: f64,
     /// Number of samples after the first.
     pub count: u32,
-    /// The tolerance of the integrator, a Taylor series.
+    /// The tolerance of the integrator, `Taylor`.
     pub tolerance: Tolerance,
-    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
+    /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
-    /// Treatment of impacts after which the law alone does not determine the motion.
+    /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
 }
 
-/// The motion from a sample to the next: `y(t + T) = Phi y(t) + Gamma u` for small deviations `y` of the state and `u` of
-/// the inputs.
+/// The motion from one sample to the next: `y(t + T) = Phi y(t) + Gamma u` for small deviations `y` of the state and
+/// `u` of the inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stride {
     /// The time of the sample.
@@ -43,11 +43,11 @@ pub struct Stride {
     pub phi: Vec<Vec<f64>>,
     /// `Gamma`, row by row.
     pub gamma: Vec<Vec<f64>>,
-    /// Number of impacts on the way.
+    /// Number of impacts in between.
     pub impacts: u32,
 }
 
-/// Varies a motion and counts its impacts.
+/// Propagates variations along a motion and counts its impacts.
 struct Counted<'a, S: Variational> {
     variations: Variations<'a, S>,
     impacts: u32,
@@ -68,10 +68,11 @@ impl<S: Variational> Observer<S> for Counted<'_, S> {
     }
 }
 
-/// The strides from a state on.
+/// The strides of the motion from a state.
 ///
 /// # Errors
-/// [`Unlinear::Ended`] and [`Unlinear::Undefined`] with the time, or a reason for which there is no such state.
+/// [`Unlinear::Ended`] if the motion ends early, [`Unlinear::Undefined`] if it has no derivative, and
+/// [`Unlinear::Fault`] or [`Unlinear::NotFinite`] if a state does not exist.
 pub(super) fn strides<S: Instance + Scene + Variational>(
     plant: &Plant<'_, S>,
     sampling: &Sampling,

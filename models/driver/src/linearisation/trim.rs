@@ -1,4 +1,4 @@
-//! An equilibrium near a state: the Levenberg-Marquardt method with exact derivatives.
+//! Search for an equilibrium near a state, by the Levenberg-Marquardt method with exact derivatives.
 
 use std::f64::consts::TAU;
 
@@ -11,16 +11,16 @@ use super::{Unlinear, largest};
 use crate::least_squares::damped;
 use crate::linear::norm;
 
-/// Largest number of steps.
+/// Maximum number of steps.
 const STEPS: u32 = 200;
 
-/// Largest residual at an equilibrium, as a fraction of the largest derivative and value.
+/// Residual at which the search stops, as a fraction of the largest derivative times the largest value.
 const SETTLED: f64 = 1e-12;
 
-/// Largest residual that an equilibrium may be left with, in the same unit.
+/// Largest accepted residual of an equilibrium, in the same unit.
 const SOLVED: f64 = 1e-9;
 
-/// Largest damping, as a multiple of the residual, with which a step is tried.
+/// Largest damping of a step, as a multiple of the residual.
 const DAMPED: f64 = 1e8;
 
 /// Smallest damping, as a multiple of the residual.
@@ -29,9 +29,10 @@ const LEAST: f64 = 1e-6;
 /// Search for an equilibrium from a state.
 #[derive(Debug, Clone, Default)]
 pub struct Trim {
-    /// Indices of what the search changes: components of the state, then inputs; everything if it is empty.
+    /// Indices of the variables that the search changes, among the components of the state followed by the inputs. If
+    /// it is empty, the search changes all of them.
     pub free: Vec<usize>,
-    /// Indices of components whose rates need not vanish: coordinates that move steadily.
+    /// Indices of components whose rates need not vanish, for example coordinates that move steadily.
     pub moving: Vec<usize>,
 }
 
@@ -43,7 +44,7 @@ struct Equations<'a> {
 }
 
 impl Equations<'_> {
-    /// Residuals, with the indices of their components; levels have none.
+    /// Residuals, each with the index of its component; `None` for levels.
     fn residuals(&self, sample: &Sample) -> Vec<(Option<usize>, f64)> {
         let rates = sample.rates.iter().enumerate();
         let rates = rates.filter(|(index, _)| !self.trim.moving.contains(index));
@@ -54,7 +55,7 @@ impl Equations<'_> {
             .collect()
     }
 
-    /// Derivatives of the residuals by what is free, a column for each.
+    /// Derivatives of the residuals with respect to the free variables, one column per variable.
     fn columns(&self, sample: &Sample, free: &[usize]) -> Vec<Vec<f64>> {
         let rates = sample.by_rates.iter().enumerate();
         let rates = rates.filter(|(index, _)| !self.trim.moving.contains(index));
@@ -65,7 +66,7 @@ impl Equations<'_> {
     }
 }
 
-/// A state with inputs, on the way to an equilibrium.
+/// State of the search.
 struct Walk<'a, S: Instance + Variational> {
     plant: &'a Plant<'a, S>,
     equations: Equations<'a>,
@@ -79,10 +80,11 @@ struct Walk<'a, S: Instance + Variational> {
     factor: f64,
 }
 
-/// Changes state and inputs to an equilibrium near them, and returns the number of steps.
+/// Moves state and inputs to an equilibrium near them, and returns the number of steps.
 ///
 /// # Errors
-/// [`Unlinear::NoEquilibrium`], [`Unlinear::OffLevel`], or a reason for which the equations have no derivative.
+/// [`Unlinear::NoEquilibrium`] or [`Unlinear::OffLevel`] if the search fails; [`Unlinear::Fault`] or
+/// [`Unlinear::NotFinite`] if the equations have no derivative at the start.
 pub(super) fn settle<S: Instance + Variational>(
     plant: &Plant<'_, S>,
     trim: &Trim,
@@ -130,7 +132,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
         largest(columns.iter().flatten()).max(1.0) * largest(self.values.iter()).max(1.0)
     }
 
-    /// Makes a step to smaller residuals; false if there is none.
+    /// Makes a step that reduces the residuals. Returns false if no step does.
     fn step(&mut self) -> bool {
         let residuals = self.equations.residuals(&self.sample);
         let residuals: Vec<f64> = residuals.iter().map(|it| it.1).collect();
@@ -148,7 +150,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
         false
     }
 
-    /// Subtracts a change, if the residuals become smaller by it and the model allows the state.
+    /// Subtracts a change if this reduces the residuals and the model allows the state.
     fn improve(&mut self, change: &[f64], size: f64) -> bool {
         let mut next = self.values.clone();
         for (&place, change) in self.free.iter().zip(change) {
@@ -164,7 +166,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
         }
     }
 
-    /// Changes angles by whole turns, to those nearest to the start.
+    /// Changes angles by whole turns to the values nearest to the start.
     fn unwind(&mut self, start: &[f64]) {
         let coordinates = self.plant.system.description().coordinates.iter();
         for (index, coordinate) in coordinates.enumerate() {

@@ -22,7 +22,7 @@ fn stepper<M: Model>(settings: &Settings) -> Result<Taylor<M>, Refusal> {
     Ok(limited!(Taylor::new(tolerance), settings))
 }
 
-/// Makes several runs at once, in one form of the model. A run without a valid initial state yields its [`Refusal`].
+/// Makes several runs at once, in one form of the model. A run without a valid initial state gives its [`Refusal`].
 pub(crate) fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     model: &M,
     runs: Vec<Together<'_>>,
@@ -54,7 +54,7 @@ pub(crate) fn abreast<M: Model, S: Model<Vector = M::Vector>>(
     endings
 }
 
-/// Makes several runs as [`simulate`](super::simulate) does, at once and with Taylor series; returns the results in the
+/// Makes several runs at once with `Taylor`, each as [`simulate`](super::simulate) does. Returns the results in the
 /// order of the runs.
 fn simulate_abreast<M: Model>(
     runs: Vec<Abreast<'_, M>>,

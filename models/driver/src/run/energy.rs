@@ -1,27 +1,27 @@
-//! Energy balance of a run with steps of fixed size. Such steps have no error estimate; the balance reveals large
+//! Energy balance of a run with steps of fixed size. Such steps have no error estimate, but the balance reveals large
 //! errors.
 //!
-//! Along smooth motion the energy changes at the rate of the power, its derivative along the motion, which is 0 unless
-//! a force works on the system. Any other change is an error. The power is integrated by the trapezoidal rule, whose
-//! error does not grow with the number of steps.
+//! Along smooth motion, the energy changes at the rate of the power, which is 0 unless a force works on the system. Any
+//! other change is an error. The power is integrated by the trapezoidal rule, whose error does not grow with the number
+//! of steps.
 
 use dalembert::{Segment, StateVector, System};
 
-/// Relative energy error above which a warning is given.
+/// Relative energy error that causes a warning.
 const TOLD: f64 = 1e-2;
 
-/// Fraction of the largest kinetic energy below which the reference energy never falls, so that an energy that is 0 up
-/// to rounding has a scale.
+/// Lower bound of the energy scale, as a fraction of the largest kinetic energy. It gives a scale to an energy that is
+/// 0 up to rounding.
 const SWING: f64 = 1e-3;
 
-/// Fraction of a step over which the power is a difference quotient of energies: rounding adds a relative error of
+/// Fraction of a step over which the power is computed as a difference quotient of energies. Rounding adds an error of
 /// `1e-11` of the energy in every step.
 const PART: f64 = 1e-5;
 
 /// The energy balance along smooth motion; impacts and motion held by a surface are left out.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Balance {
-    /// The absolute value of the energy at the start, or the kinetic energy there if that is larger.
+    /// The absolute value of the energy at the start, or the kinetic energy at the start if it is larger.
     size: f64,
     /// The largest kinetic energy.
     swing: f64,
@@ -88,12 +88,12 @@ impl Balance {
         }
     }
 
-    /// Notes that an event changed the state.
+    /// Records that an event changed the state.
     pub(super) fn jump(&mut self) {
         self.last = None;
     }
 
-    /// Notes that a surface begins or ceases to hold the motion.
+    /// Records that a surface begins or ceases to hold the motion.
     pub(super) fn hold(&mut self, begins: bool) {
         self.last = None;
         self.holds = match begins {

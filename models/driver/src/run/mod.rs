@@ -1,6 +1,6 @@
 //! Runs of a typed model, reported to a [`Watch`] that does not depend on the model's type.
 
-/// Builds an adaptive integrator with the largest step of the settings; returns from the function on a refusal.
+/// Builds an adaptive integrator with the largest step of the settings. Returns from the calling function on a refusal.
 macro_rules! limited {
     ($stepper:expr, $settings:expr) => {
         $stepper.with_max_step($settings.max_step.unwrap_or(f64::INFINITY))?
@@ -53,15 +53,15 @@ pub struct Settings {
     pub max_step: Option<f64>,
     /// Stop after this many steps.
     pub steps: Option<u64>,
-    /// The last time.
+    /// The end time.
     pub until: f64,
     /// Stop after this many impacts.
     pub impacts: Option<u64>,
-    /// Laws by index of the surface, instead of the declared ones; of two for one surface the later counts.
+    /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
     /// Policies of impacts after which the law alone does not determine the motion.
     pub policies: Policies,
-    /// Projection on the constraints after each step, if set; by default as the scene declares.
+    /// Turns the projection onto the constraints after each step on or off; `None` for the default of the scene.
     pub projection: Option<bool>,
 }
 
@@ -101,7 +101,7 @@ pub struct Impact {
     pub after: Point,
     /// True if another surface was hit at the same time.
     pub simultaneous: bool,
-    /// True for a grazing impact, so light that rounding may have decided it.
+    /// True for a grazing impact: rounding may have decided that it happens.
     pub graze: bool,
 }
 
@@ -122,30 +122,30 @@ pub struct Contact {
 
 /// A stretch of smooth motion.
 pub trait Piece {
-    /// Its first and its last time.
+    /// The times at its start and at its end.
     fn span(&self) -> (f64, f64);
 
-    /// The state at a time within.
+    /// The state at a time of the stretch.
     fn at(&self, t: f64) -> Point;
 }
 
-/// Watches a run.
+/// Observer of a run that does not depend on the type of the model.
 pub trait Watch {
-    /// A stretch of smooth motion was made.
+    /// Receives a stretch of smooth motion.
     fn step(&mut self, piece: &dyn Piece);
 
-    /// An impact was carried out.
+    /// Receives an impact.
     fn impact(&mut self, impact: Impact);
 
-    /// A surface begins or ceases to hold the motion.
+    /// Receives the beginning or the end of a contact.
     fn contact(&mut self, contact: Contact);
 
-    /// True if the watch wants warnings about errors that a fixed-step integrator does not estimate. They take time.
+    /// True if the watch wants warnings about errors of a fixed-step integrator, which cost time.
     fn wants_warnings(&self) -> bool {
         false
     }
 
-    /// True once the watch needs no more: the run then ends.
+    /// True once the watch needs no more data. The run then ends.
     fn is_over(&self) -> bool {
         false
     }
@@ -160,7 +160,7 @@ pub(crate) struct Solved<S> {
     pub laws: Vec<Option<Law>>,
 }
 
-/// Runs a model from `t = 0`, observed by a watch.
+/// Runs a model from `t = 0` under a watch.
 ///
 /// # Errors
 /// [`Refusal`] if the runtime refuses to start.
@@ -229,10 +229,10 @@ fn ending<S>([first, last]: [Point; 2], solved: Solved<S>, settings: &Settings) 
     }
 }
 
-/// Runs a model from `t = 0`, observed in the types of the model.
+/// Runs a model from `t = 0` under an observer in the types of the model.
 ///
 /// # Errors
-/// [`Refusal`] as of [`simulate`].
+/// The errors of [`simulate`].
 pub(crate) fn solve<M: Model>(
     model: &M,
     state: &M::State,
@@ -379,7 +379,7 @@ impl<M: Model, R: Reading<M::State>> Observer<M> for Bridge<'_, M, R> {
     }
 }
 
-/// A segment of a run. A query inside it prepares the dense output, hence the cell.
+/// A segment of a run. The cell is needed because a query inside the segment prepares the dense output.
 struct SegmentPiece<'a, 'b, S, R> {
     description: &'a Description,
     reading: &'a R,

@@ -1,4 +1,4 @@
-//! The values of states of a run: those that depend on the state alone, and the outputs that are integrals along the run.
+//! The values of a run at a state: values that depend on the state alone, and outputs that are integrals along the run.
 
 use dalembert::action::integral;
 use dalembert::{Fault, Instance, Segment};
@@ -7,10 +7,10 @@ use crate::model::{Point, point};
 
 /// The values that depend on a state alone.
 pub(super) trait Reading<S> {
-    /// All of them; NaN for outputs that are integrals.
+    /// All values; NaN for outputs that are integrals.
     fn point(&self, t: f64, state: &S) -> Point;
 
-    /// The outputs; the integrand of those that are integrals.
+    /// The outputs. For an output that is an integral, its integrand.
     ///
     /// # Errors
     /// A [`Fault`] where an output does not exist.
@@ -27,8 +27,8 @@ impl<M: Instance> Reading<M::State> for &M {
     }
 }
 
-/// The outputs of a run that are integrals, each with its value at the start of the present stretch of motion; NaN from the first
-/// stretch on over which it does not exist.
+/// The outputs of a run that are integrals, each with its value at the start of the present stretch of motion. The
+/// value is NaN after the first stretch over which the integral does not exist.
 pub(super) struct Integrals {
     /// The number of all outputs.
     outputs: usize,
@@ -50,12 +50,12 @@ impl Integrals {
         }
     }
 
-    /// True if there are any.
+    /// True if the model has integrals.
     pub(super) fn is_some(&self) -> bool {
         !self.values.is_empty()
     }
 
-    /// The point with its integrals.
+    /// Sets the integrals of a point.
     pub(super) fn put(&self, mut point: Point) -> Point {
         for &(index, value) in &self.values {
             point.outputs[index] = value;

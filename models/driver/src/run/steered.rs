@@ -1,6 +1,6 @@
 //! Runs whose inputs are functions of time and state.
 //!
-//! They are made by the system of all forms with the largest capacity only, for which this code is compiled once.
+//! An erased system of the largest capacity makes them, for which this code is compiled once.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -24,7 +24,7 @@ use crate::model::{Origin, Point, point};
 use crate::refusal::Refusal;
 use crate::typed::prepare;
 
-/// The system whose inputs are given.
+/// The system without the input functions.
 type Plain<'f> = Erased<'f, 32>;
 
 /// The state of that system.
@@ -43,24 +43,25 @@ pub type InputFunction<'c> = dyn Fn(f64, &[f64], &[f64]) -> Vec<f64> + 'c;
 pub struct Control<'c> {
     /// Values of all inputs, in order. Velocities of a first-order system are those without inputs.
     pub inputs: &'c InputFunction<'c>,
-    /// The times at which they change.
+    /// The times at which the inputs change.
     pub changes: Changes<'c>,
 }
 
 /// Times at which inputs change.
 #[derive(Debug, Clone, Copy)]
 pub enum Changes<'c> {
-    /// Inputs are taken wherever the motion is evaluated.
+    /// Inputs are evaluated wherever the motion is evaluated.
     Everywhere,
-    /// They are taken at multiples of this period, and held between.
+    /// Inputs are evaluated at multiples of this period, and constant in between.
     Held(f64),
-    /// They are taken wherever the motion is evaluated, from functions of which each is smooth up to the next of these times.
-    /// A step ends at such a time. The cell has the number of times that have passed.
+    /// Inputs are evaluated wherever the motion is evaluated. They are smooth between these times, at which steps end.
+    /// The cell holds the number of times that have passed.
     Pieces(&'c [f64], &'c Cell<usize>),
 }
 
-/// Makes a run with these inputs, as [`Runs::simulate`](crate::Runs::simulate) does; `None` for a form that is too large, and for
-/// Taylor series and discrete principles, which know no inputs from outside. `values` are those of all parameters.
+/// Makes a run with these inputs, as [`Runs::simulate`](crate::Runs::simulate) does. `values` are the values of all
+/// parameters. Returns `None` for a form that is too large, and for `Taylor` and discrete principles, which do not
+/// support input functions.
 ///
 /// # Errors
 /// [`Refusal`] if the run does not start.
@@ -199,10 +200,10 @@ fn run<'f, 'c>(
     Ok(ending(ends, Solved { run, step, laws }, settings))
 }
 
-/// Observes a system with inputs as if it were the system without.
+/// Observes a system with input functions as the system without them.
 struct Driver<'a, 'f, R>(Bridge<'a, Plain<'f>, R>);
 
-/// The values of states, with the inputs that are given there.
+/// The values at states, with the inputs at these states.
 struct Given<'a, 'f, 'c>(&'a Driven<'f, 'c>);
 
 impl<'f> Reading<State<'f>> for Given<'_, 'f, '_> {
@@ -229,13 +230,13 @@ impl<'f, 'c, R: Reading<State<'f>>> Observer<Driven<'f, 'c>> for Driver<'_, 'f, 
     }
 }
 
-/// Changes the inputs at given times, where it ends the step.
+/// Effect that changes the inputs at given times, and ends steps there.
 #[derive(Clone, Copy)]
 struct Clock<'c, 'f> {
     changes: Changes<'c>,
     /// Number of changes that have passed.
     next: usize,
-    /// The fraction of the present step at which the next one comes.
+    /// The fraction of the present step at which the next change is due.
     due: Option<f64>,
     held: &'c Cell<Inputs>,
     taken: &'c dyn Fn(f64, &State<'f>) -> Inputs,

@@ -1,15 +1,15 @@
-//! Numbers of impacts of a run.
+//! Numbers of impacts and contacts of a run.
 
 use super::Impact;
 
-/// Numbers of impacts.
+/// Numbers of impacts and contacts.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ImpactTally {
-    /// On each surface.
+    /// Number of impacts on each surface.
     pub per_surface: Vec<u64>,
-    /// Impacts so light that rounding may have decided them.
+    /// Number of grazing impacts: rounding may have decided that they happen.
     pub grazing: u64,
-    /// Impacts at the same time as another.
+    /// Number of impacts at the same time as another.
     pub simultaneous: u64,
     /// Number of times that a surface began to hold the motion.
     pub contacts: u64,

@@ -1,13 +1,13 @@
 //! Sums and products of doubles without error, and their roundings to a number of parts.
 //!
-//! References: D. E. Knuth, *The Art of Computer Programming* 2 (1997), 4.2.2, theorem B; T. J. Dekker, *A Floating-Point
-//! Technique for Extending the Available Precision*, Numerische Mathematik 18 (1971); D. M. Priest, *Algorithms for
-//! Arbitrary Precision Floating Point Arithmetic* (1991).
+//! References: D. E. Knuth, *The Art of Computer Programming* 2 (1997), 4.2.2, theorem B; T. J. Dekker, *A
+//! Floating-Point Technique for Extending the Available Precision*, Numerische Mathematik 18 (1971); D. M. Priest,
+//! *Algorithms for Arbitrary Precision Floating Point Arithmetic* (1991).
 
-/// Parts that sums are taken to at most, and one more.
+/// Maximum number of parts of a sum, plus one level for the rest.
 const LEVELS: usize = 7;
 
-/// `a + b` rounded, and its rounding error.
+/// The rounded sum `a + b` and its rounding error.
 #[inline(always)]
 pub(super) fn two_sum(a: f64, b: f64) -> [f64; 2] {
     let sum = a + b;
@@ -15,7 +15,7 @@ pub(super) fn two_sum(a: f64, b: f64) -> [f64; 2] {
     [sum, (a - (sum - moved)) + (b - moved)]
 }
 
-/// `a b` rounded, and its rounding error: exact unless that is below the range of doubles.
+/// The rounded product `a b` and its rounding error, which is exact unless it underflows.
 #[inline(always)]
 fn two_product(a: f64, b: f64) -> [f64; 2] {
     let product = a * b;
@@ -29,11 +29,12 @@ fn two_product(a: f64, b: f64) -> [f64; 2] {
     }
 }
 
-/// Rounding error of the product of two numbers, by halves of 26 bits (Veltkamp, Dekker).
+/// Rounding error of a product. The factors are split into halves of 26 bits (Veltkamp, Dekker).
 #[cfg(not(all(target_feature = "fma", feature = "std")))]
 #[inline(always)]
 fn product_error(a: f64, b: f64, product: f64) -> f64 {
-    /// Bounds beyond which halves leave the range: `2^996`, and `2^-968` for the least digits of the product.
+    /// Bounds of the factors (`2^996`) and of the product (`2^-968`). Beyond them, halves overflow, or the least digits
+    /// of the product underflow.
     const HUGE: f64 = f64::from_bits((1023 + 996) << 52);
     const TINY: f64 = f64::from_bits((1023 - 968) << 52);
     let is_inside = a.abs() < HUGE && b.abs() < HUGE && product.abs() > TINY;
@@ -49,7 +50,7 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
     ((a * b - product) + a * d + c * b) + c * d
 }
 
-/// A sum under construction: `PARTS` parts and a rest.
+/// Accumulator of a sum: `PARTS` parts and a rest.
 pub(super) struct Sum<const PARTS: usize> {
     levels: [f64; LEVELS],
 }
@@ -65,7 +66,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         Self { levels }
     }
 
-    /// Adds a number that is smaller than the sum by this count of parts.
+    /// Adds a number that is smaller than the sum by `level` parts.
     #[inline(always)]
     pub(super) fn add(&mut self, mut number: f64, level: usize) {
         for level in &mut self.levels[level..PARTS] {
@@ -74,7 +75,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         self.levels[PARTS] += number;
     }
 
-    /// Adds the product of two numbers that are smaller than theirs by this count of parts.
+    /// Adds the product of two numbers. It is smaller than the sum by `level` parts.
     #[inline(always)]
     pub(super) fn add_product(&mut self, a: f64, b: f64, level: usize) {
         if level < PARTS {
@@ -86,11 +87,12 @@ impl<const PARTS: usize> Sum<PARTS> {
         }
     }
 
-    /// The sum in parts that do not overlap: each is the rounded rest of the sum behind those before it.
+    /// The sum in parts that do not overlap. Each part is the rounded difference between the sum and the parts before
+    /// it.
     #[inline(always)]
     pub(super) fn parts(self) -> [f64; PARTS] {
         let mut levels = self.levels;
-        // NOTE: where leading digits cancel, one pass leaves parts that overlap.
+        // NOTE: one pass leaves overlapping parts where leading digits cancel.
         for _ in 0..2 {
             for i in (0..PARTS).rev() {
                 [levels[i], levels[i + 1]] = two_sum(levels[i], levels[i + 1]);

@@ -6,7 +6,7 @@ use crate::jet::{Jets, LENGTH};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// Values at one moment, and the coefficients above them.
+/// Initial values of the series at one moment, and the coefficients.
 pub(crate) struct Expansion<F: TaylorField, L: Numbers> {
     pub(crate) coefficients: [F::Row<L>; LENGTH],
     pub(crate) gaps: [F::Gaps<L>; LENGTH],
@@ -46,14 +46,14 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         }
     }
 
-    /// Makes the storage for a system, unless its size is right already.
+    /// Resizes the storage for a system if necessary.
     pub(crate) fn make_room(&mut self, field: &F) {
         if self.coefficients[0].as_slice().len() != field.state_len() {
             *self = Self::of(field);
         }
     }
 
-    /// Evaluates the values at a state: the start of the next series and the end of the last.
+    /// Evaluates the initial values at a state, which is the start of the next series and the end of the last.
     #[inline(always)]
     pub(crate) fn begin(
         &mut self,
@@ -100,7 +100,8 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         &self.firsts.as_slice()[components.as_slice().len()..][..gaps.as_slice().len()]
     }
 
-    /// Largest entries of the last coefficient and of the one before it, each times its factor.
+    /// Largest absolute values among the entries of the last coefficient, and of the one before it, each times its
+    /// factor.
     #[inline(always)]
     pub(crate) fn sizes(&self, order: usize, factors: &F::Row<L>) -> [L; 2] {
         let mut sizes = [L::ZERO; 2];
@@ -113,7 +114,7 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
         sizes
     }
 
-    /// Increment of the polynomial from the start over `theta` units of time, and its derivative there.
+    /// Increment of the polynomial over `theta` units of time, and its derivative at the end.
     #[inline(always)]
     pub(crate) fn change(&self, order: usize, theta: L) -> [F::Row<L>; 2] {
         let (mut change, mut slope) =
@@ -133,8 +134,8 @@ impl<F: TaylorField, L: Numbers> Expansion<F, L> {
     }
 }
 
-/// The end of a step from a start with rounding error `rest`, and the rounding error of the end: exactly that of the
-/// sum (Moller, Knuth).
+/// The end of a step from a start with rounding error `rest`, and the rounding error of the end, which is the exact
+/// error of the sum (Moller, Knuth).
 #[inline(always)]
 pub(crate) fn sum<L: Numbers>(start: L, change: L, rest: L) -> [L; 2] {
     let change = change + rest;

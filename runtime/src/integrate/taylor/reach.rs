@@ -1,4 +1,4 @@
-//! Reach of a series: the longest step at whose end its last terms are negligible beside its first ones.
+//! Reach of a series: the longest step at whose end the last terms are negligible relative to the first ones.
 
 use crate::jet::LENGTH;
 
@@ -8,12 +8,12 @@ const LEADING: usize = 4;
 /// Factor by which a step shrinks until its last terms are small enough.
 const SHRINK: f64 = 0.75;
 
-/// Largest step in units of time of its expansion: powers up to the highest stay far from overflow.
+/// Largest step, in units of time of its expansion. All powers of it stay far from overflow.
 pub(crate) const LONGEST: f64 = 1024.0;
 
-/// Largest tried step, up to `wished` units of time, at whose end the last two terms of every series are at most
-/// `last` times the first ones. `None` if the series must be computed in a shorter unit. `sizes` holds a row per
-/// order.
+/// Largest of the tried steps, up to `wished` units of time, at whose end the last two terms of every series are at
+/// most `last` times the largest of the first ones. `None` if the series must be computed in a shorter unit. `sizes`
+/// has one row per order.
 pub(crate) fn reach<const K: usize>(
     sizes: &[[f64; K]; LENGTH],
     order: usize,
@@ -30,7 +30,7 @@ pub(crate) fn reach<const K: usize>(
     Some(theta)
 }
 
-/// True if the last two terms of a series are at most `last` times its first ones.
+/// True if the last two terms of a series are at most `last` times the largest of its first ones.
 fn is_small(size: impl Fn(usize) -> f64, order: usize, theta: f64, last: f64) -> bool {
     let mut power = 1.0;
     let mut leading = 0.0;

@@ -1,21 +1,22 @@
-//! Convergence test of a density by the total variation distance, half of the sum of absolute differences, between the
+//! Convergence test of a density, by the total variation distance (half of the sum of absolute differences) between the
 //! densities of two halves of the states.
 
 use super::Counts;
 use super::counts::CLASSES;
 
-/// Distances between the halves of a fraction of all states.
+/// Distances between two halves of a fraction of all states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Checkpoint {
     /// The fraction: 1/16, 1/8, .. 1.
     pub part: f64,
-    /// Number of states in it.
+    /// Number of states in the fraction.
     pub samples: u64,
-    /// The distance between its earlier and its later half; NaN if one is empty.
+    /// The distance between the earlier and the later half of the fraction; NaN if one of them is empty.
     pub over_time: f64,
-    /// The distance between two halves of its members; NaN if one is empty.
+    /// The distance between two halves of the members; NaN if one of them is empty.
     pub over_members: f64,
-    /// The expected distance between halves of equally many independent states with the density of all.
+    /// The expected distance between halves of the same number of independent states, drawn from the density of all
+    /// states.
     pub independent: f64,
 }
 
@@ -46,7 +47,7 @@ struct Halves {
     distance: f64,
 }
 
-/// Compares a class with all that follow: the later half of its fraction of the states with the earlier half.
+/// Compares a class, the later half of its fraction of the states, with all following classes, the earlier half.
 fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     let later = of(class);
     let mut earlier = vec![0; later.len()];
@@ -65,8 +66,8 @@ fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     }
 }
 
-/// The mean distance between the densities of two samples of `samples/2` states each, drawn independently from the density
-/// `total/all`: the counts of a cell are nearly Poisson.
+/// The mean distance between the densities of two samples of `samples/2` states each, drawn independently from the
+/// density `total/all`: the counts of a cell are nearly Poisson.
 fn expected(total: &[u64], all: u64, samples: u64) -> f64 {
     let half = 0.5 * samples as f64;
     let means = total

@@ -1,9 +1,9 @@
 //! Counts of states in cells. They are integers, so that the order of additions does not matter.
 //!
 //! A density has converged if it agrees with the densities of half of the states, of a quarter and so on. For this
-//! comparison every state belongs to a class by its time, and to another by its member: class 0 is the later half of
-//! all, class 1 the later half of the rest, and so on; the last class is the remainder. Members are assigned
-//! alternately, so that the halves of a grid of members are spread over the whole grid.
+//! comparison, every state belongs to one class by its time and to another class by its member. Class 0 is the later
+//! half of all states, class 1 the later half of the rest, and so on; the last class is the remainder. Members are
+//! assigned alternately, so that the halves of a grid of members are spread over the whole grid.
 
 use std::io::{self, Read, Write};
 
@@ -15,7 +15,7 @@ pub const CLASSES: usize = 6;
 /// Number of visits that are kept individually before equal ones are merged.
 const LOOSE: usize = 1 << 16;
 
-/// The class of the state of this index among `count`.
+/// The class of the state with this index among `count` states.
 fn class_of_time(index: u64, count: u64) -> usize {
     let doubled = |class: &usize| (index << (class + 1)) >= count;
     (0..CLASSES - 1).find(doubled).unwrap_or(CLASSES - 1)
@@ -48,7 +48,7 @@ impl Visits {
         }
     }
 
-    /// Adds a visit of a cell by the state of this index.
+    /// Adds a visit of a cell by the state with this index.
     pub fn push(&mut self, index: u64, cell: usize) {
         let class = class_of_time(index, self.samples);
         self.list.push((class * self.cells + cell, 1));
@@ -81,7 +81,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Zeros.
+    /// Counts of 0.
     pub fn new(density: &Density) -> Self {
         let cells = density.cells() + 1;
         Self {
@@ -99,13 +99,13 @@ impl Counts {
         }
     }
 
-    /// Adds the counts of other members of the same density.
+    /// Adds the counts of other members for the same density.
     pub fn merge(&mut self, others: &Self) {
         let pairs = self.counts.iter_mut().zip(&others.counts);
         pairs.for_each(|(sum, count)| *sum += count);
     }
 
-    /// The counts of a class of time; the last is the count outside the grid.
+    /// The counts of a class of time, one per cell; the last one counts states outside the grid.
     pub fn of_time(&self, class: usize) -> &[u64] {
         &self.counts[class * self.cells..][..self.cells]
     }

@@ -32,7 +32,7 @@ pub enum Shown {
 }
 
 impl Shown {
-    /// Its value.
+    /// The value of the quantity at a point.
     pub fn value(self, point: &Point) -> f64 {
         match self {
             Self::Position(index) => point.q[index],
@@ -55,15 +55,15 @@ pub struct Axis {
     pub shown: Shown,
     /// True if values that differ by a full turn are the same.
     pub is_circle: bool,
-    /// Its ends; the upper end belongs to no cell.
+    /// The ends of the axis. The upper end belongs to no cell.
     pub range: [f64; 2],
-    /// The number of cells along it.
+    /// The number of cells along the axis.
     pub bins: usize,
 }
 
 impl Axis {
-    /// The axis of a coordinate, a velocity, an output or `energy`. Without a range it is a full turn, the chart of the
-    /// coordinate, or NaN for a range that is not known.
+    /// The axis of a coordinate, a velocity, an output or `energy`. The default range is a full turn for an angle, else
+    /// the finite chart of the coordinate, else NaN for an unknown range.
     ///
     /// # Errors
     /// [`Unknown`] if no quantity has this name.
@@ -103,7 +103,7 @@ impl Axis {
             false => value,
         };
         let part = (value - low) / (high - low);
-        // Rounding must not yield an index after the last cell.
+        // Rounding must not give an index after the last cell.
         (0.0..1.0)
             .contains(&part)
             .then(|| ((part * self.bins as f64) as usize).min(self.bins - 1))
@@ -126,7 +126,7 @@ pub struct Density {
     pub every: f64,
     /// Time before the first counted state.
     pub discard: f64,
-    /// Number of states of a member that reaches its end.
+    /// Number of states of a member whose run reaches its end.
     pub samples: u64,
 }
 
@@ -136,7 +136,8 @@ impl Density {
         self.axes[0].bins * self.axes[1].bins
     }
 
-    /// The cell of a state, the first axis running fastest; one past the last cell for a state outside the grid.
+    /// The index of the cell of a state. The first axis runs fastest. A state outside the grid has the index one past
+    /// the last cell.
     pub fn cell(&self, point: &Point) -> usize {
         let [x, y] = &self.axes;
         let bins = x.bin(x.shown.value(point)).zip(y.bin(y.shown.value(point)));

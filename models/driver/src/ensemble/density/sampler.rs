@@ -1,4 +1,4 @@
-//! Samples the states of a run that a density counts.
+//! Sampling of the states of a run that a density counts.
 
 use super::{Density, Visits};
 use crate::model::Point;
@@ -21,8 +21,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Samples the states within a stretch of motion. Its last instant is left to the next stretch: at an impact the
-    /// state after it counts.
+    /// Samples the states within a stretch of motion. The next stretch samples its last instant, so that at an impact
+    /// the state after it counts.
     pub fn follow(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(t) = self.next_time().filter(|&t| t < end) {
@@ -30,7 +30,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Samples the state at the last instant, if it is due; returns all visits.
+    /// Samples the state at the last instant if a sample is due, and returns all visits.
     pub fn finish(mut self, t: f64, last: &Point) -> Visits {
         // Rounding may put the last sample time after the end.
         let reached = t * (1.0 + 4.0 * f64::EPSILON);

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use crate::numbers::Numbers;
 
-/// A complex number. Functions with a kink have the branch of the real part.
+/// A complex number. Functions with a kink take the branch of the real part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Complex(Complex64);
 
@@ -94,7 +94,7 @@ impl Numbers for Complex {
         if sign.0.re < 0.0 { -self } else { self }
     }
 
-    /// The angle by the logarithm of `x + i y`, for arguments that are complex themselves.
+    /// The angle `-i ln((x + i y) / sqrt(x^2 + y^2))`, also for complex `x` and `y`.
     fn atan2(self, x: Self) -> Self {
         let radius = (x * x + self * self).sqrt();
         let turn = (x.0 + Complex64::I * self.0) / radius.0;
