@@ -1,6 +1,6 @@
 """Copies the prose of files into a folder, line for line: Markdown without code, comments of Rust and Python without code in them.
 
-    text.py FOLDER FILE..
+    prose.py FOLDER FILE..
 """
 
 import itertools
