@@ -15,7 +15,7 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// Counts bytes that are allocated, or freed.
+/// Adds to the bytes that this thread holds; freed bytes are negative.
 fn hold(bytes: isize) {
     let _ = HELD.try_with(|held| {
         held.set(held.get() + bytes);
@@ -39,7 +39,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// The allocations that `work` makes on this thread, with [`Counting`] as the global allocator.
+/// Number of allocations that `work` makes on this thread, with [`Counting`] as the global allocator.
 pub fn allocations(work: impl FnOnce()) -> u64 {
     let before = COUNT.with(Cell::get);
     work();

@@ -47,10 +47,10 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 }
 
 /// Compares nested arrays of numbers component by component: relative error at most `tolerance`, absolute where the
-/// expected value is 0. Describes the first mismatch.
+/// expected value is 0.
 ///
 /// # Errors
-/// The first component that differs, or a difference of shape.
+/// Describes the first component that differs, or the difference of shape.
 pub fn compare(path: &str, actual: &Value, expected: &Value, tolerance: f64) -> Result<(), String> {
     if let (Some(actual), Some(expected)) = (actual.as_array(), expected.as_array()) {
         if actual.len() != expected.len() {

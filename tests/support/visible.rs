@@ -7,7 +7,7 @@ use crate::reference::read;
 /// The systems of `reference/verdicts_visible.json`.
 ///
 /// # Panics
-/// If the file has not the documented form.
+/// If the file does not have the documented form.
 pub fn visible_systems() -> Vec<Value> {
     let file = read("verdicts_visible");
     let systems = file["systems"].as_array().expect("systems");
@@ -45,7 +45,7 @@ impl Scheme {
     /// A system of the file.
     ///
     /// # Panics
-    /// If the file has not the documented form.
+    /// If the file does not have the documented form.
     pub fn of(system: &Value) -> Self {
         let list = |value: &Value| value.as_array().expect("a list").clone();
         let text = |value: &Value| value.as_str().expect("a text").to_owned();
@@ -111,7 +111,7 @@ impl Scheme {
 /// The body of a `model!` for a system of the file.
 ///
 /// # Panics
-/// If the file has not the documented form.
+/// If the file does not have the documented form.
 pub fn declaration(system: &Value) -> String {
     Scheme::of(system).declaration()
 }
