@@ -103,8 +103,8 @@ macro_rules! row {
 /// Squared radius of a table on which the blade often meets the border.
 const SMALL: f64 = 4.0;
 
-/// All rows. The row `free, global form` has no effects on either side, since the model in global form would project and the
-/// scene would not.
+/// All rows. The row `free, global form` has no effects on either side, since the model in global form would project
+/// and the scene would not.
 fn rows() -> [Row; 9] {
     [
         row!("free", blade::Free::default(), Free::default()),
@@ -149,7 +149,7 @@ fn rows() -> [Row; 9] {
     ]
 }
 
-/// Numbers of steps of the two runs that are counted. The count of the short run is subtracted from that of the long one.
+/// Numbers of steps of the two counted runs. The count of the short run is subtracted from that of the long one.
 const STEPS: [u64; 2] = [100, 1100];
 
 /// Counts of `valgrind`.

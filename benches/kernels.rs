@@ -1,5 +1,5 @@
-//! Times of single calls of generated and handwritten functions (rate, energy, impact), of a step, and of an impact in a
-//! run.
+//! Times of single calls of generated and handwritten functions (rate, energy, impact), of a step, and of an impact in
+//! a run.
 //!
 //! `cargo bench --package dalembert-benches --bench kernels [-- FILTER]`
 
@@ -49,8 +49,8 @@ impl<'c, S: Described> Kernels<'c, S> {
         }
     }
 
-    /// Times a function. The system is hidden from the optimiser, so that every call reads the parameters and forms their
-    /// quotients.
+    /// Times a function. The system is hidden from the optimiser, so that every call reads the parameters and forms
+    /// their quotients.
     fn time<R>(mut self, form: &str, function: impl Fn(&S, &State<S>) -> R) -> Self {
         let mut k = 0;
         self.group.bench_function(form, |bencher| {
@@ -318,9 +318,9 @@ fn flight<S: System, E: Effect<S> + Clone>(
     group.bench_function(name, |bencher| bencher.iter(fly));
 }
 
-/// Cost of one impact in a run: the difference between the times of `one impact` and `none`. It includes event location,
-/// the impact, the restart and its steps. The table of `none` is so large that there is no impact. The run `not watched` has
-/// no surfaces.
+/// Cost of one impact in a run: the difference between the times of `one impact` and `none`. It includes event
+/// location, the impact, the restart and its steps. The table of `none` is so large that there is no impact. The run
+/// `not watched` has no surfaces.
 fn located(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("flight/point_billiard");
     let point = PointBilliard::default();

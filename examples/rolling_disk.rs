@@ -1,5 +1,5 @@
-//! A disk that rolls upright without slipping. The macro proves the claims of the model; a run compares the motion with its
-//! closed form.
+//! A disk that rolls upright without slipping. The macro proves the claims of the model; a run compares the motion with
+//! its closed form.
 //!
 //! `cargo run --release -p dalembert-examples --example rolling_disk`
 

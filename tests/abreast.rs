@@ -23,8 +23,8 @@ dalembert::model! {
 
 type Results<S> = Vec<Result<Run<<S as VectorField>::State>, StartError>>;
 
-/// The members of an ensemble. Parameters and lengths of runs alternate. Some runs have length 0, one has a budget of three
-/// steps, and one starts at NaN.
+/// The members of an ensemble. Parameters and lengths of runs alternate. Some runs have length 0, one has a budget of
+/// three steps, and one starts at NaN.
 struct Members<S: VectorField> {
     systems: [S; 2],
     states: Vec<S::State>,

@@ -9,8 +9,8 @@ use dalembert_expr::{ExprId, RealPoint, SamplePoints, SymbolId};
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::sampling::system;
 
-/// Bound on the error relative to the largest component, or to 1 if that is larger. The states of the files are rounded to
-/// `f64`.
+/// Bound on the error relative to the largest component, or to 1 if that is larger. The states of the files are rounded
+/// to `f64`.
 const TOLERANCE: f64 = 1e-12;
 
 /// A model derived again from its source text.
@@ -101,8 +101,8 @@ fn check_constraints(name: &str) {
     assert_eq!(rates, vec![0; residuals.len()], "{name}");
 }
 
-/// Checks if `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)` is 0. It is if neither time nor forces nor affine parts of
-/// constraints act.
+/// Checks if `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)` is 0. It is if neither time nor forces nor affine parts
+/// of constraints act.
 fn check_energy(name: &str, is_kept: bool) {
     let (mut model, _, dynamics) = derive(name);
     let lagrangian = model.lagrangian.whole;

@@ -1,5 +1,5 @@
-//! Certificates of all shipped models and of the models below, checked by a program in another language that shares no code
-//! with the generator.
+//! Certificates of all shipped models and of the models below, checked by a program in another language that shares no
+//! code with the generator.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -263,8 +263,8 @@ const BRACKETS: &str = "
         claims { integrable: momentum(theta), momentum(phi); }
     }";
 
-/// The symplectic form on leaves of integrable constraints and across transitions to leaves of another mode, and forms with
-/// constraints that are not linear.
+/// The symplectic form on leaves of integrable constraints and across transitions to leaves of another mode, and forms
+/// with constraints that are not linear.
 const LEAVES: &str = "
     pub Hoop {
         coordinates { x; y; }
@@ -341,8 +341,8 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes the certificate of a model and returns its path. `forms:wall` names the model `wall` of [`FORMS`]; `brackets:` and
-/// `leaves:` work alike.
+/// Writes the certificate of a model and returns its path. `forms:wall` names the model `wall` of [`FORMS`];
+/// `brackets:` and `leaves:` work alike.
 fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{}.json", model.replace(':', "_")));
     let place = path.to_str().expect("a path");
@@ -424,7 +424,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     assert_eq!(unchecked, None, "{text}");
 }
 
-/// Changes that make a claim of a certificate false: the model, the path within the parts of the document, and the new value.
+/// Changes that make a claim of a certificate false: the model, the path in the parts of the document, the new value.
 const TAMPERED: [(&str, &str, &str); 30] = [
     (
         "double_pendulum",

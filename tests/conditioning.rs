@@ -1,5 +1,5 @@
-//! Nearly dependent constraints and very different inertias. The vector field keeps its digits because the constraint mass
-//! matrix is never formed.
+//! Nearly dependent constraints and very different inertias. The vector field keeps its digits because the constraint
+//! mass matrix is never formed.
 
 use dalembert::{Fault, Instance, System, VectorField};
 use dalembert_models::RollingDisk;

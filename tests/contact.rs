@@ -1,4 +1,4 @@
-//! Motion along surfaces after impacts. A surface holds the motion at `h = 0` and releases it where it would have to pull.
+//! Motion along surfaces after impacts. A surface keeps the motion at `h = 0` and releases it instead of pulling.
 
 use core::ops::ControlFlow;
 

@@ -1,8 +1,8 @@
 //! Cost of expansion: time per model, time of verdicts on densities, and growth with the N-link chain.
 //!
-//! The bounds are those of a user's build. Cargo builds procedural macros without optimisation in every profile; each model
-//! must then expand in under a second. With optimisation it must expand in under 50 ms. Times are the shortest of five. On a
-//! slow machine the bound is relative to the time of reading the generated text as tokens.
+//! The bounds are those of a user's build. Cargo builds procedural macros without optimisation in every profile; each
+//! model must then expand in under a second. With optimisation it must expand in under 50 ms. Times are the shortest of
+//! five. On a slow machine the bound is relative to the time of reading the generated text as tokens.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -31,8 +31,8 @@ struct Expansion {
     length: usize,
 }
 
-/// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code. The chain of 16 has a
-/// ratio of up to 2.74, depending on the load of the machine.
+/// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code. The chain of 16
+/// has a ratio of up to 2.74, depending on the load of the machine.
 const READINGS: f64 = 3.0;
 /// On a slow machine, largest ratio of the time of a model's claims to that of an expansion without them.
 const EXPANSIONS: u32 = 10;
@@ -187,8 +187,8 @@ fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
     assert!(time < milliseconds(1000, 7000), "{time:?}");
 }
 
-/// Bounds the time of claims of existence, which includes conditions on parameters, on bodies with five coordinates and on a
-/// train of five.
+/// Bounds the time of claims of existence, which includes conditions on parameters, on bodies with five coordinates and
+/// on a train of five.
 #[test]
 fn claims_of_bodies_and_trains_are_examined_in_time() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";

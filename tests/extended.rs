@@ -1,4 +1,4 @@
-//! Runs in more than double precision, compared with closed forms and digits of other programs, and the ends of such runs.
+//! Runs in more than double precision: comparison with closed forms and digits of other programs, and ends of runs.
 
 use core::ops::ControlFlow;
 

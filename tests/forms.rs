@@ -27,8 +27,8 @@ const QUANTITIES: [&str; 7] = [
     "mu_C_density_frame",
 ];
 
-/// The frame of the angular velocity in space is singular where the Euler angles are. There the rates of the angles do not
-/// exist, but the energy does.
+/// The frame of the angular velocity in space is singular where the Euler angles are. There the rates of the angles do
+/// not exist, but the energy does.
 #[test]
 fn a_frame_ends_where_its_angles_do() {
     let ball = shipped("rolling_ball_euler").large([]);

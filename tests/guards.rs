@@ -1,5 +1,5 @@
-//! Conditions that hold in a small part of a step, and edges of charts that the motion crosses for a moment. Every integrator
-//! finds them and their beginnings.
+//! Conditions that hold in a small part of a step, and edges of charts that the motion crosses for a moment. Every
+//! integrator finds them and their beginnings.
 
 use dalembert::Outcome;
 use dalembert_cli::Integrator;

@@ -1,5 +1,5 @@
-//! Hard cases with stored values of 50 or more digits: whispering galleries, grazes, accumulations, small inertia, a glancing
-//! wall, long runs of the disk.
+//! Hard cases with stored values of 50 or more digits: whispering galleries, grazes, accumulations, small inertia, a
+//! glancing wall, long runs of the disk.
 
 use dalembert::law::Law;
 use dalembert::numbers::{Numbers, TaylorModel};
@@ -55,7 +55,7 @@ fn whispering_galleries_keep_their_angle() {
             let end = Course::new(&table, &[1.0, 0.0], &start, 1e6)
                 .impacts(count)
                 .run(setting);
-            // The angle with the tangent has the relative error u/angle. Each chord adds twice the angle to the polar angle.
+            // The relative error of the angle with the tangent is u/angle. A chord adds two of it to the polar angle.
             let bound = 256.0 * f64::EPSILON * count as f64 / angle;
             assert_eq!(end.hits.len() as u64, count, "{}", setting.words());
             assert_near("t", &[end.t], &[number(&case["t_n"])], bound);
@@ -87,8 +87,8 @@ fn grazes_of_a_disk_are_impacts_or_not_as_their_offset_says() {
                     "{label}"
                 );
             }
-            // The normal speed at the wall is the root of twice the offset. Its error is the rounding error of the gap divided
-            // by the speed.
+            // The normal speed at the wall is the root of twice the offset. Its error is the rounding error of the gap
+            // divided by the speed.
             let bound = 64.0 * f64::EPSILON / (2.0 * offset.abs()).sqrt().max(1e-8);
             assert_near(&label, &end.q, &numbers(&case["q_at_t=4"]), 2.0 * bound);
             if let (Some(hit), Some(t)) = (end.hits.first(), case.get("t")) {
@@ -174,7 +174,7 @@ fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
         let [q, qdot] = ["q", "qdot_minus"].map(|name| vector(&numbers(&case[name])));
         let state = edge.state(0.0, &q, &qdot).expect("a state");
         let contact = edge.contact(0, 0.0, &state).expect("a contact");
-        // Momenta of size 1 have a normal component of size theta. An impulse of size 2/theta carries their rounding errors.
+        // Momenta of size 1 have a normal component of size theta. Impulses of size 2/theta carry rounding errors.
         let bound =
             1e-14 * (1.0 + 100.0 * f64::EPSILON.sqrt() / number(&case["theta"]).powi(2).max(1e-16));
         let rho = number(&case["geometry"]["ratio_r"]);
@@ -292,8 +292,8 @@ fn rising_treads_are_hit_where_proposition_8_says() {
             assert_near("accumulation", &[t], &[number(&case["zeno_x=t"])], 1e-10);
             assert!(end.hits.len() >= 3, "{} impacts", end.hits.len());
             for (hit, right) in end.hits.iter().zip(cases(&case, "impacts")) {
-                // The error of the time is the rounding error of the gap divided by the gap rate, which shrinks with the
-                // speed.
+                // The error of the time is the rounding error of the gap divided by the gap rate, which shrinks with
+                // the speed.
                 let speed = number(&right["ydot_plus"]);
                 let bound = 1e-14 / speed;
                 assert_near("t", &[hit.t], &[number(&right["x=t"])], bound);

@@ -73,8 +73,8 @@ fn a_held_input_acts_in_every_mode() {
     assert_near("v", &[end.state[1] / sledge.m], &[v], 1e-12);
 }
 
-/// `u = -m v` makes the speed fall as `exp(-t)` on ice, and as `exp(-(1 + c/m) t)` on gravel. An input function finds the mode
-/// in the last component of the state.
+/// `u = -m v` makes the speed fall as `exp(-t)` on ice, and as `exp(-(1 + c/m) t)` on gravel. An input function finds
+/// the mode in the last component of the state.
 #[test]
 fn feedback_acts_in_every_mode() {
     let sledge = Sledge::default();

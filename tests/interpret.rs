@@ -1,5 +1,5 @@
-//! Compares loaded code with the interpreter of the program, and expressions with finite differences of the Lagrangian and of
-//! constraints.
+//! Compares loaded code with the interpreter of the program, and expressions with finite differences of the Lagrangian
+//! and of constraints.
 
 use dalembert::describe::Description;
 use dalembert::{Described, Instance, StateVector, System, VectorField};
@@ -19,8 +19,8 @@ fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// Loaded code equals the interpreter to the bit, since it does the same operations in the same order. Emitted code does too
-/// (`tests/erased`).
+/// Loaded code equals the interpreter to the bit, since it does the same operations in the same order. Emitted code
+/// does too (`tests/erased`).
 #[test]
 fn loaded_code_is_what_the_interpreter_executes() {
     let mut states = 0;
@@ -70,7 +70,7 @@ fn every_function_is_emitted_as_it_is_interpreted() {
     assert_eq!(emitted.as_slice(), interpreted);
 }
 
-/// Asserts that the force `f = dL/dq + F` of the derivation without the applied forces `F` equals central differences of L.
+/// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals differences of L.
 fn assert_force_is_differenced(system: &Large) {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);
@@ -143,8 +143,8 @@ fn programs_are_well_formed() {
     }
 }
 
-/// Asserts that the field keeps the value of every constraint, even off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences of
-/// the residual expression along the rate. Returns the number of constraints.
+/// Asserts that the field keeps the value of every constraint, even off it: `d/dt (eta(qdot) + eta_0) = 0`, by
+/// differences of the residual expression along the rate. Returns the number of constraints.
 fn assert_constraints_are_kept(system: &Large) -> usize {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);

@@ -45,7 +45,7 @@ const OWNERS: &str = "numbers/src/held.rs";
 /// The type of an owner on the heap.
 const OWNER: &[&str] = &["Box<"];
 
-/// Asserts that no line of code in a folder contains these texts. Comments may, and [`OWNERS`] may contain an [`OWNER`].
+/// Asserts that no code in a folder contains these texts. Comments may, and [`OWNERS`] may contain an [`OWNER`].
 fn assert_absent(folder: &str, forbidden: &[&str]) {
     for (path, text) in sources(folder) {
         // Tests of a stage may run later stages.
@@ -284,8 +284,8 @@ fn the_project_stands_alone() {
     }
 }
 
-/// Generated functions hide constants with the names of their arguments. The generator lists these names, and the runtime has
-/// a function for each.
+/// Generated functions hide constants with the names of their arguments. The generator lists these names, and the
+/// runtime has a function for each.
 #[test]
 fn the_arguments_of_generated_functions_have_one_list() {
     let read = |path| std::fs::read_to_string(root().join(path)).expect("text");

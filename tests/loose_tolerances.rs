@@ -1,8 +1,8 @@
 //! Impacts at loose tolerances have fewer digits, but none is invented and none is missed.
 //!
-//! The motion of the disk on its table is chaotic. At the tolerance 1e-3 a run soon follows another motion than the exact one,
-//! and may meet the edges ten times as often. The event search is still right: from the state after each impact of the run,
-//! the exact motion must meet the same surface next, at the same time up to the error of one flight.
+//! The motion of the disk on its table is chaotic. At the tolerance 1e-3 a run soon follows another motion than the
+//! exact one, and may meet the edges ten times as often. The event search is still right: from the state after each
+//! impact of the run, the exact motion must meet the same surface next, at the same time up to the error of one flight.
 
 use core::ops::ControlFlow;
 
@@ -18,8 +18,8 @@ fn disk() -> Model {
     shipped("rolling_disk").model()
 }
 
-/// Allowed error of the times of impacts in seconds, divided by the tolerance. The edges of the disk move at 0.1 to 0.3 m/s,
-/// the error of a step may be the tolerance in metres, and impacts are oblique.
+/// Allowed error of the times of impacts in seconds, divided by the tolerance. The edges of the disk move at 0.1 to 0.3
+/// m/s, the error of a step may be the tolerance in metres, and impacts are oblique.
 const LATE: f64 = 30.0;
 
 /// One impact.
@@ -114,15 +114,16 @@ fn flights_of_dop853_are_exact() {
     assert_flights_are_exact(Integrator::Dop853, 1e-4);
 }
 
-/// Allowed error of the gap in a loose run, divided by the tolerance. Gaps are 1 in the middle of the table, whose half axes
-/// are 0.15 and 0.2, and the error of a step may be the tolerance in metres. A shallow hit may be late by more than [`LATE`].
+/// Allowed error of the gap in a loose run, divided by the tolerance. Gaps are 1 in the middle of the table, whose half
+/// axes are 0.15 and 0.2, and the error of a step may be the tolerance in metres. A shallow hit may be late by more
+/// than [`LATE`].
 const WRONG: f64 = 30.0;
 
 /// Number of moments of a flight that are compared.
 const MOMENTS: usize = 64;
 
-/// Asserts that in every flight of a run the exact motion stays inside, up to the tolerance, and ends on the surface of the
-/// impact.
+/// Asserts that in every flight of a run the exact motion stays inside, up to the tolerance, and ends on the surface of
+/// the impact.
 fn assert_flights_stay_inside(integrator: Integrator, tol: f64) {
     let (name, disk) = (integrator.name(), disk());
     let wrong = WRONG * tol;

@@ -1,5 +1,5 @@
-//! No impact is missed, and none is invented. After every impact of a run, the next one is computed independently in closed
-//! form from the state of the run. The run must find this impact next.
+//! No impact is missed, and none is invented. After every impact of a run, the next one is computed independently in
+//! closed form from the state of the run. The run must find this impact next.
 
 use core::ops::ControlFlow;
 
@@ -23,8 +23,8 @@ struct Next {
 /// The next impact in a table in closed form, from a point inside or from one on the wall that moves inwards.
 type Ahead = fn(&Model, [f64; 2], [f64; 2]) -> Next;
 
-/// Time at which a line that starts in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the larger root, in the
-/// form without cancellation.
+/// Time at which a line that starts in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the larger root,
+/// in the form without cancellation.
 fn leaves(a: f64, b: f64, c: f64) -> f64 {
     let root = (b * b - a * c.max(0.0)).sqrt();
     if b >= 0.0 {

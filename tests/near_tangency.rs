@@ -1,13 +1,13 @@
-//! Motions that approach a surface nearly tangentially. An impact that may be due to the error of the integrator is flagged as
-//! a graze.
+//! Motions that approach a surface nearly tangentially. An impact that may be due to the error of the integrator is
+//! flagged as a graze.
 
 use dalembert::{EventLog, Instance, Outcome};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::Course;
 use dalembert_stability::text::{Model, Text};
 
-/// `r' = 1 - r`, `theta' = 1` with a reset on a line that the limit circle `r = 1` touches (W. Clark, thesis, Example IV.12).
-/// From inside the circle the line is never reached.
+/// `r' = 1 - r`, `theta' = 1` with a reset on a line that the limit circle `r = 1` touches (W. Clark, thesis, Example
+/// IV.12). From inside the circle the line is never reached.
 static TANGENT: Text = Text::new(
     "Tangent {
         coordinates { x; y; }

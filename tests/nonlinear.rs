@@ -1,4 +1,4 @@
-//! Constraints that are not linear in the velocities: Chetaev's rule, projection to the constraint, and undefined quantities.
+//! Constraints that are not linear in the velocities: Chetaev's rule, projection, and quantities that are not defined.
 
 use dalembert::law::Law;
 use dalembert::projection::Projection;

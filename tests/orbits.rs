@@ -1,4 +1,4 @@
-//! Periodic orbits of sections and their Floquet multipliers, compared with references, closed forms, and differences of maps.
+//! Periodic orbits of sections and their Floquet multipliers, compared with references, closed forms and differences.
 
 use dalembert::variations::{Orbit, OrbitError, SectionError};
 use dalembert::{Described, Law, Outcome, Tangent, VectorField};
@@ -412,8 +412,8 @@ fn multipliers(point: &Value) -> Vec<f64> {
     all.map(|it| it["re"].as_f64().expect("a number")).collect()
 }
 
-/// The reference slope solves `1 + trace + determinant = 0` for the return map of a Runge-Kutta method of fixed step, with
-/// extrapolated central differences. It has about nine digits.
+/// The reference slope solves `1 + trace + determinant = 0` for the return map of a Runge-Kutta method of fixed step,
+/// with extrapolated central differences. It has about nine digits.
 #[test]
 fn the_compass_walker_doubles_its_period_where_a_multiplier_passes_minus_one() {
     const SLOPE: f64 = 0.015_088_437_7;

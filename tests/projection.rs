@@ -69,8 +69,8 @@ fn check(model: &Model, law: Option<Law>, q: [f64; 2], qdot: [f64; 2]) {
         let run = course.observed(integrator, &mut kept);
         let case = format!("{} {law:?} {q:?} {qdot:?}", integrator.name());
         match law {
-            // NOTE: the wall is met at x = 0, where the gap is a rounding error of x and no force acts towards or away from
-            // the wall. Rounding errors decide whether the pendulum rests there.
+            // NOTE: the wall is met at x = 0, where the gap is a rounding error of x and no force acts towards or away
+            // from the wall. Rounding errors decide whether the pendulum rests there.
             Some(Law::ImpactPlastic) => assert!(
                 matches!(
                     run.outcome,

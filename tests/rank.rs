@@ -1,4 +1,4 @@
-//! Constraints whose rank drops at one instant of the motion. The run ends there, for every step size, and nowhere else.
+//! Constraints whose rank drops at one instant of the motion. For every step size the run ends there and nowhere else.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -162,7 +162,7 @@ impl<'a> Start<'a> {
     }
 }
 
-/// Asserts that the run ended where this constraint depends on the others, and that a component of its state is near a value.
+/// Asserts that the run ended where this constraint depends on the others, with a component of its state near a value.
 #[track_caller]
 fn assert_drop<S: StateVector>(
     case: &str,
@@ -355,6 +355,6 @@ fn no_shipped_model_is_watched() {
     let watched = systems().filter(|system| system.can_lose_rank());
     let names: Vec<&str> = watched.map(|system| system.description().name).collect();
     assert!(systems().count() > 30);
-    // The forms of this test system are dependent where `(2 + x^2) (1 + y^2) - y sin(theta)` vanishes, which is nowhere.
+    // The forms of this system are dependent where `(2 + x^2) (1 + y^2) - y sin(theta)` vanishes, which is nowhere.
     assert_eq!(names, ["mixed_disk"]);
 }

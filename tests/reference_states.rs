@@ -68,8 +68,8 @@ impl Mismatches {
             .extend(compare(path, actual, expected, TOLERANCE).err());
     }
 
-    /// Same as [`Mismatches::check`], with an allowance for components that almost vanish by cancellation: the effect of
-    /// rounding the given 30 digits to `f64`. No arithmetic on the rounded numbers can do better.
+    /// Same as [`Mismatches::check`], with an allowance for components that almost vanish by cancellation: the effect
+    /// of rounding the given 30 digits to `f64`. No arithmetic on the rounded numbers can do better.
     fn check_conditioned(
         &mut self,
         path: &str,

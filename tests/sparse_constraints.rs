@@ -1,5 +1,5 @@
-//! Many constraints, each coupled to few others. A chain in the positions of its masses with rods as constraints is compared
-//! with the same chain in the angles of its rods.
+//! Many constraints, each coupled to few others. A chain in the positions of its masses with rods as constraints is
+//! compared with the same chain in the angles of its rods.
 
 use dalembert::law::Law;
 use dalembert::{Described, Fault, Impacting, Instance, System, VectorField};

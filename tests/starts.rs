@@ -1,5 +1,5 @@
-//! Starts that a declaration leaves open: the report of `check`, and completion of positions by the constraints; motions that
-//! continue with other parameters.
+//! Starts that a declaration leaves open: the report of `check`, and completion of positions by the constraints;
+//! motions that continue with other parameters.
 
 use dalembert::{Instance, Keep, Outcome, ParameterError, StateError, System};
 use dalembert_cli::{Exit, Integrator};

@@ -1,5 +1,5 @@
-//! With the feature `strict` every build of a program computes the same bits: unoptimised, optimised, and for a machine with
-//! fused multiply-add.
+//! With the feature `strict` every build of a program computes the same bits: unoptimised, optimised, and for a machine
+//! with fused multiply-add.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +10,7 @@ use dalembert_tests::golden;
 struct Build {
     name: &'static str,
     profile: &'static str,
-    /// Target folder, one for each machine: the C code of the elementary functions is not rebuilt if only the machine changes.
+    /// Target folder, one for each machine, so that a change of the machine does not rebuild the C code.
     target: &'static str,
     /// Flags of the Rust compiler for the machine. The C compiler gets `cpu`.
     flags: &'static str,

@@ -1,4 +1,4 @@
-//! Power series of motions: emitted series compared with interpreted ones, with functions and with motions in closed form.
+//! Power series of motions: emitted series compared with interpreted ones, with functions, and with closed forms.
 
 use dalembert::jet::{Jets, LENGTH};
 use dalembert::numbers::Row;
@@ -67,8 +67,8 @@ fn expand<S: TaylorField>(
         .collect()
 }
 
-/// Asserts that coefficients agree with those of the interpreter to 1e-5 of the largest coefficient of their order. The first
-/// coefficient is the rate up to rounding errors, since constant factors are multiplied in another order.
+/// Asserts that coefficients agree with those of the interpreter to 1e-5 of the largest coefficient of their order. The
+/// first coefficient is the rate up to rounding errors, since constant factors are multiplied in another order.
 fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state: S::State) {
     let name = system.description().name;
     let (t, unit, order) = (0.25, 0.125, 12);

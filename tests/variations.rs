@@ -130,8 +130,8 @@ fn allowed_directions(system: &Large, t: f64, state: &State) -> Vec<Tangent<Larg
     directions
 }
 
-/// Compares the augmented differentials of a reference file in the chart of positions and independent velocities. Returns
-/// their number.
+/// Compares the augmented differentials of a reference file in the chart of positions and independent velocities.
+/// Returns their number.
 fn check_reference(text: &Text, name: &str) -> usize {
     let file = read(name);
     let system = with_parameters(text, &file);

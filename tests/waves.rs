@@ -122,8 +122,8 @@ const DEFAULT: Policies = Policies {
     split: dalembert::policy::Split::First,
 };
 
-/// Positions and velocities of `count` balls. The first `arriving` come with the speed 1 from the distance 1; the others touch
-/// at rest.
+/// Positions and velocities of `count` balls. The first `arriving` come with the speed 1 from the distance 1; the
+/// others touch at rest.
 fn arrivals(count: usize, arriving: usize) -> (Vec<f64>, Vec<f64>) {
     let place = |i: usize| i as f64 - f64::from(u8::from(i < arriving));
     let speed = |i: usize| f64::from(u8::from(i < arriving));
@@ -233,7 +233,7 @@ fn waves_that_meet_are_flagged_where_their_order_matters() {
 
 #[test]
 fn a_light_ball_between_two_heavy_ones_is_struck_as_often_as_it_must_be() {
-    // Impacts are reflections in a wedge of the angle `atan(sqrt(m (2 + m)))`. Their number is that of angles that fit in pi.
+    // Impacts are reflections in a wedge of the angle `atan(sqrt(m (2 + m)))`. There is one for each angle within pi.
     for light in [1e-4, 1e-6] {
         let masses = [1.0, light, 1.0];
         let balls = balls(&masses);

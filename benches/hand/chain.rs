@@ -64,8 +64,8 @@ fn directions<T: Number, const N: usize>(theta: &[T; N]) -> ([T; N], [T; N]) {
     (sin, cos)
 }
 
-/// `g^{-1} p` by LDL^T of the metric `g_jk = (N - max(j, k)) m l^2 cos(theta_j - theta_k)`, with indices from 0. The rows of
-/// the upper triangle are used, so that the inner loops run through memory in order.
+/// `g^{-1} p` by LDL^T of the metric `g_jk = (N - max(j, k)) m l^2 cos(theta_j - theta_k)`, with indices from 0. The
+/// rows of the upper triangle are used, so that the inner loops run through memory in order.
 #[inline(always)]
 fn velocities<T: Number, const N: usize>(
     rods: Rods<T>,
@@ -166,8 +166,8 @@ fn total<T: Number, const N: usize>(rods: Rods<T>, cos: &[T; N], p: &[T; N], ome
 /// Velocities and the inertia carried by each link, in two passes over the chain.
 ///
 /// Let `P_i` be the momentum of all bobs from link `i` down. Then `p_i = l t_i.P_i` with `t_i = (cos, sin)` along the
-/// motion of the link. The pass from the last link up finds `P_i = A_i v_{i-1} + b_i`, where the symmetric matrix `A_i` is
-/// the inertia that the bob above feels. The pass from the first link down finds the velocities one by one.
+/// motion of the link. The pass from the last link up finds `P_i = A_i v_{i-1} + b_i`, where the symmetric matrix `A_i`
+/// is the inertia that the bob above feels. The pass from the first link down finds the velocities one by one.
 #[inline(always)]
 fn link_by_link<const N: usize>(
     rods: Rods<f64>,
@@ -200,7 +200,7 @@ fn link_by_link<const N: usize>(
     (omega, momenta)
 }
 
-/// The rate, link by link: `dL/dtheta_i = l omega_i n_i.P_i - (N - i) m g l sin(theta_i)`, with `n_i` the derivative of `t_i`.
+/// The rate by links: `dL/dtheta_i = l omega_i n_i.P_i - (N - i) m g l sin(theta_i)`, where `n_i` is `dt_i/dtheta_i`.
 #[inline]
 pub fn rate_by_links<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
     let rods = chain.rods();

@@ -82,8 +82,8 @@ pub fn energy<T: Number>(sleigh: &ChaplyginSleigh, [_, _, theta, p_x, p_y, p_the
     ((p_x * p_x + p_y * p_y) / m + moment * moment / i).times(0.5)
 }
 
-/// The gradient of the gap of a tip (0 front, 1 back) in the frame of D, along the blade and turning, and sine and cosine
-/// of the angle.
+/// The gradient of the gap of a tip (0 front, 1 back) in the frame of D, along the blade and turning, and sine and
+/// cosine of the angle.
 #[inline(always)]
 fn tip_gradient<T: Number>(
     sleigh: &ChaplyginSleigh,

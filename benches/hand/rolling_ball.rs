@@ -54,7 +54,7 @@ pub fn impact<T: Number>(
     [x, y, phi, theta, psi, w_x - eps * n_y, w_y + eps * n_x, w_z]
 }
 
-/// The rate on the rotating table, where the rate of the angular velocity is proportional to the velocity of the centre.
+/// The rate on the rotating table, where the angular acceleration is proportional to the velocity of the centre.
 #[inline(always)]
 pub fn rate_on_table<T: Number>(
     ball: &BallOnRotatingTable,

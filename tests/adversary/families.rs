@@ -52,13 +52,13 @@ fn flat(count: usize) -> String {
     format!("lagrangian = ({})/2;", terms.join(" + "))
 }
 
-/// A drag along `x` that grows with the other velocities: `-dot(x)*alpha(qdot)*d(x)` with a form alpha without `d(x)`. A
-/// density `exp(G)` needs `dG = alpha`.
+/// A drag along `x` that grows with the other velocities: `-dot(x)*alpha(qdot)*d(x)` with a form alpha without `d(x)`.
+/// A density `exp(G)` needs `dG = alpha`.
 fn potential(draw: &mut Draw) -> Case {
     let count = 3 + draw.below(3);
     let which: Vec<usize> = (1..count).collect();
-    // NOTE: the drawn function may be constant, like the product of `exp(cos(th)^2)` and `exp(sin(th)^2)`. The sine keeps
-    // the force from being zero, which would be refused.
+    // NOTE: the drawn function may be constant, like the product of `exp(cos(th)^2)` and `exp(sin(th)^2)`. The sine
+    // keeps the force from being zero, which would be refused.
     let sine = Function::Sin(Box::new(Coordinate(1)));
     let potential = Sum(vec![function(draw, &IS_ANGLE, &which, 2), sine]);
     let mut slopes: Vec<Vec<Function>> = which
@@ -284,8 +284,8 @@ fn systems(draw: &mut Draw) -> Case {
     }
 }
 
-/// Translations of a Lagrangian with an added form. They are symmetries if and only if the Lie derivative of the form along
-/// them is exact.
+/// Translations of a Lagrangian with an added form. They are symmetries if and only if the Lie derivative of the form
+/// along them is exact.
 fn gauge(draw: &mut Draw) -> Case {
     let count = 3;
     let added = function(draw, &IS_ANGLE, &[0, 1, 2], 2);

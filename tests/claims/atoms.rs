@@ -1,5 +1,5 @@
-//! Verdicts on models that contain exponentials, roots, bare angles, logarithms and relations between them; refusals; and
-//! singular models. A verdict may stay open, but is never wrong.
+//! Verdicts on models that contain exponentials, roots, bare angles, logarithms and relations between them; refusals;
+//! and singular models. A verdict may stay open, but is never wrong.
 
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer, refusal};
 use dalembert_tests::verified::verified;
@@ -122,7 +122,7 @@ fn unrelated_atoms_are_not_taken_for_related_ones() {
     }
 }
 
-/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`: on one side of `x = 1/5` there is a density, on the other none.
+/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`. There is a density on one side of `x = 1/5` only.
 #[test]
 fn a_root_that_hides_an_absolute_value_proves_nothing() {
     let source = particle("x; y; z;", FLAT, "y + (sqrt((x - 1/5)^2) - (x - 1/5))*x");

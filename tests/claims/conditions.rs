@@ -35,8 +35,8 @@ fn suslov_needs_a_principal_axis() {
     assert_eq!(conditions(&suslov), ["I13 = 0 and I23 = 0"]);
 }
 
-/// `b = 0` alone is not enough: it leaves the mass of the rear part off its axis. Without both offsets the blades are at one
-/// point, and the constraints are dependent where the blades are parallel.
+/// `b = 0` alone is not enough: it leaves the mass of the rear part off its axis. Without both offsets the blades are
+/// at one point, and the constraints are dependent where the blades are parallel.
 #[test]
 fn the_roller_racer_needs_both_offsets_to_vanish() {
     let mut scheme = Scheme::of(&visible_system("roller_racer"));
@@ -88,7 +88,7 @@ fn a_trailer_needs_its_axle_below_the_hitch() {
     assert_eq!(conditions(trailer), ["l1 = 0, locally"]);
 }
 
-/// The condition is a value other than 0. The verdict holds for generic values, even if the default meets the condition.
+/// The condition is a value other than 0. Verdicts are for generic values, even if the default meets the condition.
 #[test]
 fn values_at_which_the_obstruction_vanishes_are_found() {
     let particle = "Particle {

@@ -37,7 +37,7 @@ fn friction_contracts_and_what_does_no_work_on_d_does_not() {
     }
 }
 
-/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`. The density is `exp(2 k x/m)` on a line; on a circle there is none.
+/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`. On a line, not on a circle, it has the density `exp(2 k x/m)`.
 #[test]
 fn drag_quadratic_in_the_velocity_is_a_density_on_a_line() {
     let bead = |domain: &str, drag: &str| {
@@ -97,8 +97,8 @@ fn balls_on_a_turning_table_keep_a_volume() {
     verified(&table("A*(b1^2 + b2^2) + C*b3^2"));
 }
 
-/// Without constraints the volume of phase space is kept although metric and potential depend on time. With constraints that
-/// depend on time a density may exist.
+/// Without constraints the volume of phase space is kept although metric and potential depend on time. With constraints
+/// that depend on time a density may exist.
 #[test]
 fn time_enters_metric_and_constraints() {
     let free = "Free { coordinates { x; y; }

@@ -1,6 +1,6 @@
-//! Emitted implementations of `InvariantVolume`. They equal stored texts, the interpreted functions and reference values;
-//! the emitted motion keeps them. There are none without a claim or a closed form. `golden.rs` says how to accept changes of
-//! the stored texts.
+//! Emitted implementations of `InvariantVolume`. They equal stored texts, the interpreted functions and reference
+//! values; the emitted motion keeps them. There are none without a claim or a closed form. `golden.rs` says how to
+//! accept changes of the stored texts.
 
 use dalembert::describe::Report;
 use dalembert::{Described, Fault, Instance, InvariantVolume, StateVector, System};
@@ -125,8 +125,8 @@ fn vector<S: Described>(values: &[f64]) -> S::Vector {
     S::Vector::of(values)
 }
 
-/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms. `change` is added
-/// to the logarithm of the density.
+/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms. `change` is
+/// added to the logarithm of the density.
 fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 {
     let system = S::with_defaults();
     let flow = Flow {
@@ -287,8 +287,8 @@ fn a_density_without_a_formula_is_an_integral() {
     const { assert!(RouthSphere::IS_INTEGRAL && CurvedDual::IS_INTEGRAL && !FallingDisk::IS_INTEGRAL) };
     let sphere = RouthSphere::default();
     let (m, i, j, r, l) = (sphere.m, sphere.I, sphere.J, sphere.R, sphere.l);
-    // Logarithm of Chaplygin's density of a body of revolution, ln det m - 1/2 ln(I J + m (r, I r)), with r from the centre
-    // of mass to the point of contact.
+    // Logarithm of Chaplygin's density of a body of revolution, ln det m - 1/2 ln(I J + m (r, I r)), with r from the
+    // centre of mass to the point of contact.
     let expected = |q: &<RouthSphere as System>::Vector| {
         let (sin, cos) = q[3].sin_cos();
         let [across, along] = [r * sin, r * cos + l];

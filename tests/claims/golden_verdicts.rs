@@ -1,5 +1,5 @@
-//! Compares verdicts on invariant densities with `reference/verdicts_visible.json`, and with independent computations of the
-//! criterion: as expressions, and as mean curvature by finite differences.
+//! Compares verdicts on invariant densities with `reference/verdicts_visible.json`, and with independent computations
+//! of the criterion: as expressions, and as mean curvature by finite differences.
 
 use dalembert_codegen::claims::exactness::decide_local_in;
 use dalembert_codegen::claims::{Obstruction, Potential, Term, geometry_at};
@@ -104,8 +104,8 @@ fn obstructions_agree() {
     assert!(seen >= 4);
 }
 
-/// Brackets by finite differences satisfy the relation of the obstruction: the vector fields cancel, and the demands leave
-/// `delta`.
+/// Brackets by finite differences satisfy the relation of the obstruction: the vector fields cancel, and the demands
+/// leave `delta`.
 #[test]
 fn obstructions_are_those_of_the_mean_curvature() {
     for (system, decided) in decided() {

@@ -1,6 +1,6 @@
-//! Effect of impacts on an invariant volume: the remarks on each law, and the hybrid Jacobian by finite differences of the
-//! emitted impact map on D*. The Jacobian is the determinant of the map in a fibre times the ratio of the fluxes through
-//! the surface.
+//! Effect of impacts on an invariant volume: the remarks on each law, and the hybrid Jacobian by finite differences of
+//! the emitted impact map on D*. The Jacobian is the determinant of the map in a fibre times the ratio of the fluxes
+//! through the surface.
 
 use dalembert::{Described, Impacting, StateVector, System};
 use dalembert_models::ChaplyginSleigh;
@@ -119,8 +119,8 @@ fn what_each_law_does_to_the_volume_is_said() {
     );
 }
 
-/// The hybrid Jacobian at a position, `rho`, and the gap rates `[G-, G+]`. `velocity` maps independent velocities `u` to
-/// velocities on D, whose components with the indices `free` are `u`.
+/// The hybrid Jacobian at a position, `rho`, and the gap rates `[G-, G+]`. `velocity` maps independent velocities `u`
+/// to velocities on D, whose components with the indices `free` are `u`.
 fn jacobian<S: Impacting>(
     system: &S,
     surface: usize,
@@ -276,7 +276,7 @@ fn the_density_of_the_sleigh_does_not_survive_an_elastic_impact() {
     for (surface, remark) in ["front_tip", "back_tip"].iter().zip(&found.remarks) {
         let start = format!("an impact at {surface} (elastic) does not keep it: ");
         let numbers = remark.strip_prefix(&start).expect(remark);
-        // The remark is rewritten as the refutation of a claim under the surface; the Jacobian of an elastic impact is 1.
+        // The remark becomes the refutation of a claim under the surface. The Jacobian of an elastic impact is 1.
         let (values, place) = numbers.split_once(" at ").expect(remark);
         let values = values
             .replace(" times the Jacobian", "")

@@ -1,5 +1,5 @@
-//! Verdicts on densities do not depend on the choice of constraint forms, on the coordinates and their order, or on the seed
-//! of the random points.
+//! Verdicts on densities do not depend on the choice of constraint forms, on the coordinates and their order, or on the
+//! seed of the random points.
 
 use dalembert_codegen::claims::{Geometry, geometry_at};
 use dalembert_expr::SymbolId;
@@ -42,7 +42,7 @@ fn positive(scheme: &Scheme) -> String {
     format!("(2 + ({})/8)", terms.join(" + "))
 }
 
-/// The same distribution with the forms `F eta`, where the matrix `F` is regular everywhere, and the formula of `det F`.
+/// The same distribution with the forms `F eta`, where the matrix `F` is regular everywhere, and the formula `det F`.
 fn rescaled(scheme: &Scheme) -> (Scheme, String) {
     let f = positive(scheme);
     let mut other = scheme.clone();
@@ -137,7 +137,7 @@ fn other_forms_of_the_same_distribution_have_the_same_verdict_and_volume() {
     assert_eq!(compared.count(), 15);
 }
 
-/// The system in new coordinates `Q`, with `q_i = Q_i + f(Q_(i+1))`. This map is invertible. Coordinates on intervals stay.
+/// The system in coordinates `Q` with `q_i = Q_i + f(Q_(i+1))`. The map is invertible. Coordinates on intervals stay.
 fn bent(scheme: &Scheme) -> Scheme {
     let mut other = scheme.clone();
     let names: Vec<_> = scheme

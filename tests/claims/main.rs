@@ -1,4 +1,4 @@
-//! Claims that are proved, refuted or left open, compared with values and computations that share no code with the decision.
+//! Verdicts on claims, compared with values and computations that share no code with the generator's decision.
 //!
 //! | file | subject |
 //! |---|---|
@@ -8,7 +8,7 @@
 //! | `invariance.rs`, `atoms.rs` | independence of verdicts from the notation; functions and their relations |
 //! | `visible.rs`, `contradicted.rs`, `impacts.rs` | true and false claims of models; impacts |
 //! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs` | nothing is proved by accident |
-//! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, and kept by the motion |
+//! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by motions |
 
 mod atoms;
 mod conditions;

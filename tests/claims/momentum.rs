@@ -179,8 +179,8 @@ fn coefficients_that_depend_on_parameters_are_found() {
     assert_eq!(found(particle).as_deref(), Some(expected));
 }
 
-/// A wheeled robot with its centre of mass off the axle. Its density of the configuration is many-valued in the angles of the
-/// wheels.
+/// A wheeled robot with its centre of mass off the axle. Its density of the configuration is many-valued in the angles
+/// of the wheels.
 #[test]
 fn a_density_on_the_covering_space_does_not_end_the_search() {
     let robot = "Robot {

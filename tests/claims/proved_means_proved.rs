@@ -1,5 +1,5 @@
-//! False claims that were once proved, and related ones: products of absolute values, exceptional parameters, densities that
-//! are singular far from the origin, small periods, conditions of surfaces.
+//! False claims that were once proved, and related ones: products of absolute values, exceptional parameters, densities
+//! that are singular far from the origin, small periods, conditions of surfaces.
 
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_tests::claim::verdict;
@@ -304,8 +304,8 @@ fn periods_count_where_an_enclosure_excludes_0() {
     not_proved(&narrow, "density: exact");
 }
 
-/// The potential is infinite at a point of the circle, so that no motion makes the turn. A density that grows along the turn
-/// is then single-valued.
+/// The potential is infinite at a point of the circle, so that no motion makes the turn. A density that grows along the
+/// turn is then single-valued.
 #[test]
 fn circles_that_no_motion_can_go_around_prove_nothing() {
     let charged = |potential: &str| {
@@ -402,8 +402,8 @@ const BODIES: &str = "const N = 5;
         + sum(i in 1..=N - 1: sum(j in i + 1..=N: m[i]*m[j]/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2)));
     let moment = sum(i in 1..=N: m[i]*(x[i]*dot(y[i]) - y[i]*dot(x[i])));";
 
-/// Forces of any degree in the velocities. A density of the configuration needs a divergence that is linear in them; stated
-/// densities balance any degree.
+/// Forces of any degree in the velocities. A density of the configuration needs a divergence that is linear in them;
+/// stated densities balance any degree.
 #[test]
 fn forces_of_higher_degree_are_decided() {
     let pushed = |default: &str, forces: &str| {

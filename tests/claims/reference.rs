@@ -1,5 +1,5 @@
-//! Compares shipped models with `reference/invariant_densities.json`: theta on D, existence, differences of the logarithm of
-//! the density, and the effect of elastic impacts off D.
+//! Compares shipped models with `reference/invariant_densities.json`: theta on D, existence, differences of the
+//! logarithm of the density, and the effect of elastic impacts off D.
 
 use dalembert_cli::Exit;
 use dalembert_codegen::claims::{Equation, find_conditions};
@@ -53,7 +53,7 @@ fn theta_on_d_agrees() {
         for point in entry["points"].as_array().expect("points") {
             let expected = numbers(&point["theta_on_D"]);
             let q = numbers(&point["q"]);
-            // The basis of D has one unit independent velocity each. The constraints determine the dependent velocities.
+            // Vectors of the basis of D have one unit independent velocity. The constraints give the dependent ones.
             let dependent: Vec<_> = match name(&entry) {
                 "chaplygin_sleigh" | "holonomic_bead_on_ellipses" => vec![1],
                 _ => vec![0, 1],
@@ -201,8 +201,9 @@ fn elastic_impacts_off_d_keep_energy_and_constraint_momenta() {
     }
 }
 
-/// An impact multiplies the flux of `omega^n` through the surface by the ratio of the gap rates and the determinant of the
-/// map of momenta. The map is linear, so that differences are exact. The factor is `(2 dh.pi_D - dh)/dh` in closed form.
+/// An impact multiplies the flux of `omega^n` through the surface by the ratio of the gap rates and the determinant of
+/// the map of momenta. The map is linear, so that differences are exact. The factor is `(2 dh.pi_D - dh)/dh` in closed
+/// form.
 #[test]
 fn elastic_impacts_off_d_change_the_liouville_volume_as_listed() {
     for entry in entries("global_elastic_impacts") {

@@ -1,5 +1,5 @@
-//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. The motion keeps them away from `l = 0`,
-//! by finite differences.
+//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. The motion keeps them away from `l
+//! = 0`, by finite differences.
 
 use dalembert::Described;
 use dalembert_codegen::claims::{MomentumDensity, Problem, find_momentum_density};

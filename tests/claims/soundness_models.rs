@@ -1,5 +1,5 @@
-//! Claims about surfaces, densities and whole models that invite invalid proofs: hidden parts of surfaces, relations between
-//! logarithms, absolute values, models without states. See also `soundness.rs`.
+//! Claims about surfaces, densities and whole models that invite invalid proofs: hidden parts of surfaces, relations
+//! between logarithms, absolute values, models without states. See also `soundness.rs`.
 
 use dalembert::Described;
 use dalembert_tests::claim::Outcome::{Proved, Refuted, Undecided};
@@ -201,8 +201,8 @@ fn kepler_keeps_what_it_keeps() {
 }
 
 dalembert::model! {
-    /// A particle in a vortex. Its density grows along loops around the axis, which the generator does not examine; `assume`
-    /// accepts the claim.
+    /// A particle in a vortex. Its density grows along loops around the axis, which the generator does not examine;
+    /// `assume` accepts the claim.
     pub Assumed {
         coordinates { x; y; z; }
         parameters { c > 0 = 1/2; }

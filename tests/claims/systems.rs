@@ -74,8 +74,8 @@ fn balls_on_a_plane() {
     assert_eq!(verified(&ball("l, 0, k", triaxial, "")), Existence::None);
 }
 
-/// Routh's sphere has the density `exp(G) = det m/sqrt(A C + m (r, I r))` with `r` from the centre of mass to the contact
-/// (Chaplygin).
+/// Routh's sphere has the density `exp(G) = det m/sqrt(A C + m (r, I r))` with `r` from the centre of mass to the
+/// contact (Chaplygin).
 #[test]
 fn the_density_of_routh_s_sphere_is_the_known_one() {
     let decided = Decided::of(&ball("0, 0, l", "A*(b1^2 + b2^2) + C*b3^2", ""));
@@ -207,8 +207,8 @@ fn integrable_constraints_have_a_density() {
     assert_eq!(verified(sphere), Existence::Global);
 }
 
-/// Two combinations of holonomic constraints, by a matrix `F` whose determinant is not part of the declaration. The density
-/// is `G = ln det m - ln det F`.
+/// Two combinations of holonomic constraints, by a matrix `F` whose determinant is not part of the declaration. The
+/// density is `G = ln det m - ln det F`.
 #[test]
 fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     let pair = "Pair { coordinates { x; y; z; w; }

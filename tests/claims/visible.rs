@@ -1,5 +1,5 @@
-//! The models of `dalembert_tests::visible_models` are the systems of `reference/verdicts_visible.json`: metric, forms and
-//! potential agree at the point of the file. Contradictions of their claims are refuted.
+//! The models of `dalembert_tests::visible_models` are the systems of `reference/verdicts_visible.json`: metric, forms
+//! and potential agree at the point of the file. Contradictions of their claims are refuted.
 
 use dalembert_tests::claim::{Declaration, refusal};
 use dalembert_tests::formula::{Scope, value};

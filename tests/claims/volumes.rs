@@ -1,5 +1,5 @@
-//! Invariant volumes `exp(G) mu_C`. Lowered densities are compared with listed ones and with the divergence of the motion by
-//! finite differences.
+//! Invariant volumes `exp(G) mu_C`. Lowered densities are compared with listed ones and with the divergence of the
+//! motion by finite differences.
 
 use dalembert::{Described, Instance};
 use dalembert_codegen::claims::{Potential, Term, Volume};

@@ -149,8 +149,8 @@ fn bifurcations_on_one_curve_give_it_once() {
     assert!((first[0] + last[0]).abs() < 1e-10);
 }
 
-/// The boundaries of the first tongue are a quarter of the characteristic values `b_1` and `a_1` at `q = 2 eps`, computed by
-/// bisection of the three-term recurrence with 40 digits.
+/// The boundaries of the first tongue are a quarter of the characteristic values `b_1` and `a_1` at `q = 2 eps`,
+/// computed by bisection of the three-term recurrence with 40 digits.
 #[test]
 fn the_first_tongue_of_mathieus_equation() {
     let flags = "--surface period --continue delta=-0.2..0.6 --across eps=0.1..0.5";

@@ -147,7 +147,7 @@ fn members_keep_to_the_largest_step() {
     }
 }
 
-/// Integrators of fixed step do not estimate errors. A warning reports a change of energy in a motion that conserves it.
+/// Integrators of fixed step do not estimate errors. A warning reports a change of energy if the motion conserves it.
 #[test]
 fn a_step_that_is_too_long_is_told() {
     let line = "simulate oscillator --set k=40 --integrator rk4";

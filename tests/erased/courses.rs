@@ -1,5 +1,5 @@
-//! Whole runs of the compared models and their scenes by every integrator: emitted behind pointers, loaded from the text,
-//! and for some models inlined. Counters, impacts and states are the same to the bit.
+//! Whole runs of the compared models and their scenes by every integrator: emitted behind pointers, loaded from the
+//! text, and for some models inlined. Counters, impacts and states are the same to the bit.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::models::{Compiled, compared};
 /// Longest time of a run.
 const UNTIL: f64 = 2.0;
 
-/// Tolerance of all integrators. At a tighter one, integrators of low order with a fixed step would take too many steps.
+/// Tolerance of all integrators. At a smaller one, integrators of low order with a fixed step need too many steps.
 const TOLERANCE: f64 = 1e-7;
 
 /// Keeps the events as text, since NaN does not equal itself.

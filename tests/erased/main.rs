@@ -1,5 +1,5 @@
-//! Emitted code, the same code behind pointers, and code loaded from a text satisfy one contract. Tables, kernels and whole
-//! runs are the same to the bit.
+//! Emitted code, the same code behind pointers, and code loaded from a text satisfy one contract. Tables, kernels and
+//! whole runs are the same to the bit.
 
 mod courses;
 mod kernels;

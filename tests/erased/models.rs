@@ -76,7 +76,7 @@ impl SceneVisitor for Compiled {
 }
 
 /// The compared models. With the feature `every_model` they are every shipped model, the systems of the tests, and
-/// [`Folded`]. Otherwise they are a few models that cover the language, since each is compiled over every kind of number.
+/// [`Folded`]. Otherwise they are a few models that cover the language, since each is compiled for all number types.
 pub fn compared() -> &'static [Compiled] {
     static MODELS: OnceLock<Vec<Compiled>> = OnceLock::new();
     macro_rules! compiled {

@@ -41,7 +41,7 @@ fn large<const K: usize>(name: &str, values: [(&str, f64); K]) -> Large {
     model
 }
 
-/// Runs with `Dop853` and with `Taylor`, and asserts that their events agree. Returns the events and the end of the first.
+/// Runs with `Dop853` and `Taylor`, and asserts that their events agree. Returns the events and end of the first run.
 fn run<S: Driven>(
     system: &S,
     q: &[f64],

@@ -68,7 +68,7 @@ static WALLED: Text = Text::new(
     }",
 );
 
-/// After the transition the point meets the wall of the upper mode, at x^2 + y^2 = 4 with y = 0.3 + (t - 1) and x = t/2.
+/// Then the point meets the wall of the upper mode, at x^2 + y^2 = 4 with y = 0.3 + (t - 1) and x = t/2.
 #[test]
 fn a_surface_of_several_modes_is_met_in_each() {
     let point = WALLED.model();
@@ -81,7 +81,7 @@ fn a_surface_of_several_modes_is_met_in_each() {
     close(times[1], met, 1e-12, "wall");
 }
 
-/// The ball of `SmoothAndRoughPlane` declared differently: names, orders, constraints and surfaces differ, motions do not.
+/// The ball of `SmoothAndRoughPlane` with other names, orders, constraints and surfaces, but the same motions.
 static REWORDED: Text = Text::new(
     "Reworded {
         parameters { k > 0 = 2/3; r > 0 = 1; }
@@ -125,8 +125,8 @@ fn at_the_line(n: u32) -> [[f64; 5]; 2] {
     [q, qdot]
 }
 
-/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin to hold never add energy, and take
-/// the kinetic energy of the lost velocity. They take no energy if and only if they already hold.
+/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin to hold never add energy, and
+/// take the kinetic energy of the lost velocity. They take no energy if and only if they already hold.
 #[test]
 fn constraints_that_begin_take_the_energy_of_what_is_lost() {
     let ball = large("smooth_and_rough_plane", []);

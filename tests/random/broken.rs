@@ -162,7 +162,7 @@ fn scrambled() -> impl Strategy<Value = Tokens> {
     })
 }
 
-/// Checks that the tokens are accepted, or that every error has a text and points at some of the tokens, but not at all.
+/// Checks that the tokens are accepted, or that every error has a text and points at some, but not all, of the tokens.
 fn check(tokens: &Tokens) -> Result<(), TestCaseError> {
     let Err(errors) = try_expand(tokens.0.clone()) else {
         return Ok(());

@@ -1,8 +1,9 @@
 //! Random declarations with random metrics, potentials, constraints, forces and surfaces.
 //!
-//! They satisfy the rules of the language by construction. The metric is a positive diagonal plus squares. The constraint with
-//! index `a` begins with `d(x_a)` and continues in later coordinates, so that the forms are independent. A gap is a coordinate
-//! plus a function of the others, so that it changes its sign with a nonzero gradient.
+//! They satisfy the rules of the language by construction. The metric is a positive diagonal plus squares. The
+//! constraint with index `a` begins with `d(x_a)` and continues in later coordinates, so that the forms are
+//! independent. A gap is a coordinate plus a function of the others, so that it changes its sign with a nonzero
+//! gradient.
 
 use std::fmt;
 

@@ -208,8 +208,8 @@ impl Evaluated {
         solve(&self.metric, covector)
     }
 
-    /// The condition number of the saddle matrix in the norm of the largest row sum. It bounds the growth of relative errors
-    /// from the entries to a solution.
+    /// The condition number of the saddle matrix in the norm of the largest row sum. It bounds the growth of relative
+    /// errors from the entries to a solution.
     pub fn condition(&self) -> f64 {
         let matrix = self.saddle_matrix();
         let columns: Vec<Vec<f64>> = (0..matrix.len())

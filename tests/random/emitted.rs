@@ -54,8 +54,8 @@ fn the_declarations_are_those_that_are_drawn() {
     golden::compare_file(&path, &source());
 }
 
-/// Compares emitted functions of a model with the interpreter at random states: the motion in both forms, and the reported
-/// quantities.
+/// Compares emitted functions of a model with the interpreter at random states: the motion in both forms, and the
+/// reported quantities.
 fn check<S: Described>(system: &S) {
     let tokens = S::DESCRIPTION.source.parse().expect("tokens");
     let compiled = dalembert_codegen::compile(tokens).expect("a model");

@@ -34,8 +34,8 @@ fn sample(most: usize) -> impl Strategy<Value = (Declaration, Point, Vec<f64>)> 
     })
 }
 
-/// Compiles a random declaration. A declaration without content, which the generator refuses with one of these messages, is
-/// rejected as a sample. Any other refusal is an error of the generator.
+/// Compiles a random declaration. A declaration without content, which the generator refuses with one of these
+/// messages, is rejected as a sample. Any other refusal is an error of the generator.
 pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
     const SAYS_NOTHING: [&str; 2] = ["this force is zero", "same surface as"];
     let source = declaration.named("Random");

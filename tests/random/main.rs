@@ -1,7 +1,7 @@
 //! Random declarations: generated code agrees with independent computations, and broken declarations are refused.
 //!
-//! The quick tests draw from a fixed seed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` the seed. After a
-//! failure the declaration is shrunk and printed.
+//! The quick tests draw from a fixed seed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` the seed.
+//! After a failure the declaration is shrunk and printed.
 
 mod blows;
 mod broken;

@@ -34,7 +34,7 @@ static PEG: Text = Text::new(
     }",
 );
 
-/// A point over a ledge that counts only for `x <= 1`, the ground below, and a reset at `x = 4` that moves it back by 4.
+/// A point over a ledge that counts only for `x <= 1`, and over the ground. A reset at `x = 4` moves it back by 4.
 static COURSE: Text = Text::new(
     "Course {
         coordinates { x; y; }
@@ -189,8 +189,8 @@ fn a_peg_is_not_passed() {
 #[test]
 fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
     let course = COURSE.model();
-    // The point passes the height of the ledge beyond its edge, bounces off the ground and is moved back once, above the
-    // ledge.
+    // The point passes the height of the ledge beyond its edge, bounces off the ground and is moved back once, above
+    // the ledge.
     let start = Start {
         q: &[0.0, 1.0],
         v: &[1.0, 0.0],

@@ -220,7 +220,7 @@ struct Reference {
     after: Vec<String>,
 }
 
-/// Compares the impacts of a run with references. Returns the width of the widest enclosure of a time or of a component.
+/// Compares the impacts of a run with references. Returns the width of the widest enclosure of a time or component.
 fn along(mut run: CertifiedRun<'_, Model>, references: &[Reference], name: &str) -> f64 {
     let begun = Instant::now();
     let (mut count, mut widest) = (0, 0.0_f64);
@@ -261,8 +261,8 @@ fn impacts<S: Variational + Scene>(system: &S, start: &S::State, t_end: f64) -> 
     impacts
 }
 
-/// Compares a certified run of a loaded model with a run of its compiled type in numbers of 48 digits. Returns the width of
-/// the widest component at the end.
+/// Compares a certified run of a loaded model with a run of its compiled type in numbers of 48 digits. Returns the
+/// width of the widest component at the end.
 fn beside<S: Variational + Scene>(
     loaded: &(impl Variational + Impacting),
     system: &S,

@@ -63,8 +63,8 @@ fn about(digits: &str) -> Interval {
     Interval::new(nearest.next_down(), nearest.next_up())
 }
 
-/// Values from `walker_orbits.json`: the fixed point after the step, the period, and the derivative of the return map in the
-/// last two components.
+/// Values from `walker_orbits.json`: the fixed point after the step, the period, and the derivative of the return map
+/// in the last two components.
 const POINT: [&str; 3] = [
     "0.4",
     "-0.902057449429909744803474157606",

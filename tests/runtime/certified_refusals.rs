@@ -314,8 +314,8 @@ fn a_reset_that_stays_at_its_surface_is_refused() {
 
 #[test]
 fn refraction_and_reflection_are_told_apart() {
-    // The energies of the two modes are enclosed separately, so the ranges of speeds are narrow compared with the difference
-    // of the energies.
+    // The energies of the two modes are enclosed separately, so the ranges of speeds are narrow compared with the
+    // difference of the energies.
     let mode = |speed: Interval| {
         let start = [Interval::point(-1.0), speed, Interval::point(0.0)];
         let halves = HALVES.model();

@@ -161,8 +161,8 @@ fn end<Step: Stepper<Well>>(well: &Well, stepper: Step, start: Plane, t_end: f64
     run.state
 }
 
-/// Sums and counts of the energy over ten equal parts of a run, relative to the first energy, and the largest difference
-/// from it.
+/// Sums and counts of the energy over ten equal parts of a run, relative to the first energy, and the largest
+/// difference from it.
 #[derive(Default)]
 struct Energies {
     until: f64,

@@ -1,4 +1,4 @@
-//! Tests of extended numbers: reference values of 70 digits, identities, infinities and NaN, comparison and decimal text.
+//! Extended numbers: reference values of 70 digits, identities, infinities and NaN, comparison and decimal text.
 
 use dalembert::extended::{Extended, NotDecimal};
 use dalembert::numbers::Numbers;

@@ -414,8 +414,8 @@ fn plastic_impact_on_a_pressed_floor_is_contact() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_law(Law::ImpactPlastic);
     with_every_integrator(&ball, at(0.5, 0.0, 0.0, 1.0), 10.0, |run, log, case| {
         assert_eq!(run.outcome, Outcome::Contact { surface: 0 }, "{case}");
-        // An impact at the end of a step may leave a gap of a few units in the last place. The ball falls through it in hops,
-        // each shorter by nine orders of magnitude.
+        // An impact at the end of a step may leave a gap of a few units in the last place. The ball falls through it in
+        // hops, each shorter by nine orders of magnitude.
         assert!((1..=4).contains(&log.seen()), "{case}");
         assert!((run.t - 1.0).abs() < 1e-7, "{case}: {}", run.t);
     });

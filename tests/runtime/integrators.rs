@@ -35,8 +35,8 @@ fn errors<Step: Stepper<Line>>(count: u32, stepper: impl Fn(f64) -> Step) -> [f6
     watch.0
 }
 
-/// Asserts that errors at the ends of steps have the order of the integrator. Errors inside steps have that order or the
-/// order of the dense output plus one, whichever is lower.
+/// Asserts that errors at the ends of steps have the order of the integrator. Errors inside steps have that order or
+/// the order of the dense output plus one, whichever is lower.
 fn assert_orders<Step: Stepper<Line>>(
     count: u32,
     [order, dense_order]: [usize; 2],

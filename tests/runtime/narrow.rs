@@ -244,7 +244,7 @@ fn a_denominator_that_changes_little_costs_no_check() {
     }
 }
 
-/// Asserts that every adaptive integrator gets this impulse from half a turn of the pointer, with the bump in the middle.
+/// Asserts that every adaptive integrator gets this impulse in half a turn of the pointer, with the bump in the middle.
 fn assert_gains(text: &Text, blow: f64) {
     let model = text.model();
     assert!(model.has_narrow_rates());

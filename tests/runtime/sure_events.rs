@@ -1,5 +1,6 @@
 //! No impact is stepped over and none is invented. First impacts of random starts are compared with conservative
-//! advancement, which moves along the exact flight by the gap divided by a bound on its rate and so never passes a surface.
+//! advancement, which moves along the exact flight by the gap divided by a bound on its rate and so never passes a
+//! surface.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{EventLog, Outcome, System, VectorField};

@@ -1,8 +1,8 @@
 //! Random starts of every shipped model with surfaces: all integrators meet the same surfaces in the same order.
 //!
-//! Two runs at the tolerance 1e-13 by different methods are the reference as far as they agree. Up to there no error has
-//! grown, even in chaotic motion. A run by another integrator is compared with the reference until its error reaches [`LOST`],
-//! or until a graze is flagged. Certified impacts bound the times of the reference.
+//! Two runs at the tolerance 1e-13 by different methods are the reference as far as they agree. Up to there no error
+//! has grown, even in chaotic motion. A run by another integrator is compared with the reference until its error
+//! reaches [`LOST`], or until a graze is flagged. Certified impacts bound the times of the reference.
 
 mod runs;
 mod starts;
@@ -160,8 +160,8 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     }
 }
 
-/// True if the error of a run reaches [`LOST`] just before the time `t`. The run lasts until `until`, its reference until
-/// `reference_until`.
+/// True if the error of a run reaches [`LOST`] just before the time `t`. The run lasts until `until`, its reference
+/// until `reference_until`.
 fn is_lost(case: &Case, way: Way, [until, reference_until]: [f64; 2], t: f64) -> bool {
     let before = t - 1e-9 * case.until;
     let states = state_at(case, way, until, before).and_then(|(t, ours)| {

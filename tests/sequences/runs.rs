@@ -115,7 +115,7 @@ pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> 
     Some((strikes, certified))
 }
 
-/// The error of an impact compared with the reference: the larger of the relative errors of time and of the state after it.
+/// The error of an impact compared with the reference: the larger of the relative errors of its time and state.
 pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
     let time = (impact.t - reference.t).abs() / until;
     let after = (&impact.after, &reference.after);

@@ -63,8 +63,8 @@ impl Shipped {
         }
     }
 
-    /// A random start with random parameters. Even numbers give starts near the declared one, odd numbers starts anywhere in
-    /// the chart.
+    /// A random start with random parameters. Even numbers give starts near the declared one, odd numbers starts
+    /// anywhere in the chart.
     pub fn drawn(&self, number: u64, random: &mut Random) -> Case {
         let mut case = self.declared();
         let description = &self.form.documentation.description;

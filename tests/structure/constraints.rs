@@ -1,5 +1,5 @@
-//! Integrators of the discrete Lagrange-d'Alembert principle keep states on D to rounding errors at the ends of steps, even
-//! in the global form, in which states can leave D.
+//! Integrators of the discrete Lagrange-d'Alembert principle keep states on D to rounding errors at the ends of steps,
+//! even in the global form, in which states can leave D.
 
 use core::ops::ControlFlow;
 

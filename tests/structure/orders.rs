@@ -1,5 +1,5 @@
-//! The observed order of every method on every declared system, with DOP853 at the finest tolerance as the reference. Methods
-//! with step-size control run at a step limit and a tolerance so loose that it does not act.
+//! The observed order of every method on every declared system, with DOP853 at the finest tolerance as the reference.
+//! Methods with step-size control run at a step limit and a tolerance so loose that it does not act.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -14,8 +14,8 @@ type State = <Large as VectorField>::State;
 /// Duration of the motions.
 const TIME: f64 = 0.5;
 
-/// Errors between which the slope is measured. Below are rounding errors and the error of the reference. Above, steps are so
-/// long that the leading term does not dominate.
+/// Errors between which the slope is measured. Below are rounding errors and the error of the reference. Above, steps
+/// are so long that the leading term does not dominate.
 const RANGE: [f64; 2] = [2e-11, 1e-4];
 
 /// Order of the power series, chosen so that the leading term dominates within the range.

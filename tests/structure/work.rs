@@ -1,5 +1,5 @@
-//! The exact work of short runs of every integrator on every declared system. A change of these numbers is a change of the
-//! method. `ACCEPT=1 cargo test --release -p dalembert-tests --test structure` stores them anew.
+//! The exact work of short runs of every integrator on every declared system. A change of these numbers is a change of
+//! the method. `ACCEPT=1 cargo test --release -p dalembert-tests --test structure` stores them anew.
 
 use std::fmt::Write as _;
 use std::path::Path;

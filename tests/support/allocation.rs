@@ -1,4 +1,4 @@
-//! Counts allocations of the current thread, so that a test can assert that there were none, and the bytes that it holds.
+//! Counts allocations of the current thread, so that a test can assert that there are none, and the bytes in use.
 
 #![allow(unsafe_code, reason = "a global allocator cannot be written without")]
 
@@ -46,7 +46,7 @@ pub fn allocations(work: impl FnOnce()) -> u64 {
     COUNT.with(Cell::get) - before
 }
 
-/// The most bytes that `work` holds on this thread in addition to those held before it, with [`Counting`] as the global allocator.
+/// The most bytes that `work` holds on this thread beyond those held before, if [`Counting`] is the global allocator.
 pub fn peak(work: impl FnOnce()) -> isize {
     let before = HELD.with(Cell::get);
     PEAK.with(|peak| peak.set(before));

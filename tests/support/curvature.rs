@@ -1,5 +1,5 @@
-//! The criterion for an invariant density, computed independently: the mean curvature of the orthogonal complement of D,
-//! and brackets, by finite differences.
+//! The criterion for an invariant density, computed independently: the mean curvature of the orthogonal complement of
+//! D, and brackets, by finite differences.
 //!
 //! For an orthonormal frame `w_a` of the complement, `theta(X) = sum_a g(nabla_{w_a} w_a, X) + 1/2 X(ln det m)` for X
 //! in D. All derivatives are five-point stencils in double precision. The only shared values are the entries of metric

@@ -272,8 +272,8 @@ pub fn at(x: f64, y: f64, vx: f64, vy: f64) -> State {
     State::new(x, y, vx, vy)
 }
 
-/// Runs with every integrator that suits the particle and with several step sizes. `check` gets each run, its events and
-/// the name of the integrator.
+/// Runs with every integrator that suits the particle and with several step sizes. `check` gets each run, its events
+/// and the name of the integrator.
 pub fn with_every_integrator(
     particle: &Particle,
     state: State,

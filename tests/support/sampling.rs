@@ -63,8 +63,8 @@ pub fn states<S: System>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
         .collect()
 }
 
-/// Every shipped second-order model without modes and every system of [`systems`], loaded from their texts, with default
-/// parameters.
+/// Every shipped second-order model without modes and every system of [`systems`], loaded from their texts, with
+/// default parameters.
 pub fn every_system() -> &'static [Large] {
     static ALL: OnceLock<Vec<Large>> = OnceLock::new();
     ALL.get_or_init(|| {

@@ -120,7 +120,7 @@ impl Decided {
         Some(terms.map(|(k, factor)| number(*k) * term(factor)).sum())
     }
 
-    /// Same as [`Decided::log_density`], with the geometry of the point for the generator's choice of dependent velocities.
+    /// Same as [`Decided::log_density`], with the geometry of the point for the generator's dependent velocities.
     pub fn log_density_at(&self, values: &[(SymbolId, f64)]) -> Option<f64> {
         let geometry = geometry_at(&self.model.pool, &self.problem, values, None)?;
         self.log_density(values, &geometry)

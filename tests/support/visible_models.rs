@@ -1,5 +1,5 @@
-//! The systems of `reference/verdicts_visible.json` as a user writes them, each with true claims: this file compiles only
-//! if they are proved. `tests/claims/visible.rs` shows that these are the systems of the file.
+//! The systems of `reference/verdicts_visible.json` as a user writes them, each with true claims: this file compiles
+//! only if they are proved. `tests/claims/visible.rs` shows that these are the systems of the file.
 
 use crate::numeric::Numeric;
 

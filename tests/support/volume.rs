@@ -240,7 +240,7 @@ impl WithVolume {
         qdot.iter().copied().chain(independent).collect()
     }
 
-    /// The divergence of the motion with respect to `exp(log_volume) dq dv_ind` at `(q, v_ind)`, as [`divergence`] gives it.
+    /// Same as [`divergence`], for the motion and the volume `exp(log_volume) dq dv_ind` at `(q, v_ind)`.
     pub fn divergence(
         &self,
         t: f64,
@@ -251,8 +251,8 @@ impl WithVolume {
     }
 }
 
-/// The divergence `d_t ln rho + (1/rho) d_k (rho F^k)` of a motion `F` with respect to `rho = exp(log_volume)` by finite
-/// differences, and the sum of the absolute values of its terms.
+/// The divergence `d_t ln rho + (1/rho) d_k (rho F^k)` of a motion `F` with respect to `rho = exp(log_volume)` by
+/// finite differences, and the sum of the absolute values of its terms.
 pub fn divergence(
     t: f64,
     at: &[f64],

@@ -1,6 +1,6 @@
-//! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an oscillator with
-//! a view of the plane, a bead that a constraint holds on a line, a mass that is pushed for a short time, and systems with an
-//! unsure event search.
+//! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an oscillator
+//! with a view of the plane, a bead that a constraint holds on a line, a mass that is pushed for a short time, and
+//! systems with an unsure event search.
 //!
 //! All but the last have the metric `m` times the identity.
 

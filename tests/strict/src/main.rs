@@ -1,5 +1,5 @@
-//! Prints hashes of the bits of long runs of two integrators, for a model with many elementary functions, a constraint and
-//! impacts.
+//! Prints hashes of the bits of long runs of two integrators, for a model with many elementary functions, a constraint
+//! and impacts.
 
 use std::ops::ControlFlow;
 

@@ -1,5 +1,5 @@
-//! The chain of N unit masses on unit rods, declared twice: by the angles of its rods, and by the positions of its masses
-//! with the rods as constraints.
+//! The chain of N unit masses on unit rods, declared twice: by the angles of its rods, and by the positions of its
+//! masses with the rods as constraints.
 
 /// Declares the chain of this number of links by angles.
 macro_rules! by_angles {

@@ -34,8 +34,8 @@ pub fn disks(plan: &Plan) {
     }
 }
 
-/// Times an ensemble and prints its results. `run` takes the index of a first trajectory and a slice for the final `x` of
-/// that trajectory and the following ones; it returns the number of impacts.
+/// Times an ensemble and prints its results. `run` takes the index of a first trajectory and a slice for the final `x`
+/// of that trajectory and the following ones; it returns the number of impacts.
 fn report(
     tolerance: f64,
     peer: &str,

@@ -1,5 +1,5 @@
-//! Measurements of this project for the comparison with other programs: tasks with known results, one line of JSON for each
-//! integrator and tolerance. `benches/peers/run.py` runs all programs and compares them.
+//! Measurements of this project for the comparison with other programs: tasks with known results, one line of JSON for
+//! each integrator and tolerance. `benches/peers/run.py` runs all programs and compares them.
 //!
 //! `cargo run --release -- [WORK..] [--repetitions N]`
 

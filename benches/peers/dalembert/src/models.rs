@@ -1,5 +1,6 @@
-//! The systems of the tasks, with Lagrangians, constraints and surfaces, but without claims. The sleigh declares a frame,
-//! since its constraint determines no coordinate velocity at every angle. The generator finds the frame of the disk.
+//! The systems of the tasks, with Lagrangians, constraints and surfaces, but without claims. The sleigh declares a
+//! frame, since its constraint determines no coordinate velocity at every angle. The generator finds the frame of the
+//! disk.
 
 dalembert::model! {
     /// A vertical disk that rolls on an elliptical table.

@@ -44,8 +44,9 @@ fn motions(links: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
     (0..STATES).map(|_| (vector(2.0), vector(1.0))).collect()
 }
 
-/// `sum_j (N - max(i, j)) (cos(theta_i - theta_j) a_j + sin(theta_i - theta_j) omega_j^2) + (N - i) g sin(theta_i)` with
-/// indices from 0, and the sum of the absolute values of its terms. It vanishes if `a` are the angular accelerations.
+/// `sum_j (N - max(i, j)) (cos(theta_i - theta_j) a_j + sin(theta_i - theta_j) omega_j^2) + (N - i) g sin(theta_i)`
+/// with indices from 0, and the sum of the absolute values of its terms. It vanishes if `a` are the angular
+/// accelerations.
 fn residual(theta: &[f64], omega: &[f64], a: &[f64], i: usize) -> (f64, f64) {
     let weight = (theta.len() - i) as f64 * GRAVITY * theta[i].sin();
     let (mut sum, mut size) = (weight, weight.abs());
