@@ -55,7 +55,7 @@ fn whispering_galleries_keep_their_angle() {
             let end = Course::new(&table, &[1.0, 0.0], &start, 1e6)
                 .impacts(count)
                 .run(setting);
-            // The relative error of the angle with the tangent is u/angle. A chord adds two of it to the polar angle.
+            // The angle with the tangent has the relative error u/angle. A chord adds twice it to the polar angle.
             let bound = 256.0 * f64::EPSILON * count as f64 / angle;
             assert_eq!(end.hits.len() as u64, count, "{}", setting.words());
             assert_near("t", &[end.t], &[number(&case["t_n"])], bound);

@@ -6,7 +6,7 @@ use proc_macro2::TokenStream;
 
 /// Head of the tables.
 const HEAD: &str = "| refused | message |";
-/// Declarations that all rows share.
+/// Parts of the declaration of every row.
 const COORDINATES: &str = "coordinates { x; y; theta: angle; }";
 const PARAMETERS: &str = "parameters { m > 0 = 1; k > 0 = 1; }";
 

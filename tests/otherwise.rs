@@ -91,7 +91,7 @@ fn a_state_that_no_transition_takes_ends_the_run() {
         assert!((state.as_ref()[0] - 1.0).abs() < 1e-12, "{state:?}");
     }
     assert_eq!(untaken.kind(), "untaken");
-    // 2/7 never comes to 1/2.
+    // The motion from 2/7 never reaches 1/2.
     let (_, outcome, _) = run_of(&tent, DOP853, [0.0, 2.0 / 7.0], [0.0; 2]);
     assert_eq!(outcome, Outcome::Done);
     // A system made of one mode reports the same outcome.

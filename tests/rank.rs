@@ -303,7 +303,7 @@ fn what_comes_first_ends_the_step() {
         let none: Vec<&Event<_>> = log.iter().collect();
         assert!(none.is_empty(), "{case}");
     });
-    // A wall that is met first sends the motion into the drop.
+    // An earlier wall sends the motion into the drop.
     let system = CROSSED.with([("wall", 3.0)]);
     Start::new(&system, &[0.0, 1.0, 0.0], &[0.0, 1.0, 0.0], 9.0).every(|case, run, log| {
         assert_drop(case, &run, 1, (1, 0.0), 1e-12);

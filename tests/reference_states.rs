@@ -130,7 +130,7 @@ fn check_states(name: &str, file: &Value, list: &str, mismatches: &mut Mismatche
         let inputs: Vec<Value> = states.iter().map(|state| input(state, rates)).collect();
         for (k, (actual, expected)) in eval(name, &[], &inputs).iter().zip(states).enumerate() {
             for quantity in QUANTITIES {
-                // The global field's divergence with respect to omega^n is that of mu_C, on D* and off it.
+                // The divergence of the global field is the same for omega^n and mu_C, on D* and off it.
                 let printed = if quantity == "divergence_omega_n" {
                     "divergence_mu_C"
                 } else {

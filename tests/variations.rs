@@ -103,7 +103,7 @@ fn unfolded(system: &Large, t: f64, state: &State, direction: &State) -> Vec<f64
         .collect()
 }
 
-/// Directions that span the states on the constraints. States can violate at most one constraint.
+/// Directions that span the states on the constraints, for systems whose states can violate at most one constraint.
 fn allowed_directions(system: &Large, t: f64, state: &State) -> Vec<Tangent<Large>> {
     let deviation = |direction: &State| -> f64 {
         let (parameters, row) = dual(system, state, direction);

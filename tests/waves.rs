@@ -233,7 +233,7 @@ fn waves_that_meet_are_flagged_where_their_order_matters() {
 
 #[test]
 fn a_light_ball_between_two_heavy_ones_is_struck_as_often_as_it_must_be() {
-    // Impacts are reflections in a wedge of the angle `atan(sqrt(m (2 + m)))`. There is one for each angle within pi.
+    // Impacts are reflections in a wedge of the angle `a = atan(sqrt(m (2 + m)))`. Their number is `floor(pi/a)`.
     for light in [1e-4, 1e-6] {
         let masses = [1.0, light, 1.0];
         let balls = balls(&masses);

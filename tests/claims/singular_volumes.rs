@@ -1,5 +1,5 @@
-//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. The motion keeps them away from `l
-//! = 0`, by finite differences.
+//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. Finite differences show that the
+//! motion keeps them away from `l = 0`.
 
 use dalembert::Described;
 use dalembert_codegen::claims::{MomentumDensity, Problem, find_momentum_density};

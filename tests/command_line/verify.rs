@@ -215,7 +215,7 @@ fn nothing_is_measured_by_a_reference_that_misses_an_impact() {
 
 #[test]
 fn runs_that_meet_other_surfaces_are_not_verified() {
-    // Too long steps damp the motion so much that it does not reach the wall.
+    // Steps that are too long damp the motion, which then does not reach the wall.
     let line = "simulate spring --until 6 --integrator rk4 --step 0.5 --verify";
     let done = over(&sure(), line);
     assert_eq!(done.exit, Exit::Other, "{}", done.output);

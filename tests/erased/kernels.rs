@@ -1,5 +1,5 @@
-//! Compares every emitted kernel with the one loaded from the text, at random points and over every kind of number with
-//! kernels behind pointers. Numbers are the same to the bit, and guards are the same.
+//! Compares every emitted kernel, called by a pointer, with the kernel loaded from the text, at random points and over
+//! every kind of number. Values are the same to the bit, and so are guards.
 
 use std::fmt::Debug;
 

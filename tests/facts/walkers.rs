@@ -40,7 +40,7 @@ fn slopes(walker: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|i| columns.map(|column| column[i]))
 }
 
-/// The thesis takes the stable plane of the upright walker as the boundary between starts that walk and that fall.
+/// In the thesis, the stable plane of the upright walker separates starts that walk from starts that fall.
 #[test]
 fn the_upright_walker_is_a_saddle_whose_plane_is_the_line_of_the_figure() {
     let walker = shipped("dimensionless_walker").model();

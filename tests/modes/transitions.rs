@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::{close, large};
 
-/// With `Split::Stop` a run ends where both refraction and reflection are possible. It goes on where only one is.
+/// With `Split::Stop` a run ends where both refraction and reflection are possible. The run continues if only one is.
 #[test]
 fn a_motion_that_splits_ends_where_that_is_asked_for() {
     let ends = |potential: Option<f64>| {
@@ -299,7 +299,7 @@ static TRAP: Text = Text::new(
     }",
 );
 
-/// Where the belts meet, each sends the motion back to the other.
+/// Each belt sends the motion back to the other where they meet.
 #[test]
 fn modes_that_lead_to_each_other_trap_the_motion() {
     let trap = TRAP.model();

@@ -43,7 +43,7 @@ impl Reported {
     /// A reported number.
     ///
     /// # Panics
-    /// When there is no number of this name.
+    /// If there is no number of this name.
     pub fn number(&self, name: &str) -> f64 {
         self.0[name][0]
     }

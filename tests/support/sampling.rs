@@ -50,7 +50,7 @@ impl Random {
 /// Random states of a system inside its chart, projected on the constraints.
 ///
 /// # Panics
-/// When a state cannot be made.
+/// If a state cannot be made.
 pub fn states<S: System>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
     let mut random = Random::new(seed);
     (0..count)
@@ -83,7 +83,7 @@ pub fn every_system() -> &'static [Large] {
 /// The system of [`every_system`] with this name.
 ///
 /// # Panics
-/// If there is none.
+/// If there is no system of this name.
 pub fn system(name: &str) -> Large {
     let mut systems = every_system().iter();
     let system = systems.find(|system| system.description().name == name);

@@ -18,7 +18,7 @@ pub fn visible_systems() -> Vec<Value> {
 /// The system of this name.
 ///
 /// # Panics
-/// If there is none.
+/// If there is no system of this name.
 pub fn visible_system(name: &str) -> Value {
     let mut systems = visible_systems().into_iter();
     systems.find(|system| system["name"] == name).expect(name)

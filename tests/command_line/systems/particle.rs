@@ -1,4 +1,4 @@
-//! The motion of a particle, shared by the systems, as macros, because lengths of vectors are part of types.
+//! The motion of a particle, which the systems share. These are macros, since types contain the lengths of vectors.
 
 /// Mass, force and potential of a system.
 pub(super) trait Particle<const N: usize> {

@@ -1,4 +1,4 @@
-//! The works that are one course each. `README.md` beside this file defines them.
+//! The tasks that consist of one run each. `benches/peers/README.md` defines them.
 
 use dalembert::{Scene, System, VectorField};
 
