@@ -1,4 +1,4 @@
-//! Build cost of a declaration: its expansion, the growth with the size of a model, and the time of the compiler.
+//! Build cost of a declaration: time of its expansion, growth with the size of the model, and time of cargo commands.
 //!
 //! `cargo bench --package dalembert-benches --bench compile_time [-- --csv]`
 
@@ -23,7 +23,7 @@ struct Expansion {
     characters: usize,
 }
 
-/// The median of some expansions of a declaration, without reading it from text.
+/// Median over `rounds` expansions of a declaration, without the time to make tokens of the text.
 fn expand(source: &str, rounds: usize) -> Expansion {
     let mut characters = 0;
     let times = (0..rounds).map(|_| {
@@ -40,7 +40,7 @@ fn expand(source: &str, rounds: usize) -> Expansion {
     }
 }
 
-/// Operations of the rate; of all modes together, where there are some.
+/// Number of operations of the rate, summed over all modes.
 fn operations(source: &str) -> usize {
     let declared = read(source.parse().expect("tokens")).expect("a declaration");
     let spec = match declared {
@@ -60,7 +60,7 @@ fn operations(source: &str) -> usize {
         .total()
 }
 
-/// Every shipped model.
+/// Expansions of every shipped model.
 fn expansions(rounds: usize) -> Table {
     let mut table = Table::new(["model", "coordinates", "operations", "characters", "ms"]);
     for entry in dalembert_command::all() {
@@ -77,7 +77,7 @@ fn expansions(rounds: usize) -> Table {
     table
 }
 
-/// A chain of 16 unit masses by their places, with the rods as constraints.
+/// A chain of 16 unit masses in Cartesian coordinates, with the rods as constraints.
 const RODS: &str = "Rods16 {
     const N = 16;
     coordinates { x[N]; y[N]; }
@@ -105,7 +105,7 @@ fn with_links(source: &str, links: usize) -> String {
     source.replace("16", &links.to_string())
 }
 
-/// The chain of N links in both declarations, and the powers of N that fit.
+/// Expansions of both declarations of the chain, and the powers of the number N of links that fit.
 fn growth(rounds: usize) -> Table {
     let mut table = Table::new(["chain by", "links", "operations", "ms"]);
     for (name, source) in chains() {
@@ -132,7 +132,7 @@ fn growth(rounds: usize) -> Table {
     table
 }
 
-/// The power of a growth: the slope of the straight line of least squares through the logarithms.
+/// The exponent of a power law, as the slope of the least-squares line through the logarithms.
 fn fitted_power(points: &[(f64, f64)]) -> f64 {
     let logarithms: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let mean = |value: fn(&(f64, f64)) -> f64| {
@@ -148,7 +148,7 @@ fn fitted_power(points: &[(f64, f64)]) -> f64 {
     slope(|x, y| x * y) / slope(|x, _| x * x)
 }
 
-/// A user's crate, outside of the workspace: a program that simulates one model.
+/// A user's crate outside the workspace, with a program that simulates one model.
 struct UserCrate {
     folder: PathBuf,
 }
@@ -159,7 +159,7 @@ impl UserCrate {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("user_crate");
         let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
         fs::create_dir_all(folder.join("src")).expect("a writable folder");
-        // The versions that the workspace has: nothing has to be fetched.
+        // With the versions of the workspace nothing has to be fetched.
         fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).expect("a lock file");
         let manifest = format!(
             "[workspace]\n[package]\nname = \"user_crate\"\nedition = \"2024\"\n\
@@ -174,7 +174,7 @@ impl UserCrate {
         created
     }
 
-    /// Seconds of a cargo command after the program has changed.
+    /// Seconds that a cargo command takes after the program has changed.
     fn seconds(&self, program: &str, command: &[&str]) -> f64 {
         fs::write(self.folder.join("src/main.rs"), program).expect("a writable folder");
         let mut cargo = Command::new(env!("CARGO"));
@@ -192,10 +192,10 @@ impl UserCrate {
 /// Commands that are timed in the user's crate.
 const COMMANDS: [&[&str]; 3] = [&["check"], &["build"], &["build", "--release"]];
 
-/// A program without a model, for the time that cargo itself takes.
+/// A program without a model, to measure the time of cargo itself.
 const WITHOUT_MODEL: &str = "use dalembert as _;\nfn main() {}\n";
 
-/// A program that simulates a model from a state made of its declared initial values.
+/// A program that simulates a model from its declared initial values, projected on the constraints.
 fn program(name: &str, source: &str) -> String {
     format!(
         "use dalembert::{{Described, Dop853, Scene, Simulation, System, Tolerance}};\n\
@@ -211,7 +211,7 @@ fn program(name: &str, source: &str) -> String {
     )
 }
 
-/// Seconds that cargo takes when a user's crate has changed, by model; the models take turns.
+/// Median seconds of cargo commands after a change in a user's crate, by model. The models take turns.
 fn builds(rounds: usize) -> Table {
     let crate_ = UserCrate::create();
     let mut programs = vec![("no model".to_owned(), WITHOUT_MODEL.to_owned())];
@@ -232,7 +232,7 @@ fn builds(rounds: usize) -> Table {
     let mut times = vec![[const { Vec::new() }; COMMANDS.len()]; programs.len()];
     for round in 0..rounds {
         for ((_, text), times) in programs.iter().zip(&mut times) {
-            // Cargo goes by what has changed: the comment makes every round a change.
+            // The comment changes the source in every round, so that cargo builds again.
             let text = format!("// round {round}\n{text}");
             for (command, times) in COMMANDS.iter().zip(times) {
                 times.push(crate_.seconds(&text, command));
@@ -247,7 +247,7 @@ fn builds(rounds: usize) -> Table {
     table
 }
 
-/// Chains whose programs are built.
+/// Numbers of links of the chains that are built.
 const BUILT_LINKS: [usize; 3] = [8, 16, 32];
 
 fn main() {

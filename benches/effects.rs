@@ -1,7 +1,7 @@
-//! Cost of each effect of a scene, in instructions. A scene must cost as much as a model that was declared with nothing else.
+//! Cost of each effect of a scene, in instructions. A scene must cost as much as a model that declares nothing else.
 //!
-//! Instructions are counted by `valgrind --tool=callgrind`, so the figures repeat on a busy machine. The program runs
-//! itself under it, once for each run of the table.
+//! `valgrind --tool=callgrind` counts the instructions, so that the figures repeat on a busy machine. The program runs
+//! itself under `valgrind`, once for each count.
 //!
 //! `cargo bench --package dalembert-benches --bench effects [-- --csv]`
 
@@ -48,7 +48,7 @@ blade!(
     }
 );
 blade!(Free, forces {} impacts {} scenes {});
-// A type for each row, as scenes have: a compiler inlines by the number of calls of a function.
+// Every row has a type of its own, as scenes do, because inlining depends on the number of calls of a function.
 blade!(Kept, forces {} impacts {} scenes {});
 blade!(Measured, forces {} impacts {} scenes {});
 blade!(Slowed, forces { drag: -c*dot(x)*d(x) - c*dot(y)*d(y); } impacts {} scenes {});
@@ -85,11 +85,11 @@ fn work<S: Described, E: Effect<S>>(system: &S, effects: E, steps: u64) -> [u64;
 struct Row {
     name: &'static str,
     scene: fn(u64) -> [u64; 2],
-    /// The model that was declared with nothing else.
+    /// The model that declares nothing else.
     plain: fn(u64) -> [u64; 2],
 }
 
-/// A row from a scene and a model, both with the effects they come with.
+/// A row from a scene and a model, both with their declared effects.
 macro_rules! row {
     ($name:literal, $scene:expr, $plain:expr) => {
         Row {
@@ -100,10 +100,11 @@ macro_rules! row {
     };
 }
 
-/// Half an axis of a table on which the blade meets the border often, squared.
+/// Squared radius of a table on which the blade often meets the border.
 const SMALL: f64 = 4.0;
 
-/// All rows. A scene leaves the projection out, which a model in global form comes with: there both run without.
+/// All rows. The row `free, global form` has no effects on either side, since the model in global form would project
+/// and the scene would not.
 fn rows() -> [Row; 9] {
     [
         row!("free", blade::Free::default(), Free::default()),
@@ -148,7 +149,7 @@ fn rows() -> [Row; 9] {
     ]
 }
 
-/// Numbers of steps of the two runs that are counted: a short one, whose start is subtracted, and a long one.
+/// Numbers of steps of the two counted runs. The count of the short run is subtracted from that of the long one.
 const STEPS: [u64; 2] = [100, 1100];
 
 /// Counts of `valgrind`.
@@ -162,7 +163,7 @@ struct Counted {
 /// Runs this program under `valgrind`.
 ///
 /// # Errors
-/// The reason why there is no count.
+/// Explains why there is no count.
 fn count(row: usize, kind: &str, steps: u64) -> Result<Counted, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
@@ -201,7 +202,7 @@ fn per_step(row: usize, kind: &str) -> Result<[f64; 2], String> {
     Ok([instructions / steps, 1000.0 * impacts / steps])
 }
 
-/// Prints the table and gives the largest difference between a scene and its model.
+/// Prints the table. Returns the largest relative difference between a scene and its model.
 fn measure() -> Result<f64, String> {
     let mut table = Table::new([
         "scene",
@@ -230,7 +231,7 @@ fn measure() -> Result<f64, String> {
     Ok(worst)
 }
 
-/// Allowed relative difference between a scene and its model: inlining may differ.
+/// Allowed relative difference between a scene and its model, whose inlining may differ.
 const ALLOWED: f64 = 0.005;
 
 fn main() -> ExitCode {

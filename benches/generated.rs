@@ -1,6 +1,6 @@
-//! The generated functions in the shape of those written by hand: a state in, the result out.
+//! The generated functions with the signatures of the handwritten ones: from a state to the result.
 //!
-//! All panic on a fault; there is none at the states that are compared and timed.
+//! All panic on a fault. The states that are compared and timed have none.
 
 use dalembert::{Impacting, System, VectorField};
 

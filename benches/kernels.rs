@@ -1,4 +1,5 @@
-//! Times of single calls, generated and by hand: rate, energy, impact; of a step; and the cost of an impact in a run.
+//! Times of single calls of generated and handwritten functions (rate, energy, impact), of a step, and of an impact in
+//! a run.
 //!
 //! `cargo bench --package dalembert-benches --bench kernels [-- FILTER]`
 
@@ -27,7 +28,7 @@ use dalembert_models::{
 };
 use dalembert_tests::sampling;
 
-/// States that a kernel is called with, one after the other.
+/// Number of states at which a kernel is called in turn.
 const STATES: usize = 64;
 
 /// Times functions of a state of one system, at the declared parameters.
@@ -48,8 +49,8 @@ impl<'c, S: Described> Kernels<'c, S> {
         }
     }
 
-    /// Times a function. The system is hidden from the optimiser at each call: parameters are read, and their quotients
-    /// formed, as often as the function is called.
+    /// Times a function. The system is hidden from the optimiser, so that every call reads the parameters and forms
+    /// their quotients.
     fn time<R>(mut self, form: &str, function: impl Fn(&S, &State<S>) -> R) -> Self {
         let mut k = 0;
         self.group.bench_function(form, |bencher| {
@@ -62,7 +63,7 @@ impl<'c, S: Described> Kernels<'c, S> {
     }
 }
 
-/// Times a generated function of the state and one by hand, of the components of the same state.
+/// Times a generated function of a state and handwritten functions of the components of the same state.
 macro_rules! compare {
     ($criterion:ident, $kind:expr, $model:ty, $generated:expr, $($by_hand:path)|+) => {
         Kernels::<$model>::new($criterion, $kind)
@@ -71,7 +72,7 @@ macro_rules! compare {
     };
 }
 
-/// The same for the global form of a model that is run in another.
+/// Same as `compare`, for the global form of a model that runs in another form.
 macro_rules! compare_global {
     ($criterion:ident, $kind:expr, $model:ty, $generated:expr, $($by_hand:path)|+) => {
         Kernels::<$model>::new($criterion, $kind)
@@ -191,7 +192,7 @@ fn energies(criterion: &mut Criterion) {
         .time("by links", chain::energy_by_links);
 }
 
-/// Elastic impacts, each kernel for any surface of its system.
+/// Elastic impacts. The surface is hidden from the optimiser, so that the kernels serve any surface.
 fn impacts(criterion: &mut Criterion) {
     const KIND: &str = "impact";
     let surface = || black_box(0);
@@ -251,8 +252,8 @@ fn start<S: Described>(system: &S) -> State<S> {
         .expect("an admissible state")
 }
 
-/// Time of one accepted step: the mean over smooth runs of ten seconds from the declared initial state, one after the
-/// other, with the trials they reject.
+/// Times an accepted step: the mean over smooth runs of ten seconds from the declared initial state, rejected steps
+/// included.
 fn step<S: Described, Step: Stepper<S>>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     system: &S,
@@ -296,7 +297,7 @@ fn steps(criterion: &mut Criterion) {
     );
 }
 
-/// Times a run of one flight, and asserts the number of impacts in it.
+/// Times a run and asserts the number of its impacts.
 fn flight<S: System, E: Effect<S> + Clone>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     name: &str,
@@ -317,9 +318,9 @@ fn flight<S: System, E: Effect<S> + Clone>(
     group.bench_function(name, |bencher| bencher.iter(fly));
 }
 
-/// Cost of one impact in a run: the difference of the first two times. It includes locating the impact, carrying it out,
-/// starting again and the steps for that. The other table is so large that there is no impact. The last run does not look
-/// for one.
+/// Cost of one impact in a run: the difference between the times of `one impact` and `none`. It includes event
+/// location, the impact, the restart and its steps. The table of `none` is so large that there is no impact. The run
+/// `not watched` has no surfaces.
 fn located(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("flight/point_billiard");
     let point = PointBilliard::default();

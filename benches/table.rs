@@ -1,4 +1,4 @@
-//! A table of measurements, aligned for a reader or as CSV.
+//! A table of measurements, printed with aligned columns or as CSV.
 
 use std::fmt;
 
@@ -19,7 +19,7 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// CSV if the program was asked for it with `--csv`.
+    /// CSV if `--csv` is among the arguments of the program.
     pub fn from_arguments() -> Self {
         match std::env::args().any(|argument| argument == "--csv") {
             true => Self::Csv,
@@ -40,7 +40,7 @@ impl Table {
     /// Adds a row, one cell for each column.
     ///
     /// # Panics
-    /// When there are more or fewer.
+    /// If the number of cells is not the number of columns.
     pub fn push<const COLUMNS: usize>(&mut self, row: [String; COLUMNS]) {
         assert_eq!(COLUMNS, self.head.len());
         self.rows.push(row.to_vec());

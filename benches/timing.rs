@@ -7,14 +7,14 @@ pub fn is_benchmark() -> bool {
     std::env::args().any(|argument| argument == "--bench")
 }
 
-/// The time of some work, with its result.
+/// The time that `work` takes, and its result.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = Instant::now();
     let result = work();
     (start.elapsed(), result)
 }
 
-/// The median; NaN of nothing.
+/// The median; NaN if there are no values.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let (count, middle) = (values.len(), values.len() / 2);

@@ -13,7 +13,7 @@ use dalembert_benches::timing::{is_benchmark, median};
 struct Plan {
     /// Powers of ten of the tolerances.
     decades: &'static [i32],
-    /// Times each case is timed; the cases take turns, so that a slow minute of the machine meets all of them.
+    /// Number of timings of each case. The cases take turns, so that a slow minute of the machine affects all of them.
     rounds: u32,
     /// Least time of one timing; shorter runs are repeated.
     least: Duration,
@@ -31,7 +31,7 @@ const SHORT: Plan = Plan {
     least: Duration::ZERO,
 };
 
-/// A problem with a method and a tolerance, and what was measured of it.
+/// A problem with a method and a tolerance, and its measurements.
 struct Case {
     problem: Problem,
     decade: i32,
@@ -42,7 +42,7 @@ struct Case {
 }
 
 impl Case {
-    /// A first run shows the number of repetitions needed.
+    /// Makes a first run, which gives the number of repetitions.
     fn new(problem: Problem, method: Method, decade: i32, least: Duration) -> Self {
         let value: f64 = format!("1e{decade}").parse().expect("a number");
         let tolerance = Tolerance::new(value).expect("a tolerance");
@@ -108,7 +108,7 @@ const HEAD: [&str; 10] = [
     "outcome",
 ];
 
-/// The problems named as arguments; without names, all.
+/// The problems named as arguments, or all if none is named.
 fn chosen() -> Vec<Problem> {
     let names: Vec<String> = std::env::args()
         .skip(1)

@@ -1,4 +1,4 @@
-//! Every example runs and checks its own numbers; what it prints is looked at here.
+//! Every example runs and checks its own results. The tests check the printed lines.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::path::PathBuf;
@@ -36,7 +36,7 @@ fn every_example_runs() {
     }
 }
 
-/// Two modes, each a cosine: the sum of the masses with frequency 2, their difference with sqrt(5).
+/// The normal modes are cosines: the sum of the positions has the frequency 2, their difference sqrt(5).
 #[test]
 fn the_oscillator_is_where_its_modes_put_it() {
     let lines = printed("model_from_text");

@@ -1,4 +1,4 @@
-//! A table of all impacts of a ball that bounces lower and lower, until infinitely many impacts accumulate.
+//! A table of the first impacts of a ball that bounces lower and lower, until infinitely many impacts accumulate.
 //!
 //! `cargo run --release -p dalembert-examples --example impact_table`
 
@@ -21,7 +21,7 @@ dalembert::model! {
 
 type State = <Ball as VectorField>::State;
 
-/// Prints the first impacts and counts all.
+/// Prints the first five impacts and counts all.
 struct Table<'a> {
     ball: &'a Ball,
     impacts: usize,
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run =
         Simulation::new(&ball, integrator, ball.effects()).run(0.0, start, 10.0, &mut table)?;
 
-    // A fall, then flights of which each is shorter by the factor e.
+    // The ball falls; then each flight is shorter than the last by the factor e.
     let fall = (2.0 * height / ball.g).sqrt();
     let limit = fall * (1.0 + ball.e) / (1.0 - ball.e);
     println!(

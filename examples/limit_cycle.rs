@@ -1,4 +1,4 @@
-//! The gait of a rimless wheel: Newton's method on the return map finds the limit cycle, its multiplier says how it attracts.
+//! The gait of a rimless wheel. Newton's method on the return map finds the limit cycle and its Floquet multiplier.
 //!
 //! `cargo run --release -p dalembert-examples --example limit_cycle`
 
@@ -8,7 +8,7 @@ use dalembert::variations::orbit::ITERATIONS;
 use dalembert::{Scene, Section, System, Taylor, Tolerance};
 
 dalembert::model! {
-    /// A wheel of spokes without a rim that rolls down a slope: at every step the next spoke strikes the ground.
+    /// A wheel of spokes without a rim rolls down a slope. At every step the next spoke strikes the ground.
     pub Wheel {
         coordinates { theta; }
         parameters {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let first = section.arrive(&start, &mut [])?;
     let cycle = section.periodic(&first.before, ITERATIONS)?;
 
-    // Each step gains the energy of the descent and keeps a share of cos^2(2 half).
+    // Each step gains the energy of the descent; each impact keeps the fraction cos^2(2 half) of the kinetic energy.
     let kept = (2.0 * wheel.half).cos().powi(2);
     let gained = 2.0 * ((wheel.slope - wheel.half).cos() - (wheel.slope + wheel.half).cos());
     let arrival = wheel.velocity(0.0, &cycle.point.before)?[0];

@@ -1,4 +1,5 @@
-//! A model that is read while the program runs: no compiler, the same bits as code that `model!` writes.
+//! A model that is loaded from its text while the program runs, without a compiler. Its results have the same bits as
+//! those of `model!`.
 //!
 //! `cargo run --release -p dalembert-examples --example model_from_text -- oscillator.dal`
 
@@ -9,7 +10,7 @@ use dalembert::describe::Instance;
 use dalembert::erased::Erased;
 use dalembert::{Dop853, Scene, Simulation, StateVector, System, Tolerance};
 
-/// The model without an argument.
+/// The model that is used if no file is given.
 const OSCILLATOR: &str = "
     /// Two masses between walls, joined by springs.
     Oscillator {
@@ -26,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some(path) => (path.clone(), fs::read_to_string(path)?),
         None => ("oscillator.dal".into(), OSCILLATOR.into()),
     };
-    // Refused texts and claims print their lines with a caret.
+    // A refusal shows the source line with a caret under the error.
     let models = match dalembert_jit::load(&name, &text) {
         Ok(models) => models,
         Err(refused) => return Err(refused.to_string().into()),

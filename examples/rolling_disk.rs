@@ -1,4 +1,5 @@
-//! A disk that rolls upright without slipping. The compiler proves what the model claims; a run shows that it holds.
+//! A disk that rolls upright without slipping. The macro proves the claims of the model; a run compares the motion with
+//! its closed form.
 //!
 //! `cargo run --release -p dalembert-examples --example rolling_disk`
 
@@ -39,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         R: 0.3,
         ..Disk::default()
     };
-    // Velocities that break the constraints are refused; here x' and y' follow from the two rates of turning.
+    // `state` refuses velocities that violate the constraints. Here x' and y' follow from the two angular velocities.
     let (theta_dot, phi_dot) = (4.0, 1.5);
     let start = disk.state(
         0.0,
@@ -47,10 +48,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         &[disk.R * theta_dot, 0.0, theta_dot, phi_dot].into(),
     )?;
     let integrator = Dop853::new(Tolerance::new(1e-12)?);
-    // No surfaces, so no effects.
+    // A model without surfaces needs no effects.
     let run = Simulation::new(&disk, integrator, ()).run(0.0, start, 20.0, &mut ())?;
 
-    // The contact point runs along a circle.
+    // The contact point moves along a circle.
     let radius = disk.R * theta_dot / phi_dot;
     let [x, y] = [0, 1].map(|i| disk.position(&run.state)[i]);
     let exact = [

@@ -1,4 +1,4 @@
-//! Runs abreast: each has the bits of the run alone, independent of the lanes beside it.
+//! A run in a SIMD lane has the same bits as the run alone, independent of the runs in other lanes.
 
 use dalembert::lanes::{Member, run_abreast};
 use dalembert::{Described, Run, Scene, Simulation, StartError, StateVector, Taylor, TaylorField};
@@ -23,8 +23,8 @@ dalembert::model! {
 
 type Results<S> = Vec<Result<Run<<S as VectorField>::State>, StartError>>;
 
-/// The members of an ensemble: systems of other parameters in turn, and runs of other lengths. Some runs have no time at
-/// all, one has a budget of three steps, and one has no state.
+/// The members of an ensemble. Parameters and lengths of runs alternate. Some runs have length 0, one has a budget of
+/// three steps, and one starts at NaN.
 struct Members<S: VectorField> {
     systems: [S; 2],
     states: Vec<S::State>,
@@ -63,7 +63,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         if index == WITHOUT_STEPS { 3 } else { 1000 }
     }
 
-    /// Some of another order than most.
+    /// An integrator of variable order, or for every seventh member of order 11.
     fn stepper(&self, index: usize) -> Taylor<S> {
         let stepper = Taylor::new(self.tolerance);
         match index % 7 {
@@ -83,7 +83,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
         runs.collect()
     }
 
-    /// `looks_inside` changes the order of the computation, and no result.
+    /// The runs in lanes. `looks_inside` changes the order of the computation, but no result.
     fn abreast(&self, looks_inside: bool) -> Results<S> {
         let mut results: Vec<Option<_>> = self.states.iter().map(|_| None).collect();
         let members = (0..self.states.len()).map(|index| {
@@ -103,7 +103,7 @@ impl<S: Described + Scene + TaylorField> Members<S> {
     }
 }
 
-/// The declared start with other speeds.
+/// The declared start with velocities multiplied by growing factors.
 fn faster<S: Described>(system: &S, count: usize) -> Vec<S::State> {
     let initial = system.initial();
     let states = (0..count).map(|index| {

@@ -1,4 +1,4 @@
-//! The motion on D that claims are tested with, against values computed independently with 50 digits.
+//! Compares the motion on D that the claims use with independent values of 50 digits.
 
 use dalembert::Instance;
 use dalembert_codegen::claims::Dynamics;
@@ -9,11 +9,11 @@ use dalembert_expr::{ExprId, RealPoint, SamplePoints, SymbolId};
 use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::sampling::system;
 
-/// The accelerations are of the size of the forces over the inertias, a hundred at most in the files; the given
-/// velocities are rounded to `f64`.
+/// Bound on the error relative to the largest component, or to 1 if that is larger. The states of the files are rounded
+/// to `f64`.
 const TOLERANCE: f64 = 1e-12;
 
-/// A model derived again from its own source text.
+/// A model derived again from its source text.
 fn derive(name: &str) -> (Model, Derivation, Dynamics) {
     let spec = spec::parse(system(name).description().source.parse().expect("tokens"))
         .expect("a declaration");
@@ -101,7 +101,8 @@ fn check_constraints(name: &str) {
     assert_eq!(rates, vec![0; residuals.len()], "{name}");
 }
 
-/// `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)`, which is 0 without time, forces and affine parts.
+/// Checks if `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)` is 0. It is if neither time nor forces nor affine parts
+/// of constraints act.
 fn check_energy(name: &str, is_kept: bool) {
     let (mut model, _, dynamics) = derive(name);
     let lagrangian = model.lagrangian.whole;

@@ -1,4 +1,5 @@
-//! Certificates of all shipped models, checked by a program in another language that shares nothing with the generator.
+//! Certificates of all shipped models and of the models below, checked by a program in another language that shares no
+//! code with the generator.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -18,7 +19,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A density on the universal cover alone, and a density that grows along a moving belt.
+    /// A density that grows along a moving belt.
     pub Belt {
         coordinates { x; y; }
         parameters { c > 0 = 1; k > 0 = 1; }
@@ -30,6 +31,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
+    /// A density that exists on the universal cover alone.
     pub Winding {
         coordinates { x; y; th: angle; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(th)^2)/2;
@@ -66,7 +68,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Forces that change volumes at a rate that is not linear in the velocities.
+    /// Cubic forces, whose divergence is not linear in the velocities.
     pub Cubic {
         coordinates { x; y; th: angle; }
         parameters { c > 0 = 1; }
@@ -108,7 +110,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Every law beside an affine constraint, with walls that move.
+    /// Several impact laws with an affine constraint and moving walls.
     pub Laws {
         coordinates { x; y; th; }
         parameters { e in [0, 1] = 1/2; k = 1/3; }
@@ -133,7 +135,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A line with a door into a medium, and a groove with an affine constraint beside it.
+    /// A line with a door into a heavier medium and a slit into a groove with an affine constraint.
     pub Doors {
         coordinates { x; y; }
         parameters { m > 0 = 2; k = 1/3; }
@@ -154,7 +156,8 @@ dalembert::model! {
     }
 }
 
-/// Differential forms: of first-order motion, beside constraints, forces and moving walls, through refraction and between fields.
+/// Invariant differential forms: first-order motion, constraints, forces, moving walls, refraction, transitions between
+/// fields.
 const FORMS: &str = "
     pub Wall {
         coordinates { x; y; }
@@ -229,7 +232,7 @@ const FORMS: &str = "
         transitions { leftward: right -> left when x <= 0; }
     }";
 
-/// Brackets: of canonical momenta beside a magnetic field, beside affine constraints, and integrable systems with walls.
+/// Brackets: canonical momenta in a magnetic field, affine constraints, integrable systems with walls.
 const BRACKETS: &str = "
     pub Charged {
         coordinates { x; y; }
@@ -260,7 +263,8 @@ const BRACKETS: &str = "
         claims { integrable: momentum(theta), momentum(phi); }
     }";
 
-/// The symplectic form on leaves of integrable constraints, from one mode to leaves of another, and forms beside constraints that are not linear.
+/// The symplectic form on leaves of integrable constraints and across transitions to leaves of another mode, and forms
+/// with constraints that are not linear.
 const LEAVES: &str = "
     pub Hoop {
         coordinates { x; y; }
@@ -330,14 +334,15 @@ const LEAVES: &str = "
         claims { symplectic; }
     }";
 
-/// A folder for certificates.
+/// Creates a folder for certificates.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).expect("a folder");
     folder
 }
 
-/// Writes the certificate of a model, one of [`FORMS`], [`BRACKETS`] or [`LEAVES`] if it is so named, and gives its path.
+/// Writes the certificate of a model and returns its path. `forms:wall` names the model `wall` of [`FORMS`];
+/// `brackets:` and `leaves:` work alike.
 fn certificate(model: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{}.json", model.replace(':', "_")));
     let place = path.to_str().expect("a path");
@@ -419,8 +424,7 @@ fn an_independent_program_confirms_every_proof_of_the_shipped_models() {
     assert_eq!(unchecked, None, "{text}");
 }
 
-/// The checking program refuses false certificates: each of these changes makes a true claim of a certificate false, and is found.
-/// Certificates that were tampered with: the model, the place in the document's parts, and the value there.
+/// Changes that make a claim of a certificate false: the model, the path in the parts of the document, the new value.
 const TAMPERED: [(&str, &str, &str); 30] = [
     (
         "double_pendulum",
@@ -459,7 +463,7 @@ const TAMPERED: [(&str, &str, &str); 30] = [
         r#""dot(x)""#,
     ),
     ("chaplygin_sleigh", "/0/content/claims/5/field/0", r#""y""#),
-    // The state that a mode is entered with, and the mode that is entered.
+    // States at the start of a mode.
     (
         "rimless_wheel_five",
         "/0/content/surfaces/0/transition/state/qdot/0",
@@ -486,7 +490,7 @@ const TAMPERED: [(&str, &str, &str); 30] = [
         r#""-x - 1/1000000000""#,
     ),
     ("laws", "/0/content/surfaces/1/coefficient", r#""e^2""#),
-    // A form between surfaces, and the motion behind one.
+    // An invariant form, and the motion beyond a surface.
     (
         "forms:damped",
         "/0/content/claims/0/terms/0/coefficient",
@@ -497,9 +501,9 @@ const TAMPERED: [(&str, &str, &str); 30] = [
         "/1/content/motion/rates/1",
         r#""1 + 1/1000000000""#,
     ),
-    // A field that leads back, beside densities of other signs.
+    // A field that leads back to a surface, with densities of opposite signs.
     ("forms:belts", "/1/content/motion/rates/0", r#""1""#),
-    // A bracket, one beside affine constraints, a wall and two functions that depend on each other.
+    // Brackets without and with affine constraints, a wall, and two dependent functions.
     (
         "brackets:charged",
         "/0/content/claims/1/values/0",
@@ -520,7 +524,7 @@ const TAMPERED: [(&str, &str, &str); 30] = [
         "/0/content/claims/0/values/0",
         r#""dot(phi)^2""#,
     ),
-    // Constraints that are not integrable with time, or in space; a step across leaves, a form and a force.
+    // Constraints that are not integrable in time or in space, and a transition across leaves.
     (
         "leaves:hoop",
         "/0/content/constraints/0/affine",
@@ -536,7 +540,7 @@ const TAMPERED: [(&str, &str, &str); 30] = [
         "/0/content/surfaces/0/transition/state/q/2",
         r#""x - y + dot(x)/1000000000""#,
     ),
-    // A wall of a mode that is entered across its leaves, a map to more dimensions, and one across leaves there.
+    // A wall of a mode with leaves, maps to a mode with more coordinates, a form and a potential.
     (
         "leaves:shelf",
         "/1/content/surfaces/0/gap",

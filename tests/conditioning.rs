@@ -1,11 +1,11 @@
-//! Constraints that are nearly dependent, and inertias far apart: the field keeps its digits because the constraint
+//! Nearly dependent constraints and very different inertias. The vector field keeps its digits because the constraint
 //! mass matrix is never formed.
 
 use dalembert::{Fault, Instance, System, VectorField};
 use dalembert_models::RollingDisk;
 
 dalembert::model! {
-    /// Two forms that span the same plane for every `delta`, and nearly coincide when it is small.
+    /// Two forms that span the same plane for every `delta`, and nearly coincide if `delta` is small.
     pub NearlyDependent {
         coordinates { x; y; z; w; }
         parameters { delta != 0 = 1; }
@@ -18,7 +18,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// The rank drops where y = 0.
+    /// Constraints whose rank drops at y = 0.
     pub RankDrops {
         coordinates { x; y; z; }
         lagrangian = 1/2*(dot(x)^2 + dot(y)^2 + dot(z)^2);
@@ -29,7 +29,7 @@ dalembert::model! {
     }
 }
 
-/// The rate of a state of `NearlyDependent` that satisfies both constraints.
+/// The rate at a state of `NearlyDependent` that satisfies both constraints.
 fn rate(delta: f64) -> <NearlyDependent as VectorField>::State {
     let system = NearlyDependent { delta };
     let (x, y) = (0.7, -0.4);
@@ -73,7 +73,7 @@ fn a_drop_in_rank_is_a_fault_that_names_the_constraint() {
     );
 }
 
-/// The vertical disk turns and rolls at constant rates for every inertia: `xddot = -R roll turn sin(phi)`.
+/// The vertical disk turns and rolls at constant rates for every inertia, so that `xddot = -R roll turn sin(phi)`.
 #[test]
 fn the_rolling_disk_keeps_its_digits_at_every_ratio_of_inertias() {
     for kappa in [1e-16, 1e-8, 1.0, 1e8, 1e12, 1e16] {

@@ -1,4 +1,4 @@
-//! Motion along surfaces after impacts: held at `h = 0`, released where the surface would have to pull.
+//! Motion along surfaces after impacts. A surface keeps the motion at `h = 0` and releases it instead of pulling.
 
 use core::ops::ControlFlow;
 
@@ -33,7 +33,7 @@ static TROUGH: Text = Text::new(
     }",
 );
 
-/// A knife edge that is driven against a wall.
+/// A knife edge that a force drives against a wall.
 static SKATE: Text = Text::new(
     "Skate {
         coordinates { x; y; theta: angle; }
@@ -43,7 +43,7 @@ static SKATE: Text = Text::new(
     }",
 );
 
-/// A point that meets two walls at an angle of 100 degrees at once.
+/// Two walls at an angle of 100 degrees, which a point meets at once.
 static WEDGE: Text = Text::new(
     "Wedge {
         coordinates { x; y; }
@@ -59,7 +59,7 @@ const CONTACT: Policies = Policies {
     split: dalembert::policy::Split::First,
 };
 
-/// Keeps the times at which surfaces begin and cease to hold the motion.
+/// Keeps the events at which surfaces begin or cease to hold the motion.
 struct Holds<S>(Vec<Hold<S>>);
 
 impl<M: System> Observer<M> for Holds<M::State> {
@@ -73,7 +73,7 @@ type State = <Model as VectorField>::State;
 
 type Ran = (Run<State>, Vec<Hold<State>>);
 
-/// A run from a state that is not checked before.
+/// A run from a state that is not checked.
 fn course<'a>(model: &'a Model, q: &[f64], qdot: &[f64], until: f64) -> Course<'a, Model> {
     let state = model.state_unchecked(0.0, &vector(q), &vector(qdot));
     Course::from_state(model, state.expect("a state"), until).tol(1e-13)
@@ -87,7 +87,7 @@ fn ran(course: Course<'_, Model>, integrator: Integrator, policies: Policies) ->
 
 #[test]
 fn a_point_held_in_a_bowl_is_a_pendulum() -> Result<(), Fault> {
-    // Period of the pendulum of length 1 and amplitude 1: 4 K(sin(1/2)), by the mean of Gauss.
+    // Period 4 K(sin(1/2)) of the pendulum of length 1 and amplitude 1, by the arithmetic-geometric mean.
     let (mut a, mut b) = (1.0_f64, 0.5_f64.cos());
     for _ in 0..6 {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());
@@ -111,7 +111,7 @@ fn a_point_held_in_a_bowl_is_a_pendulum() -> Result<(), Fault> {
 
 #[test]
 fn a_point_leaves_the_loop_where_it_stops_pressing() -> Result<(), Fault> {
-    // From the bottom with v^2 = 3.5 it presses until v^2 = y, at the height y = (3.5 - 2)/3.
+    // The point starts at the bottom with v^2 = 3.5 and presses until v^2 = y, at the height y = (3.5 - 2)/3.
     let speed = 3.5_f64.sqrt();
     let model = LOOPING.model();
     let course = course(&model, &[0.0, -1.0], &[speed, 0.0], 20.0);
@@ -123,7 +123,7 @@ fn a_point_leaves_the_loop_where_it_stops_pressing() -> Result<(), Fault> {
         .collect();
     assert!(places[0].0 && !places[1].0 && places[2].0, "{places:?}");
     assert_near("height", &[places[1].1], &[0.5], 1e-11);
-    // It falls on the other side, loses the speed towards the wall, and never leaves it again.
+    // The point falls on the other side, loses its velocity towards the wall, and never leaves the wall again.
     assert_eq!(places.len(), 3, "{places:?}");
     let q = model.position(&run.state);
     let q = q.as_ref();
@@ -221,7 +221,7 @@ fn the_order_at_a_corner_is_asked_for_where_it_matters() -> Result<(), Fault> {
     let stopped = end(Corner::Stop);
     assert_eq!(stopped.outcome, Outcome::Ambiguous { surfaces: [0, 1] });
     assert_near("time", &[stopped.t], &[1.0], 1e-14);
-    // By mirroring at the two walls in order, by hand.
+    // Expected velocities are those of reflections at the two walls in turn.
     let mirrored = |[vx, vy]: [f64; 2], [nx, ny]: [f64; 2]| {
         let normal = 2.0 * (vx * nx + vy * ny);
         [vx - normal * nx, vy - normal * ny]
@@ -255,7 +255,7 @@ fn the_order_at_a_corner_is_asked_for_where_it_matters() -> Result<(), Fault> {
     Ok(())
 }
 
-/// A point on a sphere: it slides off at `cos(phi) = (2 + v^2)/3`.
+/// A point on a sphere, which leaves it at `cos(phi) = (2 + v^2)/3`.
 static SPHERE: Text = Text::new(
     "Sphere {
         coordinates { r; phi; }

@@ -1,8 +1,8 @@
-//! Cost of expansion: time per model, verdicts on densities, and the growth with the N-link chain.
+//! Cost of expansion: time per model, time of verdicts on densities, and growth with the N-link chain.
 //!
-//! The bounds are those of a user's build. Built without optimisation, as cargo builds procedural macros in every profile,
-//! each model must expand in under a second; optimised, in under 50 ms. Times are the least of five. On a slow machine the
-//! bound is relative: to the time of reading the generated text as tokens.
+//! The bounds are those of a user's build. Cargo builds procedural macros without optimisation in every profile; each
+//! model must then expand in under a second. With optimisation it must expand in under 50 ms. Times are the shortest of
+//! five. On a slow machine the bound is relative to the time of reading the generated text as tokens.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -18,21 +18,21 @@ use dalembert_tests::sampling::every_system;
 use dalembert_tests::visible::{declaration, visible_systems};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
-/// Measurements are made one at a time: tests of one file run side by side.
+/// Serialises the measurements, since the tests of one file run in parallel.
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// Measurements of an expansion.
 struct Expansion {
-    /// The least of five times.
+    /// The shortest of five times.
     time: Duration,
-    /// The least of five ratios of the time to that of reading the generated code, measured next to each other.
+    /// The smallest of five ratios of the time to the time of reading the generated code, both measured in succession.
     to_reading: f64,
     /// Characters of the generated code.
     length: usize,
 }
 
-/// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code. The chain of 16 takes
-/// up to 2.74, by the load of the machine.
+/// On a slow machine, largest ratio of the time of an expansion to that of reading the generated code. The chain of 16
+/// has a ratio of up to 2.74, depending on the load of the machine.
 const READINGS: f64 = 3.0;
 /// On a slow machine, largest ratio of the time of a model's claims to that of an expansion without them.
 const EXPANSIONS: u32 = 10;
@@ -57,7 +57,7 @@ fn expansion(source: &str) -> Expansion {
     }
 }
 
-/// The time of work on the processor, without the time of other programs.
+/// The processor time of `work`, and its result. Other programs do not count.
 fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = on_processor();
     let result = work();
@@ -72,7 +72,7 @@ fn on_processor() -> Duration {
     Duration::new(now.tv_sec.unsigned_abs(), now.tv_nsec as u32)
 }
 
-/// The time on the clock.
+/// Wall-clock time.
 #[cfg(not(target_os = "linux"))]
 fn on_processor() -> Duration {
     static START: std::sync::LazyLock<std::time::Instant> =
@@ -90,7 +90,7 @@ fn without_claims(source: &str) -> String {
     let mut entries = body.stream().into_iter();
     while let Some(token) = entries.next() {
         if matches!(&token, TokenTree::Ident(word) if word == "claims") {
-            // Of the model or of a scene, up to the braces.
+            // Skips the claims of the model or of a scene up to their braces.
             entries.find(|token| matches!(token, TokenTree::Group(_)));
         } else {
             kept.push(token);
@@ -145,7 +145,7 @@ fn every_model_expands_in_time() {
     }
 }
 
-/// The least of three times for a verdict.
+/// The shortest of three times for a verdict, and the verdict.
 fn verdict(source: &str) -> (Duration, Result<Exactness, Undecided>) {
     let _alone = ALONE.lock();
     let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
@@ -175,7 +175,7 @@ fn verdicts_on_up_to_six_coordinates_are_reached_in_time() {
     }
 }
 
-/// Six constraints on eight coordinates: brackets of depth seven.
+/// Six constraints on eight coordinates need brackets of depth seven.
 #[test]
 fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
     let (time, verdict) = verdict(&train(5));
@@ -187,8 +187,8 @@ fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
     assert!(time < milliseconds(1000, 7000), "{time:?}");
 }
 
-/// The examination beyond existence, which includes conditions on parameters, takes no longer than on systems of five
-/// coordinates. Sums along circles and obstructions in long numbers took ten times as long.
+/// Bounds the time of claims of existence, which includes conditions on parameters, on bodies with five coordinates and
+/// on a train of five.
 #[test]
 fn claims_of_bodies_and_trains_are_examined_in_time() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";
@@ -218,7 +218,7 @@ fn claims_of_bodies_and_trains_are_examined_in_time() {
     }
 }
 
-/// Operations of the rate.
+/// Number of operations of the rate.
 fn operations(source: &str) -> usize {
     let spec = spec::parse(source.parse().expect("tokens")).expect("a declaration");
     let mut model = model::check(&spec).expect("a model");

@@ -1,4 +1,4 @@
-//! Runs in more than double precision: against closed forms and digits of other programs, and the ends of such runs.
+//! Runs in more than double precision: comparison with closed forms and digits of other programs, and ends of runs.
 
 use core::ops::ControlFlow;
 
@@ -12,7 +12,7 @@ use dalembert::{
 use dalembert_stability::tables::Sinai;
 
 dalembert::model! {
-    /// A pendulum with a drag and a magnet: constants that are no doubles, and functions of every kind.
+    /// A pendulum and a point in a common potential, with constants that are not doubles and many functions.
     pub Magnet {
         coordinates { a: angle; x; }
         parameters { g > 0 = 9.81; }
@@ -22,7 +22,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A point on a spring between a floor, which takes a third of its speed, and a wall that swings.
+    /// A point on a spring between a floor with restitution 2/3 and an oscillating wall.
     pub Swing {
         coordinates { x; }
         parameters { w = 1; }
@@ -41,7 +41,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A ball over a floor without losses.
+    /// A ball that bounces off a floor without losses.
     pub Elastic {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x;
@@ -54,7 +54,7 @@ fn start<Sys: System>(system: &Sys, q: &[f64], v: &[f64]) -> Result<Sys::State, 
     system.state(0.0, &vector(q), &vector(v))
 }
 
-/// A run with the declared effects, and its impacts.
+/// A run with the declared effects, and the impacts of the run.
 fn run<Sys, const P: usize>(
     system: &Sys,
     [q, v]: [&[f64]; 2],
@@ -87,7 +87,7 @@ fn assert_near<const P: usize>(name: &str, found: Extended<P>, expected: Extende
     );
 }
 
-/// The energy of `Magnet`, written out over numbers.
+/// The energy of `Magnet` in extended numbers.
 fn energy<const P: usize>(state: &[Extended<P>]) -> Extended<P> {
     let [a, x, p, y]: [Extended<P>; 4] = state.try_into().expect("a state");
     let of = Extended::<P>::from;
@@ -144,7 +144,7 @@ fn fewer_parts_are_as_far_off_as_their_rounding() {
     }
 }
 
-/// Number, time and place of bounces, made with `mpmath` 1.3 at 200 digits from the doubles of the start.
+/// Number, time and position of bounces, computed by `mpmath` 1.3 with 200 digits from the doubles of the start.
 #[rustfmt::skip]
 const SINAI: &[(usize, &str, &str, &str)] = &[
     (1, "0.50000000000000009251858538542971512584476236", "1.0", "0.50000000000000010177044392397268971991714962"),
@@ -155,14 +155,14 @@ const SINAI: &[(usize, &str, &str, &str)] = &[
     (45, "49.99523587280018213849828891510248102033961", "-0.27863651384183567348392330728939811662634275", "1.0"),
 ];
 
-/// Bounces of a point in a square with a disk of radius 1/2, from a run with 200 digits by closed formulas.
+/// Bounces of a point in a square around a disk of radius 1/2.
 #[test]
 fn bounces_of_a_sinai_billiard_are_those_of_a_run_with_200_digits() {
     let (end, impacts) = run::<_, 3>(&Sinai {}, [&[0.7, 0.1], &[0.6, 0.8]], 51.0);
     assert_eq!(end.outcome, Ok(Outcome::Done));
     for (number, t, x, y) in SINAI {
         let impact = &impacts[number - 1];
-        // 36 digits, and as many of the 48 as a billiard leaves.
+        // An error of 1e-47 may grow by a factor 6 in every bounce. The bound is at least 1e-36.
         let bound = 1e-36_f64.max(1e-47 * 6.0_f64.powf(*number as f64));
         assert_near("time", impact.t, decimal(t), bound);
         assert_near("x", impact.before[0], decimal(x), bound);
@@ -177,7 +177,7 @@ fn a_law_with_a_constant_acts_with_all_digits() {
     assert!(impacts.len() >= 3);
     let of = Extended::<4>::from;
     let third = of(1.0) / of(3.0);
-    // cos(t)/2 is -1/3 first.
+    // The first time at which cos(t)/2 is -1/3.
     let mut t = Numbers::acos(of(-2.0) * third);
     let mut speed = Numbers::sqrt(of(0.25) - third * third);
     for impact in &impacts {
@@ -187,7 +187,7 @@ fn a_law_with_a_constant_acts_with_all_digits() {
         assert_near("before", impact.before[1], -speed, 1e-60);
         speed = of(2.0) * third * speed;
         assert_near("after", impact.after[1], speed, 1e-60);
-        // From the speed after it to its opposite the phase turns by twice the angle from there to the largest swing.
+        // Until the next impact the phase turns by twice the angle to the largest displacement.
         t = t + of(2.0) * Numbers::atan2(speed, -third);
     }
 }
@@ -199,7 +199,7 @@ fn a_wall_that_moves_is_met_at_its_time() {
     let impact = &impacts[0];
     assert_eq!((impact.surface, impact.law), (1, Law::Elastic));
     let of = Extended::<3>::from;
-    // x = 3 sin t meets 1 + sin(t)/10.
+    // The motion 3 sin(t) meets the wall 1 + sin(t)/10.
     let sine = of(1.0) / (of(3.0) - of(1.0) / of(10.0));
     assert_near("time", impact.t, Numbers::asin(sine), 1e-45);
     let cosine = Numbers::sqrt(of(1.0) - sine * sine);
@@ -227,16 +227,16 @@ fn a_run_goes_on_from_its_end() {
 #[test]
 fn what_rounding_decides_ends_a_run() {
     let table = Sinai {};
-    // Along a side of the disk, within its rounding.
+    // The point passes the disk within the rounding error of its gap.
     let (end, _) = run::<_, 2>(&table, [&[0.5, -0.9], &[0.0, 1.0]], 1.5);
     assert!(
         matches!(end.outcome, Err(Undefined::Graze { surface: 4, .. })),
         "{:?}",
         end.outcome
     );
-    // The step in which it is grazed is not made.
+    // The step with the graze is not made.
     assert!(end.end.t.nearest() < 0.9, "{}", end.end.t);
-    // Into a corner.
+    // The point runs into a corner.
     let (end, impacts) = run::<_, 2>(&table, [&[0.75, 0.75], &[1.0, 1.0]], 3.0);
     assert!(
         matches!(end.outcome, Err(Undefined::Corner { .. })),
@@ -257,7 +257,7 @@ fn what_has_no_series_ends_a_run() {
         end.outcome
     );
     assert!(end.end.t.nearest() < 1.0 && end.end.state[0].nearest() <= 1e-9);
-    // On one side of the kink nothing is lost.
+    // On one side of the kink the run reaches its end.
     let (end, _) = run::<_, 3>(&Kinked {}, [&[1.0], &[1.5]], 0.5);
     assert_eq!(end.outcome, Ok(Outcome::Done));
 }
@@ -317,7 +317,7 @@ fn the_caller_and_budgets_end_a_run_with_its_last_impact() {
         assert_near("time", run.end.t, Extended::from(5.0), 1e-44);
         assert_near("speed", run.end.state[1], Extended::from(1.0), 1e-44);
     }
-    // The nearest double to the time of an impact is the end: it is met all the same.
+    // The run ends at the double nearest to the time of an impact, and still meets it.
     let t_end = core::f64::consts::SQRT_2;
     let (met, impacts) = run::<_, 3>(&ball, [&[1.0], &[0.0]], t_end);
     assert_eq!(

@@ -10,7 +10,7 @@ use dalembert_stability::text::Text;
 use dalembert_tests::command::{self, Finished};
 use serde_json::Value;
 
-/// A rotor that is driven and damped: `x' = -x/tau + cos(t)`, `phi' = omega`.
+/// A driven and damped coordinate, `x' = -x/tau + cos(t)`, and a rotor, `phi' = omega + sin(phi)/10`.
 static DRIVEN: Text = Text::new(
     "Driven {
         coordinates { x; phi: angle; }
@@ -21,7 +21,7 @@ static DRIVEN: Text = Text::new(
     }",
 );
 
-/// Predator and prey; the first integral is that of Volterra.
+/// Predator and prey, with Volterra's first integral.
 static PREY: Text = Text::new(
     "Prey {
         coordinates { x in (0, 1000); y in (0, 1000); }
@@ -36,7 +36,7 @@ static PREY: Text = Text::new(
 );
 
 dalembert::model! {
-    /// A counter that starts again at 1, and a clock of its restarts.
+    /// A coordinate that restarts at 0 when it reaches 1, and a counter of its restarts.
     pub Sawtooth {
         const N = 2;
         coordinates { s[N]; turns; }
@@ -54,11 +54,11 @@ static SAWTOOTH: Text = Text::new(Sawtooth::DESCRIPTION.source.value());
 #[test]
 fn integrators_follow_the_field() {
     let system = DRIVEN.model();
-    // x = A exp(-t/tau) + (tau cos t + tau^2 sin t)/(1 + tau^2), and tan((phi)/2) in closed form for constant rates.
+    // x = A exp(-t/tau) + (tau cos t + tau^2 sin t)/(1 + tau^2), and tan(phi/2) has a closed form.
     let (t, tau) = (3.0_f64, 0.5_f64);
     let steady = |t: f64| (tau * t.cos() + tau * tau * t.sin()) / (1.0 + tau * tau);
     let x = (1.0 - steady(0.0)) * (-t / tau).exp() + steady(t);
-    // With u = tan(phi/2): u' = (omega (1 + u^2) + u/5)/2.
+    // u = tan(phi/2) satisfies u' = (omega (1 + u^2) + u/5)/2.
     let (omega, half) = (3.0_f64, 0.1_f64);
     let root = (omega * omega - half * half).sqrt();
     let angle = |u: f64| ((omega * u + half) / root).atan();
@@ -196,7 +196,7 @@ fn integrals_are_kept() {
     assert!(drift.abs() <= 1e-11, "{drift:e}");
 }
 
-/// The command line over these models, with an input: exit, output, errors.
+/// Runs a command line over these models with this standard input.
 fn command(line: &str, given: &str) -> Finished {
     let models = [DRIVEN.entry(), PREY.entry(), SAWTOOTH.entry()];
     command::line(models.to_vec(), line, given)

@@ -1,4 +1,4 @@
-//! The form reduced to D against values computed independently with 50 digits, and against the global form.
+//! Compares the reduced form on D with independent values of 50 digits and with the global form.
 
 use dalembert::erased::Bounded;
 use dalembert::integrate::Chosen;
@@ -27,8 +27,8 @@ const QUANTITIES: [&str; 7] = [
     "mu_C_density_frame",
 ];
 
-/// The frame of the angular velocity in space is singular where Euler's angles are: the rates of the angles do not exist
-/// there, the energy does.
+/// The frame of the angular velocity in space is singular where the Euler angles are. There the rates of the angles do
+/// not exist, but the energy does.
 #[test]
 fn a_frame_ends_where_its_angles_do() {
     let ball = shipped("rolling_ball_euler").large([]);
@@ -65,7 +65,7 @@ fn the_reduced_form_has_the_reference_values() {
         let parameters = reference["system"]["parameters"].as_object();
         for (name, value) in parameters.expect("parameters") {
             let value = value.as_str().expect("a number");
-            // `d` is a word of the language.
+            // `d` is a reserved word of the language.
             let name = if name == "d" { "d_" } else { name };
             arguments.extend(["--set".to_owned(), format!("{name}={value}")]);
         }
@@ -94,8 +94,8 @@ fn input(state: &Value) -> Value {
     given.collect::<Map<String, Value>>().into()
 }
 
-/// The motion in the reduced form of a model is that of the global form: the same accelerations at the same velocities,
-/// time and forces included.
+/// Checks that the reduced and the global form of a model have the same motion: the same accelerations at the same
+/// velocities.
 #[derive(Default)]
 struct SameMotion {
     models: usize,
@@ -146,7 +146,7 @@ impl SameMotion {
     }
 }
 
-/// `d/dt qdot` along the rate of the state, by differences of the emitted velocity.
+/// The derivative of `qdot` along the rate of the state, by differences of the emitted velocity.
 fn acceleration<S: System>(system: &S, t: f64, state: &S::State, rate: &S::State) -> Vec<f64> {
     let h = 1e-4;
     let at = |k: f64| {
@@ -176,7 +176,7 @@ fn both_forms_are_the_same_motion() {
     assert!(visitor.models >= 12, "{}", visitor.models);
 }
 
-/// A velocity off the constraints is taken to the same nearest one in both forms.
+/// Both forms project a velocity that violates the constraints to the same nearest velocity.
 #[test]
 fn both_forms_project_to_the_same_velocity() {
     for system in every_system() {
@@ -198,14 +198,14 @@ fn both_forms_project_to_the_same_velocity() {
     }
 }
 
-/// Times of impacts, and the velocities after the last of them.
+/// Times of impacts, and the velocities after the last impact.
 fn run(system: &Model, q: &[f64], qdot: &[f64], count: u64) -> (Vec<f64>, Vec<f64>) {
     let course = Course::new(system, q, qdot, 1e4).tol(1e-14).impacts(count);
     let end = course.run(Setting::free(Integrator::Dop853));
     (end.times(), end.qdot)
 }
 
-/// With impacts, both forms run alike: on the circular table, which amplifies errors slowly.
+/// Both forms have the same impacts on the circular table, which amplifies errors slowly.
 #[test]
 fn both_forms_meet_the_same_impacts() {
     let disk = shipped("rolling_disk").with([("ta", 0.2), ("tb", 0.2)]);
@@ -229,7 +229,7 @@ fn both_forms_meet_the_same_impacts() {
     }
 }
 
-/// On D by construction: no residual but rounding, for every length of the run and every tolerance.
+/// A reduced state lies on D by construction. Even a long run at a loose tolerance leaves only rounding errors.
 #[test]
 fn a_reduced_state_never_leaves_the_constraints() {
     let disk = shipped("rolling_disk").model();

@@ -1,4 +1,4 @@
-//! The gallery of the shipped models: every picture can be made, and runs end as the captions state.
+//! The gallery of the shipped models: every picture is made, and runs end as the captions state.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use dalembert_cli::{Exit, Streams};
 use serde_json::Value;
 
-/// Runs `gallery` over the shipped models, and returns its standard error.
+/// Runs `gallery` over the shipped models, and returns its exit and its standard error.
 fn gallery(words: &[&str]) -> (Exit, String) {
     let (mut output, mut errors) = (Vec::new(), Vec::new());
     let mut streams = Streams {

@@ -1,12 +1,12 @@
-//! Conditions that hold for a small part of a step, and edges of charts that are passed for a moment: every integrator finds them, and
-//! where they begin.
+//! Conditions that hold in a small part of a step, and edges of charts that the motion crosses for a moment. Every
+//! integrator finds them and their beginnings.
 
 use dalembert::Outcome;
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, is_discrete, state};
 use dalembert_stability::text::{Model, Text};
 
-/// Behind the first wall the motion is free, but for a window of time.
+/// The first wall counts in a window of time only.
 static WINDOW: Text = Text::new(
     "Window {
         coordinates { x; }
@@ -16,7 +16,7 @@ static WINDOW: Text = Text::new(
     }",
 );
 
-/// The first wall counts above the ground, where a thrown body comes to at the top of its flight.
+/// The first wall counts above the height `2 - top`, near the top of the flight of a thrown body.
 static LEDGE: Text = Text::new(
     "Ledge {
         coordinates { x; y; }
@@ -26,7 +26,7 @@ static LEDGE: Text = Text::new(
     }",
 );
 
-/// The same with a narrow peak as the condition, of no finite degree.
+/// A wall whose condition holds near `x = 2` and is not a polynomial.
 static PEAK: Text = Text::new(
     "Peak {
         coordinates { x; }
@@ -36,7 +36,7 @@ static PEAK: Text = Text::new(
     }",
 );
 
-/// A wall that falls back and comes again, and counts for a moment in between.
+/// A gap that is negative for `1 < x < 2`, with a condition that holds for a moment in between.
 static DIP: Text = Text::new(
     "Dip {
         coordinates { x; y; }
@@ -46,7 +46,7 @@ static DIP: Text = Text::new(
     }",
 );
 
-/// A transition counts above the ground alone.
+/// A transition that counts above the height `2 - top` only.
 static GATE: Text = Text::new(
     "Gate {
         coordinates { x; y; }
@@ -62,7 +62,7 @@ static GATE: Text = Text::new(
     }",
 );
 
-/// A chart that a thrown body leaves at the top of its flight.
+/// A chart with an edge at the top of the flight of a thrown body.
 static ATTIC: Text = Text::new(
     "Attic {
         coordinates { x; y in (-10, 2); }
@@ -72,7 +72,7 @@ static ATTIC: Text = Text::new(
     }",
 );
 
-/// The same without surfaces.
+/// The chart of [`ATTIC`] without surfaces.
 static OPEN_ATTIC: Text = Text::new(
     "OpenAttic {
         coordinates { x; y in (-10, 2); }
@@ -80,10 +80,10 @@ static OPEN_ATTIC: Text = Text::new(
     }",
 );
 
-/// Long steps, of the integrators that keep theirs.
+/// Long step of the integrators with a fixed step.
 const STEP: f64 = 0.73;
 
-/// Ends of runs by every integrator, at several tolerances.
+/// Passes the ends of runs by every integrator at several tolerances to `check`.
 fn ends(
     system: &Model,
     (q, qdot): (&[f64], &[f64]),
@@ -130,7 +130,7 @@ fn a_window_of_time_is_not_stepped_over() {
     for width in [1e-2, 1e-4, 1e-9] {
         let window = WINDOW.with([("width", width)]);
         assert_begins_behind(&window, (&[0.5], &[1.0]), 2.0, 4e-15);
-        // Not behind the wall then, or past the window.
+        // In the window the point is still before the wall.
         assert_done(&window, (&[-1.5], &[1.0]), 2.25);
         assert_done(&window, (&[0.5], &[0.1]), 6.0);
     }
@@ -138,11 +138,11 @@ fn a_window_of_time_is_not_stepped_over() {
 
 #[test]
 fn an_impact_in_the_same_step_hides_no_window() {
-    // It is met after the window, in the same step; before it, the window is past the impact.
+    // The impact comes after the window, in the same step.
     let window = WINDOW.with([("far", 2.6)]);
     assert_begins_behind(&window, (&[0.5], &[1.0]), 2.0, 4e-15);
     let window = WINDOW.with([("far", 1.85)]);
-    // It comes back to 1.2 at the time of the window.
+    // The impact comes before the window, in which the point is at 1.2.
     assert_begins_behind(&window, (&[0.5], &[1.0]), 2.0, 4e-15);
     let window = WINDOW.with([("far", 1.2)]);
     assert_done(&window, (&[0.5], &[1.0]), 6.0);
@@ -151,7 +151,7 @@ fn an_impact_in_the_same_step_hides_no_window() {
 #[test]
 fn a_condition_that_holds_at_the_top_of_a_flight_is_found_where_it_begins() {
     for top in [1e-2_f64, 1e-6, 1e-10] {
-        // At the height `2 - (t - 2)^2/2`.
+        // The height is `2 - (t - 2)^2/2`.
         let begins = 2.0 - (2.0 * top).sqrt();
         let error = 1e-14 / top.sqrt();
         let start: (&[f64], &[f64]) = (&[0.0, 0.0], &[1.0, 2.0]);
@@ -178,7 +178,7 @@ fn a_gap_that_is_negative_inside_a_step_meets_its_condition_there() {
 
 #[test]
 fn motion_along_the_edge_of_a_condition_is_not_behind_it() {
-    // Along `y = 2` the condition holds by rounding alone.
+    // Along `y = 2` rounding errors alone decide the condition.
     let along = Text::new(
         "Along {
             coordinates { x; y; }
@@ -199,7 +199,7 @@ fn motion_along_the_edge_of_a_condition_is_not_behind_it() {
 #[test]
 fn a_chart_that_is_left_for_a_moment_ends_there() {
     for top in [1e-2_f64, 1e-6, 1e-10] {
-        // From rest at the top it would be at `2 + top` at the time 2.
+        // The flight would reach the height `2 + top` at the time 2.
         let left = 2.0 - (2.0 * top).sqrt();
         let error = 1e-14 / top.sqrt();
         let (outside, inside) = ([0.0, top], [0.0, -top]);
@@ -223,7 +223,7 @@ fn a_chart_that_is_left_for_a_moment_ends_there() {
 
 #[test]
 fn an_impact_that_turns_the_motion_back_comes_before_the_edge_of_a_chart() {
-    // The wall is met at the time 1; what lies beyond in the step is no motion.
+    // The wall is met at the time 1. The rest of the step is not part of the motion.
     let turned = Text::new(
         "Turned {
             coordinates { y in (-10, 2); }

@@ -1,4 +1,4 @@
-//! Stored hard cases, computed with 50 and more digits: whispering galleries, grazes, accumulations, small inertia, a
+//! Hard cases with stored values of 50 or more digits: whispering galleries, grazes, accumulations, small inertia, a
 //! glancing wall, long runs of the disk.
 
 use dalembert::law::Law;
@@ -55,7 +55,7 @@ fn whispering_galleries_keep_their_angle() {
             let end = Course::new(&table, &[1.0, 0.0], &start, 1e6)
                 .impacts(count)
                 .run(setting);
-            // The angle with the tangent errs by u over itself, and adds up to the polar angle twice in each chord.
+            // The angle with the tangent has the relative error u/angle. A chord adds twice it to the polar angle.
             let bound = 256.0 * f64::EPSILON * count as f64 / angle;
             assert_eq!(end.hits.len() as u64, count, "{}", setting.words());
             assert_near("t", &[end.t], &[number(&case["t_n"])], bound);
@@ -87,7 +87,8 @@ fn grazes_of_a_disk_are_impacts_or_not_as_their_offset_says() {
                     "{label}"
                 );
             }
-            // The speed at the wall is the root of twice the offset, and errs by the gap's rounding over itself.
+            // The normal speed at the wall is the root of twice the offset. Its error is the rounding error of the gap
+            // divided by the speed.
             let bound = 64.0 * f64::EPSILON / (2.0 * offset.abs()).sqrt().max(1e-8);
             assert_near(&label, &end.q, &numbers(&case["q_at_t=4"]), 2.0 * bound);
             if let (Some(hit), Some(t)) = (end.hits.first(), case.get("t")) {
@@ -114,7 +115,7 @@ fn an_inelastic_ball_accumulates_where_and_after_how_many_impacts_it_must() {
             let right = case["impacts_completed_before_zeno_minus_1e-6"]
                 .as_u64()
                 .expect("a count");
-            // For e = 0.999 a flight takes 1e-9 at the mark, and rounding has added three times that to the time.
+            // For e = 0.999 a flight at this time takes 1e-9, and the time has a rounding error of three times that.
             let spread = if e > 0.99 { 8 } else { 0 };
             assert!(
                 before.abs_diff(right) <= spread,
@@ -138,7 +139,7 @@ fn the_sleigh_keeps_its_digits_for_small_inertia() {
         let sleigh = shipped("chaplygin_sleigh").with(values);
         let [q, qdot] = ["q", "qdot"].map(|name| vector(&numbers(&case[name])));
         let state = sleigh.state(0.0, &q, &qdot).expect("a state");
-        // Reduced to D, the multiplier is a difference of forces of size 1: it has their rounding.
+        // On D the multiplier is a difference of forces of size 1 and has their rounding errors.
         let reduced = sleigh.multipliers(0.0, &state).expect("multipliers");
         let reduced = reduced.as_slice()[0];
         let sleigh = sleigh.global();
@@ -151,7 +152,7 @@ fn the_sleigh_keeps_its_digits_for_small_inertia() {
         );
         let right = numbers(&case["multipliers"])[0];
         let share = multiplier / right - 1.0;
-        // The turn rate is the rest of momenta of size 1, divided by the inertia.
+        // The angular velocity is a difference of momenta of size 1 divided by the inertia.
         let bound = 1e-12 + 1e-16 / inertia;
         assert!(
             share.abs() < bound,
@@ -173,7 +174,7 @@ fn a_knife_edge_hits_a_glancing_wall_by_every_law() {
         let [q, qdot] = ["q", "qdot_minus"].map(|name| vector(&numbers(&case[name])));
         let state = edge.state(0.0, &q, &qdot).expect("a state");
         let contact = edge.contact(0, 0.0, &state).expect("a contact");
-        // Momenta of size 1 hold a normal part of size theta: an impulse of 2/theta carries their rounding errors.
+        // Momenta of size 1 have a normal component of size theta. Impulses of size 2/theta carry rounding errors.
         let bound =
             1e-14 * (1.0 + 100.0 * f64::EPSILON.sqrt() / number(&case["theta"]).powi(2).max(1e-16));
         let rho = number(&case["geometry"]["ratio_r"]);
@@ -236,7 +237,7 @@ fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
                     end.energy
                 );
                 assert_eq!(end.hits.len() as u64, count, "{label}");
-                // On the ellipse neighbouring motions separate.
+                // On an ellipse neighbouring motions separate.
                 if is_regular {
                     let t = number(&mark["t"]);
                     let (time, place) = match setting.integrator.order() {
@@ -251,7 +252,7 @@ fn the_disk_follows_its_reference_for_hundreds_of_impacts() {
     }
 }
 
-/// Treads along the curve of the case, and walls that multiply speeds by 1.25.
+/// A point under gravity over the curve of the case `alpha`, with treads that reverse the vertical velocity.
 fn treads(alpha: f64) -> Point<1> {
     fn curve<L: Numbers>([a, v0]: [f64; 2], [x, y]: [L; 2]) -> L {
         let (b, slope) = (L::of(a * a), L::of(2.0_f64.sqrt() * v0));
@@ -291,7 +292,8 @@ fn rising_treads_are_hit_where_proposition_8_says() {
             assert_near("accumulation", &[t], &[number(&case["zeno_x=t"])], 1e-10);
             assert!(end.hits.len() >= 3, "{} impacts", end.hits.len());
             for (hit, right) in end.hits.iter().zip(cases(&case, "impacts")) {
-                // The time errs by the gap's rounding over the gap rate, which shrinks as the speed does.
+                // The error of the time is the rounding error of the gap divided by the gap rate, which shrinks with
+                // the speed.
                 let speed = number(&right["ydot_plus"]);
                 let bound = 1e-14 / speed;
                 assert_near("t", &[hit.t], &[number(&right["x=t"])], bound);

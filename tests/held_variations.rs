@@ -8,7 +8,7 @@ use dalembert_stability::text::{Model, Text};
 use dalembert_stability::varied::Varied;
 use dalembert_tests::differences::{self, Turns};
 
-/// A point that lands on a hill which rises, slides along it, and leaves it where it would have to pull.
+/// A point that lands on a rising hill, slides along it, and leaves it where the hill would have to pull.
 static HILL: Text = Text::new(
     "Hill {
         coordinates { x; y; }
@@ -18,7 +18,7 @@ static HILL: Text = Text::new(
     }",
 );
 
-/// A ball that is steered on a bumpy slope and does not slip while it touches it; the slope is a running belt.
+/// A steered ball over a bumpy slope with a running belt. The ball does not slip while it touches the slope.
 static BUMPS: Text = Text::new(
     "Bumps {
         coordinates { x; y; a; z; }
@@ -34,7 +34,7 @@ static BUMPS: Text = Text::new(
 
 type State = <Model as VectorField>::State;
 
-/// A run that may rest on surfaces, all with this law if one is given.
+/// A run that may rest on surfaces. A given law replaces that of the first surface.
 fn course<'a, M: Varied>(
     system: &'a M,
     start: M::State,
@@ -51,7 +51,7 @@ fn course<'a, M: Varied>(
     }
 }
 
-/// Number of times that the motion of a run begins to be held, and ceases to be.
+/// Numbers of contacts that begin to hold the motion of a run, and of contacts that release it.
 fn turns<M: Varied>(course: Course<'_, M>) -> [usize; 2] {
     let mut seen = Turns::default();
     let run = course.observed(Integrator::Taylor, &mut seen);
@@ -59,7 +59,7 @@ fn turns<M: Varied>(course: Course<'_, M>) -> [usize; 2] {
     seen.0
 }
 
-/// Compares derivatives with differences of runs in which motion begins and ceases to be held this number of times.
+/// Compares derivatives with differences of runs. `expected` has the numbers of contacts that begin and end.
 fn check_differences<M: Varied>(
     system: &M,
     start: M::State,
@@ -82,7 +82,7 @@ fn on_hill(q: [f64; 2], qdot: [f64; 2]) -> (Model, State) {
     (hill, state(&hill, &q, &qdot))
 }
 
-/// The ball, which has seven components.
+/// The ball at its start. Its state has seven components.
 fn over_bumps() -> (Model, State) {
     let ball = BUMPS.model();
     let qdot = [0.7, 0.2, 1.0, 0.3 * 0.9 * 0.7];
@@ -127,7 +127,7 @@ fn instantaneous_constraints_have_their_derivative() {
     let (ball, start) = over_bumps();
     check_differences(&ball, start, None, 2.7, [0, 0]);
     check_differences(&ball, start, Some(Law::Elastic), 2.7, [0, 0]);
-    // It rolls along the slope, and its constraint goes on holding.
+    // The ball rolls along the slope, where the no-slip constraint keeps holding.
     check_differences(&ball, start, Some(Law::ImpactPlastic), 4.0, [1, 0]);
 }
 
@@ -146,7 +146,7 @@ fn undefined(
 
 #[test]
 fn neighbours_that_are_not_held_have_no_derivative() {
-    // At rest on the hill at the start: neighbours along it are held, those above fall onto it later.
+    // The run starts in contact with the hill. Neighbours along the hill are held; those above fall onto it later.
     let hill = HILL.with([("w", 0.0), ("b", 0.0)]);
     let start = state(&hill, &[0.0, 0.0], &[0.3, 0.0]);
     let along = |component| undefined(&hill, start, None, Tangent::of_component(component), 1.0);
@@ -158,7 +158,7 @@ fn neighbours_that_are_not_held_have_no_derivative() {
         along(1),
         Some(Undefined::Held { surface: 0, t: 0.0 })
     ));
-    // Any coefficient but 0 lets it bounce.
+    // With any coefficient but 0 the ball bounces.
     let (_, start) = over_bumps();
     let ball = BUMPS.with([("e", 0.0)]);
     let by = |parameter| undefined(&ball, start, None, Tangent::of_parameter(parameter), 2.0);

@@ -1,6 +1,6 @@
-//! Generated code compiles with any names of the user and in any surroundings.
+//! Generated code compiles with awkward names of the user and in hostile surroundings.
 
-/// Names that generated functions use themselves, names that differ only in case, and Greek ones.
+/// Names that generated functions use, names that differ only in case, and Greek names.
 mod names {
     dalembert::model! {
         pub Awkward {
@@ -20,7 +20,7 @@ mod names {
     }
 }
 
-/// Items that shadow those that generated code relies on, and constants where it binds locals.
+/// Items that shadow those that generated code relies on, and constants with the names of its local variables.
 #[allow(dead_code, non_upper_case_globals, clippy::upper_case_acronyms)]
 mod surroundings {
     struct Option;
@@ -36,7 +36,7 @@ mod surroundings {
     const M: f64 = 2.0;
     fn components() {}
 
-    /// The indices that a caller has imported are those of the model.
+    /// Indices of the model that the module imports.
     pub fn places() -> [usize; 3] {
         [y, phi, floor]
     }
@@ -121,7 +121,7 @@ fn models_compile_in_hostile_surroundings() {
     assert_eq!(local(), 3.0);
     assert_eq!(surroundings::Shadowed::DESCRIPTION.name, "shadowed");
     assert_eq!(surroundings::places(), [0, 2, 0]);
-    // A parameter without default: no `Default`, and a refusal until it is set.
+    // A model with a parameter without default has no `Default`, and is refused until the parameter is set.
     let mut bare = bare::Bare::with_defaults();
     assert!(bare.check_parameters().is_err());
     bare.g = 9.81;

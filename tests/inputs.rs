@@ -1,4 +1,4 @@
-//! Inputs that the caller supplies, and the work along a run.
+//! Inputs that the caller supplies, and the work of forces along a run.
 
 use dalembert::impacts::Impacts;
 use dalembert::integrate::Chosen;
@@ -35,7 +35,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A sleigh on a moving belt, steered and pushed, with a Lagrangian that knows time.
+    /// A sleigh on a moving belt, steered and pushed, with a Lagrangian that depends on time.
     pub Tug {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 2; I > 0 = 1/2; belt = 1/3; c = 1/5; }
@@ -51,7 +51,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A tank that is filled.
+    /// A leaking tank with an inflow.
     pub Tank {
         coordinates { level; }
         parameters { leak > 0 = 1/2; }
@@ -64,12 +64,12 @@ fn tolerance() -> Tolerance {
     Tolerance::new(1e-13).expect("a tolerance")
 }
 
-/// The cart, loaded.
+/// The cart, loaded from its text.
 static CART: Text = Text::new(Cart::DESCRIPTION.source.value());
 
 type State = <Cart as VectorField>::State;
 
-/// Type of every input of the cart, so that its runs are compiled once.
+/// Type of all input functions of the cart, so that its runs are compiled once.
 type Steering = fn(f64, &State) -> [f64; 1];
 
 /// Effects of a cart without walls.
@@ -88,7 +88,7 @@ fn run<S: System>(
         .expect("a run")
 }
 
-/// A run of a system without impacts, by steps.
+/// A run of a system without impacts.
 fn steered<S: System>(system: &S, start: S::State, until: f64) -> Run<S::State> {
     run(
         system,
@@ -99,10 +99,10 @@ fn steered<S: System>(system: &S, start: S::State, until: f64) -> Run<S::State> 
     )
 }
 
-/// The loaded cart with this torque, undamped.
+/// The loaded cart with this input and without damping.
 fn held(u: f64) -> Model {
     let mut cart = CART.with([("c", 0.0)]);
-    // An input comes after the parameters.
+    // The index of an input follows those of the parameters.
     cart.set_parameter(Cart::DESCRIPTION.parameters.len(), u);
     cart
 }
@@ -127,7 +127,7 @@ fn an_input_is_held_at_zero_until_it_is_set() {
     assert_near("force", &[driven[1] - free[1]], &[1.5 * 1.025], 1e-15);
 }
 
-/// A linear oscillator under `u = sin(w t)/(1 + x^2/10)` has a closed form.
+/// With `u = sin(w t)/(1 + x^2/10)` the cart is a linear oscillator with a closed form.
 #[test]
 fn inputs_are_functions_of_time_and_state() {
     const W: f64 = 0.7;
@@ -251,7 +251,7 @@ fn constraints_and_time_do_work_too() {
 fn a_field_and_a_scene_take_inputs() {
     let tank = Tank::default().with_inputs(|t, state| [1.0 + t - state[0] / 2.0]);
     let run = steered(&tank, [0.0].into(), 3.0);
-    // ydot = 1 + t - y
+    // The level satisfies `ydot = 1 + t - y`, with the solution `y = t`.
     assert_near("level", run.state.as_slice(), &[3.0], 1e-12);
     let free = cart::Free(Cart {
         u: 1.0,
@@ -355,7 +355,7 @@ fn states_to_evaluate_have_inputs() {
     );
 }
 
-/// The messages of a model that is refused.
+/// The messages of a refused model.
 fn refused(declarations: &str) -> String {
     let model = format!("P {{ coordinates {{ x; y; }} inputs {{ u; }} {declarations} }}");
     let errors = compile(model.parse().expect("tokens")).expect_err("a refusal");
@@ -418,7 +418,7 @@ fn the_divergence_beside_inputs_is_that_of_held_ones() {
     }
 }
 
-/// Without the motor, no result depends on its torque.
+/// In a scene without the motor, nothing depends on its input.
 #[test]
 fn scenes_without_an_input_have_densities() {
     let model = |scene: &str, claim: &str| {

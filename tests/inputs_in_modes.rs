@@ -11,7 +11,7 @@ use dalembert_tests::command::{self, Finished};
 use dalembert_tests::numeric::assert_near;
 
 dalembert::model! {
-    /// A sledge with a motor, from ice to gravel and against a wall.
+    /// A sledge with a motor that runs from ice onto gravel and against a wall.
     pub Sledge {
         coordinates { x; }
         parameters { m > 0 = 2; c > 0 = 1/4; }
@@ -52,7 +52,7 @@ fn run<S: dalembert::contract::Impacting>(system: &S, from: S::State, until: f64
     run
 }
 
-/// Position and velocity under a constant force, from `x = 0` at the speed 1.
+/// Position and velocity under a constant force, from `x = 0` with the velocity 1.
 fn constant(u: f64, t: f64) -> [f64; 2] {
     let Sledge { m, c, .. } = Sledge::default();
     let entered = m / u * ((1.0 + 2.0 * u / m).sqrt() - 1.0);
@@ -73,8 +73,8 @@ fn a_held_input_acts_in_every_mode() {
     assert_near("v", &[end.state[1] / sledge.m], &[v], 1e-12);
 }
 
-/// `u = -m v` makes the speed fall as `exp(-t)` on ice, and as `exp(-(1 + c/m) t)` on gravel. A function of the state
-/// tells modes apart by its last component.
+/// `u = -m v` makes the speed fall as `exp(-t)` on ice, and as `exp(-(1 + c/m) t)` on gravel. An input function finds
+/// the mode in the last component of the state.
 #[test]
 fn feedback_acts_in_every_mode() {
     let sledge = Sledge::default();
@@ -85,7 +85,7 @@ fn feedback_acts_in_every_mode() {
     let steered = sledge.with_inputs(|_, state| [-state[1]]);
     let end = run(&steered, start(0.5, 1.0), until);
     assert_near("v", &[end.state[1] / sledge.m], &[expected], 1e-12);
-    // On ice alone, half of the speed is lost before the gravel and none on it but by drag.
+    // With feedback on ice alone, half of the speed is lost before the gravel; on the gravel drag alone acts.
     let on_ice = sledge.with_inputs(|_, state| [if state[2] == 0.0 { -state[1] } else { 0.0 }]);
     let end = run(&on_ice, start(0.5, 1.0), until);
     let expected = 0.5 * (-sledge.c / sledge.m * 0.5).exp();

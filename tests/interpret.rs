@@ -1,5 +1,5 @@
-//! Three routes to the same numbers: loaded code, the program's interpreter, and derivatives of the Lagrangian by
-//! differences.
+//! Compares loaded code with the interpreter of the program, and expressions with finite differences of the Lagrangian
+//! and of constraints.
 
 use dalembert::describe::Description;
 use dalembert::{Described, Instance, StateVector, System, VectorField};
@@ -13,13 +13,14 @@ use dalembert_tests::sampling::{Random, every_system, states};
 
 type State = <Large as VectorField>::State;
 
-/// A model derived again from its own source text.
+/// A model derived again from its source text.
 fn derive(source: &str) -> (Model, mechanics::Derivation, Lowered) {
     let compiled = compile(source.parse().expect("tokens")).expect("a model");
     (compiled.model, compiled.derivation, compiled.programs)
 }
 
-/// Loaded code equals the interpreter to the bit: the same operations in the same order. Emitted code does too (`erased`).
+/// Loaded code equals the interpreter to the bit, since it does the same operations in the same order. Emitted code
+/// does too (`tests/erased`).
 #[test]
 fn loaded_code_is_what_the_interpreter_executes() {
     let mut states = 0;
@@ -69,7 +70,7 @@ fn every_function_is_emitted_as_it_is_interpreted() {
     assert_eq!(emitted.as_slice(), interpreted);
 }
 
-/// Asserts that the force `f = dL/dq + F` in the program equals central differences of L, evaluated as an expression.
+/// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals differences of L.
 fn assert_force_is_differenced(system: &Large) {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);
@@ -142,8 +143,8 @@ fn programs_are_well_formed() {
     }
 }
 
-/// The field keeps the value of every constraint, on it and off it: `d/dt (eta(qdot) + eta_0) = 0`, by differences of the
-/// residual expression along the rate. Returns the number of constraints.
+/// Asserts that the field keeps the value of every constraint, even off it: `d/dt (eta(qdot) + eta_0) = 0`, by
+/// differences of the residual expression along the rate. Returns the number of constraints.
 fn assert_constraints_are_kept(system: &Large) -> usize {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);

@@ -1,12 +1,12 @@
-//! The tables of refused declarations in `docs/language.md`: every row gives the message it promises, with its help.
+//! The tables of refused declarations in `docs/language.md`: every row gets the message of the page, with its help.
 
 use std::path::Path;
 
 use proc_macro2::TokenStream;
 
-/// The head of the tables.
+/// Head of the tables.
 const HEAD: &str = "| refused | message |";
-/// Declarations that the page gives for all rows.
+/// Parts of the declaration of every row.
 const COORDINATES: &str = "coordinates { x; y; theta: angle; }";
 const PARAMETERS: &str = "parameters { m > 0 = 1; k > 0 = 1; }";
 
@@ -46,7 +46,7 @@ fn row(line: usize, text: &str) -> Row {
     }
 }
 
-/// The model that a row describes. A row that begins with `pub` is a model itself, its declarations left out.
+/// The model of a row. A row that begins with `pub` is a model whose shared declarations are written as `..`.
 fn model(declarations: &str) -> String {
     let common = format!("{COORDINATES} {PARAMETERS}");
     if declarations.starts_with("pub") {
@@ -61,7 +61,7 @@ fn model(declarations: &str) -> String {
     format!("Page {{ {common} {lagrangian} {declarations} }}")
 }
 
-/// Half the squares of all velocities, those of further coordinates included.
+/// Half the squares of all velocities, including those of further coordinates.
 fn lagrangian(declarations: &str) -> String {
     let mut terms = String::from("dot(x)^2 + dot(y)^2 + dot(theta)^2");
     let section = declarations
@@ -84,7 +84,7 @@ fn lagrangian(declarations: &str) -> String {
     format!("lagrangian = m/2*({terms});")
 }
 
-/// The actual message of a row, where it differs from the promised one.
+/// Describes the difference between the actual message of a row and the promised one; `None` if they agree.
 fn difference(row: &Row) -> Option<String> {
     let source = model(&row.declarations);
     let tokens: TokenStream = source.parse().expect("tokens");

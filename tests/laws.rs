@@ -1,4 +1,4 @@
-//! Properties of the impact laws at random states on random surfaces.
+//! Properties of the impact laws at random states.
 
 use dalembert::erased::Bounded;
 use dalembert::law::{Blow, Law};
@@ -23,8 +23,9 @@ fn apply(system: &Large, surface: usize, law: Law, state: &State) -> State {
     after
 }
 
-/// With `c` the law's factor, `G+ = (1 - c) G-` and `H+ - H- = -(c - c^2/2) G-^2 / dh(pi_D grad h)` on D at rest
-/// walls; no position needs to lie on the surface for these algebraic facts.
+/// Checks a law with the factor `c` at walls at rest: `G+ = (1 - c) G-` and
+/// `H+ - H- = -(c - c^2/2) G-^2 / dh(pi_D grad h)` on D. These equations are algebraic and hold for positions off the
+/// surface as well.
 fn check_linear(system: &Large) {
     for state in states(system, 20, 11) {
         for surface in 0..system.description().surfaces.len() {
@@ -73,7 +74,7 @@ fn gap_rate_and_energy_change_as_each_law_says() {
     }
 }
 
-/// The declared law has its own function, without most of the quantities of a contact.
+/// Compares the function of the declared law, which computes fewer quantities than a contact, with the contact.
 fn check_blows(system: &Large) {
     for state in states(system, 20, 14) {
         for surface in 0..system.description().surfaces.len() {
@@ -129,7 +130,7 @@ fn blows_are_those_of_the_contact_by_the_declared_law() {
     check_blows(&system("rolling_ball_euler").global());
 }
 
-/// Every law keeps the constraints, affine ones included.
+/// Checks that every law keeps the constraints, including affine ones.
 fn check_constraints(system: &Large) {
     for state in states(system, 20, 12) {
         for surface in 0..system.description().surfaces.len() {

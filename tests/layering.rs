@@ -1,4 +1,4 @@
-//! Allowed dependencies: the invariants of `docs/architecture.md`, read from the sources.
+//! Allowed dependencies: the rules of `docs/architecture.md`, checked in the sources.
 
 use std::path::{Path, PathBuf};
 
@@ -31,7 +31,7 @@ fn is_inside_tests(path: &Path) -> bool {
     source.is_some_and(|source| parts[source..].iter().any(|part| *part == "tests"))
 }
 
-/// True if a line holds a text that is not the end of a longer name: `ArrayVec<` is no `Vec<`.
+/// True if a line contains a text that does not continue a longer name: `ArrayVec<` does not contain `Vec<`.
 fn has_word(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(place, _)| {
         let before = line[..place].chars().next_back();
@@ -39,16 +39,16 @@ fn has_word(line: &str, word: &str) -> bool {
     })
 }
 
-/// The file of the runtime where values that others made are owned, with the feature `std`.
+/// The file of the runtime that may own values on the heap, with the feature `std`.
 const OWNERS: &str = "numbers/src/held.rs";
 
 /// The type of an owner on the heap.
 const OWNER: &[&str] = &["Box<"];
 
-/// Asserts that no code line (comments aside) of a folder holds a text. [`OWNERS`] may hold an [`OWNER`].
+/// Asserts that no code in a folder contains these texts. Comments may, and [`OWNERS`] may contain an [`OWNER`].
 fn assert_absent(folder: &str, forbidden: &[&str]) {
     for (path, text) in sources(folder) {
-        // Tests of a stage may run the later ones.
+        // Tests of a stage may run later stages.
         let may_own = path.ends_with(OWNERS) && forbidden == OWNER;
         if path.ends_with("tests.rs") || is_inside_tests(&path) || may_own {
             continue;
@@ -113,7 +113,7 @@ fn a_stage_uses_only_those_to_its_left() {
     }
 }
 
-/// The modules of the runtime, each after those it uses.
+/// The modules of the runtime, each after the modules that it uses.
 const RUNTIME: [&str; 40] = [
     "error",
     "state",
@@ -276,7 +276,7 @@ fn the_project_stands_alone() {
             if path.ends_with("layering.rs") {
                 continue;
             }
-            // Neither a neighbour of the checkout nor the place of the checkout itself.
+            // Paths of neighbours of the checkout, and of the checkout itself, are forbidden.
             for outside in ["../shared", "/home/", place] {
                 assert!(!text.contains(outside), "{}: {outside}", path.display());
             }
@@ -284,8 +284,8 @@ fn the_project_stands_alone() {
     }
 }
 
-/// Generated functions hide constants of their arguments' names. The generator knows the names it uses, and the runtime
-/// has a function of each.
+/// Generated functions hide constants with the names of their arguments. The generator lists these names, and the
+/// runtime has a function for each.
 #[test]
 fn the_arguments_of_generated_functions_have_one_list() {
     let read = |path| std::fs::read_to_string(root().join(path)).expect("text");
@@ -309,7 +309,7 @@ fn the_arguments_of_generated_functions_have_one_list() {
     assert_eq!(used, hidden);
 }
 
-/// Names that a crate gives at its root.
+/// Names that a crate exports at its root.
 fn names_at_root(path: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(path)).expect("a crate");
     let uses = text.split("pub use ").skip(1);

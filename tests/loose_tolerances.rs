@@ -1,8 +1,8 @@
-//! Impacts at loose tolerances: fewer digits, but none invented and none missed.
+//! Impacts at loose tolerances have fewer digits, but none is invented and none is missed.
 //!
-//! The disk on its table is chaotic, and far from a straight path: at 1e-3 a run soon follows another motion than the
-//! exact one, and may meet the edges ten times as often. That is no fault of the search: from the state after each of
-//! its impacts the exact motion must meet the same surface next, and at the same time but for the error of one flight.
+//! The motion of the disk on its table is chaotic. At the tolerance 1e-3 a run soon follows another motion than the
+//! exact one, and may meet the edges ten times as often. The event search is still right: from the state after each
+//! impact of the run, the exact motion must meet the same surface next, at the same time up to the error of one flight.
 
 use core::ops::ControlFlow;
 
@@ -18,8 +18,8 @@ fn disk() -> Model {
     shipped("rolling_disk").model()
 }
 
-/// Seconds by which impacts may be off, for a tolerance of 1: the disk's ends move at 0.1 to 0.3 m/s, a step may be off
-/// by the tolerance in metres, and the edge is met at an angle.
+/// Allowed error of the times of impacts in seconds, divided by the tolerance. The edges of the disk move at 0.1 to 0.3
+/// m/s, the error of a step may be the tolerance in metres, and impacts are oblique.
 const LATE: f64 = 30.0;
 
 /// One impact.
@@ -30,7 +30,7 @@ struct Impact {
     after: State,
 }
 
-/// The first impacts of a run.
+/// Keeps the first `wanted` impacts of a run, and stops the run there.
 struct First {
     impacts: Vec<Impact>,
     wanted: usize,
@@ -65,10 +65,10 @@ fn impacts(
     first.impacts
 }
 
-/// The motion that others are compared with.
+/// Integrator and tolerance of the motion with which others are compared.
 const EXACT: (Integrator, f64) = (Integrator::Taylor, 1e-13);
 
-/// The disk upright in the middle of the table, rolling and turning.
+/// The disk in the middle of the table, rolling and turning.
 fn start(roll: f64) -> State {
     let disk = disk();
     let phi = core::f64::consts::FRAC_PI_2;
@@ -76,7 +76,7 @@ fn start(roll: f64) -> State {
     state(&disk, &[0.0, 0.0, 0.0, phi], &qdot)
 }
 
-/// Every flight of a run has its exact partner.
+/// Asserts that every flight of a run ends like the exact flight from the same state.
 fn assert_flights_are_exact(integrator: Integrator, tol: f64) {
     let name = integrator.name();
     for roll in [10.0, 10.001, 9.7] {
@@ -114,14 +114,16 @@ fn flights_of_dop853_are_exact() {
     assert_flights_are_exact(Integrator::Dop853, 1e-4);
 }
 
-/// Allowed error of the gap of a loose run, for a tolerance of 1: gaps are 1 in the middle of the table, and a step may be
-/// off by the tolerance in metres on half axes of 0.15 and 0.2. A shallow hit may be late by more than [`LATE`].
+/// Allowed error of the gap in a loose run, divided by the tolerance. Gaps are 1 in the middle of the table, whose half
+/// axes are 0.15 and 0.2, and the error of a step may be the tolerance in metres. A shallow hit may be late by more
+/// than [`LATE`].
 const WRONG: f64 = 30.0;
 
 /// Number of moments of a flight that are compared.
 const MOMENTS: usize = 64;
 
-/// In every flight of a run the exact motion stays inside, up to the tolerance, and ends on the surface that was met.
+/// Asserts that in every flight of a run the exact motion stays inside, up to the tolerance, and ends on the surface of
+/// the impact.
 fn assert_flights_stay_inside(integrator: Integrator, tol: f64) {
     let (name, disk) = (integrator.name(), disk());
     let wrong = WRONG * tol;

@@ -1,5 +1,5 @@
-//! No impact is missed, and none is invented: after every impact of a run the next one is computed in closed form from
-//! the state the run itself has, with arithmetic of its own, and must be what the run finds next.
+//! No impact is missed, and none is invented. After every impact of a run, the next one is computed independently in
+//! closed form from the state of the run. The run must find this impact next.
 
 use core::ops::ControlFlow;
 
@@ -9,10 +9,10 @@ use dalembert_stability::course::{Course, Random};
 use dalembert_stability::tables::{RECTANGLE, STADIUM, elliptic_table};
 use dalembert_stability::text::{Model, value};
 
-/// Rounding errors allowed in a time, in units of `2^-52` of the table's terms over the gap rate.
+/// Allowed rounding error of a time, in units of `2^-52` divided by the gap rate.
 const UNITS: f64 = 256.0;
 
-/// A next impact: the time until it, its surface, and its gap rate.
+/// The next impact: the time until the impact, its surface, and its gap rate.
 #[derive(Debug, Clone, Copy)]
 struct Next {
     after: f64,
@@ -20,11 +20,11 @@ struct Next {
     rate: f64,
 }
 
-/// The next impact in a table from a point on the wall or inside, moving inwards, as a closed form.
+/// The next impact in a table in closed form, from a point inside or from one on the wall that moves inwards.
 type Ahead = fn(&Model, [f64; 2], [f64; 2]) -> Next;
 
-/// Time at which a line that begins in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the root farther
-/// ahead, in the form without cancellation.
+/// Time at which a line that starts in or on the conic `c + 2 b s + a s^2 >= 0`, `a < 0`, leaves it: the larger root,
+/// in the form without cancellation.
 fn leaves(a: f64, b: f64, c: f64) -> f64 {
     let root = (b * b - a * c.max(0.0)).sqrt();
     if b >= 0.0 {
@@ -72,7 +72,7 @@ fn in_rectangle(table: &Model, q: [f64; 2], v: [f64; 2]) -> Next {
 }
 
 fn in_stadium(_: &Model, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
-    // The straight walls, where they are met between the half disks.
+    // The straight walls count between the half disks.
     if v != 0.0 {
         let after = (if v > 0.0 { 1.0 - y } else { 1.0 + y }) / v.abs();
         if (x + u * after).abs() < 1.0 && after > 0.0 {
@@ -83,7 +83,7 @@ fn in_stadium(_: &Model, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
             };
         }
     }
-    // The half disks, where their circles are left beyond the straight walls.
+    // The half disks count where the line leaves their circles beyond the straight walls.
     for (surface, side) in [(2, -1.0), (3, 1.0)] {
         let from = x - side;
         let (a, b) = (-(u * u + v * v), -(from * u + y * v));
@@ -105,7 +105,7 @@ fn in_stadium(_: &Model, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Next {
     panic!("no wall is ahead of {x}, {y} at {u}, {v}");
 }
 
-/// Compares impact after impact.
+/// Compares every impact with the expected one.
 struct Watch<'a> {
     table: &'a Model,
     ahead: Ahead,
@@ -185,7 +185,7 @@ fn follow(
     );
 }
 
-/// Every table and kind of start, a share of the impacts each.
+/// Follows every table and kind of start with every integrator, an equal number of impacts each.
 fn follow_all(impacts: u64) {
     let mut random = Random::new(2026);
     let [circle, ellipse] = [1.0, 2.0].map(|ta| elliptic_table(ta, 1.0));

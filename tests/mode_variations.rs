@@ -1,4 +1,4 @@
-//! First variations of models with modes: augmented differentials of transitions, differences of runs, limit cycles.
+//! First variations of models with modes: differentials of transitions, differences of runs, limit cycles.
 
 use core::ops::ControlFlow;
 
@@ -37,7 +37,7 @@ static LAYERS: Text = Text::new(
     }",
 );
 
-/// Modes of different lengths, each with impacts of its own, and declared states between them that depend on time.
+/// Modes with different numbers of coordinates and different surfaces, and resets between them that depend on time.
 static MIXED: Text = Text::new(
     "Mixed {
         parameters { e in [0, 1] = 4/5; k > 0 = 1/2; c = 1/3; }
@@ -64,7 +64,7 @@ static MIXED: Text = Text::new(
     }",
 );
 
-/// Mass, potential and constraint change at a curve; states may leave the constraints.
+/// Modes in global form. Mass, potential and constraint change at a moving curve.
 static MEDIUM: Text = Text::new(
     "Medium {
         coordinates { x; y; z; }
@@ -86,7 +86,7 @@ static MEDIUM: Text = Text::new(
     }",
 );
 
-/// The model above, with modes that are reduced to their constraints.
+/// Two modes in reduced form with different masses.
 static REDUCED: Text = Text::new(
     "Reduced {
         coordinates { x; y; }
@@ -101,7 +101,7 @@ static REDUCED: Text = Text::new(
     }",
 );
 
-/// Fields that both lead to a curve which moves: the motion slides along it, and leaves it into either mode.
+/// Fields that both lead to a moving curve. The motion slides along it and leaves it into the left mode.
 static SLIDER: Text = Text::new(
     "Slider {
         coordinates { x; y; }
@@ -117,7 +117,7 @@ static SLIDER: Text = Text::new(
     }",
 );
 
-/// The constraint of one side makes the motion leave it at once: two transitions at one moment, on a curve that moves.
+/// Two transitions at one time on a moving curve: the constraint of the second mode makes the motion leave it at once.
 static THROWN: Text = Text::new(
     "Thrown {
         coordinates { x; y; z; }
@@ -131,7 +131,7 @@ static THROWN: Text = Text::new(
     }",
 );
 
-/// A state of the first mode; omitted values are 0.
+/// A state of the first mode. Missing values are 0.
 fn state<S: Driven>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     let [mut position, mut velocity] = [system.zero_vector(); 2];
     position.as_mut_slice()[..q.len()].copy_from_slice(q);
@@ -139,7 +139,7 @@ fn state<S: Driven>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     system.state(0.0, &position, &velocity).expect("a state")
 }
 
-/// The surfaces met.
+/// Keeps the surfaces of all events.
 struct Surfaces(Vec<usize>);
 
 impl<Sys: System> Observer<Sys> for Surfaces {
@@ -149,14 +149,14 @@ impl<Sys: System> Observer<Sys> for Surfaces {
     }
 }
 
-/// A run off the constraints too.
+/// A run without projection, so that states may leave the constraints.
 fn course<'a, S: Driven>(system: &'a S, start: S::State, until: f64) -> Course<'a, S> {
     Course::from_state(system, start, until)
         .tol(1e-15)
         .projection(false)
 }
 
-/// The end of such a run.
+/// The end of a run of [`course`].
 fn end<S: Driven>(system: &S, start: S::State, until: f64, seen: &mut dyn Observer<S>) -> S::State {
     let run = course(system, start, until).observed(Integrator::Taylor, seen);
     assert!(run.outcome.is_done(), "{}", run.outcome);
@@ -205,8 +205,9 @@ fn a_crossing_has_the_differential_of_the_reference() {
     }
 }
 
-/// Derivatives of a run with respect to the first `used` components of its start and to all parameters, against differences
-/// of runs with as many transitions and impacts, `passed` of them at least.
+/// Compares derivatives of a run with differences of runs. The derivatives are taken with respect to the first `used`
+/// components of the start and to all parameters. All runs have the same number of transitions and impacts, at least
+/// `passed`.
 fn check_differences<S: Varied>(system: &S, start: S::State, used: usize, until: f64, passed: u64) {
     let impacts = differences::check_differences(system, start, used, |system, start| {
         course(system, start, until)
@@ -249,7 +250,7 @@ fn constraints_that_change_have_their_derivatives() {
     let q = [-1.0, 0.2, 0.3, 1.2, 0.4];
     let start = state(&ball, &q, &[1.0, 0.5, -8.0, 0.4, 0.2]);
     check_differences(&ball, start, 10, 2.5, 1);
-    // The spin makes the rough side throw the ball back: two transitions at one time.
+    // The rough side throws the spinning ball back: there are two transitions at one time.
     let start = state(&ball, &q, &[1.0, 0.5, 8.0, 0.4, 0.2]);
     check_differences(&ball, start, 10, 2.5, 2);
     let thrown = THROWN.model();
@@ -263,7 +264,7 @@ fn constraints_that_change_have_their_derivatives() {
 fn refraction_has_its_derivative() {
     let particle = shipped("refracted_particle");
     check_declared(&particle.model(), 4, 3.0, 1);
-    // Too little energy: it is reflected.
+    // With too little energy the particle is reflected.
     check_declared(&particle.with([("V2", 2.0)]), 4, 3.0, 1);
     check_declared(&shipped("sphere_in_plane").model(), 4, 2.0, 2);
     let medium = MEDIUM.model();
@@ -289,7 +290,7 @@ fn refraction_of_reduced_modes_has_no_derivative() {
 #[test]
 fn sliding_has_its_derivative() {
     check_declared(&shipped("filippov_field").model(), 2, 3.0, 1);
-    // It ends in the left mode: the one entered last if the motion came from the right, the other one if from the left.
+    // The sliding motion ends in the left mode, whichever mode it started in.
     let slider = SLIDER.model();
     for (mode, x) in [(0, 0.5), (1, -0.5)] {
         let mut start = state(&slider, &[x, 0.1], &[]);
@@ -304,7 +305,7 @@ fn sliding_has_its_derivative() {
     }
 }
 
-/// The cycle of a wheel, found from its declared start, with its period and multiplier.
+/// Compares the limit cycle of a wheel, found from its declared start, with stored values.
 fn check_wheel(wheel: &Large, stored: &Value) {
     let cycle = &stored["limit_cycle_xi_true"];
     let step = &cycle["steps"][0];
@@ -332,7 +333,7 @@ fn check_wheel(wheel: &Large, stored: &Value) {
     );
     let expected = number(&cycle["multiplier_of_x_dot^2"]);
     let [multiplier, imaginary] = orbit.multipliers.iter().next().expect("one");
-    // It is a product of factors near 1: the error is their rounding, even for a small product.
+    // The multiplier is a product of factors near 1 and has their rounding errors, even if it is small.
     let error = (multiplier - expected).abs();
     assert!(
         error < 4e-15 && imaginary == 0.0,

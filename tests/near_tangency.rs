@@ -1,12 +1,13 @@
-//! Motions that come to a surface ever more nearly tangentially: an impact that may be due to the error of the integrator is flagged.
+//! Motions that approach a surface nearly tangentially. An impact that may be due to the error of the integrator is
+//! flagged as a graze.
 
 use dalembert::{EventLog, Instance, Outcome};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::Course;
 use dalembert_stability::text::{Model, Text};
 
-/// `r' = 1 - r`, `theta' = 1` with a reset on a line that the limit `r = 1` touches (W. Clark, thesis, Example IV.12): from
-/// inside of the circle the line is never reached.
+/// `r' = 1 - r`, `theta' = 1` with a reset on a line that the limit circle `r = 1` touches (W. Clark, thesis, Example
+/// IV.12). From inside the circle the line is never reached.
 static TANGENT: Text = Text::new(
     "Tangent {
         coordinates { x; y; }
@@ -17,7 +18,7 @@ static TANGENT: Text = Text::new(
     }",
 );
 
-/// A pendulum that swings to a wall at an angle that its energy gives it.
+/// A pendulum that turns back at the angle `pi/2`, and a wall at `pi/2 - depth`.
 static TURNED: Text = Text::new(
     "Turned {
         coordinates { theta; }
@@ -28,13 +29,13 @@ static TURNED: Text = Text::new(
     }",
 );
 
-/// The integrators that choose their steps.
+/// The integrators with step-size control.
 fn adaptive() -> impl Iterator<Item = Integrator> {
     let every = Integrator::every().iter().copied();
     every.filter(|integrator| integrator.is_adaptive())
 }
 
-/// For each impact, true if it is flagged as a graze.
+/// Graze flags of the impacts of a run.
 fn grazes(system: &Model, integrator: Integrator, tolerance: f64) -> Vec<bool> {
     let until = system.initial().until.expect("an end");
     let mut log = EventLog::<_, 64>::new();

@@ -1,4 +1,4 @@
-//! A run allocates nothing, the same run gives the same bits twice, and its memory and stack do not depend on its length.
+//! A run allocates nothing, and gives the same bits when repeated. Its memory and stack do not depend on its length.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -20,7 +20,7 @@ fn state_of<S: dalembert::Described>(system: &S) -> S::State {
     system.state(0.0, &initial.q, &qdot).expect("a state")
 }
 
-/// The bits of a run's end, and the allocations it made.
+/// The bits of the end of a run, and the number of its allocations.
 fn run<S, Step>(system: &S, mut stepper: Step, until: f64) -> (Vec<u64>, u64)
 where
     S: dalembert::Described + Scene,
@@ -78,7 +78,7 @@ fn a_search_for_an_orbit_allocates_nothing() {
     assert_eq!((dimension, count), (Some(3), 0));
 }
 
-/// Half a byte of stack for each step would be more than there is.
+/// Stack in bytes: about half a byte for each step of the run.
 const STACK: usize = 512 << 10;
 
 #[test]
@@ -100,7 +100,7 @@ fn a_million_steps_need_no_more_stack_than_a_few() {
     thread.expect("a thread").join().expect("a run");
 }
 
-/// The most bytes that a command holds.
+/// Largest number of bytes that a command holds.
 fn held(line: &str) -> isize {
     let words: Vec<&str> = line.split_whitespace().collect();
     let mut exit = None;
@@ -118,10 +118,10 @@ fn held(line: &str) -> isize {
     bytes
 }
 
-/// Tables hold the rows that they print; counts and sums hold nothing for a step or an impact.
+/// Memory is kept for the printed rows, but not for steps and impacts.
 #[test]
 fn a_long_run_of_the_command_line_holds_no_more_than_a_short_one() {
-    // The first also loads the model.
+    // The first run also loads the model.
     let [_, short, long] = [10, 10, 2000].map(|until| {
         let bytes = held(&format!(
             "dalembert simulate point_billiard --until {until}"

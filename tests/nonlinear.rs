@@ -1,4 +1,4 @@
-//! Constraints that are not linear in the velocities: Chetaev's rule, ways back to the constraint, and undefined quantities.
+//! Constraints that are not linear in the velocities: Chetaev's rule, projection, and quantities that are not defined.
 
 use dalembert::law::Law;
 use dalembert::projection::Projection;
@@ -15,8 +15,8 @@ use dalembert_tests::numeric::assert_near;
 use dalembert_tests::sampling::{Random, states};
 use serde_json::{Value, json};
 
-/// All features that a nonlinear constraint may meet: a metric that is not constant, forces, time, a linear constraint and
-/// an integrable one.
+/// A nonlinear constraint with a metric that is not constant, forces, dependence on time, a linear constraint and an
+/// integrable one.
 static MIXED: Text = Text::new(
     "Mixed {
         coordinates { x; y; z; theta: angle; w; }
@@ -32,7 +32,7 @@ static MIXED: Text = Text::new(
     }",
 );
 
-/// An affine constraint as it is, and a second one that is not affine.
+/// An affine constraint.
 static BELT: Text = Text::new(
     "Belt {
         coordinates { x; y; theta: angle; }
@@ -41,7 +41,7 @@ static BELT: Text = Text::new(
     }",
 );
 
-/// The same, written as an equation that is not linear.
+/// The constraint of [`BELT`], written as an equation that is not linear.
 static BENT_BELT: Text = Text::new(
     "BentBelt {
         coordinates { x; y; theta: angle; }
@@ -52,7 +52,7 @@ static BENT_BELT: Text = Text::new(
     }",
 );
 
-/// A point at constant speed between walls that turn it round, one of them wrongly.
+/// A point at constant speed between walls with resets. The reset at the top violates the constraint.
 static RUNNER: Text = Text::new(
     "Runner {
         coordinates { x; y; }
@@ -67,7 +67,7 @@ static RUNNER: Text = Text::new(
     }",
 );
 
-/// A square that would have to be negative.
+/// A constraint without solutions.
 static IMPOSSIBLE: Text = Text::new(
     "Impossible {
         coordinates { x; y; }
@@ -86,7 +86,7 @@ fn residuals(system: &Large, t: f64, state: &State) -> Vec<f64> {
 
 type State = <Large as VectorField>::State;
 
-/// Random states near the constraints and on them.
+/// Random states on the constraints and near them.
 fn near(system: &Large, count: usize) -> Vec<State> {
     let mut random = Random::new(17);
     let mut found = states(system, count, 3);
@@ -114,7 +114,7 @@ fn moved(state: &State, rate: &State, step: f64) -> State {
     moved
 }
 
-/// On the constraint and off it the field keeps the value of every constraint.
+/// Checks that the field keeps the value of every constraint, even off it.
 fn check_kept(system: &Large) {
     for state in near(system, 8) {
         let (t, h) = (0.0, 1e-5);
@@ -146,7 +146,7 @@ fn the_field_keeps_the_value_of_every_constraint() {
     }
 }
 
-/// The force of the constraints is that of Chetaev's rule, by differences of the constraints over the velocities.
+/// Checks that the constraint force obeys Chetaev's rule, by differences of the constraints in the velocities.
 fn check_rule(system: &Large) {
     let n = system.coordinate_count();
     for state in near(system, 8) {
@@ -204,7 +204,7 @@ fn an_affine_constraint_and_its_bent_form_have_the_same_field() {
         straight.rate(t, &on, &mut rate).expect("a rate");
         bent.rate(t, &other, &mut bent_rate).expect("a rate");
         assert_near("rate", rate.as_ref(), bent_rate.as_ref(), 1e-12);
-        // lambda eta: the bent form is `2 + thetadot^2` times the other one there.
+        // On the constraint the bent form is `2 + thetadot^2` times the affine one, and `lambda eta` is the same.
         let factor = 2.0 + qdot.as_ref()[2].powi(2);
         let lambda = straight.multipliers(t, &on).expect("one").as_ref()[0];
         let bent_lambda = bent.multipliers(t, &other).expect("one").as_ref()[0];
@@ -379,7 +379,7 @@ fn the_command_line_prints_what_there_is() {
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     let row: Value = serde_json::from_str(&done.output).expect("JSON");
     let row = &row[0];
-    // m vdot = -m g y + 2 lambda v with (vdot . v) = 0: lambda = m g vy/(2 v^2).
+    // m vdot = -m g e_y + 2 lambda v and vdot.v = 0 give lambda = m g vy/(2 v^2).
     assert_eq!(row["multipliers"], json!([0.4]));
     assert_eq!(row["divergence_mu_C"], Value::Null);
     assert_eq!(row["W"], json!([[1.2, 1.6]]));
@@ -397,7 +397,7 @@ fn the_command_line_prints_what_there_is() {
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
 }
 
-/// The messages of a model that is refused.
+/// The messages of a refused model.
 fn refused(declarations: &str) -> String {
     let model = format!(
         "P {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -428,7 +428,7 @@ fn quantities_are_examined_and_what_needs_linear_constraints_is_refused() {
         let text = refused(&format!("claims {{ {claim} }}"));
         assert!(text.contains(reason), "{text}");
     }
-    // A constraint that is of degree 3 in all velocities is solved for none of them.
+    // A constraint of degree 3 in all velocities is solved for none of them.
     let text = refused(
         "constraints { c: dot(x)^3 + dot(y)^3 + dot(z)^3 = 1; } claims { conserved: dot(z); }",
     );

@@ -1,4 +1,4 @@
-//! Periodic orbits of sections and their multipliers: against references, closed forms, and differences of maps.
+//! Periodic orbits of sections and their Floquet multipliers, compared with references, closed forms and differences.
 
 use dalembert::variations::{Orbit, OrbitError, SectionError};
 use dalembert::{Described, Law, Outcome, Tangent, VectorField};
@@ -11,7 +11,7 @@ use dalembert_tests::reference::{number, numbers, read};
 use dalembert_tests::systems::IntegrableBead;
 use serde_json::Value;
 
-/// A spring that counts its passages of the middle, in scenes with and without variations.
+/// A spring with a section at its middle, in scenes with and without variations.
 static SPRING: Text = Text::new(
     "Spring {
         coordinates { x; y; }
@@ -22,7 +22,7 @@ static SPRING: Text = Text::new(
     }",
 );
 
-/// A wheel that counts its turns.
+/// A wheel with a section that it passes once per turn.
 static WHEEL: Text = Text::new(
     "Wheel {
         coordinates { theta: angle; }
@@ -31,7 +31,7 @@ static WHEEL: Text = Text::new(
     }",
 );
 
-/// A number that grows until a clock stands at `c`, where it is mapped.
+/// A number that grows until a clock reaches `c`, where a reset maps the number.
 static CLOCK: Text = Text::new(
     "Clock {
         coordinates { x; tau; }
@@ -61,7 +61,7 @@ fn orbit(
     section.periodic(&first.before)
 }
 
-/// The walker of a set of the reference.
+/// The walker with the parameters of a set of the reference.
 fn walker(set: &Value) -> Model {
     let names = ["mu", "eps", "alpha", "delta"];
     shipped("dimensionless_walker").with(names.map(|name| (name, number(&set[name]))))
@@ -108,7 +108,7 @@ fn the_derivative_of_the_walkers_return_is_that_of_the_reference() {
     for set in file["sets"].as_array().expect("sets") {
         let walker = walker(set);
         let delta = value(&walker, "delta");
-        // From `(xi, eta)` after a step to those after the next one: both states lie at theta = delta.
+        // The return map takes `(xi, eta)` after a step to the values after the next step, both at theta = delta.
         let fixed = numbers(&set["fixed_point_post_impact(xi,eta)"]);
         let start = vector(&[delta, fixed[0], fixed[1]]);
         let mut columns = [Tangent::of_component(1), Tangent::of_component(2)];
@@ -145,7 +145,7 @@ fn two_bounces_in_an_ellipse_have_the_traces_of_its_axes() {
         assert!((orbit.point.time - period).abs() < 1e-12);
         assert_eq!(orbit.dimension, 3);
         let diagonal: f64 = (0..3).map(|i| orbit.derivative[i].as_ref()[i]).sum();
-        // The energy adds a 1.
+        // The energy adds a multiplier 1.
         assert!((diagonal - 1.0 - trace).abs() < 1e-10, "{diagonal}");
         let product = orbit
             .multipliers
@@ -184,7 +184,7 @@ fn an_orbit_of_an_angle_closes_after_a_turn() {
     assert_eq!(multipliers, [[1.0, 0.0]]);
 }
 
-/// In the global form states can leave the constraint and the leaf of its level: neither is a direction of the section.
+/// In the global form states can leave the constraint and its level set. Neither is a direction of the section.
 #[test]
 fn directions_of_a_section_keep_constraints_and_levels() {
     let bead = Text::new(IntegrableBead::DESCRIPTION.source.value()).model();
@@ -205,7 +205,7 @@ fn directions_of_a_section_keep_constraints_and_levels() {
     assert!(along.abs() < 1e-12, "{direction:?}");
 }
 
-/// Each bounce is lower than the one before: in the limit the ball returns to its place, at rest.
+/// Each bounce is lower than the one before. In the limit the ball is at rest on the floor, which is no orbit.
 #[test]
 fn a_motion_that_ceases_is_no_orbit() {
     let ball = shipped("bouncing_ball").model();
@@ -294,7 +294,7 @@ fn the_command_prints_the_orbit_and_its_multipliers() {
 
 #[test]
 fn a_section_that_is_no_wall_is_a_surface_without_effect() {
-    // Periods 2 pi and 4 pi: after two passages along both, energies and phases all stay.
+    // The periods along the axes are 2 pi and 4 pi. After two passages all states return.
     let Finished {
         exit,
         output: text,
@@ -316,7 +316,7 @@ fn a_section_that_is_no_wall_is_a_surface_without_effect() {
             );
         }
     }
-    // After one passage along the other it has gone half way round.
+    // After one passage the motion along y has completed half a period.
     let Finished {
         exit, output: text, ..
     } = run("orbit spring --scene varied --surface middle");
@@ -373,7 +373,7 @@ fn the_command_says_what_it_cannot_do() {
     assert!(document.get("multipliers").is_none());
 }
 
-/// The point moves with the surface, and its image is `e^(a c) c x (1 - x)`.
+/// The point `x` has the image `e^(a c) c x (1 - x)`. The section moves with the parameter `c`.
 #[test]
 fn the_return_map_has_its_derivative_in_a_parameter() {
     let (x, c, a) = (0.3, 1.25, 0.7);
@@ -412,8 +412,8 @@ fn multipliers(point: &Value) -> Vec<f64> {
     all.map(|it| it["re"].as_f64().expect("a number")).collect()
 }
 
-/// The slope is that at which a Runge-Kutta method of fixed step finds `1 + trace + determinant = 0` from central differences
-/// of its return map with extrapolation, to about nine digits.
+/// The reference slope solves `1 + trace + determinant = 0` for the return map of a Runge-Kutta method of fixed step,
+/// with extrapolated central differences. It has about nine digits.
 #[test]
 fn the_compass_walker_doubles_its_period_where_a_multiplier_passes_minus_one() {
     const SLOPE: f64 = 0.015_088_437_7;
@@ -424,7 +424,7 @@ fn the_compass_walker_doubles_its_period_where_a_multiplier_passes_minus_one() {
     let slope = found[0]["parameter"].as_f64().expect("a number");
     assert!((slope - SLOPE).abs() < 1e-9, "{slope}");
     assert!((multipliers(&found[0])[0] + 1.0).abs() < 1e-9);
-    // The long gait on both sides, found anew.
+    // The long gait is stable below this slope and unstable above it.
     let start = "--initial theta=0.2371,phi=0.4742,omega=-0.2319,psi=-0.0255";
     for (change, is_stable) in [(-1e-6, true), (1e-6, false)] {
         let orbit = walks(&format!("{start} --set gamma={}", slope + change));

@@ -1,11 +1,11 @@
-//! Several surfaces of one gap: each state at the gap belongs to one of them, or the run ends and names one.
+//! Several surfaces with the same gap. Each state with gap 0 belongs to one of them, or the run ends and names one.
 
 use dalembert::{EventLog, Impacting, Instance, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, state, vector};
 use dalembert_stability::text::{Model, Text, mode};
 
-/// The tent map, without a square for the height 1/2.
+/// The tent map, without a transition for the height 1/2.
 static OPEN_TENT: Text = Text::new(
     "OpenTent {
         coordinates { x; y; }
@@ -24,7 +24,7 @@ static OPEN_TENT: Text = Text::new(
     }",
 );
 
-/// The same, with all other heights led on.
+/// The tent map, with an `otherwise` transition for all remaining heights.
 static CLOSED_TENT: Text = Text::new(
     "ClosedTent {
         coordinates { x; y; }
@@ -43,7 +43,7 @@ static CLOSED_TENT: Text = Text::new(
     }",
 );
 
-/// A wall that reflects where it is soft, halves the speed where it is not, and ends all motion in a spot.
+/// A wall that reflects for `y > 0`, stops the normal motion in a spot, and halves the normal speed elsewhere.
 static PATCHED: Text = Text::new(
     "Patched {
         coordinates { x; y; }
@@ -77,9 +77,9 @@ const DOP853: (Integrator, f64) = (Integrator::Dop853, f64::INFINITY);
 #[test]
 fn a_state_that_no_transition_takes_ends_the_run() {
     let tent = OPEN_TENT.model();
-    // `up`, the second one of its gap.
+    // The run names `up`, the last surface of this gap.
     let untaken = Outcome::Untaken { surface: 1 };
-    // 1/8, 1/4, 1/2: two squares are crossed for each.
+    // The heights are 1/8, 1/4 and 1/2. Two modes are passed for each height.
     for stepper in [
         DOP853,
         (Integrator::Taylor, f64::INFINITY),
@@ -91,10 +91,10 @@ fn a_state_that_no_transition_takes_ends_the_run() {
         assert!((state.as_ref()[0] - 1.0).abs() < 1e-12, "{state:?}");
     }
     assert_eq!(untaken.kind(), "untaken");
-    // 2/7 never comes to 1/2.
+    // The motion from 2/7 never reaches 1/2.
     let (_, outcome, _) = run_of(&tent, DOP853, [0.0, 2.0 / 7.0], [0.0; 2]);
     assert_eq!(outcome, Outcome::Done);
-    // A mode by itself says so, too.
+    // A system made of one mode reports the same outcome.
     let alone = mode(&tent, 0);
     let state = state(&alone, &[0.0, 0.5], &[0.0; 2]);
     let run = Course::from_state(&alone, state, 4.0)
@@ -114,7 +114,7 @@ fn otherwise_takes_what_is_left() {
     assert_eq!(outcome, Outcome::Done);
     let at = last.as_ref();
     assert!(at[0] <= 1.0 && at[1] == 0.0, "{at:?}");
-    // Below -3 as well: 2*(1 + 4) = 10, then 2*(1 - 10) = -18.
+    // `up` takes heights below -3 as well: 2*(1 + 4) = 10, then 2*(1 - 10) = -18.
     let mut log = EventLog::<_, 8>::new();
     let run = Course::from_state(&tent, state(&tent, &[0.0, -4.0], &[0.0; 2]), 3.5)
         .tol(1e-10)

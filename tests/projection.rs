@@ -1,4 +1,4 @@
-//! Projection to constraints at states where all terms of a constraint vanish.
+//! Projection onto constraints at states where all terms of a constraint vanish.
 
 use std::ops::ControlFlow;
 
@@ -10,7 +10,7 @@ use dalembert_tests::sampling::Random;
 
 type State = <Model as VectorField>::State;
 
-/// A pendulum that hits a wall at its lowest point, where `x dot(x) + y dot(y)` has vanishing terms alone.
+/// A pendulum that hits a wall at its lowest point, where both terms of `x dot(x) + y dot(y)` vanish.
 static HANGING_PENDULUM: Text = Text::new(
     "HangingPendulum {
         coordinates { x; y; }
@@ -20,7 +20,7 @@ static HANGING_PENDULUM: Text = Text::new(
     }",
 );
 
-/// The largest residual, relative to the largest speed before, and the largest distance from the levels.
+/// The largest residual relative to the largest speed so far, and the largest change of a level.
 struct Kept<'a> {
     model: &'a Model,
     levels: Option<<Model as Constrained>::Levels>,
@@ -51,7 +51,7 @@ impl Observer<Model> for Kept<'_> {
     }
 }
 
-/// Runs to 20 with every integrator and checks that the constraints are kept.
+/// Runs to the time 20 with every integrator and checks that the constraints are kept.
 fn check(model: &Model, law: Option<Law>, q: [f64; 2], qdot: [f64; 2]) {
     for &integrator in Integrator::every() {
         let state = model.state_unchecked(0.0, &vector(&q), &vector(&qdot));
@@ -69,8 +69,8 @@ fn check(model: &Model, law: Option<Law>, q: [f64; 2], qdot: [f64; 2]) {
         let run = course.observed(integrator, &mut kept);
         let case = format!("{} {law:?} {q:?} {qdot:?}", integrator.name());
         match law {
-            // NOTE: the wall is met at x = 0, where its gap has no size but that of the rounding errors of x, and nothing
-            // presses or pulls: rounding decides whether it rests there.
+            // NOTE: the wall is met at x = 0, where the gap is a rounding error of x and no force acts towards or away
+            // from the wall. Rounding errors decide whether the pendulum rests there.
             Some(Law::ImpactPlastic) => assert!(
                 matches!(
                     run.outcome,
@@ -90,7 +90,7 @@ fn check(model: &Model, law: Option<Law>, q: [f64; 2], qdot: [f64; 2]) {
     }
 }
 
-/// Random starts of a test, and nightly.
+/// Numbers of random starts of the ordinary and of the nightly tests.
 const STARTS: [u32; 2] = [8, 40];
 
 fn beads_meet_the_wall(starts: u32) {
@@ -144,7 +144,7 @@ fn pendulums_of_more_starts_meet_the_wall_at_their_lowest_point() {
 
 #[test]
 fn a_pendulum_that_comes_to_rest_keeps_its_rod() {
-    // Only rounding is left of its velocity.
+    // After the impact the velocity is a rounding error.
     check(
         &HANGING_PENDULUM.model(),
         Some(Law::ImpactPlastic),

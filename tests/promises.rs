@@ -13,7 +13,7 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-/// Error of a row of a table: `promise | kind | shown by`.
+/// Describes the error of a table row `promise | kind | shown by`; `None` if it has none.
 fn difference(row: &str) -> Option<String> {
     let cells: Vec<&str> = row.trim_matches('|').split(" | ").map(str::trim).collect();
     let [_, kind, shown] = cells[..] else {

@@ -1,4 +1,4 @@
-//! Constraints whose rank drops at one instant of the motion: the run ends there, for every length of its steps, and nowhere else.
+//! Constraints whose rank drops at one instant of the motion. For every step size the run ends there and nowhere else.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -8,7 +8,7 @@ use dalembert_stability::course::{Course, is_discrete, vector};
 use dalembert_stability::text::{Model, Text, shipped};
 use dalembert_tests::sampling::every_system;
 
-/// The second form vanishes beside the first where `y` is 0.
+/// The second form depends on the first at `y = 0`.
 static CROSSED: Text = Text::new(
     "Crossed {
         coordinates { x; y; z; }
@@ -19,7 +19,7 @@ static CROSSED: Text = Text::new(
     }",
 );
 
-/// It vanishes to the second order.
+/// The second form depends on the first at `y = 0`, to second order.
 static TOUCHED: Text = Text::new(
     "Touched {
         coordinates { x; y; z; }
@@ -28,7 +28,7 @@ static TOUCHED: Text = Text::new(
     }",
 );
 
-/// It vanishes at two places beside each other.
+/// The second form depends on the first at two nearby positions.
 static TWICE: Text = Text::new(
     "Twice {
         coordinates { x; y; z; }
@@ -38,7 +38,7 @@ static TWICE: Text = Text::new(
     }",
 );
 
-/// It vanishes, or nearly, at the tip of a narrow needle.
+/// The second form depends on the first, or nearly, at the tip of a narrow peak.
 static NEEDLE: Text = Text::new(
     "Needle {
         coordinates { x; y; z; }
@@ -48,7 +48,7 @@ static NEEDLE: Text = Text::new(
     }",
 );
 
-/// It vanishes where a needle stands upright.
+/// The second form depends on the first at `cos(theta) = 0`.
 static UPRIGHT: Text = Text::new(
     "Upright {
         coordinates { x; y; z; theta: angle; }
@@ -57,7 +57,7 @@ static UPRIGHT: Text = Text::new(
     }",
 );
 
-/// It vanishes at a time.
+/// The second form depends on the first at `t = 1`.
 static TIMED: Text = Text::new(
     "Timed {
         coordinates { x; y; z; }
@@ -66,7 +66,7 @@ static TIMED: Text = Text::new(
     }",
 );
 
-/// One form, which vanishes at the origin only, and turns round it.
+/// One form, which vanishes at the origin only and turns fast near it.
 static CENTRED: Text = Text::new(
     "Centred {
         coordinates { x; y; z; w; }
@@ -75,7 +75,7 @@ static CENTRED: Text = Text::new(
     }",
 );
 
-/// Forms that are nearly dependent everywhere, which nothing shows while building.
+/// Forms that are nearly dependent everywhere if `delta` is small.
 static NEARLY_DEPENDENT: Text = Text::new(
     "NearlyDependent {
         coordinates { x; y; z; w; }
@@ -88,7 +88,7 @@ static NEARLY_DEPENDENT: Text = Text::new(
     }",
 );
 
-/// A bead on a circle, whose form turns with it and has a constant length.
+/// A bead on a circle, whose form turns with it and never vanishes.
 static RING: Text = Text::new(
     "Ring {
         coordinates { x; y; }
@@ -97,7 +97,7 @@ static RING: Text = Text::new(
     }",
 );
 
-/// Free on one side of `y = -1/2`, with forms that become dependent at `y = 0` on the other.
+/// A free mode below `y = -1/2`, and above it a mode whose forms become dependent at `y = 0`.
 static ENTERED: Text = Text::new(
     "Entered {
         coordinates { x; y; z; }
@@ -133,7 +133,7 @@ impl<'a> Start<'a> {
         }
     }
 
-    /// Runs with every integrator, but for those of the discrete principle, and every size of its steps.
+    /// Runs with every integrator except those of the discrete principle, and with every step size.
     fn every(&self, judge: impl Fn(&str, Run<State>, &Log)) {
         self.run(false, judge);
     }
@@ -162,7 +162,7 @@ impl<'a> Start<'a> {
     }
 }
 
-/// Asserts that the run ended where this constraint depends on the others, with this component of its state near a value.
+/// Asserts that the run ended where this constraint depends on the others, with a component of its state near a value.
 #[track_caller]
 fn assert_drop<S: StateVector>(
     case: &str,
@@ -206,7 +206,7 @@ fn a_drop_next_to_the_start_is_found() {
 #[test]
 fn a_drop_of_even_order_is_found() {
     Start::new(&TOUCHED.model(), &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 2.0).every(|case, run, _| {
-        // Nearer than this the forms are dependent to rounding: `y^2 < 4 * 2^-52`.
+        // Nearer than this the forms are dependent up to rounding errors: `y^2 < 4 * 2^-52`.
         assert_drop(case, &run, 1, (1, 0.0), 3e-8);
     });
 }
@@ -275,7 +275,7 @@ fn forms_that_are_small_or_turn_are_no_drop() {
         let system = NEARLY_DEPENDENT.with([("delta", delta)]);
         let qdot = [0.3, 0.9, y * 0.3, x * 0.9];
         Start::new(&system, &[x, y, 0.2, 0.1], &qdot, 2.0).every(|case, run, _| {
-            // The longest steps of Gauss's methods have no solution to rounding where the forms nearly coincide.
+            // If the forms nearly coincide, the equations of the longest steps of the Gauss methods cannot be solved.
             let is_unsolved = matches!(run.outcome, Outcome::NotConverged { .. });
             assert!(
                 run.outcome == Outcome::Done || is_unsolved && case.starts_with("gauss"),
@@ -290,7 +290,7 @@ fn forms_that_are_small_or_turn_are_no_drop() {
 
 #[test]
 fn what_comes_first_ends_the_step() {
-    // A wall before the drop turns the motion round.
+    // A wall before the drop reverses the motion.
     let system = CROSSED.with([("wall", -1e-6)]);
     Start::new(&system, &[0.0, -1.0, 0.0], &[0.0, 1.0, 0.0], 3.0).every(|case, run, log| {
         assert_eq!(run.outcome, Outcome::Done, "{case}");
@@ -303,7 +303,7 @@ fn what_comes_first_ends_the_step() {
         let none: Vec<&Event<_>> = log.iter().collect();
         assert!(none.is_empty(), "{case}");
     });
-    // A wall that is met first sends the motion into the drop.
+    // An earlier wall sends the motion into the drop.
     let system = CROSSED.with([("wall", 3.0)]);
     Start::new(&system, &[0.0, 1.0, 0.0], &[0.0, 1.0, 0.0], 9.0).every(|case, run, log| {
         assert_drop(case, &run, 1, (1, 0.0), 1e-12);
@@ -355,6 +355,6 @@ fn no_shipped_model_is_watched() {
     let watched = systems().filter(|system| system.can_lose_rank());
     let names: Vec<&str> = watched.map(|system| system.description().name).collect();
     assert!(systems().count() > 30);
-    // A system of the tests whose forms are `(2 + x^2) (1 + y^2) - y sin(theta)` apart, which is never 0.
+    // The forms of this system are dependent where `(2 + x^2) (1 + y^2) - y sin(theta)` vanishes, which is nowhere.
     assert_eq!(names, ["mixed_disk"]);
 }

@@ -1,4 +1,4 @@
-//! `eval` against values computed independently with 50 digits: field, multipliers, geometry, impact laws.
+//! Compares `eval` with independent values of 50 digits: field, multipliers, geometry, impact laws.
 
 use dalembert_cli::Exit;
 use dalembert_tests::command::dalembert;
@@ -68,8 +68,8 @@ impl Mismatches {
             .extend(compare(path, actual, expected, TOLERANCE).err());
     }
 
-    /// Same as [`Mismatches::check`], with an allowance for a component that almost vanishes by cancellation: the effect of
-    /// rounding the given 30 digits to `f64`. No arithmetic on the rounded numbers does better there.
+    /// Same as [`Mismatches::check`], with an allowance for components that almost vanish by cancellation: the effect
+    /// of rounding the given 30 digits to `f64`. No arithmetic on the rounded numbers can do better.
     fn check_conditioned(
         &mut self,
         path: &str,
@@ -130,7 +130,7 @@ fn check_states(name: &str, file: &Value, list: &str, mismatches: &mut Mismatche
         let inputs: Vec<Value> = states.iter().map(|state| input(state, rates)).collect();
         for (k, (actual, expected)) in eval(name, &[], &inputs).iter().zip(states).enumerate() {
             for quantity in QUANTITIES {
-                // The global field's divergence with respect to omega^n is that of mu_C, on D* and off it.
+                // The divergence of the global field is the same for omega^n and mu_C, on D* and off it.
                 let printed = if quantity == "divergence_omega_n" {
                     "divergence_mu_C"
                 } else {
@@ -190,7 +190,7 @@ fn check_impacts(name: &str, file: &Value, mismatches: &mut Mismatches) {
     }
 }
 
-/// The state with each of its numbers moved by one unit in the last place, one at a time.
+/// Copies of the state, each with one number moved by one unit in the last place.
 fn neighbours(state: &Value) -> Vec<Value> {
     let mut moved = Vec::new();
     for key in ["q", "qdot"] {
@@ -203,7 +203,7 @@ fn neighbours(state: &Value) -> Vec<Value> {
     moved
 }
 
-/// Change of a result over neighbouring states, component by component.
+/// Sum of the changes of a result over neighbouring states, for each component.
 fn spread(neighbours: &[Value], actual: &Value, result: &str) -> Vec<f64> {
     let flat = |value: &Value| {
         value
@@ -220,7 +220,7 @@ fn spread(neighbours: &[Value], actual: &Value, result: &str) -> Vec<f64> {
     spread
 }
 
-/// The law's name on the command line, with the flags that ask for it.
+/// The name of a law on the command line, with the flags that select it.
 fn flags_of(law: &str) -> Option<(&str, Vec<String>)> {
     for (prefix, ours) in [
         ("elastic_family_e=", "restitution"),
@@ -231,7 +231,7 @@ fn flags_of(law: &str) -> Option<(&str, Vec<String>)> {
             return Some((ours, vec![format!("--{ours}"), coefficient]));
         }
     }
-    // A family without a name on the command line.
+    // The command line has no name for this family.
     if law.starts_with("nonholonomic_family_e=") {
         None
     } else {

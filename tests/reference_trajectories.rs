@@ -1,8 +1,8 @@
-//! Impact times against trajectories computed in closed form or with more than 30 digits.
+//! Compares impact times with trajectories in closed form or with more than 30 digits.
 //!
-//! Every case runs with DOP853 at tolerance 1e-13 and with power series at 1e-15. Regular motions (straight lines, the disk on a circular table) keep their
-//! accuracy over all impacts; on elliptical tables neighbouring motions separate, so only the first five are held to
-//! the same bound.
+//! Every case runs with DOP853 at tolerance 1e-13 and with power series at 1e-15. Regular motions (straight lines, the
+//! disk on a circular table) keep their accuracy over all impacts. On elliptical tables neighbouring motions separate,
+//! so that the same bound applies to the first five impacts only.
 
 use core::ops::ControlFlow;
 
@@ -35,10 +35,10 @@ impl<Sys: System> Observer<Sys> for Impacts {
     }
 }
 
-/// Method of a run: the integrator, the tolerance, and the step if it is fixed.
+/// Method of a run: the integrator, the tolerance, and the fixed step if there is one.
 type Method = (Integrator, f64, Option<f64>);
 
-/// A run with a law on every surface, up to a number of impacts.
+/// A run with the same law on every surface, up to a number of impacts.
 fn run<S: Varied>(
     system: &S,
     state: S::State,
@@ -64,7 +64,7 @@ const DOP853: Method = (Integrator::Dop853, 1e-13, None);
 
 const TAYLOR: Method = (Integrator::Taylor, 1e-15, None);
 
-/// The run of [`run`] with each of the accurate integrators, by name.
+/// Same as [`run`], with each of the accurate integrators. Each run comes with the name of its integrator.
 fn runs<S: Varied>(
     system: &S,
     state: S::State,
@@ -81,7 +81,7 @@ fn law_of(case: &Value) -> Law {
     Law::from_name(case["law"].as_str().expect("a law"), f64::NAN).expect("a known law")
 }
 
-/// The times of a case.
+/// The impact times of a case.
 fn times(case: &Value) -> Vec<f64> {
     case["impacts"]
         .as_array()
@@ -164,7 +164,7 @@ fn the_rolling_disk_meets_its_impacts() {
     }
 }
 
-/// The largest error of the first eight impacts of the elastic disk and sleigh on their elliptical tables, at a step.
+/// The largest error of the first eight impacts of the elastic disk and sleigh on their elliptical tables.
 fn errors_at(method: Method) -> f64 {
     let largest = |impacts: &Impacts, case: &Value| {
         let pairs = impacts.times.iter().zip(times(case)).take(8);
@@ -180,8 +180,8 @@ fn errors_at(method: Method) -> f64 {
     of_disk.max(largest(&impacts, case))
 }
 
-/// Steps of fixed size, cut at impacts and begun anew after them, keep the order of the method; measured above 1e-11,
-/// the errors of locating impacts that lie close to each other.
+/// Fixed steps that are cut at impacts and restarted after them keep the order of the method. The order is measured
+/// above 1e-11, the error of the event location for impacts that are close to each other.
 #[test]
 fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
     for &integrator in Integrator::every() {
@@ -206,19 +206,19 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
     }
 }
 
-/// On the circular table the nonholonomic plastic disk settles into running along the rim: the gap rate at impact falls by
-/// 0.37 from one impact to the next, down to 1e-8. A gap known to `eta` gives the time of a crossing to
-/// `2 eta / |gap rate|`, for every method, and shows no crossing that goes less deep than `eta`. Here `eta` is 1e-13, the
-/// error of a second of integration at tolerance 1e-13. The gap would fall 4e-13 below zero at the 14th impact, 6e-14 at
-/// the 15th, 8e-15 at the 16th (gap rate squared over twice its change, 8 a second). Those after the 14th are left out: a
-/// rounding decides if the rim is met at all.
+/// On the circular table the nonholonomic plastic disk tends to a motion along the rim. The gap rate at an impact is
+/// 0.37 times that at the impact before, down to 1e-8. If the gap has the error `eta`, every method finds the time of a
+/// crossing with the error `2 eta / |gap rate|`, and no crossing less deep than `eta`. Here `eta` is 1e-13, the error
+/// of a second of integration at tolerance 1e-13. The gap would fall 4e-13 below zero at the 14th impact, 6e-14 at the
+/// 15th, 8e-15 at the 16th (the square of the gap rate over twice its rate of change, 8 per second). Impacts after the
+/// 14th are left out, since rounding errors decide if the disk meets the rim.
 fn assert_grazing_times(label: &str, impacts: &Impacts, case: &Value) {
     let rate = |k: usize| number(&case["impacts"][k]["dh_minus"]).abs();
     assert_times(label, impacts, case, 10, billionth);
     assert_times(label, impacts, case, 14, |k| (2e-13 / rate(k)).max(1e-9));
 }
 
-/// The elliptical table amplifies errors; a hand-written DOP853 in velocities reaches these errors at impact 20.
+/// Tolerances, and errors at impact 20 of a handwritten DOP853 in velocities. The elliptical table amplifies errors.
 const BY_HAND: [(f64, f64); 5] = [
     (1e-6, 9.7e-2),
     (1e-8, 5.2e-5),
@@ -396,7 +396,7 @@ fn the_bouncing_ball_meets_its_impacts() {
     }
 }
 
-/// The largest errors of the first eight impacts of the elastic sleigh billiards over a ladder of tolerances.
+/// The largest error of the first eight impacts of the elastic sleigh billiards at each tolerance.
 fn ladder(tolerances: &[f64], integrator: Integrator) -> Vec<f64> {
     let file = read("chaplygin_sleigh_trajectories");
     let worst = |tol: f64| {
@@ -417,7 +417,7 @@ fn ladder(tolerances: &[f64], integrator: Integrator) -> Vec<f64> {
     tolerances.iter().map(|&tol| worst(tol)).collect()
 }
 
-/// The slope of log error over log tolerance, by least squares.
+/// The slope of the logarithm of the error over that of the tolerance, by least squares.
 fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
     let points: Vec<(f64, f64)> = tolerances
         .iter()
@@ -433,8 +433,9 @@ fn slope(tolerances: &[f64], errors: &[f64]) -> f64 {
         / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
 }
 
-/// With error control per step an error estimate of order q makes the global error fall like tol^(p/(q + 1)): 8/8
-/// for DOP853, 5/5 for Dormand-Prince 5(4). Power series change their order with the tolerance: 1 up to its rounding.
+/// With error control per step and an error estimate of order q, the global error falls like tol^(p/(q + 1)). The
+/// exponent is 8/8 for DOP853 and 5/5 for Dormand-Prince 5(4). Power series change their order with the tolerance;
+/// their exponent is about 1.
 #[test]
 fn errors_fall_with_the_tolerance() {
     let tolerances = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
@@ -452,7 +453,7 @@ fn errors_fall_with_the_tolerance() {
     }
 }
 
-/// Free motion (surfaces left out) of a system from a reference file, against every checkpoint.
+/// Compares the motion of a system without its surfaces with every checkpoint of a reference file.
 fn check_free_runs(source: &'static str, bound: f64) {
     let system = Text::new(source).model();
     let name = system.description().name;

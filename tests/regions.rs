@@ -1,4 +1,4 @@
-//! Surfaces that count in a part of space only: `when`.
+//! Surfaces that count in a part of space only, declared with `when`.
 
 use core::ops::ControlFlow;
 
@@ -69,7 +69,7 @@ impl Observer<Model> for Checked {
     }
 }
 
-/// A run of a slab.
+/// A run of the particle at the slab.
 fn slab(x: f64, v: f64, until: f64) -> Run<State> {
     let slab = SLAB.model();
     Course::from_state(&slab, state(&slab, &[x], &[v]), until)
@@ -111,7 +111,7 @@ fn a_stadium_keeps_its_particle() {
     assert!((energy - 0.5).abs() < 1e-12, "{energy}");
 }
 
-/// An impact is placed where the gap is closest to 0 on either side, but only where the motion exists.
+/// An impact is located where the gap is closest to 0 on either side, but only inside the chart.
 #[test]
 fn an_impact_at_the_end_of_a_chart_is_inside_it() {
     let brink = BRINK.model();

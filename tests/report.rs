@@ -1,4 +1,4 @@
-//! The density form as `derive` prints it, against the values of the claims' arithmetic.
+//! Compares the density form that `derive` prints with the values that claims use.
 
 use dalembert::Instance;
 use dalembert::describe::Description;
@@ -7,7 +7,7 @@ use dalembert_codegen::report::{Item, density_form, report};
 use dalembert_tests::sampling::every_system;
 use dalembert_tests::verdict::Decided;
 
-/// Compares the density form of every model; counts those with one that is not 0.
+/// Compares density forms, and counts the forms and those that are not 0.
 #[derive(Default)]
 struct Compared {
     written: usize,

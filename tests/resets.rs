@@ -1,4 +1,4 @@
-//! The law `reset`, emitted: against its interpreter, as declared, in both forms, in claims and on the command line.
+//! The emitted law `reset`: compared with the interpreter, in both forms, in claims and on the command line.
 
 use dalembert::declaration::Described;
 use dalembert::law::Law;
@@ -18,7 +18,7 @@ use dalembert_tests::sampling::states;
 use serde_json::Value;
 
 dalembert::model! {
-    /// Two coupled pendula that change places where their angles add up to 1: the metric depends on the position.
+    /// Two coupled pendula that change places where `sin(a + b)` reaches 1/2. The metric depends on the position.
     pub Swap {
         coordinates { a: angle; b: angle; }
         parameters { k > 0 = 1/2; }
@@ -28,7 +28,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A sleigh between walls, turned round as in a mirror: its constraint holds after the reset.
+    /// A sleigh between walls that reflect it as a mirror does. The constraint holds after the reset.
     pub MirrorSleigh {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 2; I > 0 = 1/3; a = 1/5; }
@@ -75,7 +75,7 @@ static MIRROR_SLEIGH: Text = Text::new(MirrorSleigh::DESCRIPTION.source.value())
 
 static STRIP: Text = Text::new(Strip::DESCRIPTION.source.value());
 
-/// Emitted resets equal the interpreter, to the bit.
+/// Asserts that emitted resets equal those of the interpreter to the bit. Returns the number of comparisons.
 fn compare<S: Described + Impacting>(system: &S, program: &Program) -> usize {
     let (t, n) = (0.25, S::Vector::CAPACITY);
     let resets = &program.impacting.as_ref().expect("surfaces").resets;
@@ -228,7 +228,7 @@ fn what_a_reset_does_to_the_volume_is_said() {
     assert_eq!(said("bent"), bent);
 }
 
-/// `det(dqdot+/dqdot) G+/G-` of the emitted reset, by differences.
+/// The Jacobian is `det(dqdot+/dqdot) G+/G-` of the emitted reset, by differences.
 #[test]
 fn the_jacobian_is_what_is_said_of_it() {
     let strip = Strip::default();
@@ -374,7 +374,7 @@ fn derive_prints_the_map() {
     );
 }
 
-/// On a surface a coordinate follows from others, and so do functions of it.
+/// On a surface a coordinate follows from the others, and so do functions of it.
 #[test]
 fn what_a_surface_ties_is_not_taken_for_independent() {
     let verdict = |surface: &str, reset: &str, claim: &str| {
@@ -392,13 +392,13 @@ fn what_a_surface_ties_is_not_taken_for_independent() {
     let linear = |reset| verdict("x >= -w", reset, claim);
     assert!(matches!(linear("x = x + 2*w"), Verdict::Proved(_)));
     assert!(matches!(linear("x = x + w"), Verdict::Refuted(_)));
-    // For `x^2 = w^2` no coordinate follows in a unique way; real points see no change.
+    // For `x^2 = w^2` no coordinate is determined uniquely.
     let quadratic = |reset| verdict("x^2 >= w^2", reset, claim);
     let open = quadratic("x = 2*x; y = y*cos(w)/cos(2*w)");
     assert!(matches!(open, Verdict::Undecided(_)), "{open:?}");
     assert!(matches!(quadratic("x = 2*x"), Verdict::Refuted(_)));
     assert!(matches!(quadratic("x = -x"), Verdict::Proved(_)));
-    // The velocity of the foot, at whose surface the angle of the leg is known.
+    // The claim is about the velocity of the foot; on the surface the angle of the leg is known.
     let walker = Declaration::of(WalkerFootSlip::DESCRIPTION.source.value());
     let foot = "conserved under step: dot(x_c) + lf*dot(theta)*cos(theta)";
     assert!(matches!(walker.verdict(foot).verdict, Verdict::Proved(_)));

@@ -1,4 +1,4 @@
-//! Scenes: each has the code of a model that declares only the parts that the scene uses.
+//! A scene has the code of a model that declares only the parts that the scene uses.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use dalembert_stability::text::{Text, set};
 use dalembert_tests::command::dalembert;
 use quote::ToTokens;
 
-/// A blade on a tilted plane between two walls and a lid, with two frictions.
+/// A blade on a tilted plane, without forces and surfaces.
 const BLADE: &str = "
     coordinates { x; y; theta: angle; }
     parameters { m > 0 = 1.5; I > 0 = 0.4; a = 0.2; g = 0.7; c >= 0 = 0.3; k >= 0 = 0.1; }
@@ -27,7 +27,7 @@ const BLADE: &str = "
     frame { v: cos(theta)*d(x) + sin(theta)*d(y); omega: d(theta); }
     initial { dot(theta) = 1; dot(x) = 0.5; until = 3; }";
 
-/// The same where no frame is declared or found.
+/// A model for which no frame is declared or found.
 const TWISTED: &str = "
     coordinates { x; y; z; }
     parameters { m > 0 = 1.5; c >= 0 = 0.3; k >= 0 = 0.1; g = 1; }
@@ -43,7 +43,7 @@ const LID: &str = "lid: 2 - y >= 0 when x > t;";
 /// The functions, types and constants of the traits of a type.
 type Implemented = BTreeMap<(String, String), String>;
 
-/// Traits of a type with their items, without its kernels and its self-description.
+/// Traits of a type with their items, without its kernels and its description.
 fn implemented(source: &str, type_name: &str) -> Implemented {
     let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect(source);
     let file: syn::File = syn::parse2(tokens).expect("items");
@@ -126,7 +126,7 @@ fn assert_same(body: &str, [forces, impacts]: [&str; 2], uses: &str) {
         if plain_name == "PGlobal" && body == TWISTED {
             continue;
         }
-        // A scene holds the model, whose parameters are one step further away.
+        // A scene contains the model, so that its parameters have a longer path.
         let found: Implemented = implemented(&scene, type_name)
             .into_iter()
             .filter(|((name, _), _)| name != "InvariantVolume")
@@ -180,7 +180,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A blade in global form, on a line that the projection keeps.
+    /// A blade in global form on a line that projection keeps.
     Guided {
         coordinates { x; y; theta: angle; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2;
@@ -191,7 +191,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A disk between a floor that it does not slip on and two smooth walls.
+    /// A disk between a floor on which it does not slip and two smooth walls.
     Rolled {
         coordinates { x; y; theta; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(theta)^2)/2 - y;
@@ -234,7 +234,7 @@ fn a_surface_of_a_scene_has_its_own_functions_at_its_own_place() {
     );
 }
 
-/// A run of a scene of a loaded [`Thrown`] from its declared start: place along x, outcome and number of impacts.
+/// A run of a scene of the loaded [`Thrown`] from its declared start: final `x`, outcome and number of impacts.
 fn run(scene: &str, until: f64) -> (f64, Outcome, u64) {
     static THROWN: Text = Text::new(Thrown::DESCRIPTION.source.value());
     let mut thrown = THROWN.scene(scene);
@@ -248,11 +248,11 @@ fn a_scene_moves_under_what_it_uses() {
     let (x, outcome, impacts) = run("free", 10.0);
     assert_eq!((outcome, impacts), (Outcome::Done, 0));
     assert!((x - 10.0).abs() < 1e-12);
-    // x = m v/c (1 - exp(-c t/m))
+    // The position is m v/c (1 - exp(-c t/m)).
     let (x, _, impacts) = run("slowed", 10.0);
     assert_eq!(impacts, 0);
     assert!((x - 4.0 * (1.0 - (-2.5_f64).exp())).abs() < 1e-11);
-    // Elastic on the left, half the speed from the right: 1, 1 + 2/0.5, 5 + 2/0.5, ..
+    // The left wall is elastic, the right one halves the speed: the impacts are at 1, 1 + 2/0.5 and 5 + 2/0.5.
     let (x, _, impacts) = run("walls", 9.5);
     assert_eq!(impacts, 3);
     assert!((x - 0.875).abs() < 1e-12, "{x}");
@@ -260,7 +260,7 @@ fn a_scene_moves_under_what_it_uses() {
     assert_eq!(impacts, 1);
 }
 
-/// Compiles where the effects of a scene are these.
+/// Compiles only if the scene has these effects.
 fn has_effects<S: Scene<Effects = Effects>, Effects>(_: &S) {}
 
 #[test]
@@ -280,7 +280,7 @@ fn densities_are_there_where_they_are_asked_for() {
     let state = scene
         .state(0.0, &[0.0, 0.0].into(), &[1.0, 0.0].into())
         .expect("a state");
-    // -2 c/m
+    // The divergence is -2 c/m.
     assert!((scene.divergence(0.0, &state).expect("a divergence") + 0.5).abs() < 1e-15);
     let source = Thrown::DESCRIPTION.source.value();
     let has = |scene: &str| {

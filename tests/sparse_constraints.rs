@@ -1,5 +1,5 @@
-//! Many constraints, each coupled to few others: a chain declared by the places of its masses, with rods as constraints,
-//! against the same chain declared by the angles of its rods.
+//! Many constraints, each coupled to few others. A chain in the positions of its masses with rods as constraints is
+//! compared with the same chain in the angles of its rods.
 
 use dalembert::law::Law;
 use dalembert::{Described, Fault, Impacting, Instance, System, VectorField};
@@ -11,7 +11,7 @@ use dalembert_tests::sampling::Random;
 const LINKS: usize = 16;
 
 dalembert::model! {
-    /// By the places of its masses.
+    /// Chain in the positions of its masses.
     pub Rods {
         const N = 16;
         coordinates { x[N]; y[N]; }
@@ -28,7 +28,7 @@ dalembert::model! {
     }
 }
 
-/// Places, velocities and accelerations of the masses, `x` first, from those of the angles.
+/// Positions, velocities and accelerations of the masses from those of the angles: all `x`, then all `y`.
 fn places(angles: &[f64], rates: &[f64], accelerations: &[f64]) -> [[f64; 2 * LINKS]; 3] {
     let mut places = [[0.0; 2 * LINKS]; 3];
     let mut end = [[0.0; 2]; 3];
@@ -55,7 +55,7 @@ fn places(angles: &[f64], rates: &[f64], accelerations: &[f64]) -> [[f64; 2 * LI
     places
 }
 
-/// A random state of the chain by angles and by places, with the accelerations from the angles.
+/// A random state of the chain in positions, and the accelerations that the chain in angles gives.
 fn random_state(random: &mut Random) -> (<Rods as VectorField>::State, Vec<f64>) {
     let chain = Chain16::default();
     let angles = random.vector::<<Chain16 as System>::Vector>(-3.0, 3.0);
@@ -81,7 +81,7 @@ fn rods_as_constraints_move_the_masses_as_angles_do() {
         let (state, expected) = random_state(&mut random);
         let mut rate = state;
         rods.rate(0.0, &state, &mut rate).expect("a rate");
-        // Unit masses: the rate of a momentum is an acceleration.
+        // Masses are 1, so that the rate of a momentum is an acceleration.
         let errors = expected.iter().enumerate();
         let error = largest(errors.map(|(i, value)| rate[2 * LINKS + i] - value));
         let size = largest(expected.iter().copied());
@@ -110,7 +110,7 @@ fn projections_and_impacts_keep_the_rods() {
         assert!(violation.is_ok(), "{violation:?}");
         let last = 2 * LINKS - 1;
         assert!((qdot[last] + 0.3 * before[last]).abs() < 1e-11 * before.amax());
-        // Velocities that violate the constraints are brought back orthogonally: twice is once.
+        // The projection of velocities is idempotent.
         let wild = random.vector::<<Rods as System>::Vector>(-1.0, 1.0);
         let near = rods.state_projected(0.0, &q, &wild).expect("a state");
         let near = rods.velocity(0.0, &near).expect("velocities");
@@ -121,7 +121,7 @@ fn projections_and_impacts_keep_the_rods() {
     }
 }
 
-/// A light mass between two heavy ones on a straight piece of the chain: two rods that are nearly one constraint.
+/// The rods at a light mass between heavy ones on a straight chain are nearly one constraint.
 #[test]
 fn a_solve_that_would_lose_its_digits_is_refused_with_its_condition() {
     let straight = [0.3; LINKS];
@@ -143,7 +143,7 @@ fn a_solve_that_would_lose_its_digits_is_refused_with_its_condition() {
     assert!((1e4..1e6).contains(&condition), "{condition:e}");
 }
 
-/// No motion takes a rod to length 0: no drop of rank is sought in steps.
+/// No motion takes a rod to length 0, so that steps need no check of the rank.
 #[test]
 fn rods_cannot_become_dependent() {
     assert!(!Rods::default().can_lose_rank());

@@ -1,4 +1,5 @@
-//! Starts that the declaration leaves open: the report of `check` on them, and their completion by equations of positions.
+//! Starts that a declaration leaves open: the report of `check`, and completion of positions by the constraints;
+//! motions that continue with other parameters.
 
 use dalembert::{Instance, Keep, Outcome, ParameterError, StateError, System};
 use dalembert_cli::{Exit, Integrator};
@@ -6,7 +7,7 @@ use dalembert_stability::course::{Course, state, vector};
 use dalembert_stability::text::{Model, Text};
 use dalembert_tests::command::{self, Finished};
 
-/// A particle that may only be beyond 1; its start is not declared, and is 0.
+/// A wall that keeps `x` above 1. The start is not declared and is 0.
 static BEHIND: Text = Text::new(
     "Behind {
         coordinates { x; y; }
@@ -15,7 +16,7 @@ static BEHIND: Text = Text::new(
     }",
 );
 
-/// The same with a wall that ends above the start.
+/// The same wall, which counts above the start only.
 static BESIDE: Text = Text::new(
     "Beside {
         coordinates { x; y; }
@@ -43,7 +44,7 @@ fn a_start_beside_a_wall_is_admissible() {
     assert_eq!(exit, Exit::Reached, "{output}");
 }
 
-/// A pendulum in Cartesian coordinates; where it starts follows from `y`.
+/// A pendulum in Cartesian coordinates, whose initial `x` follows from `y`.
 static ROD: Text = Text::new(
     "Rod {
         coordinates { x; y; }
@@ -54,7 +55,7 @@ static ROD: Text = Text::new(
     }",
 );
 
-/// Two links and a coupler between two fixed points at a distance of 2: a loop that closes in one way of two.
+/// Two links and a coupler between two fixed points at the distance 2. The loop closes in two ways.
 static FOUR_BAR: Text = Text::new(
     "FourBar {
         coordinates { a: angle; b: angle; c: angle; }
@@ -67,7 +68,7 @@ static FOUR_BAR: Text = Text::new(
     }",
 );
 
-/// A free particle that a ring is to catch away from its place.
+/// A free particle with a transition at `x = 0` to motion on a ring of radius 1.
 static CAUGHT: Text = Text::new(
     "Caught {
         modes {
@@ -87,7 +88,7 @@ static CAUGHT: Text = Text::new(
     }",
 );
 
-/// The declared start, solved for, and the same run to `end`.
+/// Positions at the completed declared start and at the end of the run, and its outcome.
 fn start(system: &Model, end: f64) -> ([Vec<f64>; 2], Outcome) {
     let course = Course::declared(system, end).tol(1e-6);
     let start = *course.start();
@@ -176,7 +177,7 @@ fn the_command_line_solves_for_positions_or_refuses_them() {
     assert!(errors.contains("the positions violate"), "{errors}");
 }
 
-/// A skate whose blade stands off its centre of mass, in the state (q, u).
+/// A skate with its blade off its centre of mass, in the state (q, u).
 static SKATE: Text = Text::new(
     "Skate {
         coordinates { x; y; theta: angle; }
@@ -187,7 +188,7 @@ static SKATE: Text = Text::new(
     }",
 );
 
-/// A mass that becomes another one's burden at x = 1.
+/// A mass that takes up a load at x = 1.
 static LOADED: Text = Text::new(
     "Loaded {
         coordinates { x; }
@@ -221,7 +222,7 @@ fn what_stays_is_said_where_parameters_change() {
     let as_heavy = heavy
         .carried(&light, 0.0, &state, Keep::Momenta)
         .expect("a state");
-    // The momentum along the blade is that of the mass, so the speed along it is a quarter.
+    // The momentum along the blade stays and the mass is four times as large, so that the speed is a quarter.
     let slower = heavy.velocity(0.0, &as_heavy).expect("a state");
     let slower = slower.as_ref();
     let along = slower[0] * 0.3_f64.cos() + slower[1] * 0.3_f64.sin();

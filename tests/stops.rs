@@ -24,7 +24,7 @@ static GROWING: Text = Text::new(
     }",
 );
 
-/// A hopper whose motion ends where it falls in its second mode.
+/// A hopper whose motion ends at the bottom of a hole, the second mode.
 static HOPPER: Text = Text::new(
     "Hopper {
         coordinates { x; y; }
@@ -37,7 +37,7 @@ static HOPPER: Text = Text::new(
     }",
 );
 
-/// A particle of constant speed, which is a constraint that is not linear in the velocities.
+/// A particle of constant speed: a constraint that is not linear in the velocities.
 static BENDING: Text = Text::new(
     "Bending {
         coordinates { x; y; }
@@ -47,7 +47,7 @@ static BENDING: Text = Text::new(
     }",
 );
 
-/// A run with each of some integrators, and its name.
+/// Passes the end of a run with each of these integrators, and the name of the integrator, to `check`.
 fn each(
     model: &Model,
     [q, qdot]: [&[f64]; 2],
@@ -97,7 +97,7 @@ fn impacts_before_it_are_carried_out() {
 
 #[test]
 fn it_comes_before_surfaces_that_are_reached_at_the_same_time() {
-    // Down from 3/2 with speed 1 in time 1, to the corner of wall and floor.
+    // The particle falls from 3/2 with the speed 1 and reaches the corner of wall and floor at the time 1.
     let start = [&[0.0, 1.5][..], &[1.0, -1.0]];
     each(&THROWN.model(), start, &ADAPTIVE, |name, end| {
         assert_stopped(name, end, 1, 1.0);
@@ -169,14 +169,14 @@ fn first_order_systems_stop() {
 fn a_mode_has_stops_of_its_own() {
     let start = [&[0.0, 0.0][..], &[2.0, 1.0]];
     each(&HOPPER.model(), start, &ADAPTIVE, |name, end| {
-        // Over the edge at 1/2 in flight, down to -1 at 1 + sqrt(3).
+        // The hopper passes the edge in flight at the time 1/2, and reaches -1 at the time 1 + sqrt(3).
         assert_stopped(name, end, 2, 1.0 + 3.0_f64.sqrt());
     });
 }
 
 #[test]
 fn nonlinear_constraints_need_no_impulse_there() {
-    // A heading of 30 degrees to y that bends towards -x: y = 1 is reached.
+    // The direction starts at 30 degrees from y and bends towards -x. The particle reaches y = 1.
     let start = [&[0.0, 0.0][..], &[0.5, 0.75_f64.sqrt()]];
     each(&BENDING.model(), start, &ADAPTIVE, |name, end| {
         assert!(

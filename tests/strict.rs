@@ -1,5 +1,5 @@
 //! With the feature `strict` every build of a program computes the same bits: unoptimised, optimised, and for a machine
-//! with fused multiplication.
+//! with fused multiply-add.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,10 +10,9 @@ use dalembert_tests::golden;
 struct Build {
     name: &'static str,
     profile: &'static str,
-    /// The folder it is built in. One for each machine: the C part of the elementary functions is not built anew when
-    /// only its machine changes.
+    /// Target folder, one for each machine, so that a change of the machine does not rebuild the C code.
     target: &'static str,
-    /// Flags of the compilers of Rust and C for the machine.
+    /// Flags of the Rust compiler for the machine. The C compiler gets `cpu`.
     flags: &'static str,
     cpu: &'static str,
 }

@@ -1,4 +1,4 @@
-//! Power series of motions: emitted, interpreted, and against functions and motions in closed form.
+//! Power series of motions: emitted series compared with interpreted ones, with functions, and with closed forms.
 
 use dalembert::jet::{Jets, LENGTH};
 use dalembert::numbers::Row;
@@ -21,7 +21,7 @@ fn program(source: &str) -> Program {
         .main
 }
 
-/// The arguments of a rate at a state of a system.
+/// The inputs of a rate at a state of a system.
 fn input<'a, S: Instance>(
     system: &'a S,
     t: f64,
@@ -35,7 +35,7 @@ fn input<'a, S: Instance>(
     }
 }
 
-/// Emitted coefficients at a state, order by order: those of its components, then those of the gaps.
+/// Emitted coefficients at a state by orders: those of the components, then those of the gaps.
 fn expand<S: TaylorField>(
     system: &S,
     t: f64,
@@ -67,8 +67,8 @@ fn expand<S: TaylorField>(
         .collect()
 }
 
-/// Coefficients equal those of the interpreter. The first is the rate up to the rounding of its products, whose constant
-/// factors are multiplied in another order.
+/// Asserts that coefficients agree with those of the interpreter to 1e-5 of the largest coefficient of their order. The
+/// first coefficient is the rate up to rounding errors, since constant factors are multiplied in another order.
 fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state: S::State) {
     let name = system.description().name;
     let (t, unit, order) = (0.25, 0.125, 12);
@@ -92,7 +92,7 @@ fn assert_is_interpreted<S: Instance + TaylorField>(system: &S, jet: &Jet, state
     assert_eq!(emitted[0].len(), interpreted.len(), "{name}");
     for k in 0..=order {
         let size = largest(&mut interpreted.iter().map(|component| component[k].abs()));
-        // Terms that cancel exactly on paper leave rounding here, of the size of the first orders.
+        // Terms that would cancel exactly leave rounding errors of the size of the first order.
         let rounding =
             f64::EPSILON * largest(&mut interpreted.iter().map(|component| component[1].abs()));
         let pairs = emitted[k].iter().zip(&interpreted);
@@ -119,7 +119,7 @@ fn coefficients_are_what_the_interpreter_computes() {
 }
 
 dalembert::model! {
-    /// Every function of the language in a force.
+    /// Forces with every function of the language.
     pub EveryForce {
         coordinates { x; y; }
         parameters { c = 0.3; }
@@ -151,12 +151,12 @@ fn every_function_is_expanded_as_it_is_interpreted() {
     }
 }
 
-/// `value(s)` by its coefficients, in units of time.
+/// The value at `s` of the polynomial with these coefficients.
 fn sum(coefficients: &[f64], s: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c)
 }
 
-/// Series of every function along `x(s)`, `y(s)`, summed, against the function of the sums: a closed form.
+/// The sum of the series of a function along `x(s)`, `y(s)` is the function of the sums.
 #[test]
 fn series_of_functions_sum_up_to_their_values() {
     const X: [f64; 4] = [0.4, 0.3, -0.2, 0.1];
@@ -223,7 +223,7 @@ fn series_of_functions_sum_up_to_their_values() {
     }
 }
 
-/// A straight line turned about an angle that grows steadily: structure that is constant or linear is recognised.
+/// Components that are polynomials in time have series that end. The generator finds their degrees.
 #[test]
 fn structure_makes_series_end() {
     let source = "
@@ -261,13 +261,13 @@ fn soliton_at(t: f64) -> [f64; 2] {
     [x, -x * t.tanh()]
 }
 
-/// The soliton from a time of its motion to another one.
+/// A run of the soliton from one time of its motion to another.
 fn soliton(model: &Model, from: f64, until: f64) -> Course<'_, Model> {
     let [x, v] = soliton_at(from);
     Course::from_state(model, state(model, &[x], &[v]), until).at(from)
 }
 
-/// The error after `count` equal steps of a series of this order.
+/// The error after `count` equal steps with series of this order.
 fn error(order: usize, count: u32) -> f64 {
     let run = soliton(&SOLITON.model(), -1.0, 1.0)
         .tol(1e3)
@@ -293,7 +293,7 @@ fn series_converge_at_their_order() {
     }
 }
 
-/// Orders by the least work, and the counters of a run.
+/// Stored orders with the least work, and stored counters of a run.
 #[test]
 fn orders_and_work_are_as_stored() {
     let expected = [
@@ -324,7 +324,7 @@ fn orders_and_work_are_as_stored() {
             (steps, steps * order as u64, steps),
             "{tol:e}"
         );
-        // One rate where each step ends, and one at the start.
+        // The rate is evaluated at the start and at the end of every step.
         assert_eq!(
             (counters.rate_evaluations, counters.rejected),
             (steps + 1, 0)
@@ -333,7 +333,7 @@ fn orders_and_work_are_as_stored() {
     }
 }
 
-/// Two bodies that fall into each other, and friction whose sign changes where the motion turns.
+/// Two bodies that collide under their attraction, and friction that changes its sign where the motion turns.
 static ROUGH: Text = Text::new(
     "Rough {
         coordinates { r; x; }
@@ -343,7 +343,7 @@ static ROUGH: Text = Text::new(
     }",
 );
 
-/// The series ends where the force jumps, though its coefficients do not show it.
+/// The coefficients of a series do not show that the force jumps, but the step ends there.
 #[test]
 fn steps_do_not_pass_over_jumps_of_the_force() {
     let rough = ROUGH.model();
@@ -355,7 +355,7 @@ fn steps_do_not_pass_over_jumps_of_the_force() {
         assert!(run.counters.rejected > 0);
         (run.state.as_ref()[1], run.counters)
     };
-    // On each side an oscillation about -mu or mu.
+    // On each side of the jump the motion oscillates about -mu or mu.
     let mu: f64 = 0.1;
     let radius = (1.1_f64 * 1.1 + 0.09).sqrt();
     let turn = (0.3_f64 / 1.1).atan();
@@ -390,7 +390,7 @@ static OSCILLATOR: Text = Text::new(
     }",
 );
 
-/// Units of time near the range of exponents do not matter.
+/// Extreme units of time, near the limits of the exponent range, do not change the steps.
 #[test]
 fn steps_do_not_depend_on_units_of_time() {
     let steps = |power: i32| {
@@ -409,7 +409,7 @@ fn steps_do_not_depend_on_units_of_time() {
     assert_eq!(steps(0), steps(-400));
 }
 
-/// Two runs agree to the bit, and with DOP853 within its errors.
+/// Repeated runs agree to the bit, and agree with DOP853 within its errors.
 #[test]
 fn runs_repeat_and_agree_with_another_method() {
     for system in every_system() {

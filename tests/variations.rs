@@ -1,4 +1,4 @@
-//! First variations: against independent augmented differentials, closed forms, and differences of runs.
+//! First variations, compared with independent differentials of impacts and with differences of runs.
 
 use dalembert::contract::Variational;
 use dalembert::law::Law;
@@ -18,10 +18,10 @@ use serde_json::Value;
 
 type State = <Large as VectorField>::State;
 
-/// The largest error of an entry of an augmented differential, in units of the largest entry.
+/// Bound on the error of an augmented differential, relative to its largest entry.
 const TOLERANCE: f64 = 1e-11;
 
-/// A ball over a floor that swings, whose law loses speed by a parameter.
+/// A ball over an oscillating floor whose coefficient of restitution depends on a parameter.
 static SWUNG_FLOOR: Text = Text::new(
     "SwungFloor {
         coordinates { x; }
@@ -32,7 +32,7 @@ static SWUNG_FLOOR: Text = Text::new(
     }",
 );
 
-/// A point between two lines that bend, by a law of restitution.
+/// A point between two bent walls, one with restitution.
 static BENT: Text = Text::new(
     "Bent {
         coordinates { x; y; }
@@ -46,7 +46,7 @@ static BENT: Text = Text::new(
     }",
 );
 
-/// Two coupled pendula that change places, at rates that depend on time.
+/// Two coupled pendula that change places. Their velocities after the reset depend on time.
 static SWAPPED: Text = Text::new(
     "Swapped {
         coordinates { a: angle; b: angle; }
@@ -74,7 +74,7 @@ type Duals = (
     <Large as TaylorField>::Row<Dual>,
 );
 
-/// Parameters, and a state that changes along a direction.
+/// Parameters, and a state with derivatives along a direction, as dual numbers.
 fn dual(system: &Large, state: &State, direction: &State) -> Duals {
     let values = system.parameters();
     let mut parameters = Row::zeros(values.as_ref().len());
@@ -90,7 +90,7 @@ fn dual(system: &Large, state: &State, direction: &State) -> Duals {
     (parameters, row)
 }
 
-/// Positions and velocities of a state, and their changes along a direction.
+/// Derivatives of positions and velocities along a direction of the state.
 fn unfolded(system: &Large, t: f64, state: &State, direction: &State) -> Vec<f64> {
     let (parameters, row) = dual(system, state, direction);
     let velocities = system
@@ -103,7 +103,7 @@ fn unfolded(system: &Large, t: f64, state: &State, direction: &State) -> Vec<f64
         .collect()
 }
 
-/// Directions that span those of the states on the constraints. A state can be off at most one constraint.
+/// Directions that span the states on the constraints, for systems whose states can violate at most one constraint.
 fn allowed_directions(system: &Large, t: f64, state: &State) -> Vec<Tangent<Large>> {
     let deviation = |direction: &State| -> f64 {
         let (parameters, row) = dual(system, state, direction);
@@ -130,7 +130,8 @@ fn allowed_directions(system: &Large, t: f64, state: &State) -> Vec<Tangent<Larg
     directions
 }
 
-/// All augmented differentials of a reference file, in the chart of positions and independent velocities.
+/// Compares the augmented differentials of a reference file in the chart of positions and independent velocities.
+/// Returns their number.
 fn check_reference(text: &Text, name: &str) -> usize {
     let file = read(name);
     let system = with_parameters(text, &file);
@@ -255,7 +256,7 @@ fn course<'a, M: Driven>(
     laws.iter().fold(course, with)
 }
 
-/// Derivatives of a run with respect to its start and all parameters, against differences of runs.
+/// Compares derivatives of a run with respect to its start and all parameters with differences of runs.
 fn check_differences<M: Varied>(system: &M, start: M::State, laws: &[(usize, Law)], until: f64) {
     let length = system.state_len();
     let impacts = differences::check_differences(system, start, length, |system, start| {

@@ -1,4 +1,4 @@
-//! The dimensionless walker against orbits and transients computed with 30 digits.
+//! Compares the dimensionless walker with orbits and transients of 30 digits.
 
 use core::ops::ControlFlow;
 
@@ -11,7 +11,7 @@ use serde_json::Value;
 
 type State = <Model as VectorField>::State;
 
-/// Times of steps with the states before and after.
+/// Times of steps with the states before and after them.
 #[derive(Default)]
 struct Steps(Vec<(f64, State, State)>);
 

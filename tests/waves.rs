@@ -1,4 +1,4 @@
-//! Impacts between bodies that touch: waves that pass through them instantly.
+//! Impacts between touching bodies, through which waves pass instantly.
 
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -48,7 +48,7 @@ static SLAB: Text = Text::new(
     }",
 );
 
-/// The motion that brings a double integrator to rest with the least integral of `x^2` (Fuller): its switches accumulate.
+/// Fuller's problem: a double integrator comes to rest with the least integral of `x^2`. Its switches accumulate.
 static FULLER: Text = Text::new(
     "Fuller {
         coordinates { x; v; }
@@ -64,7 +64,7 @@ static FULLER: Text = Text::new(
     }",
 );
 
-/// Times of impacts, and of the ends of steps.
+/// Times of impacts and of the ends of steps.
 #[derive(Default)]
 struct Times {
     impacts: Vec<f64>,
@@ -105,7 +105,7 @@ fn ran<M: Driven>(
 
 const TOLERANCE: f64 = 1e-10;
 
-/// For motions without forces, which every step follows exactly.
+/// Tolerance for motions without forces, which every step follows exactly.
 const LOOSE: f64 = 1e-6;
 
 const BY_STEPS: (Integrator, f64) = (Integrator::Dop853, TOLERANCE);
@@ -122,7 +122,8 @@ const DEFAULT: Policies = Policies {
     split: dalembert::policy::Split::First,
 };
 
-/// The first `arriving` of `count` balls come at speed 1 from the distance 1, the others touch at rest.
+/// Positions and velocities of `count` balls. The first `arriving` come with the speed 1 from the distance 1; the
+/// others touch at rest.
 fn arrivals(count: usize, arriving: usize) -> (Vec<f64>, Vec<f64>) {
     let place = |i: usize| i as f64 - f64::from(u8::from(i < arriving));
     let speed = |i: usize| f64::from(u8::from(i < arriving));
@@ -163,7 +164,7 @@ fn as_many_balls_leave_a_cradle_as_arrive() {
     }
 }
 
-/// Momentum and energy of masses.
+/// Total momentum and kinetic energy.
 fn sums(masses: &[f64], velocity: &[f64]) -> [f64; 2] {
     let pairs = || masses.iter().zip(velocity);
     [
@@ -217,11 +218,11 @@ fn waves_that_meet_are_flagged_where_their_order_matters() {
         let policies = Policies { corner, ..DEFAULT };
         ran(&balls(&masses), BY_STEPS, policies, (&q, &qdot))
     };
-    // Equal masses pass their velocities on, whichever comes first.
+    // Equal masses exchange their velocities, in either order.
     let (end, velocity, _) = run([1.0; 5], Corner::Stop);
     assert_eq!(end.outcome, Outcome::Done);
     assert_eq!(velocity, [-1.0, 0.0, 0.0, 0.0, 1.0]);
-    // The waves meet at a middle ball: one of its two gaps is struck first.
+    // The waves meet at a middle ball, and the order of its two impacts matters.
     let masses = [1.0, 2.0, 1.0, 4.0, 1.0];
     let end = run(masses, Corner::Stop).0;
     assert_eq!(end.outcome, Outcome::Ambiguous { surfaces: [1, 2] });
@@ -232,7 +233,7 @@ fn waves_that_meet_are_flagged_where_their_order_matters() {
 
 #[test]
 fn a_light_ball_between_two_heavy_ones_is_struck_as_often_as_it_must_be() {
-    // The velocities turn in a wedge of the angle `atan(sqrt(m (1 + m + 1)/(1 1)))`; one more impact fits for each angle in pi.
+    // Impacts are reflections in a wedge of the angle `a = atan(sqrt(m (2 + m)))`. Their number is `floor(pi/a)`.
     for light in [1e-4, 1e-6] {
         let masses = [1.0, light, 1.0];
         let balls = balls(&masses);
@@ -263,7 +264,7 @@ fn a_very_light_ball_between_two_heavy_ones_is_no_accumulation() {
     }
 }
 
-/// Balls with plastic impacts move on together.
+/// Balls with plastic impacts continue together.
 #[test]
 fn balls_that_stick_are_pressed_and_go_on_as_one() {
     let balls = balls(&[1.0; 5]);
@@ -298,7 +299,7 @@ fn impacts_without_room_to_go_accumulate_at_once() {
 #[test]
 fn the_switches_of_fullers_problem_accumulate_when_they_must() {
     let fuller = FULLER.model();
-    // By hand: from `-1` to the first switch, then every stretch is `rho` times the one before.
+    // The first switch comes at `first`. Every interval between switches is `rho` times the one before.
     let k = value(&fuller, "k");
     let rho = ((0.5 - k) / (0.5 + k)).sqrt();
     let first = 1.0 / (0.5 + k).sqrt();

@@ -1,4 +1,4 @@
-//! The words of the language: read where they are listed, documented, and equal in generator and runtime where both have them.
+//! The words of the language are read by the parser and documented. Generator and runtime have the same laws.
 
 use dalembert::{Described, Impacting, Law};
 use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, RESET, SECTIONS};
@@ -6,7 +6,7 @@ use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, RESET, SECTIONS};
 const LANGUAGE: &str = include_str!("../docs/language.md");
 const EQUATIONS: &str = include_str!("../docs/equations.md");
 
-/// Text between two others.
+/// The text between `start` and the next `end`.
 fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
     let (_, rest) = text
         .split_once(start)

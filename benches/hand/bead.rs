@@ -1,4 +1,4 @@
-//! The bead on its ellipse: a constraint of positions, in the global form.
+//! The bead on an ellipse: an integrable constraint, in the global form.
 
 use dalembert_models::HolonomicBeadOnEllipses;
 
@@ -11,7 +11,7 @@ fn normal<T: Number>(bead: &HolonomicBeadOnEllipses, [x, y]: [T; 2]) -> [T; 2] {
     [x / (a * a), y / (b * b)]
 }
 
-/// The force along the normal that keeps the bead on its ellipse.
+/// Hamilton's equations with the normal force that keeps the bead on its ellipse.
 #[inline(always)]
 pub fn rate<T: Number>(bead: &HolonomicBeadOnEllipses, [x, y, p_x, p_y]: [T; 4]) -> [T; 4] {
     let [m, a, b] = parameters::<T, _>([bead.m, bead.A, bead.B]);
@@ -31,7 +31,7 @@ pub fn energy<T: Number>(bead: &HolonomicBeadOnEllipses, [_, _, p_x, p_y]: [T; 4
     ((p_x * p_x + p_y * p_y) / m).times(0.5)
 }
 
-/// The momentum along the ellipse is turned round.
+/// Reverses the momentum along the ellipse.
 #[inline(always)]
 pub fn impact<T: Number>(bead: &HolonomicBeadOnEllipses, [x, y, p_x, p_y]: [T; 4]) -> [T; 4] {
     let [n_x, n_y] = normal(bead, [x, y]);

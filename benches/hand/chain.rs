@@ -1,4 +1,4 @@
-//! The chain of N links, twice: with the metric as a matrix, and link by link in O(N).
+//! The chain of N links by two methods: with the metric as a matrix, and link by link in O(N).
 
 use dalembert::{StateVector, VectorField};
 use dalembert_models::{Chain2, Chain3, Chain4, Chain8, Chain16};
@@ -8,7 +8,7 @@ use crate::State;
 
 /// A shipped chain of N links.
 pub trait Chain<const N: usize>: VectorField {
-    /// Its parameters.
+    /// The parameters of the chain.
     fn rods<T: Number>(&self) -> Rods<T>;
 }
 
@@ -64,8 +64,8 @@ fn directions<T: Number, const N: usize>(theta: &[T; N]) -> ([T; N], [T; N]) {
     (sin, cos)
 }
 
-/// `g^{-1} p` by LDL^T of the metric `g_jk = (N - max(j, k)) m l^2 cos(theta_j - theta_k)`, counted from 0. Rows of the
-/// upper triangle, so that the inner loops run through memory in order.
+/// `g^{-1} p` by LDL^T of the metric `g_jk = (N - max(j, k)) m l^2 cos(theta_j - theta_k)`, with indices from 0. The
+/// rows of the upper triangle are used, so that the inner loops run through memory in order.
 #[inline(always)]
 fn velocities<T: Number, const N: usize>(
     rods: Rods<T>,
@@ -103,7 +103,7 @@ fn velocities<T: Number, const N: usize>(
     omega
 }
 
-/// `g^{-1} p`, then `dL/dtheta` as the double sum that it is.
+/// `g^{-1} p`, and `dL/dtheta` as a double sum.
 #[inline(always)]
 pub fn motion<T: Number, const N: usize>(
     rods: Rods<T>,
@@ -129,7 +129,7 @@ pub fn motion<T: Number, const N: usize>(
     (omega, force)
 }
 
-/// The rate by the metric's factors.
+/// The rate, by factorisation of the metric.
 #[inline]
 pub fn rate<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
     let (theta, p) = halves::<N>(state);
@@ -144,7 +144,7 @@ pub fn energy<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> f64 {
     energy_of(chain.rods(), theta, p)
 }
 
-/// The energy of numbers.
+/// The energy over any kind of numbers.
 #[inline(always)]
 pub fn energy_of<T: Number, const N: usize>(rods: Rods<T>, theta: [T; N], p: [T; N]) -> T {
     let (sin, cos) = directions(&theta);
@@ -165,9 +165,9 @@ fn total<T: Number, const N: usize>(rods: Rods<T>, cos: &[T; N], p: &[T; N], ome
 
 /// Velocities and the inertia carried by each link, in two passes over the chain.
 ///
-/// Let `P_i` be the momentum of all bobs from link `i` down; then `p_i = l t_i.P_i` with `t_i = (cos, sin)` along the
-/// motion of the link. From the last link up, `P_i = A_i v_{i-1} + b_i` with a symmetric matrix `A_i`: the inertia that
-/// the bob above feels. From the first link down, the velocities follow one by one.
+/// Let `P_i` be the momentum of all bobs from link `i` down. Then `p_i = l t_i.P_i` with `t_i = (cos, sin)` along the
+/// motion of the link. The pass from the last link up finds `P_i = A_i v_{i-1} + b_i`, where the symmetric matrix `A_i`
+/// is the inertia that the bob above feels. The pass from the first link down finds the velocities one by one.
 #[inline(always)]
 fn link_by_link<const N: usize>(
     rods: Rods<f64>,
@@ -175,7 +175,7 @@ fn link_by_link<const N: usize>(
     cos: &[f64; N],
     p: &[f64; N],
 ) -> ([f64; N], [[f64; 2]; N]) {
-    // Inertia of link i and all below it: B = m + A_{i+1}, applied to t; 1/(l t.B t); p/l - t.b.
+    // With the inertia B = m + A_{i+1} of link i and all below it: B t, 1/(t.B t), p/l - t.b.
     let (mut carried, mut inverse, mut excess) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
     let (mut matrices, mut offsets) = ([[0.0; 3]; N], [[0.0; 2]; N]);
     let (mut a, mut b) = ([0.0; 3], [0.0; 2]);
@@ -200,7 +200,7 @@ fn link_by_link<const N: usize>(
     (omega, momenta)
 }
 
-/// Link by link: `dL/dtheta_i = l omega_i n_i.P_i - (N - i) m g l sin(theta_i)`, with `n_i` the derivative of `t_i`.
+/// The rate by links: `dL/dtheta_i = l omega_i n_i.P_i - (N - i) m g l sin(theta_i)`, where `n_i` is `dt_i/dtheta_i`.
 #[inline]
 pub fn rate_by_links<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> State<S> {
     let rods = chain.rods();

@@ -24,7 +24,7 @@ fn raise<T: Number>(
     [r_x * light + swing * sin, r_y * light - swing * cos, theta]
 }
 
-/// The one multiplier from `m^{11} lambda = -(W.(f - gdot qdot) + gamma)`.
+/// Hamilton's equations with the multiplier from `m^{11} lambda = -(W.(f - gdot qdot) + gamma)`.
 #[inline(always)]
 pub fn rate<T: Number>(
     sleigh: &ChaplyginSleigh,
@@ -36,7 +36,7 @@ pub fn rate<T: Number>(
     let along = x_dot * cos + y_dot * sin;
     let lever = m * a;
     let [w_x, w_y, _] = raise([m, i, a], (sin, cos), [-sin, cos], None);
-    // f - gdot qdot has no component along theta: the two terms there cancel.
+    // f - gdot qdot has no theta component: its two terms cancel.
     let inertia = lever * spin * spin * (w_x * cos + w_y * sin);
     let lambda = (spin * along - inertia) / (w_y * cos - w_x * sin);
     [
@@ -49,7 +49,7 @@ pub fn rate<T: Number>(
     ]
 }
 
-/// In the frame of the blade: momenta along and across it, and the multiplier in closed form.
+/// Same as [`rate`], from the momenta along and across the blade, with the multiplier in closed form.
 #[inline(always)]
 pub fn rate_in_frame<T: Number>(
     sleigh: &ChaplyginSleigh,
@@ -82,7 +82,8 @@ pub fn energy<T: Number>(sleigh: &ChaplyginSleigh, [_, _, theta, p_x, p_y, p_the
     ((p_x * p_x + p_y * p_y) / m + moment * moment / i).times(0.5)
 }
 
-/// The gradient of a tip's gap, 0 front, 1 back, along the blade and turning, with sine and cosine of the angle.
+/// The gradient of the gap of a tip (0 front, 1 back) in the frame of D, along the blade and turning, and sine and
+/// cosine of the angle.
 #[inline(always)]
 fn tip_gradient<T: Number>(
     sleigh: &ChaplyginSleigh,
@@ -98,7 +99,7 @@ fn tip_gradient<T: Number>(
     ([h_along, h_spin], (sin, cos))
 }
 
-/// Elastic impact of a tip. The projected gradient in the frame of D: along the blade and turning, which are
+/// Elastic impact of a tip, by the projected gradient in the frame of D. The fields along the blade and turning are
 /// orthogonal.
 #[inline(always)]
 pub fn impact<T: Number>(
@@ -122,7 +123,7 @@ pub fn impact<T: Number>(
     ]
 }
 
-/// On D, in the frame along the blade and turning.
+/// The rate on D, in the frame along the blade and turning.
 #[inline(always)]
 pub fn reduced_rate<T: Number>(
     sleigh: &ChaplyginSleigh,

@@ -1,4 +1,4 @@
-//! Numbers that count their operations, as the generator counts its own.
+//! Numbers that count their operations as the generator does.
 
 use core::cell::Cell;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -13,7 +13,7 @@ thread_local! {
 #[derive(Debug, Clone, Copy)]
 pub struct Counted(f64);
 
-/// The operations of `work` on `N` numbers.
+/// Number of operations that `work` does with `N` numbers.
 pub fn operations<const N: usize, R>(work: impl FnOnce([Counted; N]) -> R) -> usize {
     OPERATIONS.set(0);
     work(core::array::from_fn(|k| Counted(0.3 + 0.1 * k as f64)));

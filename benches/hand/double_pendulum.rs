@@ -1,4 +1,4 @@
-//! The double pendulum: Hamilton's equations of the textbooks, with the metric inverted by hand.
+//! The double pendulum: Hamilton's equations as in textbooks, with the metric inverted by hand.
 
 use dalembert_models::DoublePendulum;
 
@@ -17,7 +17,7 @@ fn rods<T: Number>(pendulum: &DoublePendulum) -> [T; 5] {
     parameters([m1, m2, l1, l2, g])
 }
 
-/// The angular velocities; the determinant is `(l1 l2)^2 m2 (m1 + m2 sin^2)`.
+/// The angular velocities. The metric has the determinant `(l1 l2)^2 m2 (m1 + m2 sin^2)`.
 #[inline(always)]
 fn velocities<T: Number>(
     [m1, m2, l1, l2, _]: [T; 5],

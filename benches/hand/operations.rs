@@ -1,4 +1,4 @@
-//! Counts the operations of generated functions beside those written by hand.
+//! Compares the numbers of operations of generated and handwritten functions.
 
 use dalembert::Described;
 use dalembert_codegen::program::{Form, Function, Input, Op, Program};
@@ -17,12 +17,12 @@ use super::{
     rolling_ball, rolling_disk, two_wheels,
 };
 
-/// Generated functions may take this many times the operations of those by hand ..
+/// Largest ratio of operations of a generated function to those of the handwritten one, except for [`LARGER`].
 const MOST: f64 = 1.1;
 
-/// .. but these: the reciprocal of a mass is computed before the product with it; a blow is added to the state, and a
-/// momentum that is turned round needs no addition; a factor that may vanish stays; a constraint of positions has no
-/// frame.
+/// Larger ratios. Generated code computes the reciprocal of a mass before it multiplies by it. It adds an impulse to
+/// the state where a handwritten impact changes a sign. It keeps factors that may vanish. Integrable constraints have
+/// no frame.
 const LARGER: [(&str, f64); 6] = [
     ("bouncing_ball (q, p) rate", 1.34),
     ("bouncing_ball (q, p) impact", 3.0),
@@ -32,7 +32,7 @@ const LARGER: [(&str, f64); 6] = [
     ("two_wheels_rod (q, u) impact", 1.73),
 ];
 
-/// A function by hand and the generated one.
+/// Numbers of operations of a generated function and of the handwritten one.
 #[derive(Debug, Clone)]
 struct Pair {
     name: String,
@@ -40,14 +40,14 @@ struct Pair {
     by_hand: usize,
 }
 
-/// Operations of the generated functions of a model.
+/// The generated functions of a model.
 struct Generated {
     name: &'static str,
     program: Program,
 }
 
 impl Generated {
-    /// Counts for the form in which the model is run.
+    /// The functions of the form in which the model runs.
     fn of<S: Described>(_: &S) -> Self {
         Self {
             name: S::DESCRIPTION.name,
@@ -55,7 +55,7 @@ impl Generated {
         }
     }
 
-    /// Counts for the global form, where another one is run.
+    /// The functions of the global form of a model that runs in another form.
     fn global<S: Described>(_: &S) -> Self {
         Self {
             name: S::DESCRIPTION.name,
@@ -80,7 +80,7 @@ impl Generated {
         self.pair("rate", self.program.rate.cost.total(), by_hand)
     }
 
-    /// A generated energy that needs velocities begins with their function.
+    /// The generated energy, with the operations of the velocities if it needs them.
     fn energy(&self, by_hand: usize) -> Pair {
         let mut inputs = self.program.energy.ops.iter();
         let velocity = match inputs.any(|op| matches!(op, Op::Input(Input::Velocity(_)))) {
@@ -94,7 +94,7 @@ impl Generated {
         )
     }
 
-    /// An impact on the first surface by its declared law, which is elastic: the blow, and its addition to the state.
+    /// An elastic impact on the first surface: the operations of the impulse and of its addition to the state.
     fn impact(&self, by_hand: usize) -> Pair {
         let blows = &self.program.impacting.as_ref().expect("surfaces").blows;
         let blow: &Function = blows[0].as_ref().expect("an impulse");

@@ -1,10 +1,10 @@
-//! The point billiard: next to no work, so that the cost around the formulas shows.
+//! The point billiard. Its formulas cost so little that the cost of the code around them shows.
 
 use dalembert_models::PointBilliard;
 
 use super::number::{Number, parameters};
 
-/// Straight lines.
+/// Motion in straight lines.
 #[inline(always)]
 pub fn rate<T: Number>(point: &PointBilliard, [_, _, p_x, p_y]: [T; 4]) -> [T; 4] {
     let [m] = parameters::<T, _>([point.m]);

@@ -1,10 +1,10 @@
-//! The rolling ball in Euler's angles, on a table that stands still or turns: on D, with the angular velocity in space.
+//! The rolling ball in Euler angles, on a table at rest or on a rotating one: on D, with the angular velocity in space.
 
 use dalembert_models::{BallOnRotatingTable, RollingBallEuler};
 
 use super::number::{Number, parameters};
 
-/// Rates of Euler's angles.
+/// Rates of the Euler angles.
 #[inline(always)]
 fn angle_rates<T: Number>(theta: T, psi: T, [w_x, w_y, w_z]: [T; 3]) -> [T; 3] {
     let ((sin_theta, cos_theta), (sin_psi, cos_psi)) = (theta.sin_cos(), psi.sin_cos());
@@ -13,7 +13,7 @@ fn angle_rates<T: Number>(theta: T, psi: T, [w_x, w_y, w_z]: [T; 3]) -> [T; 3] {
     [phi_dot, theta_dot, w_z - cos_theta * phi_dot]
 }
 
-/// The ball rolls straight on.
+/// The rate on a table at rest: the angular velocity is constant.
 #[inline(always)]
 pub fn rate<T: Number>(
     ball: &RollingBallEuler,
@@ -42,7 +42,7 @@ pub fn energy<T: Number>(ball: &RollingBallEuler, [_, _, _, _, _, w_x, w_y, w_z]
     ((gyration + r * r) * (w_x * w_x + w_y * w_y) + gyration * (w_z * w_z)).times(0.5)
 }
 
-/// The centre is reflected at the rim: its velocity is `r (w_y, -w_x)`.
+/// Elastic impact: the velocity `r (w_y, -w_x)` of the centre is reflected at the rim.
 #[inline(always)]
 pub fn impact<T: Number>(
     ball: &RollingBallEuler,
@@ -54,7 +54,7 @@ pub fn impact<T: Number>(
     [x, y, phi, theta, psi, w_x - eps * n_y, w_y + eps * n_x, w_z]
 }
 
-/// On the turning table the angular velocity changes with the velocity of the centre.
+/// The rate on the rotating table, where the angular acceleration is proportional to the velocity of the centre.
 #[inline(always)]
 pub fn rate_on_table<T: Number>(
     ball: &BallOnRotatingTable,
@@ -76,7 +76,7 @@ pub fn rate_on_table<T: Number>(
     ]
 }
 
-/// Kinetic energy on the turning table.
+/// Kinetic energy on the rotating table.
 #[inline(always)]
 pub fn energy_on_table<T: Number>(
     ball: &BallOnRotatingTable,

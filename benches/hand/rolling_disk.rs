@@ -1,11 +1,11 @@
-//! The rolling disk: two constraints, so a system of two equations for the multipliers.
+//! The rolling disk: two constraints, whose multipliers solve two linear equations.
 
 use dalembert_models::RollingDisk;
 
 use super::number::{Number, parameters};
 
-/// `m lambda = -gamma` by Cramer's rule, with `m^{ab} = eta^a(W^b)` and `gamma^a` the rate of `eta^a(qdot)` at constant
-/// velocity.
+/// Hamilton's equations with the multipliers from `m lambda = -gamma` by Cramer's rule, where `m^{ab} = eta^a(W^b)` and
+/// `gamma^a` is the rate of `eta^a(qdot)` at constant velocity.
 #[inline(always)]
 pub fn rate<T: Number>(
     disk: &RollingDisk,
@@ -35,7 +35,7 @@ pub fn rate<T: Number>(
     ]
 }
 
-/// The multipliers in closed form: the forces of rolling turn the velocity and do not touch the spin.
+/// Same as [`rate`], with the multipliers in closed form: the constraint forces turn the velocity and leave the spins.
 #[inline(always)]
 pub fn rate_in_closed_form<T: Number>(
     disk: &RollingDisk,
@@ -67,8 +67,8 @@ pub fn energy<T: Number>(disk: &RollingDisk, [_, _, _, _, p_x, p_y, p_theta, p_p
     (slide + p_theta * p_theta / i + p_phi * p_phi / j).times(0.5)
 }
 
-/// The gradient of an edge's gap, 0 leading, 1 trailing, along rolling and turning, with sine and cosine of the
-/// direction.
+/// The gradient of the gap of an edge (0 leading, 1 trailing) in the frame of D, along rolling and turning, and sine
+/// and cosine of the direction.
 #[inline(always)]
 fn edge_gradient<T: Number>(
     disk: &RollingDisk,
@@ -85,8 +85,8 @@ fn edge_gradient<T: Number>(
     ([h_roll, h_turn], (sin, cos))
 }
 
-/// Elastic impact of an edge. The projected gradient in the frame of D: `n_roll` along rolling and `n_turn` along
-/// turning, which are orthogonal.
+/// Elastic impact of an edge, by the projected gradient `(n_roll, n_turn)` in the frame of D. The fields of rolling and
+/// turning are orthogonal.
 #[inline(always)]
 pub fn impact<T: Number>(
     disk: &RollingDisk,
@@ -111,7 +111,7 @@ pub fn impact<T: Number>(
     ]
 }
 
-/// On D: roll and turn keep their rates.
+/// The rate on D, where the angular velocities of rolling and turning are constant.
 #[inline(always)]
 pub fn reduced_rate<T: Number>(disk: &RollingDisk, [_, _, _, phi, roll, turn]: [T; 6]) -> [T; 6] {
     let [r] = parameters::<T, _>([disk.R]);

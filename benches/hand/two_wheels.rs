@@ -1,10 +1,10 @@
-//! Two wheels joined by a rod: on D, with the angles' rates.
+//! Two wheels joined by a rod: on D, with the rates of the angles.
 
 use dalembert_models::TwoWheelsRod;
 
 use super::number::{Number, parameters};
 
-/// Both roll on.
+/// The rate: both angular velocities are constant.
 #[inline(always)]
 pub fn rate<T: Number>(wheels: &TwoWheelsRod, [_, _, _, _, first, second]: [T; 6]) -> [T; 6] {
     let [r1, r2] = parameters::<T, _>([wheels.r1, wheels.r2]);
@@ -19,7 +19,7 @@ pub fn energy<T: Number>(wheels: &TwoWheelsRod, [_, _, _, _, first, second]: [T;
     ((one + r1 * r1) * (first * first) + (one + r2 * r2) * (second * second)).times(0.5)
 }
 
-/// Elastic impact at either end of the rod: it turns round the rate at which the wheels part.
+/// Elastic impact at the shortest or longest rod: it reverses the rate of the distance between the wheels.
 #[inline(always)]
 pub fn impact<T: Number>(
     wheels: &TwoWheelsRod,

@@ -1,13 +1,13 @@
 //! Random choices.
 
-/// A source of random choices (SplitMix64): the same ones for the same seed.
+/// A source of random choices (SplitMix64). The same seed gives the same choices.
 #[derive(Debug, Clone)]
 pub struct Draw {
     state: u64,
 }
 
 impl Draw {
-    /// The source of a seed.
+    /// The source with this seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }

@@ -1,11 +1,11 @@
-//! Declarations whose answers are known by construction.
+//! Random declarations with claims whose truth is known by construction.
 
 use crate::draw::Draw;
 use crate::function::{Function, bump, function, number, shifted};
 
 use Function::{Coordinate, Product, Sum};
 
-/// A claim about a declaration with the answer.
+/// A claim about a declaration, with its truth.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// The family that it comes from.
@@ -14,9 +14,9 @@ pub struct Case {
     pub declarations: String,
     /// The claim.
     pub claim: String,
-    /// True if it is true.
+    /// True if the claim is true.
     pub is_true: bool,
-    /// True if one of the methods of `docs/proofs.md` decides it; else it may stay open.
+    /// True if one of the methods of `docs/proofs.md` decides the claim; otherwise it may stay open.
     pub is_decidable: bool,
 }
 
@@ -52,13 +52,13 @@ fn flat(count: usize) -> String {
     format!("lagrangian = ({})/2;", terms.join(" + "))
 }
 
-/// A drag along `x` that grows with the other velocities: `-dot(x)*alpha(qdot)*d(x)` with a form alpha without `d(x)`. A
-/// density `exp(G)` needs `dG = alpha`.
+/// A drag along `x` that grows with the other velocities: `-dot(x)*alpha(qdot)*d(x)` with a form alpha without `d(x)`.
+/// A density `exp(G)` needs `dG = alpha`.
 fn potential(draw: &mut Draw) -> Case {
     let count = 3 + draw.below(3);
     let which: Vec<usize> = (1..count).collect();
-    // NOTE: a drawn function may be constant, as a product of `exp(cos(th)^2)` and `exp(sin(th)^2)` is. With the sine the
-    // force is not zero; a zero force would be refused.
+    // NOTE: the drawn function may be constant, like the product of `exp(cos(th)^2)` and `exp(sin(th)^2)`. The sine
+    // keeps the force from being zero, which would be refused.
     let sine = Function::Sin(Box::new(Coordinate(1)));
     let potential = Sum(vec![function(draw, &IS_ANGLE, &which, 2), sine]);
     let mut slopes: Vec<Vec<Function>> = which
@@ -122,7 +122,8 @@ fn potential(draw: &mut Draw) -> Case {
     }
 }
 
-/// `dot(x) = f(x)*dot(th)`: without a zero of `f` there is a density; around a zero, leaves wind towards a circle.
+/// `dot(x) = f(x)*dot(y)`: there is no density if `f` has a zero and `y` is an angle, since leaves then wind towards a
+/// circle.
 fn leaf(draw: &mut Draw) -> Case {
     let place = draw.choice(&["0", "1/3", "40", "-700", "2.5"]);
     let x = format!("(x - ({place}))");
@@ -163,7 +164,7 @@ fn leaf(draw: &mut Draw) -> Case {
     }
 }
 
-/// Energy and momentum under a force that is 0 by an identity, or acts in a box only, or is small.
+/// Energy and momentum under a force that is identically 0, acts only in a box, or is small.
 fn quantity(draw: &mut Draw) -> Case {
     let count = 3;
     let lines = [0, 2];
@@ -176,7 +177,7 @@ fn quantity(draw: &mut Draw) -> Case {
             true,
         ),
         2 => {
-            // Ramps of opposite signs have no product.
+            // The product of a ramp and the opposite ramp is 0.
             let ramp = shifted(draw, 0);
             let back = Product(vec![number("-1"), Sum(vec![ramp.clone()])]);
             let product = Product(vec![
@@ -201,13 +202,13 @@ fn quantity(draw: &mut Draw) -> Case {
             )
         }
     };
-    // NOTE: an amplitude that is a number is never 0.
+    // NOTE: the amplitude is never 0.
     let amplitude = match strength {
         Function::Number(_) => "1".to_owned(),
         other => format!("(2 + sin({}))", other.text(&NAMES)),
     };
     let name = NAMES[direction];
-    // A force beside it that does no work, in the other directions.
+    // A force in the other directions does no work.
     let [a, b] = [1, 2].map(|k| NAMES[(direction + k) % count]);
     let velocity = draw
         .choice(&["1", "-dot(V)", "-dot(V)^3"])
@@ -246,7 +247,7 @@ fn systems(draw: &mut Draw) -> Case {
     let y = format!("({stretch}*v)");
     let claimed = draw.choice(&["exact", "none"]);
     let (declarations, has_density) = match draw.below(3) {
-        // Chaplygin's sleigh: a density iff the centre of mass is over the blade.
+        // Chaplygin's sleigh has a density if and only if its centre of mass is over the blade.
         0 => (
             format!(
                 "coordinates {{ u; v; th: angle; }} parameters {{ m > 0 = 1; J > 0 = 1; }}
@@ -283,7 +284,8 @@ fn systems(draw: &mut Draw) -> Case {
     }
 }
 
-/// Translations of a Lagrangian with an added form: symmetries iff the derivative of the form along them is exact.
+/// Translations of a Lagrangian with an added form. They are symmetries if and only if the Lie derivative of the form
+/// along them is exact.
 fn gauge(draw: &mut Draw) -> Case {
     let count = 3;
     let added = function(draw, &IS_ANGLE, &[0, 1, 2], 2);
@@ -313,7 +315,7 @@ fn gauge(draw: &mut Draw) -> Case {
             terms.join(" + ")
         ),
         claim: format!("symmetry: {translation}"),
-        // A growing translation sees a magnetic field as an electric one, without a potential.
+        // Along the growing translation `x*dot(th)` changes by `(1 + t)*dot(th)`, which is not exact.
         is_true: match kind {
             1 => !is_growing,
             2 => false,
@@ -323,7 +325,7 @@ fn gauge(draw: &mut Draw) -> Case {
     }
 }
 
-/// Parameters whose default is an exceptional value, or is not.
+/// A parameter whose default is 0, an exceptional value, or not.
 fn exceptional(draw: &mut Draw) -> Case {
     let (value, is_zero) =
         draw.choice(&[("0", true), ("1", false), ("1/3", false), ("1e-9", false)]);
@@ -355,7 +357,7 @@ fn wall(draw: &mut Draw) -> Case {
         ("dot(x)*dot(y)", false),
         ("(x - 3)*dot(x)", true),
     ]);
-    // On x < 0 the wall stands at -3.
+    // The wall is at -3 for `x < 0`, and at both 3 and -3 for `y > 1`.
     let is_other = side == "x < 0" || side == "y > 1";
     let holds = holds && !(quantity.starts_with("(x - 3)") && is_other);
     let is_negated = draw.one_in(2);

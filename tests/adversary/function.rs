@@ -1,8 +1,8 @@
-//! Functions of coordinates that are differentiated here, by rules of their own.
+//! Functions of coordinates, with a differentiation that is independent of the generator.
 
 use crate::draw::Draw;
 
-/// A function; declarations are written with its text.
+/// A function, whose text goes into declarations.
 #[derive(Debug, Clone)]
 pub enum Function {
     /// A number as written.
@@ -33,7 +33,7 @@ pub fn number(text: impl Into<String>) -> Function {
 }
 
 impl Function {
-    /// The text, with the names of coordinates.
+    /// The text of the function with these names of coordinates.
     pub fn text(&self, names: &[&str]) -> String {
         let text = |function: &Self| function.text(names);
         match self {
@@ -55,7 +55,7 @@ impl Function {
         }
     }
 
-    /// The derivative in a coordinate; `None` if it is 0.
+    /// The derivative by a coordinate; `None` if it is 0.
     pub fn slope(&self, i: usize) -> Option<Self> {
         let chain = |outer: Self, inner: &Self| Some(Product(vec![outer, inner.slope(i)?]));
         match self {
@@ -155,7 +155,7 @@ fn leaf(draw: &mut Draw, is_angle: &[bool], i: usize) -> Function {
     }
 }
 
-/// A product of ramps that is positive in a box only.
+/// A product of ramps that is positive inside a box and 0 outside.
 pub fn bump(draw: &mut Draw, which: &[usize]) -> Function {
     let mut factors = Vec::new();
     for i in which {

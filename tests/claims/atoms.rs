@@ -1,5 +1,5 @@
-//! Verdicts where entries contain exponentials, roots, bare angles, logarithms and their relations; refusals; and models
-//! without equations. A verdict may stay open there, and is never wrong.
+//! Verdicts on models that contain exponentials, roots, bare angles, logarithms and relations between them; refusals;
+//! and singular models. A verdict may stay open, but is never wrong.
 
 use dalembert_tests::verdict::{Answer, Decided, Existence, answer, refusal};
 use dalembert_tests::verified::verified;
@@ -15,7 +15,7 @@ fn particle(coordinates: &str, kinetic: &str, f: &str) -> String {
 const FLAT: &str = "dot(x)^2 + dot(y)^2 + dot(z)^2";
 const POSITIVE: &str = "x in (0, 9); y in (0, 9); z;";
 
-/// With `f(y)` a density exists, `sqrt(det m)`, with `f(x + y)` none.
+/// With `f(y)` the density `sqrt(det m)` exists; with `f(x + y)` there is none.
 #[test]
 fn functions_of_one_coordinate_and_of_two() {
     for f in [
@@ -37,7 +37,7 @@ fn functions_of_one_coordinate_and_of_two() {
     }
 }
 
-/// The angle of a helix, on a line, both bare and inside of sine and cosine.
+/// The angle of a helix is a coordinate on a line. It appears both bare and inside sine and cosine.
 #[test]
 fn a_line_inside_and_outside_of_the_sine() {
     let spiral = |f: &str| {
@@ -58,7 +58,7 @@ fn a_line_inside_and_outside_of_the_sine() {
     }
 }
 
-/// Two ways to write a number that is 0: a verdict that took it for another number would deny the density.
+/// Expressions that are identically 0. A verdict that took one for another number would deny the density.
 #[test]
 fn related_atoms_are_not_taken_for_independent_ones() {
     let relations = [
@@ -81,7 +81,7 @@ fn related_atoms_are_not_taken_for_independent_ones() {
         ("exp(x*ln(y)) - exp(x*ln(y/2))*exp(x*ln(2))", POSITIVE),
     ];
     for (zero, coordinates) in relations {
-        // Without the zero there is a density; with a nonzero number in its place there is none.
+        // With 0 there is a density; with another number in its place there is none.
         let source = particle(coordinates, FLAT, &format!("y + ({zero})*x"));
         for seed in 1..8 {
             let existence = Decided::with_seed(&source, seed).existence();
@@ -98,7 +98,7 @@ fn related_atoms_are_not_taken_for_independent_ones() {
     }
 }
 
-/// Same as above with two different sides: nothing hides an obstruction.
+/// Expressions that are similar but not 0. The obstruction is found.
 #[test]
 fn unrelated_atoms_are_not_taken_for_related_ones() {
     let differences = [
@@ -122,7 +122,7 @@ fn unrelated_atoms_are_not_taken_for_related_ones() {
     }
 }
 
-/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`: on one side of `x = 1/5` there is a density, on the other none.
+/// `sqrt((x - 1/5)^2)` is the absolute value of `x - 1/5`. There is a density on one side of `x = 1/5` only.
 #[test]
 fn a_root_that_hides_an_absolute_value_proves_nothing() {
     let source = particle("x; y; z;", FLAT, "y + (sqrt((x - 1/5)^2) - (x - 1/5))*x");
@@ -162,7 +162,7 @@ fn functions_with_kinks_are_refused_in_metric_and_forms() {
     }
 }
 
-/// Off the domain of a root or logarithm, residues exist but real values do not.
+/// Outside the domain of a root or logarithm, residues exist but real values do not.
 #[test]
 fn parts_without_real_values_prove_nothing() {
     for f in [
@@ -182,7 +182,7 @@ fn parts_without_real_values_prove_nothing() {
     }
 }
 
-/// Far out there is a density.
+/// The root is real for `y >= 9` alone.
 #[test]
 fn real_values_are_looked_for_far_out() {
     let source = particle("x; y; z;", FLAT, "sqrt(y - 9)");

@@ -1,4 +1,4 @@
-//! Conditions on parameters under which a density exists that does not exist for all of their values.
+//! Conditions on parameters under which a density exists, for models that have none for generic values.
 
 use dalembert_codegen::claims::{Condition, find_conditions};
 use dalembert_tests::verdict::{Decided, Existence};
@@ -22,9 +22,9 @@ fn conditions(source: &str) -> Vec<String> {
 fn the_sleigh_needs_its_centre_of_mass_over_the_blade() {
     let sleigh = declaration(&visible_system("chaplygin_sleigh"));
     assert_eq!(conditions(&sleigh), ["a = 0"]);
-    // Without mass the metric is singular: that is not a condition, under any assumption.
+    // `m = 0` makes the metric singular and is no condition, whatever the assumption on `m`.
     assert_eq!(conditions(&sleigh.replace("m > 0", "m")), ["a = 0"]);
-    // No condition is left where the assumption excludes it.
+    // No condition is left if the assumption on `a` excludes it.
     assert!(conditions(&sleigh.replace("a =", "a > 0 =")).is_empty());
     assert!(conditions(&sleigh.replace("a =", "a in [1/2, 1] =")).is_empty());
 }
@@ -35,8 +35,8 @@ fn suslov_needs_a_principal_axis() {
     assert_eq!(conditions(&suslov), ["I13 = 0 and I23 = 0"]);
 }
 
-/// `b = 0` alone is not enough: it leaves the mass of the rear part off its axis. Without both offsets the blades are in one
-/// point, and the constraints dependent where they are parallel.
+/// `b = 0` alone is not enough: it leaves the mass of the rear part off its axis. Without both offsets the blades are
+/// at one point, and the constraints are dependent where the blades are parallel.
 #[test]
 fn the_roller_racer_needs_both_offsets_to_vanish() {
     let mut scheme = Scheme::of(&visible_system("roller_racer"));
@@ -56,7 +56,7 @@ fn the_helical_circle_needs_pitch_zero() {
     assert_eq!(conditions(&helix), ["k = 0"]);
 }
 
-/// With the metric of a body that depends on equal moments of inertia.
+/// The axis `b1 + 2*b2` is principal if the moments of inertia `A` and `B` are equal.
 #[test]
 fn a_suslov_axis_between_two_principal_ones_needs_equal_moments() {
     let body = "Body {
@@ -71,7 +71,7 @@ fn a_suslov_axis_between_two_principal_ones_needs_equal_moments() {
     assert_eq!(conditions(body), ["A = B"]);
 }
 
-/// At `l1 = 0` the axle of the trailer is below the hitch, and both blades in one point.
+/// At `l1 = 0` the axle of the trailer is below the hitch, and both blades are at one point.
 #[test]
 fn a_trailer_needs_its_axle_below_the_hitch() {
     let trailer = "Trailer {
@@ -88,7 +88,7 @@ fn a_trailer_needs_its_axle_below_the_hitch() {
     assert_eq!(conditions(trailer), ["l1 = 0, locally"]);
 }
 
-/// A value that is neither 0 nor an equality; the default does not matter.
+/// The condition is a value other than 0. Verdicts are for generic values, even if the default meets the condition.
 #[test]
 fn values_at_which_the_obstruction_vanishes_are_found() {
     let particle = "Particle {
@@ -103,7 +103,7 @@ fn values_at_which_the_obstruction_vanishes_are_found() {
     );
 }
 
-/// A sleigh whose blade stands off the centre of mass by a polynomial in parameters.
+/// Remarks on a sleigh whose blade has this offset from the centre of mass, a polynomial in the parameters.
 fn off_by(offset: &str, parameters: &str) -> String {
     let source = format!(
         "Sleigh {{ coordinates {{ x; y; th: angle; }} parameters {{ m > 0 = 1; J > 0 = 1; {parameters} }}

@@ -1,8 +1,8 @@
-//! True claims of a shipped model are proved. False ones are refused at their line, with numbers that can be computed once
-//! more: every claim negated, and claims with a wrong sign, parameter, exponent or component.
+//! True claims of models are proved. False claims are refuted at their line, with numbers that can be verified: negated
+//! claims, and claims with a wrong sign, parameter, exponent or component.
 //!
-//! The numbers of a message are read from its text and compared with differences along the emitted motion, the emitted
-//! impact, and brackets in plain double precision, see `dalembert_tests::witness`.
+//! `dalembert_tests::witness` compares the numbers of a message with differences along the emitted motion, with the
+//! emitted impact, and with brackets in double precision.
 
 use dalembert::{Instance, StateVector};
 use dalembert_codegen::claims::Verdict;
@@ -12,7 +12,7 @@ use dalembert_tests::numeric::Numeric;
 use dalembert_tests::sampling::{every_system, states};
 use dalembert_tests::witness;
 
-/// The message of a claim that must be refuted, at the line of the claim.
+/// The message of a claim. It must refute the claim and point at its line.
 #[track_caller]
 fn refuted(declaration: &Declaration, claim: &str) -> String {
     let (source, line) = declaration.claiming(claim);
@@ -34,8 +34,8 @@ fn contradictions(claim: &str) -> Vec<String> {
             .collect(),
         ["not", ..] => vec![words[1..].join(" ")],
         ["conserved", ..] => vec![format!("not {}", words.join(" "))],
-        // A density and a symmetry have no negation; they are perturbed below. Claims of motion and impacts together are perturbed in
-        // `codegen/tests/hybrid_claims`.
+        // Stated densities and symmetries have no negation; the tests below perturb them. `codegen/tests/hybrid_claims`
+        // perturbs claims about motion and impacts together.
         [
             "density" | "symmetry" | "volume" | "symplectic" | "energy" | "integrable"
             | "involution",
@@ -74,7 +74,7 @@ impl Contradicted {
     }
 }
 
-/// A claim that is contradicted without a point is true: it holds at random states.
+/// Asserts that a claim holds at random states. It is called if the refutation of a contradiction shows no numbers.
 fn holds_numerically(system: &Large, claim: &str, message: &str) {
     let (head, value) = claim.split_once(':').expect("a claim");
     for state in states(&system.global(), 5, 31) {
@@ -83,7 +83,7 @@ fn holds_numerically(system: &Large, claim: &str, message: &str) {
         let size = 1.0 + here.energy.abs();
         if head.trim() == "density" {
             let Some((_, potential)) = message.split_once("with G = ") else {
-                // Where G has no closed form, its differential must be closed; one state is enough.
+                // If G has no closed form, its differential must be closed; one state is enough.
                 let curl = witness::curl(system, &here.q);
                 assert!(curl < 1e-5, "{message}: {curl}");
                 return;
@@ -134,7 +134,7 @@ fn what_contradicts_a_claim_of_a_shipped_model_is_refuted() {
     assert!(examples >= 10, "{examples} examples");
 }
 
-/// Every claim is refuted, with a point whose numbers are right.
+/// Asserts that every claim is refuted, with a state whose numbers are right.
 #[track_caller]
 fn all_refuted(model: &str, claims: &[&str]) {
     let mut system = shipped(model).sized::<32>();
@@ -150,7 +150,7 @@ fn the_density_of_the_sleigh_has_one_exponent() {
     all_refuted(
         "chaplygin_sleigh",
         &[
-            // The exponent of the thesis, where the divergence is counted three times (5.10).
+            // The exponent of the thesis, which counts the divergence three times (5.10).
             "density = 1/abs(dot(theta))^3",
             "density = 1/dot(theta)^2",
             "density = 1/sqrt(abs(dot(theta)))",

@@ -1,4 +1,4 @@
-//! Densities where forces depend on velocities, constraints are affine, or time enters.
+//! Densities of models with forces that depend on velocities, affine constraints, or dependence on time.
 
 use dalembert_tests::bodies::{BODY, EULER};
 use dalembert_tests::verdict::{Decided, Existence};
@@ -27,17 +27,17 @@ fn friction_contracts_and_what_does_no_work_on_d_does_not() {
     for harmless in [
         // Friction across the blade.
         "-c*(-sin(theta)*dot(x) + cos(theta)*dot(y))*(-sin(theta)*d(x) + cos(theta)*d(y))",
-        // Gyroscopic, and the force of a position.
+        // A gyroscopic force, and a force that depends on the position alone.
         "c*(dot(x)*d(theta) - dot(theta)*d(x))",
         "(x - y)*d(theta)",
-        // The gain of one friction is the loss of the other.
+        // The divergences of friction and of its opposite cancel.
         "-c*dot(theta)/m*d(theta) + c/I*(dot(x)*d(x) + dot(y)*d(y))",
     ] {
         assert_eq!(verified(&with(harmless)), Existence::Global, "{harmless}");
     }
 }
 
-/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`: the density `exp(2 k x/m)` on a line, none on a circle.
+/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`. On a line, not on a circle, it has the density `exp(2 k x/m)`.
 #[test]
 fn drag_quadratic_in_the_velocity_is_a_density_on_a_line() {
     let bead = |domain: &str, drag: &str| {
@@ -74,7 +74,7 @@ fn affine_constraints_add_the_divergence_of_their_drift() {
         verified(&affine("k", "x^2*y + sin(theta)")),
         Existence::None
     );
-    // A turning table: the drift is a motion of the plane.
+    // A rotating table: the drift is a rotation of the plane.
     assert_eq!(
         verified(&affine("0", "k*(x*cos(theta) + y*sin(theta))")),
         Existence::Global
@@ -97,7 +97,8 @@ fn balls_on_a_turning_table_keep_a_volume() {
     verified(&table("A*(b1^2 + b2^2) + C*b3^2"));
 }
 
-/// The volume of phase space is kept although metric and potential depend on time. This does not hold for constraints that turn with time.
+/// Without constraints the volume of phase space is kept although metric and potential depend on time. With constraints
+/// that depend on time a density may exist.
 #[test]
 fn time_enters_metric_and_constraints() {
     let free = "Free { coordinates { x; y; }

@@ -1,5 +1,6 @@
-//! `InvariantVolume` as it is emitted for claims: stored, kept by the emitted motion, equal to what the interpreter
-//! executes and to reference values; absent where nothing is claimed or known. To accept a difference, see `golden.rs`.
+//! Emitted implementations of `InvariantVolume`. They equal stored texts, the interpreted functions and reference
+//! values; the emitted motion keeps them. A model without a claim or without a closed form has none. `golden.rs` says
+//! how to accept changes of the stored texts.
 
 use dalembert::describe::Report;
 use dalembert::{Described, Fault, Instance, InvariantVolume, StateVector, System};
@@ -37,7 +38,7 @@ macro_rules! of_each_claimed {
     };
 }
 
-/// The implementation of `InvariantVolume` that a declaration gets, formatted; empty if there is none.
+/// The emitted implementation of `InvariantVolume` for a declaration, formatted; empty if there is none.
 fn emitted(source: &str) -> String {
     let tokens = dalembert_emit::try_expand(source.parse().expect("tokens")).expect(source);
     let mut file: syn::File = syn::parse2(tokens).expect("items");
@@ -124,8 +125,8 @@ fn vector<S: Described>(values: &[f64]) -> S::Vector {
     S::Vector::of(values)
 }
 
-/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms. `change` is added
-/// to the logarithm of the density.
+/// The largest divergence of the emitted motion with respect to the emitted volume, relative to its terms. `change` is
+/// added to the logarithm of the density.
 fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 {
     let system = S::with_defaults();
     let flow = Flow {
@@ -155,7 +156,7 @@ fn assert_kept<S: Described + InvariantVolume>() {
     let divergence = divergence_of::<S>(|_| 0.0);
     let name = S::DESCRIPTION.name;
     println!("{name} {divergence:.1e}");
-    // Two differences of eighth order, one in the other.
+    // The bound allows for the errors of two nested differences of eighth order.
     assert!(divergence < 1e-9, "{name}: {divergence:e}");
 }
 
@@ -203,7 +204,7 @@ fn emitted_volumes_are_what_the_interpreter_executes() {
     assert_interpreted::<HelicalCircle>();
 }
 
-/// Differences of `log_density` against those of the entries of `invariant_densities.json` of this system.
+/// Compares differences of `log_density` between points with those in `invariant_densities.json`. Returns their number.
 fn compare_densities<S: Described + InvariantVolume>() -> usize {
     let file = read("invariant_densities");
     let systems = file["systems"].as_array().expect("systems").iter();
@@ -256,7 +257,7 @@ fn a_density_on_unwrapped_angles_says_so() {
     assert!((turn + std::f64::consts::TAU / 3.0).abs() < 1e-14, "{turn}");
 }
 
-/// The particle with other claims.
+/// The particle with these claims.
 fn particle(claims: &str) -> String {
     format!(
         "Particle {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -276,7 +277,7 @@ fn what_is_open_or_about_other_things_emits_no_volume() {
     }
     let found = emitted(&particle("claims { density: exact; }"));
     assert!(found.contains("fn log_density"), "{found}");
-    // Stated alone, without a search.
+    // A density that is stated, without a search.
     let stated = emitted(&particle("claims { density = sqrt(1 + y^2); }"));
     assert!(stated.contains("fn log_density"), "{stated}");
 }
@@ -286,8 +287,8 @@ fn a_density_without_a_formula_is_an_integral() {
     const { assert!(RouthSphere::IS_INTEGRAL && CurvedDual::IS_INTEGRAL && !FallingDisk::IS_INTEGRAL) };
     let sphere = RouthSphere::default();
     let (m, i, j, r, l) = (sphere.m, sphere.I, sphere.J, sphere.R, sphere.l);
-    // Chaplygin's density of a body of revolution, r from the centre of mass to the point of contact:
-    // ln det m - 1/2 ln(I J + m (r, I r)).
+    // Logarithm of Chaplygin's density of a body of revolution, ln det m - 1/2 ln(I J + m (r, I r)), with r from the
+    // centre of mass to the point of contact.
     let expected = |q: &<RouthSphere as System>::Vector| {
         let (sin, cos) = q[3].sin_cos();
         let [across, along] = [r * sin, r * cos + l];
@@ -335,7 +336,7 @@ fn a_density_that_is_no_integral_either_is_said_to_emit_nothing() {
     );
 }
 
-/// The constraint mass matrix of two constraints, as it is reported.
+/// The reported constraint mass matrix of two constraints.
 #[derive(Default)]
 struct Mass([f64; 4]);
 

@@ -3,7 +3,7 @@
 use dalembert_codegen::claims::Verdict;
 use dalembert_tests::claim::verdict;
 
-/// The verdict in a word, with the remarks.
+/// The verdict as a word, then the remarks.
 fn found(declarations: &str, claim: &str) -> String {
     let finding = verdict(&format!(
         "Sample {{ {declarations} claims {{ {claim}; }} }}"
@@ -22,7 +22,7 @@ const MAGNETIC: &str = "coordinates { x; y; } parameters { B = 1; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 + B*x*dot(y);";
 const FALL: &str = "coordinates { x; y; } parameters { g = 9.81; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 - g*y;";
-/// A translation of `x` adds the rate of `exp(x)*sin(y)`, which is not a polynomial.
+/// A translation along `x` adds the total derivative of `exp(x)*sin(y)`, which is not a polynomial.
 const WAVE: &str = "coordinates { x; y; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 + exp(x)*cos(y)*dot(y) + exp(x)*sin(y)*dot(x);";
 
@@ -54,7 +54,7 @@ fn falls_are_the_same_at_every_height() {
     assert!(found.starts_with("proved"), "{found}");
 }
 
-/// Changes linear in the velocities that are not total derivatives, and quadratic ones.
+/// Changes of the Lagrangian that are linear in the velocities but no total derivatives, and quadratic changes.
 #[test]
 fn other_changes_of_the_lagrangian_are_refuted() {
     for (declarations, claim) in [

@@ -1,5 +1,5 @@
-//! Existence of invariant densities against `reference/verdicts_visible.json`, and against the criterion by other
-//! routes: in symbols, and as mean curvature by differences.
+//! Compares verdicts on invariant densities with `reference/verdicts_visible.json`, and with independent computations
+//! of the criterion: as expressions, and as mean curvature by finite differences.
 
 use dalembert_codegen::claims::exactness::decide_local_in;
 use dalembert_codegen::claims::{Obstruction, Potential, Term, geometry_at};
@@ -67,7 +67,7 @@ fn theta_on_the_frame_agrees() {
     }
 }
 
-/// The obstruction of a system at the point of the file, in its frame.
+/// The obstruction of a system at the point of the file, in the frame of the file.
 fn golden_obstruction(system: &Value, decided: &Decided) -> Option<Obstruction> {
     let Decided { model, problem, .. } = decided;
     let dependent = decided.golden_dependent(system);
@@ -104,7 +104,8 @@ fn obstructions_agree() {
     assert!(seen >= 4);
 }
 
-/// The pairs of all brackets in an obstruction by differences: the vector parts cancel, the demands do not.
+/// Brackets by finite differences satisfy the relation of the obstruction: the vector fields cancel, and the demands
+/// leave `delta`.
 #[test]
 fn obstructions_are_those_of_the_mean_curvature() {
     for (system, decided) in decided() {
@@ -140,7 +141,7 @@ fn obstructions_are_those_of_the_mean_curvature() {
     }
 }
 
-/// The terms of the file's densities, `det m` included.
+/// The logarithm of a density of the file, as an expression.
 fn listed_density(decided: &mut Decided, geometry: &Geometry, formula: &str) -> ExprId {
     let symbols: Vec<_> = decided
         .model
@@ -174,7 +175,7 @@ fn listed_density(decided: &mut Decided, geometry: &Geometry, formula: &str) -> 
             let logarithm = logarithm(pool, Rational::from(1), form);
             pool.add(z, logarithm)
         }
-        // The coefficient is that of the file's parameters, k = 1/3.
+        // The file has k = 1/3 in place of the parameter.
         "(-1/3)*phi" => {
             let phi = pool.variable(symbols[0]);
             let k = decided.symbol("k");
@@ -207,7 +208,7 @@ fn listed_densities_satisfy_the_criterion_in_symbols() {
                 system["name"]
             );
         }
-        // The product of a density and a nonconstant function is not a density.
+        // The square of a nonconstant density is not a density.
         if !pool.is_syntactic_zero(density) {
             let twice = pool.scale(&Rational::from(2), density);
             let residuals = geometry.residuals(pool, &dependent, twice);
@@ -224,7 +225,7 @@ fn densities_that_are_found_are_those_listed() {
         let Some(formula) = system["density"]["g"].as_str() else {
             continue;
         };
-        // The density of the helical circle is many-valued, with a coefficient that is a parameter.
+        // The density of the helical circle is many-valued, and its coefficient is a parameter.
         let Some((found, certified)) = decided.exactness().density.clone() else {
             assert_eq!(system["name"], "helical_circle");
             continue;
@@ -243,7 +244,7 @@ fn densities_that_are_found_are_those_listed() {
                 system["name"]
             );
         }
-        // They could differ by a function that D does not see, but differ by constants at most.
+        // Densities are unique up to functions that are constant along D. These two differ by a constant.
         let difference = pool.sub(found, listed);
         for coordinate in &decided.model.coordinates {
             let slope = decided.model.pool.diff(difference, coordinate.q);

@@ -1,6 +1,6 @@
-//! Effect of impacts on an invariant volume: the remarks of a build on each law, and the hybrid Jacobian by differences of
-//! the emitted impact map on D*. The Jacobian is the determinant in a fibre times the ratio of the fluxes through the
-//! surface.
+//! Effect of impacts on an invariant volume: the remarks on each law, and the hybrid Jacobian by finite differences of
+//! the emitted impact map on D*. The Jacobian is the determinant of the map in a fibre times the ratio of the fluxes
+//! through the surface.
 
 use dalembert::{Described, Impacting, StateVector, System};
 use dalembert_models::ChaplyginSleigh;
@@ -10,7 +10,7 @@ use dalembert_tests::sampling::Random;
 use dalembert_tests::witness;
 
 dalembert::model! {
-    /// A rolling disk between walls of every law.
+    /// A rolling disk between walls with every law that is an impulse.
     pub WalledDisk {
         coordinates { x; y; theta: angle; phi: angle; }
         parameters { m > 0 = 7/5; R > 0 = 3/8; I > 0 = 2/9; J > 0 = 1/7; e in [0, 1] = 0.7; }
@@ -45,7 +45,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A ball on a turning table between walls of several laws: affine constraints.
+    /// A ball on a rotating table between walls with several laws: affine constraints.
     pub WalledTable {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { r > 0 = 1; k > 0 = 2/3; Om = 1/2; }
@@ -70,7 +70,7 @@ dalembert::model! {
     }
 }
 
-/// Positions and velocities.
+/// Positions or velocities.
 type Four = <WalledDisk as System>::Vector;
 type Five = <WalledTable as System>::Vector;
 
@@ -119,7 +119,8 @@ fn what_each_law_does_to_the_volume_is_said() {
     );
 }
 
-/// The hybrid Jacobian at a position, the velocity on D being a function of `u`; with it `rho`, `G-` and `G+`.
+/// The hybrid Jacobian at a position, `rho`, and the gap rates `[G-, G+]`. `velocity` maps independent velocities `u`
+/// to velocities on D, whose components with the indices `free` are `u`.
 fn jacobian<S: Impacting>(
     system: &S,
     surface: usize,
@@ -179,7 +180,7 @@ fn determinant(mut rows: Vec<Vec<f64>>) -> f64 {
     value
 }
 
-/// Maps are linear or affine in the velocities: differences are exact up to rounding.
+/// Impact maps are affine in the velocities, so that differences are exact up to rounding errors.
 const EXACT: f64 = 1e-9;
 
 #[test]
@@ -201,7 +202,7 @@ fn the_jacobian_of_each_law_is_what_is_said_of_it() {
         };
         let u = [random.within(0.2, 2.0), random.within(0.2, 2.0)];
         for surface in 0..9 {
-            // A position on the wall; only its distance depends on x.
+            // A position on the wall, whose gap is linear in x.
             let mut q = q;
             q[0] = (surface + 1) as f64 - if surface < 8 { disk.R * phi.cos() } else { 0.0 };
             let (value, rho, rates) = jacobian(&disk, surface, &q, &velocity, &[2, 3], &u);
@@ -275,7 +276,7 @@ fn the_density_of_the_sleigh_does_not_survive_an_elastic_impact() {
     for (surface, remark) in ["front_tip", "back_tip"].iter().zip(&found.remarks) {
         let start = format!("an impact at {surface} (elastic) does not keep it: ");
         let numbers = remark.strip_prefix(&start).expect(remark);
-        // As a message of a claim about a jump; the Jacobian of an elastic impact is 1.
+        // The remark becomes the refutation of a claim under the surface. The Jacobian of an elastic impact is 1.
         let (values, place) = numbers.split_once(" at ").expect(remark);
         let values = values
             .replace(" times the Jacobian", "")

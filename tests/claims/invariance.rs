@@ -1,12 +1,12 @@
-//! Independence of a verdict on densities from the forms that annihilate a distribution, the coordinates and their order,
-//! and the seed of the random points.
+//! Verdicts on densities do not depend on the choice of constraint forms, on the coordinates and their order, or on the
+//! seed of the random points.
 
 use dalembert_codegen::claims::{Geometry, geometry_at};
 use dalembert_expr::SymbolId;
 use dalembert_tests::verdict::{Decided, Existence};
 use dalembert_tests::visible::{Scheme, declaration, visible_system, visible_systems};
 
-/// Every system of the file, as it stands there, with its verdict.
+/// Every system of the file, unchanged, with its verdict.
 fn systems() -> Vec<(Scheme, Decided)> {
     visible_systems()
         .iter()
@@ -29,7 +29,7 @@ fn assert_same(decided: &Decided, other: &Decided, what: &str) {
     assert_eq!(local.growth, known.growth, "{what}");
 }
 
-/// A function of the coordinates between 2 and 4 or above 2.
+/// A function of the coordinates that is at least 2.
 fn positive(scheme: &Scheme) -> String {
     let terms: Vec<String> = scheme
         .coordinates
@@ -42,7 +42,7 @@ fn positive(scheme: &Scheme) -> String {
     format!("(2 + ({})/8)", terms.join(" + "))
 }
 
-/// The same distribution by other forms: `F eta` with `F` regular everywhere, and `det F`.
+/// The same distribution with the forms `F eta`, where the matrix `F` is regular everywhere, and the formula `det F`.
 fn rescaled(scheme: &Scheme) -> (Scheme, String) {
     let f = positive(scheme);
     let mut other = scheme.clone();
@@ -72,7 +72,7 @@ fn at(decided: &Decided, attempt: usize, dependent: &[usize]) -> (Vec<(SymbolId,
     (values, geometry)
 }
 
-/// Compares verdicts and volumes. True if the volumes could be compared.
+/// Compares verdicts and volumes. Returns true if volumes were found and compared.
 fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
     let (other, factor) = rescaled(scheme);
     let source = other.declaration();
@@ -81,7 +81,7 @@ fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
     let (local, known) = (&other.exactness().local, &decided.exactness().local);
     assert_eq!(local.exists, known.exists, "{source}");
     assert_eq!(local.growth, known.growth, "{source}");
-    // A density of unknown form is not sought on leaves.
+    // On leaves of an integrable distribution the search finds no density of unknown form.
     if other.potential().is_some() || known.rank == decided.model.coordinates.len() {
         assert_eq!(other.existence(), decided.existence(), "{source}");
     }
@@ -137,7 +137,7 @@ fn other_forms_of_the_same_distribution_have_the_same_verdict_and_volume() {
     assert_eq!(compared.count(), 15);
 }
 
-/// `q_i = Q_i + f(Q_(i+1))`, a map of Q onto itself with inverse; intervals stay.
+/// The system in coordinates `Q` with `q_i = Q_i + f(Q_(i+1))`. The map is invertible. Coordinates on intervals stay.
 fn bent(scheme: &Scheme) -> Scheme {
     let mut other = scheme.clone();
     let names: Vec<_> = scheme
@@ -198,7 +198,7 @@ fn the_order_of_coordinates_and_constraints_does_not_matter() {
 fn assert_same_for_a_thousand_seeds(name: &str, expected: Existence) {
     let source = declaration(&visible_system(name));
     for seed in 0..1000 {
-        // Seeds of all sizes: those of builds are hashes.
+        // Small and large seeds: the seeds of builds are hashes.
         let seed = if seed % 2 == 0 {
             seed
         } else {

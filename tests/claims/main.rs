@@ -1,14 +1,14 @@
-//! Claims that are proved, refuted or left open, against values and routes that do not share the decision's code.
+//! Verdicts on claims, compared with values and computations that share no code with the generator's decision.
 //!
 //! | file | subject |
 //! |---|---|
 //! | `golden_verdicts.rs`, `reference.rs` | verdicts, frames, obstructions, densities of the reference files |
 //! | `gauge.rs` | symmetries of the equations that change the Lagrangian |
 //! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence on many systems |
-//! | `invariance.rs`, `atoms.rs` | independence of verdicts from the way of writing; functions and their relations |
-//! | `visible.rs`, `contradicted.rs`, `impacts.rs` | claims of models, true ones and false ones; impacts |
+//! | `invariance.rs`, `atoms.rs` | independence of verdicts from the notation; functions and their relations |
+//! | `visible.rs`, `contradicted.rs`, `impacts.rs` | true and false claims of models; impacts |
 //! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs` | nothing is proved by accident |
-//! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by the motion |
+//! | `volumes.rs`, `emitted_volumes.rs`, `singular_volumes.rs` | densities that are found, emitted, kept by motions |
 
 mod atoms;
 mod conditions;

@@ -1,4 +1,4 @@
-//! Densities that depend on velocities against `reference/verdicts_visible.json`.
+//! Densities that depend on velocities, compared with `reference/verdicts_visible.json`.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use dalembert_tests::reference::read;
 use dalembert_tests::visible::declaration;
 use serde_json::Value;
 
-/// `|l|^(s) * det(m)^(k)` as `(l, s, k)`.
+/// Reads `|l|^(s) * det(m)^(k)` as `(l, s, k)`.
 fn parts(formula: &str) -> (String, f64, f64) {
     let exponent = |text: &str| {
         let text = text.trim_start_matches('^').trim_matches(['(', ')']);
@@ -31,13 +31,13 @@ fn parts(formula: &str) -> (String, f64, f64) {
     (factor.to_owned(), exponent(power), mass)
 }
 
-/// Values of all symbols, none of them near another.
+/// Values of all symbols, spread between 0.35 and 1.28.
 fn real_point(symbols: usize, attempt: usize) -> RealPoint {
     let value = |i: usize| 0.35 + ((i * 7 + attempt * 5) % 11) as f64 * 0.093;
     RealPoint::new((0..symbols).map(value).collect())
 }
 
-/// A model with its exactness.
+/// A model with the verdict on its density.
 fn decided(source: &str) -> (Model, Derivation, Problem, Exactness) {
     let spec = spec::parse(source.parse().expect("tokens")).expect(source);
     let mut model = model::check(&spec).expect(source);
@@ -82,7 +82,7 @@ fn check(system: &Value) {
     assert_eq!(found.exponent.to_f64(), exponent, "{name}");
     assert_eq!(found.mass_exponent.to_f64(), mass_exponent, "{name}");
     assert!(found.certified.error < 1e-60);
-    // On D the factors are multiples of each other.
+    // On D the found and the listed factor have a constant ratio.
     let dynamics = Dynamics::of(&mut model, &derivation);
     let ratio = |attempt| {
         let mut point = real_point(model.pool.symbol_count(), attempt);
@@ -129,7 +129,7 @@ fn systems_with_a_density_of_the_configuration_are_not_searched() {
     }
 }
 
-/// `blade` is the contact of a wheel at the origin of the body, `x1`, `y1` that of a trailer's axle.
+/// A body with a blade at its origin, and a trailer with its axle at `(x1, y1)`.
 fn trailer(inertia: &str) -> String {
     format!(
         "Trailer {{
@@ -154,7 +154,7 @@ fn the_angle_of_a_trailer_is_the_factor() {
     assert_eq!(found(&trailer(massive)), expected);
 }
 
-/// The flat metric on Engel's distribution; the factor is `(1 + y^2) xdot - z ydot` on D.
+/// Engel's distribution with the flat metric. On D the factor is `(1 + y^2) xdot - z ydot`.
 #[test]
 fn coefficients_that_depend_on_coordinates_are_found() {
     let engel = "Engel {
@@ -166,7 +166,7 @@ fn coefficients_that_depend_on_coordinates_are_found() {
     assert_eq!(found(engel).as_deref(), Some(expected));
 }
 
-/// With `dz = s dx`, `s` linear in x and y, the factor is the rate of `s`.
+/// For `dz = s dx` with `s` linear in x and y, the factor is the rate of `s`.
 #[test]
 fn coefficients_that_depend_on_parameters_are_found() {
     let particle = "Particle {
@@ -179,7 +179,7 @@ fn coefficients_that_depend_on_parameters_are_found() {
     assert_eq!(found(particle).as_deref(), Some(expected));
 }
 
-/// A wheeled robot with its centre of mass off the axle: the density of the configuration is many-valued in the angles
+/// A wheeled robot with its centre of mass off the axle. Its density of the configuration is many-valued in the angles
 /// of the wheels.
 #[test]
 fn a_density_on_the_covering_space_does_not_end_the_search() {

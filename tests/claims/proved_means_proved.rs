@@ -1,10 +1,10 @@
-//! False theorems that were once proved, and related ones: products of absolute values, exceptional parameters, densities
-//! that are singular far out, small periods, conditions of surfaces.
+//! False claims that were once proved, and related ones: products of absolute values, exceptional parameters, densities
+//! that are singular far from the origin, small periods, conditions of surfaces.
 
 use dalembert_codegen::claims::{Finding, Verdict};
 use dalembert_tests::claim::verdict;
 
-/// The finding on a claim of a declaration with a name.
+/// The finding on a claim of a declaration with this name.
 fn finding(name: &str, declarations: &str, claim: &str) -> Finding {
     verdict(&format!(
         "{name} {{ {declarations} claims {{ {claim}; }} }}"
@@ -93,7 +93,7 @@ fn a_default_that_is_an_exception_is_no_proof() {
     );
 }
 
-/// Each has a leaf on which the return map keeps no volume: `x' = f(x)` along the circle of `y`, at a zero of `f`.
+/// At a zero of `f` the leaf of `x' = f(x)` is a circle in `y`, around which the return map keeps no volume.
 #[test]
 fn densities_that_are_singular_far_out_are_not_proved() {
     for f in [
@@ -117,7 +117,7 @@ fn densities_that_are_singular_far_out_are_not_proved() {
     not_refuted(regular, "density: exact");
 }
 
-/// The growth is minus the integral of `f'` over the circle.
+/// The logarithm of the growth is minus the integral of `f'` over the circle.
 #[test]
 fn closed_leaves_refute_with_their_multipliers() {
     let tau = std::f64::consts::TAU;
@@ -184,7 +184,7 @@ fn roots_that_do_not_vanish_far_out_are_certified() {
     );
 }
 
-/// Forces far below the rounding of the terms they are added to.
+/// Forces far below the rounding errors of the other terms.
 #[test]
 fn small_forces_are_seen_at_a_point_of_47_digits() {
     for size in ["1e-12", "1e-18", "1e-25"] {
@@ -201,7 +201,7 @@ fn small_forces_are_seen_at_a_point_of_47_digits() {
     }
 }
 
-/// Losses of energy in impacts far below rounding, on surfaces whose points are no decimals.
+/// Losses of energy far below rounding errors, at surfaces whose points have irrational coordinates.
 #[test]
 fn small_changes_in_impacts_are_seen_with_their_digits() {
     let energy = |wall: &str| {
@@ -231,7 +231,7 @@ fn small_changes_in_impacts_are_seen_with_their_digits() {
     }
 }
 
-/// The value is that of the reference: 40 digits, computed elsewhere.
+/// Ratios of obstructions show that small ones keep their digits.
 #[test]
 fn obstructions_are_printed_with_the_digits_they_have() {
     let suslov = |i13: &str| {
@@ -304,7 +304,8 @@ fn periods_count_where_an_enclosure_excludes_0() {
     not_proved(&narrow, "density: exact");
 }
 
-/// A potential that is infinite on the way around a circle: no motion makes the turn, and the density that grows along it is the same one.
+/// The potential is infinite at a point of the circle, so that no motion makes the turn. A density that grows along the
+/// turn is then single-valued.
 #[test]
 fn circles_that_no_motion_can_go_around_prove_nothing() {
     let charged = |potential: &str| {
@@ -326,7 +327,7 @@ fn circles_that_no_motion_can_go_around_prove_nothing() {
     assert!(is_proved, "{}", found.note());
 }
 
-/// Drags whose density may grow along a loop around a hole of Q, or around an end of its domain.
+/// Drags whose density may grow along a loop around a hole of Q.
 #[test]
 fn loops_around_what_is_left_out_are_not_forgotten() {
     for slope in [
@@ -341,7 +342,7 @@ fn loops_around_what_is_left_out_are_not_forgotten() {
         not_proved(&declared, "density: exact");
         not_refuted(&declared, "density: locally_exact");
     }
-    // A step function without absolute values, 0 between its steps and odd: a reflection leads from one part of Q to another.
+    // The odd step function without absolute values, 0 between its steps. A reflection maps one part of Q to another.
     let steps = "coordinates { x; z; th: angle; s; }
         lagrangian = (dot(x)^2 + dot(z)^2 + dot(th)^2 + dot(s)^2)/2;
         let step(u) = atan(u) + atan(1/u);
@@ -385,7 +386,7 @@ fn parts_of_a_surface_that_do_not_count_refute_nothing() {
     not_proved(declared, "not conserved under v: (x - 3)*dot(x)");
 }
 
-/// Coordinates, each in its own well, whose forces have a root and a logarithm; `energy` is conserved.
+/// Coordinates in separate potentials with roots and logarithms.
 fn wells(count: usize) -> String {
     format!(
         "coordinates {{ x[{count}]; }}
@@ -393,7 +394,7 @@ fn wells(count: usize) -> String {
     )
 }
 
-/// Bodies in the plane that attract each other, and their moment.
+/// Bodies in the plane that attract each other, and their angular momentum.
 const BODIES: &str = "const N = 5;
     coordinates { x[N]; y[N]; }
     parameters { m[N] > 0 = 1; }
@@ -401,7 +402,8 @@ const BODIES: &str = "const N = 5;
         + sum(i in 1..=N - 1: sum(j in i + 1..=N: m[i]*m[j]/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2)));
     let moment = sum(i in 1..=N: m[i]*(x[i]*dot(y[i]) - y[i]*dot(x[i])));";
 
-/// Forces of any degree in the velocities. The divergence of forces with a density is linear; stated densities balance any degree.
+/// Forces of any degree in the velocities. A density of the configuration needs a divergence that is linear in them;
+/// stated densities balance any degree.
 #[test]
 fn forces_of_higher_degree_are_decided() {
     let pushed = |default: &str, forces: &str| {
@@ -440,10 +442,10 @@ fn forces_of_higher_degree_are_decided() {
         let is_refuted = matches!(found.verdict, Verdict::Refuted(_));
         assert!(is_refuted, "{claim} of {forces}: {}", found.note());
     }
-    // Where the force vanishes at the default there is a density.
+    // If the force vanishes at the default, there is a density.
     not_proved(&pushed("0", cubic), "density: none");
     not_refuted(&pushed("0", cubic), "density: exact");
-    // On the wheel's path the cube of the velocity is that of the independent one.
+    // On D the velocities are equal, and the cubic forces cancel.
     let wheel = "coordinates { x; th: angle; } parameters { c > 0 = 1; } lagrangian = (dot(x)^2 + dot(th)^2)/2;
         constraints { roll: dot(x) = dot(th); } forces { drag: -c*dot(x)^3*d(th) + c*dot(th)^3*d(x); }";
     let found = finding("Sample", wheel, "density: none");
@@ -455,7 +457,7 @@ fn forces_of_higher_degree_are_decided() {
 fn many_roots_and_logarithms_are_no_obstacle() {
     let proved = |declared: &str, claim: &str| {
         let found = finding("Sample", declared, claim);
-        // As many roots as allowed: a proof with a large chance of error is not a proof.
+        // A proof with a large probability of error is not a proof.
         let is_proved = matches!(&found.verdict, Verdict::Proved(proof) if proof.error < 1e-12);
         assert!(is_proved, "{claim} of {declared}: {}", found.note());
     };

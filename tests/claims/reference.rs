@@ -1,5 +1,5 @@
-//! Shipped models against `reference/invariant_densities.json`: theta on D, existence, differences of the density's
-//! logarithm, and the effect of elastic impacts off D.
+//! Compares shipped models with `reference/invariant_densities.json`: theta on D, existence, differences of the
+//! logarithm of the density, and the effect of elastic impacts off D.
 
 use dalembert_cli::Exit;
 use dalembert_codegen::claims::{Equation, find_conditions};
@@ -37,7 +37,7 @@ fn decided(entry: &Value) -> Decided {
     Decided::of(&model.expect("a model").source)
 }
 
-/// Values of the parameters of the model.
+/// Values of the parameters of the model in an entry.
 fn parameters(entry: &Value, decided: &Decided) -> Vec<(SymbolId, f64)> {
     let values = entry["parameters"].as_object().expect("values");
     let parameters = decided.model.parameters.iter();
@@ -53,7 +53,7 @@ fn theta_on_d_agrees() {
         for point in entry["points"].as_array().expect("points") {
             let expected = numbers(&point["theta_on_D"]);
             let q = numbers(&point["q"]);
-            // A basis of D by unit independent velocities: those of constraints solved for the others.
+            // Vectors of the basis of D have one unit independent velocity. The constraints give the dependent ones.
             let dependent: Vec<_> = match name(&entry) {
                 "chaplygin_sleigh" | "holonomic_bead_on_ellipses" => vec![1],
                 _ => vec![0, 1],
@@ -85,7 +85,7 @@ fn existence_agrees() {
         if exists == *expected {
             continue;
         }
-        // Only with these values of the parameters.
+        // The density exists only at these values of the parameters.
         assert_eq!(*expected, Value::Bool(true), "{}", name(&entry));
         let exactness = decided.exactness.clone().expect("a verdict");
         let scan = find_conditions(&mut decided.model, &decided.problem, &exactness, 1);
@@ -144,7 +144,7 @@ fn densities_differ_between_points_as_listed() {
     assert!(seen >= 1);
 }
 
-/// Output of `eval` for a state off D.
+/// Output of `eval` for the state of an entry with these momenta, which may be off D.
 fn eval(entry: &Value, momenta: &[f64]) -> Value {
     let values = entry["parameters"].as_object().expect("values");
     let settings: Vec<String> = values
@@ -201,8 +201,9 @@ fn elastic_impacts_off_d_keep_energy_and_constraint_momenta() {
     }
 }
 
-/// The flux of `omega^n` through the surface is multiplied by the ratio of the gap rates and the determinant of the map
-/// of momenta, which is linear, so that differences are exact; and by `(2 dh.pi_D - dh)/dh` in closed form.
+/// An impact multiplies the flux of `omega^n` through the surface by the ratio of the gap rates and the determinant of
+/// the map of momenta. The map is linear, so that differences are exact. The factor is `(2 dh.pi_D - dh)/dh` in closed
+/// form.
 #[test]
 fn elastic_impacts_off_d_change_the_liouville_volume_as_listed() {
     for entry in entries("global_elastic_impacts") {

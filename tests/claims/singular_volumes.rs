@@ -1,5 +1,5 @@
-//! Densities that depend on velocities, `f mu_C` with `f = (det m)^k |l|^s`: kept by the motion away from `l = 0`, by
-//! differences.
+//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. Finite differences show that the
+//! motion keeps them away from `l = 0`.
 
 use dalembert::Described;
 use dalembert_codegen::claims::{MomentumDensity, Problem, find_momentum_density};
@@ -11,7 +11,7 @@ use dalembert_tests::sampling::Random;
 use dalembert_tests::visible::declaration;
 use dalembert_tests::volume::{WithVolume, divergence};
 
-/// A system without a density of the configuration alone, with one that depends on velocities.
+/// A system without a density of the configuration, with its density that depends on velocities.
 struct Singular {
     system: WithVolume,
     density: MomentumDensity,
@@ -56,7 +56,7 @@ impl Singular {
         self.system.model.pool.eval(&[self.density.factor], &value)[0]
     }
 
-    /// `ln f` with exponents multiplied by these, and the logarithm of `mu_C`.
+    /// `ln f` with exponents multiplied by these factors, plus the logarithm of `mu_C`.
     fn log_volume(&self, t: f64, at: &[f64], [mass, power]: [f64; 2]) -> f64 {
         let q = &at[..self.system.model.coordinates.len()];
         let [_, mass_determinant] = self.system.determinants(t, q);

@@ -1,5 +1,5 @@
-//! Invalid proofs of claims about surfaces, densities and whole models: from hidden parts of surfaces, relations between
-//! logarithms, absolute values, no states. See also `soundness.rs`.
+//! Claims about surfaces, densities and whole models that invite invalid proofs: hidden parts of surfaces, relations
+//! between logarithms, absolute values, models without states. See also `soundness.rs`.
 
 use dalembert::Described;
 use dalembert_tests::claim::Outcome::{Proved, Refuted, Undecided};
@@ -83,7 +83,7 @@ fn impacts_happen_where_the_surface_counts() {
         NOWHERE,
     );
     at("x >= -1000", "not conserved under w: dot(x)", Proved);
-    // No such place exists.
+    // This surface has no points.
     at(
         "2 + sin(x)*cos(y) >= 0",
         "not conserved under w: dot(x)",
@@ -94,7 +94,7 @@ fn impacts_happen_where_the_surface_counts() {
         "conserved under w: dot(x)",
         NOWHERE,
     );
-    // A jump only where the velocity has the sign of one that approaches.
+    // Before an impact the velocity has the sign of an approach.
     at(
         "x >= 0",
         "conserved under w: abs(dot(x)) + dot(x)",
@@ -136,7 +136,7 @@ fn logarithms_that_are_related_refute_no_density() {
 fn densities_depend_on_what_roots_and_absolute_values_are_in_real_numbers() {
     let blade = "constraints { c: d(z) - y*d(x) = 0; }";
     let friction = |force: &str| particle(&format!("{blade} forces {{ f: {force}; }}"));
-    // Without friction for x > 0: a density there, and none elsewhere.
+    // There is no friction for x > 0: a density exists there, and none elsewhere.
     let half = friction("(abs(x) - x)*dot(y)*d(y)");
     check(&half, "density: exact", Refuted("at x = -"));
     check(&half, "density: locally_exact", Refuted("at x = -"));
@@ -176,7 +176,7 @@ fn of_a_model_without_states_nothing_is_proved() {
             check(&plane(lagrangian), claim, none);
         }
     }
-    // Ten units away there are states.
+    // There are states for x >= 5.
     let far = plane("(dot(x)^2 + dot(y)^2)/2 - sqrt(x - 5)");
     check(&far, "conserved: energy", Proved);
     check(&far, "symmetry: partial(y)", Proved);
@@ -201,7 +201,8 @@ fn kepler_keeps_what_it_keeps() {
 }
 
 dalembert::model! {
-    /// A particle in a vortex. Its density grows along loops around the axis, which are not examined: `assume` accepts the claim.
+    /// A particle in a vortex. Its density grows along loops around the axis, which the generator does not examine;
+    /// `assume` accepts the claim.
     pub Assumed {
         coordinates { x; y; z; }
         parameters { c > 0 = 1/2; }
@@ -230,7 +231,7 @@ fn what_is_assumed_is_said_to_be() {
     assert_eq!((refuted.word(), refuted.is_accepted()), ("refuted", false));
 }
 
-/// On the surface these are 0, up to the rounding of its position.
+/// On the surface these values are 0 up to the rounding errors of the position.
 #[test]
 fn the_rounding_of_a_position_on_a_surface_is_no_witness() {
     let declaration = |claim: &str| {

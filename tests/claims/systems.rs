@@ -40,7 +40,7 @@ fn suslov_has_a_density_iff_the_axis_is_principal() {
     );
 }
 
-/// Veselova's constraint, of fixed axis in space, keeps a volume for every inertia.
+/// Veselova's constraint, with a fixed axis in space, keeps a volume for every inertia.
 #[test]
 fn constraints_of_fixed_axis_in_space_keep_a_volume() {
     let parameters = "A > 0 = 3; B > 0 = 4; C > 0 = 5; D = 1/2; E = 1/3;";
@@ -60,7 +60,7 @@ fn balls_on_a_plane() {
     let symmetric = "A*(b1^2 + b2^2) + C*b3^2";
     let round = "A*(b1^2 + b2^2 + b3^2)";
     let rubber = "rubber: s3 = 0;";
-    // Chaplygin's sphere, the homogeneous ball, and both without spinning.
+    // Chaplygin's sphere and the homogeneous ball, each with and without spinning.
     assert_eq!(verified(&ball("0, 0, 0", triaxial, "")), Existence::Global);
     assert_eq!(verified(&ball("0, 0, 0", round, "")), Existence::Global);
     assert_eq!(
@@ -68,13 +68,14 @@ fn balls_on_a_plane() {
         Existence::Global
     );
     assert_eq!(verified(&ball("0, 0, 0", round, rubber)), Existence::Global);
-    // Routh's sphere, its centre of mass on the axis of symmetry; off the axis there is no density.
+    // Routh's sphere has its centre of mass on the axis of symmetry. Off the axis there is no density.
     assert_eq!(verified(&ball("0, 0, l", symmetric, "")), Existence::Global);
     assert_eq!(verified(&ball("l, 0, 0", symmetric, "")), Existence::None);
     assert_eq!(verified(&ball("l, 0, k", triaxial, "")), Existence::None);
 }
 
-/// Routh's sphere: `exp(G) = det m/sqrt(A C + m (r, I r))`, `r` from the centre of mass to the contact (Chaplygin).
+/// Routh's sphere has the density `exp(G) = det m/sqrt(A C + m (r, I r))` with `r` from the centre of mass to the
+/// contact (Chaplygin).
 #[test]
 fn the_density_of_routh_s_sphere_is_the_known_one() {
     let decided = Decided::of(&ball("0, 0, l", "A*(b1^2 + b2^2) + C*b3^2", ""));
@@ -125,7 +126,7 @@ fn particle(f: &str) -> String {
     )
 }
 
-/// `theta = -f f_y dy/(1 + f^2) - ..` is closed for `f(y)`, Martinet's among them, and for holonomic constraints.
+/// `theta = -f f_y dy/(1 + f^2) - ..` is closed for `f(y)`, including Martinet's form, and for holonomic constraints.
 #[test]
 fn particles_with_one_form() {
     for f in [
@@ -164,7 +165,8 @@ fn contact_forms_on_five_dimensions() {
     assert_eq!(verified(&contact(squeezed, gauge)), Existence::None);
 }
 
-/// Left-invariant metrics on the plane's motions; constraints that are invariant from the right keep a volume.
+/// Left-invariant metrics on the group of motions of the plane. Right-invariant constraints keep a volume, these
+/// left-invariant ones do not.
 #[test]
 fn motions_of_the_plane() {
     let motions = |constraint: &str| {
@@ -189,7 +191,7 @@ fn motions_of_the_plane() {
     }
 }
 
-/// D is integrable, so that a density is sought on every leaf.
+/// D is integrable, so that the density is sought on every leaf.
 #[test]
 fn integrable_constraints_have_a_density() {
     let surfaces = "Surfaces { coordinates { x; y; z; }
@@ -205,7 +207,8 @@ fn integrable_constraints_have_a_density() {
     assert_eq!(verified(sphere), Existence::Global);
 }
 
-/// Two holonomic constraints, mixed by a matrix whose determinant is not part of the declaration: `G = ln det m - ln det F`.
+/// Two combinations of holonomic constraints, by a matrix `F` whose determinant is not part of the declaration. The
+/// density is `G = ln det m - ln det F`.
 #[test]
 fn mixed_forms_need_the_determinant_of_their_dependent_columns() {
     let pair = "Pair { coordinates { x; y; z; w; }

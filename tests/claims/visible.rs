@@ -1,5 +1,5 @@
-//! The models of `dalembert_tests::visible_models` are the systems of `reference/verdicts_visible.json`: metric, forms and
-//! potential agree at the golden point. Contradictions of their claims are refuted.
+//! The models of `dalembert_tests::visible_models` are the systems of `reference/verdicts_visible.json`: metric, forms
+//! and potential agree at the point of the file. Contradictions of their claims are refuted.
 
 use dalembert_tests::claim::{Declaration, refusal};
 use dalembert_tests::formula::{Scope, value};
@@ -9,7 +9,7 @@ use dalembert_tests::visible_models::systems;
 use dalembert_tests::witness;
 use serde_json::Value;
 
-/// A formula of the file as claims write it: `**` is a power, `x_dot` a velocity.
+/// A formula of the file in the notation of claims. The file writes `**` for powers and `x_dot` for velocities.
 fn translated(formula: &Value, coordinates: &[&str]) -> String {
     let mut text = formula.as_str().expect("a formula").replace("**", "^");
     for name in coordinates {
@@ -18,7 +18,7 @@ fn translated(formula: &Value, coordinates: &[&str]) -> String {
     text
 }
 
-/// A system of the file at its golden point.
+/// A system of the file with the point at which the file has values.
 struct Golden<'g> {
     system: &'g Value,
     coordinates: Vec<&'g str>,
@@ -203,7 +203,7 @@ fn energy_is_kept_by_the_emitted_motion_and_densities_balance_its_divergence() {
             let Some(density) = claim.strip_prefix("density =") else {
                 continue;
             };
-            // Definitions of a model are not known outside of it.
+            // These densities use definitions of the model, which are not known outside it.
             if density.contains('w') || density.contains("mass") {
                 continue;
             }

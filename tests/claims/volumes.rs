@@ -1,5 +1,5 @@
-//! Invariant volumes `exp(G) mu_C`: the densities that are found and lowered, against listed ones and against the
-//! divergence of the motion by differences.
+//! Invariant volumes `exp(G) mu_C`. Lowered densities are compared with listed ones and with the divergence of the
+//! motion by finite differences.
 
 use dalembert::{Described, Instance};
 use dalembert_codegen::claims::{Potential, Term, Volume};
@@ -13,7 +13,7 @@ use dalembert_tests::visible::declaration;
 use dalembert_tests::volume::{WithVolume, determinant, difference};
 use serde_json::Value;
 
-/// Every system of the verdicts, with its declaration.
+/// Every system of `verdicts_visible.json`, with its declaration.
 fn systems() -> Vec<(Value, String)> {
     let file = read("verdicts_visible");
     let systems = file["systems"].as_array().expect("systems");
@@ -86,7 +86,7 @@ fn densities_are_the_listed_ones() {
             "{name}"
         );
         let mut random = Random::new(11);
-        // Densities may differ by a factor that depends on quantities D does not distinguish.
+        // Densities may differ by a factor that is constant along D.
         let is_unique = interpreted.exactness.local.rank == interpreted.model.coordinates.len();
         for _ in 0..5 {
             let q = interpreted.configuration(&mut random);
@@ -134,7 +134,7 @@ fn own_divergence(system: &WithVolume, states: usize) -> f64 {
     divergence(system, states, |t, at| system.log_volume(t, at))
 }
 
-/// Divergence that differences of eighth order leave of 0.
+/// Bound on the error of a divergence by differences of eighth order.
 const KEPT: f64 = 1e-10;
 
 #[test]
@@ -154,12 +154,12 @@ fn volumes_are_kept() {
     assert!(kept >= 13, "{kept}");
 }
 
-/// Models as they are shipped, and systems with affine constraints, time and forces.
+/// Shipped models, and systems with affine constraints, dependence on time and forces.
 #[test]
 fn volumes_of_models_are_kept() {
     let mut kept = Vec::new();
     for description in every_system().iter().map(Instance::description) {
-        // Long chains show nothing beyond short ones.
+        // Long chains test nothing that short ones do not.
         if description.coordinates.len() > 6 {
             continue;
         }
@@ -184,7 +184,7 @@ fn volumes_of_models_are_kept() {
     }
 }
 
-/// A particle whose mass grows, on a plane that is lifted: everything depends on time.
+/// A particle with growing mass. Metric and constraint depend on time.
 const GROWING: &str = "Growing {
     coordinates { x; y; z; }
     parameters { a = 1/3; }
@@ -202,7 +202,7 @@ fn volumes_that_depend_on_time_are_kept() {
     assert!(frozen > 1e-3, "{frozen:e}");
 }
 
-/// The thesis has a factor n at `theta`; densities with it are not kept.
+/// The thesis has a factor n before `theta`. The motion does not keep densities with this factor.
 #[test]
 fn a_factor_n_is_seen() {
     let mut seen = 0;
@@ -241,7 +241,7 @@ fn mixed_constraints_have_the_same_volume() {
     let without_minor =
         |t: f64, at: &[f64]| mixed.log_density(t, at) + mixed.determinants(t, &at[..4])[0].ln();
     assert!(divergence(&mixed, 6, without_minor) > 1e-3);
-    // mu_C is divided by the determinant of the mixture, and the density of the disk itself is constant.
+    // mu_C is divided by the determinant of the combination of constraints. The density of the plain disk is constant.
     let mixture = |q: &[f64]| ((2.0 + q[0] * q[0]) * (1.0 + q[1] * q[1]) - q[1] * q[2].sin()).ln();
     let mut random = Random::new(8);
     let reference = mixed.configuration(&mut random);
@@ -253,7 +253,7 @@ fn mixed_constraints_have_the_same_volume() {
     }
 }
 
-/// A volume of all kinds of terms; not an invariant one.
+/// A volume with every kind of term, which is not invariant.
 fn of_all_kinds(model: &mut Model, dependent: &[usize]) -> Volume {
     let [x, y] = [0, 1].map(|i| model.pool.variable(model.coordinates[i].q));
     let radius = model.pool.variable(model.parameters[1].symbol);
@@ -300,7 +300,7 @@ fn every_term_is_lowered() {
 fn a_singular_minor_is_a_fault() {
     let disk = WithVolume::declared(MixedDisk::DESCRIPTION.source.value()).expect("a volume");
     let functions = disk.program.volume.as_ref().expect("functions");
-    // Where the disk points along y, its rolling does not follow from its velocity along x and its spin.
+    // If the disk points along y, the constraints do not determine its rolling from its velocity along x and its spin.
     let q = [0.3, 0.4, 0.2, std::f64::consts::FRAC_PI_2];
     let at = disk.input(0.0, &q, &[], &[]);
     assert!(interpret(&functions.log_density, &at).is_ok());

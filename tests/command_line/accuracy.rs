@@ -5,7 +5,7 @@ use dalembert_driver::accuracy::{NoChoice, Plan, TIMES, choose, measure};
 use super::systems::{BouncingBall, Oscillator};
 use super::*;
 
-/// Quick to measure.
+/// A plan that is quick to measure.
 fn plan(until: f64) -> Plan {
     Plan {
         integrators: vec![Integrator::Dop853, Integrator::Rk4],
@@ -16,7 +16,7 @@ fn plan(until: f64) -> Plan {
     }
 }
 
-/// Keeps the largest difference from a solution at the times that are compared.
+/// Keeps the largest difference from a closed form at the compared times.
 struct Closed<'a, F> {
     system: &'a Oscillator,
     until: f64,
@@ -46,7 +46,7 @@ impl<F: Fn(f64) -> [f64; 2]> dalembert::Observer<Oscillator> for Closed<'_, F> {
     }
 }
 
-/// The oscillator that moves like `cos(t)` along x and `cos(2 t)` along y, let go at rest.
+/// The oscillator that starts at rest and moves as `cos(t)` along x and as `cos(2 t)` along y.
 fn oscillator(q: [f64; 2]) -> (Oscillator, <Oscillator as dalembert::VectorField>::State) {
     let mut system = Oscillator::with_defaults();
     system.k = 4.0;
@@ -77,7 +77,7 @@ fn a_measured_error_is_the_distance_from_the_closed_form() {
         Simulation::new(&system, stepper, ())
             .run(0.0, state, until, &mut closed)
             .unwrap();
-        // Shares of the largest value at a time that is compared, which is nearly the amplitude.
+        // Errors are relative to the largest value at the compared times, which is nearly the amplitude.
         let expected = closed.worst[0].max(closed.worst[1] / 0.5);
         assert!(
             (sample.error / expected - 1.0).abs() < 0.02,
@@ -109,7 +109,7 @@ fn runs_that_end_otherwise_are_no_choice() {
 
 #[test]
 fn an_error_of_nothing_at_all_ends_no_ladder() {
-    // At rest nothing errs.
+    // At rest every run is exact.
     let (system, state) = oscillator([0.0, 0.0]);
     let study = measure(&system, &state, &plan(2.0)).unwrap();
     let adaptive = study.samples.iter();

@@ -1,7 +1,7 @@
 use super::*;
 
 dalembert::model! {
-    /// A ball that was compiled into the program.
+    /// A ball that is compiled into the program.
     pub CompiledBall {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x;
@@ -56,7 +56,7 @@ fn certify(text: &str, flags: &str) -> Done {
     run_on(text, &words)
 }
 
-/// The same as a document.
+/// Same as [`certify`], with the exit and the JSON document.
 fn document(text: &str, flags: &str) -> (Exit, Value) {
     let done = certify(text, &format!("{flags} --json -"));
     assert!(!done.output.is_empty(), "{}", done.errors);
@@ -90,7 +90,7 @@ fn an_impact_lies_in_its_range_and_there_are_no_others() {
     let events = document["events"].as_array().unwrap();
     assert_eq!(events.len(), 1);
     assert_eq!(events[0]["surface"], "floor");
-    // The root of 2 lies between these two doubles.
+    // sqrt(2) lies between `root.next_down()` and `root`.
     let root = std::f64::consts::SQRT_2;
     let [lo, hi] = range(&events[0]["t"]);
     assert!(lo <= root.next_down() && root <= hi && hi - lo < 1e-14);
@@ -149,7 +149,7 @@ fn every_motion_from_a_range_is_inside() {
     let flags = "--until 1.7 --certify-within x=0.99..1.01 --certify-within g=0.98..1.02";
     let (exit, document) = document(BALL, flags);
     assert_eq!(exit, Exit::Reached);
-    // Ends that are no doubles lie outside of what was written.
+    // Ends that are not doubles are rounded outwards.
     let [lo, hi] = range(&document["within"]["x"]);
     assert_eq!([lo, hi], [0.99_f64.next_down(), 1.01_f64.next_up()]);
     let [first, last] = range(&document["events"][0]["t"]);
@@ -193,7 +193,7 @@ fn motion_from_mode_to_mode_is_certified() {
         .collect();
     assert_eq!(modes, [["single", "double"], ["double", "single"]]);
     assert_eq!(document["outcome"]["mode"], "single");
-    // A foot that the mode does not have.
+    // The mode does not have the coordinate of this foot.
     assert_eq!(document["outcome"]["q"][3], Value::Null);
     assert!(events.iter().all(|event| range(&event["t"])[1] < 1.0));
     let done = certify(WALKER, "--impacts 2");

@@ -1,9 +1,9 @@
-//! Curves of bifurcations over two parameters, against closed forms.
+//! Bifurcation curves over two parameters, compared with closed forms.
 
 use super::tables::{Folder, column, numbers_of};
 use super::*;
 
-/// A clock at whose ticks a point of the plane is mapped, with folds, flips and Neimark-Sacker bifurcations.
+/// A clock that maps a point of the plane at every tick, with folds, flips and Neimark-Sacker bifurcations.
 const SQUARE: &str = "
     Square {
         coordinates { x; y; tau; }
@@ -13,7 +13,7 @@ const SQUARE: &str = "
         initial { x = 0.3; y = 0.3; until = 10; }
     }";
 
-/// Fixed points on the sphere `x^2 + r^2 + s = 1`.
+/// Fixed points on the paraboloid `x^2 + r^2 + s = 1`.
 const DOME: &str = "
     Dome {
         coordinates { x; tau; }
@@ -23,7 +23,7 @@ const DOME: &str = "
         initial { x = 0.9; until = 10; }
     }";
 
-/// Mathieu's equation, as a flow.
+/// Mathieu's equation as a first-order system.
 const MATHIEU: &str = "
     Mathieu {
         coordinates { x; v; phi; }
@@ -33,7 +33,7 @@ const MATHIEU: &str = "
         initial { until = 60; }
     }";
 
-/// An arc of height `r*s` between two ticks, and a ceiling at the height 1; a flip at `s = 2.1 - r`.
+/// An arc of height `r*s` between two ticks, a ceiling at the height 1, and a flip at `s = 2.1 - r`.
 const ARC: &str = "
     Arc {
         coordinates { y; z; tau; }
@@ -51,7 +51,7 @@ fn follow(text: &str, flags: &str) -> Done {
     run_on(text, &line.split_whitespace().collect::<Vec<_>>())
 }
 
-/// The JSON document of the curves.
+/// The curves in the JSON document.
 fn curves(text: &str, flags: &str) -> Vec<Value> {
     let done = follow(text, &format!("{flags} --json -"));
     assert_eq!((done.exit, done.errors.as_str()), (Exit::Reached, ""));
@@ -68,14 +68,14 @@ fn only<'a>(curves: &'a [Value], kind: &str) -> &'a Value {
     only
 }
 
-/// The places of a curve in the plane.
+/// The points of a curve in the plane of the parameters.
 fn places(curve: &Value) -> Vec<[f64; 2]> {
     let points = curve["points"].as_array().unwrap().iter();
     let place = |point: &Value| ["parameter", "second"].map(|key| point[key].as_f64().unwrap());
     points.map(place).collect()
 }
 
-/// Asserts that the places satisfy an equation.
+/// Asserts that the points of a curve satisfy an equation up to `bound`.
 fn assert_on(curve: &Value, bound: f64, equation: impl Fn([f64; 2]) -> f64) {
     let places = places(curve);
     assert!(places.len() > 5, "{places:?}");
@@ -149,8 +149,8 @@ fn bifurcations_on_one_curve_give_it_once() {
     assert!((first[0] + last[0]).abs() < 1e-10);
 }
 
-/// The bounds of the first tongue: a quarter of the characteristic values `b_1` and `a_1` at `q = 2 eps`, by bisection of
-/// the three-term recurrence in 40 digits.
+/// The boundaries of the first tongue are a quarter of the characteristic values `b_1` and `a_1` at `q = 2 eps`,
+/// computed by bisection of the three-term recurrence with 40 digits.
 #[test]
 fn the_first_tongue_of_mathieus_equation() {
     let flags = "--surface period --continue delta=-0.2..0.6 --across eps=0.1..0.5";

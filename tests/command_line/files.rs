@@ -1,4 +1,4 @@
-//! Models of files.
+//! Models that are loaded from files.
 
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // Nothing is lost where it stays.
+        // A folder that stays does no harm.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -54,7 +54,7 @@ fn every_command_takes_a_file() {
     let simulated = run(&format!("simulate {ball} --json -")).json();
     assert_eq!(simulated["model"], "ball");
     assert_eq!(simulated["outcome"]["kind"], "done");
-    // It falls for sqrt(2/g), comes back after the same time, as 2 e = 1, and then after half of it.
+    // The ball falls for sqrt(2/g). As 2 e = 1, the next flight takes the same time, and the one after it half.
     assert_eq!(simulated["counters"]["impacts"], 2);
     let time = simulated["events"][0]["t"].as_f64().unwrap();
     assert!((time - (2.0_f64 / 9.81).sqrt()).abs() < 1e-14, "{time}");

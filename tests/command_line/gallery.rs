@@ -6,7 +6,7 @@ use dalembert_cli::gallery::{Density, Figure, Panel, Picture, Starts};
 
 use super::*;
 
-/// A folder that is removed when it is done with.
+/// A folder that is removed at the end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -99,7 +99,7 @@ fn gallery(folder: &Path, words: &str) -> Done {
     run_line(&format!("dalembert gallery {} {words}", folder.display()))
 }
 
-/// Asserts that every element that is opened is closed in its place.
+/// Asserts that all elements are closed in order.
 fn assert_well_formed(page: &str) {
     let mut open = Vec::new();
     for (start, _) in page.match_indices('<') {
@@ -123,7 +123,7 @@ fn assert_well_formed(page: &str) {
 fn the_commands_of_a_page_draw_its_pictures() {
     let (folder, alone) = (Folder::new("page"), Folder::new("alone"));
     let done = gallery(&folder.0, "oscillator bead --quick");
-    // Of the oscillator's own motion nothing can be drawn: its declaration leaves a parameter open.
+    // The motion of the oscillator cannot be drawn, since its parameter has no default.
     assert_eq!(done.exit, Exit::Other, "{}", done.errors);
     assert!(
         done.errors
@@ -159,15 +159,15 @@ fn the_commands_of_a_page_draw_its_pictures() {
             continue;
         }
         assert_eq!(done.exit, Exit::Reached, "{command}: {}", done.errors);
-        // Told without the pictures, which are long.
+        // `assert_eq` would print the long pictures.
         assert!(alone.read(&file) == folder.read(&file), "{command}");
-        // The page has it with a text in its place.
+        // The page contains the picture inline.
         let picture = folder.read(&file);
         let (_, picture) = picture.split_once("<svg ").unwrap();
         assert!(page.contains(picture), "{command}");
         drawn += 1;
     }
-    // Three of the figure, three of the bead's motion and more of its coordinates.
+    // Three pictures of the figure, and at least three of the motion of the bead.
     assert!(drawn >= 6, "{drawn}");
     assert!(!alone.0.join("index.html").exists());
 }

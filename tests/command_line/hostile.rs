@@ -1,5 +1,5 @@
-//! Input that is wrong in every way it can be: always exit status 2, nothing on the standard output, and a
-//! message that names the flag and what is accepted. Never a panic.
+//! Wrong input gives exit status 2, an empty standard output, and a message that names the flag and the accepted
+//! values. It never panics.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn refused(words: &[&str]) -> String {
     done.errors
 }
 
-/// Lines, each with parts of the message it must give.
+/// Asserts that each line is refused with a message that contains these parts.
 fn check(cases: &[(&str, &[&str])]) {
     for (line, parts) in cases {
         let message = refused(&line.split_whitespace().collect::<Vec<_>>());
@@ -312,7 +312,7 @@ fn deep_and_binary_input_is_refused() {
     }
 }
 
-/// Memory is bounded: the limit is named, with the flag.
+/// Memory is bounded. The message names the limit and the flag.
 #[test]
 #[cfg(unix)]
 fn input_without_end_is_refused() {

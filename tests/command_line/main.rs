@@ -1,6 +1,6 @@
-//! The command line from its arguments to its streams and its exit status, over systems written by hand.
+//! The command line from its arguments to its streams and exit status, over systems written by hand and over texts.
 
-// A test may fail by panicking.
+// Tests fail by panicking.
 #![allow(clippy::unwrap_used)]
 
 mod accuracy;
@@ -70,7 +70,7 @@ fn run_over(models: &[Entry], input: &str, words: &[&str]) -> Done {
     }
 }
 
-/// Runs a command line given as one text, split at spaces.
+/// Runs a command line given as one text, split at white space.
 fn run(line: &str) -> Done {
     run_on("", &line.split_whitespace().collect::<Vec<_>>())
 }

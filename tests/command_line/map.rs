@@ -1,12 +1,11 @@
-//! Maps: classes and orbits that are known in closed form, the same files whatever the threads or the interruption, and
-//! flags that are refused.
+//! Maps: classes and orbits with closed forms, files that do not depend on threads or interruptions, and refused flags.
 
 use std::fs;
 
 use super::tables::{Folder, column, numbers_of};
 use super::*;
 
-/// A particle that tends to 1 or -1, or stays at 0, and a clock that ticks at every unit of time.
+/// A particle that tends to 1 or -1 or stays at 0, and a clock that ticks once per unit of time.
 const SWITCH: &str = "
     Switch {
         coordinates { x; c; }
@@ -35,13 +34,13 @@ fn rows(flags: &str) -> String {
     done.output
 }
 
-/// Nine starts, of which the middle one stays at 0.
+/// Nine starts. The middle one stays at 0.
 const STARTS: &str = "--vary x=-2..2:9 --returns 20";
 
 #[test]
 fn cells_tend_to_the_orbits_of_their_basins() {
     let table = rows(&format!("{STARTS} --lyapunov 10"));
-    // Orbits are numbered as cells meet them.
+    // Orbits are numbered in the order of the cells.
     let orbits = ["1", "1", "1", "1", "2", "3", "3", "3", "3"];
     assert_eq!(column(&table, "orbit"), orbits);
     let classes = orbits.map(|orbit| format!("orbit {orbit} (period 1)"));
@@ -69,12 +68,12 @@ fn an_orbit_may_need_several_returns() {
     let table = rows(&flags);
     let periods = ["2", "2", "2", "2", "1", "2", "2", "2", "2"];
     assert_eq!(column(&table, "period"), periods);
-    // Both halves of the line tend to the one orbit between 1 and -1.
+    // Both halves of the line tend to the orbit that alternates between 1 and -1.
     let orbits = ["1", "1", "1", "1", "2", "1", "1", "1", "1"];
     assert_eq!(column(&table, "orbit"), orbits);
     let classes = column(&rows(&format!("{flags} --period 1")), "class");
     assert_eq!(classes[0], "unsettled");
-    // Without the coordinate that changes sign it is one return.
+    // Without the coordinate that changes sign the period is one return.
     let table = rows(&format!("{flags} --ignore x"));
     assert_eq!(column(&table, "period"), ["1"; 9]);
 }
@@ -108,7 +107,7 @@ fn an_expression_ends_runs_as_failed() {
         .collect();
     let table = map_of(&words).output;
     let class = column(&table, "class");
-    // From 1 and above it holds at the start; from 0.5 the motion comes there after the first return.
+    // For starts at 1 and above the condition holds at once; from 0.5 it begins to hold after the first return.
     let (stays, later, once) = ("orbit", "failed", "failed at once");
     let expected = [stays, stays, stays, stays, stays, later, once, once, once];
     for (class, expected) in class.iter().zip(expected) {
@@ -140,7 +139,7 @@ fn values_and_lines_are_those_of_the_expressions() {
     let table = rows(flags);
     let starts = numbers_of(&table, "in.x");
     let parameters = numbers_of(&table, "in.a");
-    // The last --vary runs fastest.
+    // The last --vary varies fastest.
     assert_eq!(starts[..4], [-2.0, -2.0, -1.0, -1.0]);
     assert_eq!(parameters[..4], [1.0, 4.0, 1.0, 4.0]);
     for (k, value) in numbers_of(&table, "value").into_iter().enumerate() {
@@ -154,7 +153,7 @@ fn values_and_lines_are_those_of_the_expressions() {
     }
 }
 
-/// A grid with two basins, its lines and its exponents.
+/// A grid with two basins and their boundary, a contour and exponents.
 const GRID: &str = "--vary x=-2..2:13 --vary c=0..0.5:11 --returns 20 --lyapunov 3 --contour x=c";
 
 #[test]
@@ -232,7 +231,7 @@ fn the_document_has_classes_and_orbits() {
     }
 }
 
-/// The image of a picture: its size, and the colours of its pixels from the first row on.
+/// The size of the image in a picture, and the colours of its pixels by rows.
 fn image(svg: &str) -> ((u32, u32), Vec<[u8; 3]>) {
     use base64::Engine;
     let (_, rest) = svg.split_once("data:image/png;base64,").expect("an image");
@@ -273,7 +272,7 @@ fn a_picture_has_a_pixel_for_each_cell() {
     let svg = folder.read("map.svg");
     let (size, pixels) = image(&svg);
     assert_eq!(size, (5, 3));
-    // From above: only in the first row, at x = 2, it fails; the columns are the basins of -1, 0 and 1.
+    // Rows run from above. The columns are the basins of -1, 0 and 1; at x = 2 the first two rows fail.
     let (left, middle, right) = (pixels[0], pixels[2], pixels[3]);
     assert!(left != middle && middle != right && left != right);
     for row in 0..3 {
@@ -416,7 +415,7 @@ fn mistakes_in_expressions_are_shown_in_the_flag() {
     assert!(refused("sin(x)) > 0").ends_with("  | sin(x)) > 0\n  |       ^\n"));
     assert!(refused("x + > 0").contains("  | x + > 0\n"));
     assert!(refused("d(x) > 0").contains("  | d(x) > 0\n  | ^"));
-    // A system that is written by hand may have no text.
+    // A system written by hand may have no text.
     let words = "map oscillator --set k=1 --until 1 --vary x.1=0..1:3 --fail x>1".split(' ');
     let words: Vec<&str> = words.collect();
     let done = run_on("", &words);
@@ -450,7 +449,7 @@ fn a_model_with_several_surfaces_or_none_needs_a_word() {
     );
 }
 
-/// A neuron whose state after a firing is always the same, while the current depends on time.
+/// A neuron with the same state after every firing and a current that depends on time.
 const FIRING: &str = "
     Firing {
         coordinates { v; }
@@ -468,9 +467,9 @@ fn returns_at_uneven_times_are_no_orbit() {
         assert_eq!((done.exit, done.errors.as_str()), (Exit::Reached, ""));
         done.output
     };
-    // The firings follow one another in times from 0.77 to 2.23.
+    // The times between firings range from 0.77 to 2.23.
     assert_eq!(numbers_of(&map(""), "period"), [0.0, 0.0]);
-    // With a constant current they are even.
+    // With a constant current these times are equal.
     assert_eq!(numbers_of(&map("--set A=0"), "period"), [1.0, 1.0]);
     // A motion that depends on time has no exponent on its section.
     let exponents = numbers_of(&map("--lyapunov 3"), "exponent");

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Runs `simulate` with `--plot` and gives the picture.
+/// Runs `simulate` with `--plot` and returns the picture.
 fn picture(name: &str, flags: &str) -> String {
     let file = format!("dalembert-picture-{name}-{}.svg", std::process::id());
     let path = std::env::temp_dir().join(file);
@@ -12,7 +12,7 @@ fn picture(name: &str, flags: &str) -> String {
     svg
 }
 
-/// The longest polyline of a picture, in its own units.
+/// The polyline with the most points of a picture, in units of the picture.
 fn longest(svg: &str) -> Vec<[f64; 2]> {
     let lines = svg.split("points=\"").skip(1).map(|rest| {
         let points = rest.split('"').next().unwrap();
@@ -29,7 +29,7 @@ fn longest(svg: &str) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_phase_portrait_of_an_oscillator_is_an_ellipse() {
-    // Its coordinate and velocity are cos(t) and -sin(t).
+    // Coordinate and velocity are cos(t) and -sin(t).
     let svg = picture(
         "ellipse",
         "oscillator --set k=4 --until 6.5 --axes x.1,x_dot.1",

@@ -104,7 +104,7 @@ fn pushed() -> Vec<Entry> {
     models![systems::Pushed]
 }
 
-/// A force between two steps is not seen: the largest step must be shorter than it lasts.
+/// A force that acts between two evaluations is not seen. The largest step must be shorter than the push.
 #[test]
 fn a_short_push_is_not_stepped_over_with_a_largest_step() {
     for integrator in ["dop853", "dopri5", "taylor"] {
@@ -122,13 +122,13 @@ fn a_short_push_is_not_stepped_over_with_a_largest_step() {
         assert_eq!(document["max_step"], 0.05);
         let v = numbers(&document["outcome"]["qdot"])[0];
         assert!((v - 1.0).abs() < 1e-8, "{integrator}: {v}");
-        // Steps of the full length alone, as nothing else limits them: the tolerance is met by far.
+        // Most steps have the full length, since the tolerance does not limit them.
         let steps = document["counters"]["accepted"].as_u64().unwrap();
         assert!((200..300).contains(&steps), "{integrator}: {steps}");
     }
 }
 
-/// Alone and abreast.
+/// Members run alone with `dop853` and in SIMD lanes with `taylor`.
 #[test]
 fn members_keep_to_the_largest_step() {
     for integrator in ["dop853", "taylor"] {
@@ -147,7 +147,7 @@ fn members_keep_to_the_largest_step() {
     }
 }
 
-/// Steps of one size estimate no error: where they change the energy of a motion that keeps it, that is told.
+/// Integrators of fixed step do not estimate errors. A warning reports a change of energy if the motion conserves it.
 #[test]
 fn a_step_that_is_too_long_is_told() {
     let line = "simulate oscillator --set k=40 --integrator rk4";
@@ -169,7 +169,7 @@ fn a_step_that_is_too_long_is_told() {
     assert_eq!(bad.errors, format!("warning: {text}\n"));
 }
 
-/// Work that is done on the system and impacts are no errors.
+/// Work of forces and losses in impacts are no errors of the energy.
 #[test]
 fn work_and_impacts_are_no_errors_of_the_energy() {
     for integrator in ["rk4", "gauss4", "dla4"] {
@@ -188,7 +188,7 @@ fn work_and_impacts_are_no_errors_of_the_energy() {
     }
 }
 
-/// A tight tolerance asks a method of low order for more steps than anybody waits for.
+/// A tight tolerance would ask for too many steps of a method of low order. Their number is limited.
 #[test]
 fn steps_that_are_chosen_have_a_number() {
     let done = run("simulate oscillator --set k=4 --integrator dla2 --tol 1e-15 --json -");
@@ -359,7 +359,7 @@ fn a_table_has_samples_and_impacts_in_order_of_time() {
     assert_eq!(events, ["floor", "floor"]);
 }
 
-/// Rows of a run are in the file before the run has ended.
+/// Rows are written before the run ends.
 #[test]
 fn a_table_is_written_while_the_run_goes_on() {
     struct Full {
@@ -377,7 +377,7 @@ fn a_table_is_written_while_the_run_goes_on() {
             Ok(())
         }
     }
-    // A run of hours, that ends when its first rows do not find room.
+    // The run would take hours, but ends when its first rows find no room.
     let line = "dalembert simulate bouncing_ball --until 1e12 --samples 0 --csv -";
     let mut errors = Vec::new();
     let mut streams = Streams {
@@ -392,7 +392,7 @@ fn a_table_is_written_while_the_run_goes_on() {
     assert!(errors.contains("standard streams"), "{errors}");
 }
 
-/// More rows than are kept in memory.
+/// The document has more rows than are kept in memory.
 #[test]
 fn a_long_document_is_whole() {
     let (exit, document) =

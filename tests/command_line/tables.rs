@@ -1,4 +1,4 @@
-//! Files and tables of commands.
+//! Files and tables that commands write.
 
 use std::fs;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ impl Drop for Folder {
     }
 }
 
-/// A column of a table.
+/// A column of a table in CSV.
 pub fn column(table: &str, name: &str) -> Vec<String> {
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     let place = reader.headers().unwrap().iter().position(|it| it == name);

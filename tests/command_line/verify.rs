@@ -1,4 +1,4 @@
-//! `--verify` and `accuracy` give no error for a run that misses an impact, also where every run misses it.
+//! `--verify` and `accuracy` give no error for a run that misses an impact, even if every run misses it.
 
 use dalembert::Described;
 use dalembert_cli::{Entry, models};
@@ -20,7 +20,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// The same with a rod that is arrested at its extreme lengths.
+    /// Two wheels joined by a rod that is arrested at its extreme lengths.
     pub TwoWheelsArrested {
         coordinates { x1; x2; theta1; theta2; }
         parameters { r1 > 0 = 1/2; r2 > 0 = 1; a > 0 = 1; b > 0 = 3; }
@@ -61,7 +61,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A mass on a spring, before a wall a little nearer than its amplitude.
+    /// A mass on a spring, with a wall slightly nearer than its amplitude.
     pub Spring {
         coordinates { x; }
         lagrangian = dot(x)^2/2 - x^2/2;
@@ -121,7 +121,7 @@ fn sure() -> Vec<Entry> {
     ]
 }
 
-/// The same models, with a search that misses impacts.
+/// The models of [`sure`] except the spring, with an event search that misses impacts.
 fn unsure() -> Vec<Entry> {
     models![
         Unsure<TwoWheelsRod>,
@@ -136,7 +136,7 @@ fn over(models: &[Entry], line: &str) -> Done {
     run_over(models, "", &line.split_whitespace().collect::<Vec<_>>())
 }
 
-/// The line of the summary that tells of the error.
+/// The line of the summary with the error.
 fn error_of(done: &Done) -> &str {
     let mut lines = done.output.lines();
     lines.find(|line| line.contains("  error ")).unwrap()
@@ -175,7 +175,7 @@ fn a_run_that_misses_an_impact_is_not_verified_by_others_that_miss_it() {
         let document = over(&unsure(), &case.simulate("--samples 2 --json -")).json();
         assert!(!case.is_right(&document), "{}: {document}", case.line);
         let error = &document["error"];
-        // All runs agree on what is wrong: their comparison shows nothing.
+        // All runs miss the impact, so that their comparison shows nothing.
         assert_eq!(error["ends_as_reference"], true, "{}: {error}", case.line);
         assert_eq!(error["verified"], false, "{}: {error}", case.line);
         assert!(error["measured"].is_null(), "{}: {error}", case.line);
@@ -215,7 +215,7 @@ fn nothing_is_measured_by_a_reference_that_misses_an_impact() {
 
 #[test]
 fn runs_that_meet_other_surfaces_are_not_verified() {
-    // Steps that are too long take so much of the amplitude that the wall is not reached.
+    // Steps that are too long damp the motion, which then does not reach the wall.
     let line = "simulate spring --until 6 --integrator rk4 --step 0.5 --verify";
     let done = over(&sure(), line);
     assert_eq!(done.exit, Exit::Other, "{}", done.output);

@@ -1,5 +1,5 @@
-//! Whole runs of every model and scene by every integrator: behind pointers, loaded from the text, and some with
-//! everything inlined. The steps, impacts and states are the same to the bit.
+//! Whole runs of the compared models and their scenes by every integrator: emitted behind pointers, loaded from the
+//! text, and for some models inlined. Counters, impacts and states are the same to the bit.
 
 use std::sync::Arc;
 
@@ -14,18 +14,18 @@ use dalembert_tests::sampling::Random;
 
 use super::models::{Compiled, compared};
 
-/// The longest run.
+/// Longest time of a run.
 const UNTIL: f64 = 2.0;
 
-/// The tolerance of all integrators. Steps of fixed size and of low order would be too many at a tighter one.
+/// Tolerance of all integrators. At a smaller one, integrators of low order with a fixed step need too many steps.
 const TOLERANCE: f64 = 1e-7;
 
-/// Keeps the events as text: NaN does not equal itself.
+/// Keeps the events as text, since NaN does not equal itself.
 #[derive(Default)]
 struct Log(Vec<String>);
 
 impl Watch for Log {
-    // Steps are counted by the run.
+    // The counters of the run include the steps.
     fn step(&mut self, _piece: &dyn Piece) {}
 
     fn impact(&mut self, impact: Impact) {
@@ -37,7 +37,7 @@ impl Watch for Log {
     }
 }
 
-/// The declared start of a model; for a model without a start, a state inside of its chart.
+/// The declared start of a model; for a model without a start, a state inside its chart.
 fn origin(model: &dyn AnyModel) -> Origin {
     let start = model.initial();
     let declared = model
@@ -61,7 +61,7 @@ fn origin(model: &dyn AnyModel) -> Origin {
     }
 }
 
-/// The run of a model from its start.
+/// Events of the run of a model from its start, and its end as text.
 fn course(model: &dyn AnyModel, form: Form, integrator: Integrator) -> (Vec<String>, String) {
     let origin = origin(model);
     let is_long = model.description().coordinates.len() > 6;

@@ -1,5 +1,5 @@
-//! Every kernel of every form, emitted and loaded from its text, at random points. The numbers are the same to the bit,
-//! over every kind of number with kernels behind pointers, and so are the guards.
+//! Compares every emitted kernel, called by a pointer, with the kernel loaded from the text, at random points and over
+//! every kind of number. Values are the same to the bit, and so are guards.
 
 use std::fmt::Debug;
 
@@ -16,16 +16,16 @@ use wide::f64x8;
 
 use super::models::{Compiled, compared};
 
-/// Points that each kernel over doubles is evaluated at.
+/// Number of points at which each kernel over doubles is evaluated.
 const POINTS: usize = 1000;
 
-/// Points over other kinds of numbers.
+/// Number of points for other kinds of numbers.
 const POINTS_OVER: usize = 20;
 
-/// Numbers of a place, enough for every model.
+/// Numbers in each argument, enough for every model.
 const ROOM: usize = 64;
 
-/// A form that was compiled, and the same one loaded from its text.
+/// A compiled form, and the same form loaded from its text.
 #[derive(Clone, Copy)]
 struct Pair<'f> {
     emitted: &'f Form,
@@ -33,7 +33,7 @@ struct Pair<'f> {
 }
 
 impl Pair<'_> {
-    /// The global forms, of a form that is not global itself.
+    /// The global forms of a form that is not global.
     fn global(self) -> Self {
         let [emitted, loaded] = [self.emitted, self.loaded].map(|form| {
             let global = form.global();
@@ -46,7 +46,7 @@ impl Pair<'_> {
 
 /// A number over which kernels are compared.
 trait Drawn: Numbers {
-    /// A number with a value near 0 or beyond, and random parts of its kind.
+    /// A random number with a value of order 1 and random further components.
     fn draw(random: &mut Random) -> Self;
 }
 
@@ -111,7 +111,7 @@ struct Point<L> {
 }
 
 impl<L: Drawn> Point<L> {
-    /// Near to the declared parameters; one without a value is near to 1.
+    /// A point with parameters near their declared values, or near 1 if they have none.
     fn draw(random: &mut Random, form: &Form) -> Self {
         let mut declared = vec![1.0; form.tables.dimensions.parameters];
         (form.defaults)(&mut declared);
@@ -140,14 +140,14 @@ impl<L: Drawn> Point<L> {
     }
 }
 
-/// Counts of compared results: those with values, and guards that do not hold.
+/// Numbers of compared results: those with values, and those whose guard does not hold.
 #[derive(Debug, Default)]
 struct Count {
     values: usize,
     guarded: usize,
 }
 
-/// Compares a kernel over one kind of number at points. True if the kernel is given.
+/// Compares a kernel over one kind of number at points. Returns true if the form has the kernel.
 fn compare_kernel<L: Drawn>(
     pair: Pair,
     (kernel, length): (Kernel, usize),
@@ -187,7 +187,7 @@ fn assert_same<L: Numbers + Debug>(what: impl Debug, expected: &[L], found: &[L]
     }
 }
 
-/// Compares the power series over one kind of number at points.
+/// Compares the power series over one kind of number at points. Returns the number of compared series.
 fn compare_series<L: Drawn>(pair: Pair, points: &[Point<L>]) -> usize {
     let series = [pair.emitted, pair.loaded].map(Form::series::<L>);
     let [Some(emitted), Some(loaded)] = series else {
@@ -235,7 +235,7 @@ fn compare_series<L: Drawn>(pair: Pair, points: &[Point<L>]) -> usize {
     compared
 }
 
-/// Compares all kernels and the series over a kind of number.
+/// Compares all kernels and the series over a kind of number. Adds the number of existing ones to `given`.
 fn compare_over<L: Drawn>(pair: Pair, known: &FormOf<'_>, points: usize, given: &mut usize) {
     let mut random = Random::new(3);
     let points: Vec<Point<L>> = (0..points)

@@ -1,5 +1,5 @@
-//! The contract of kernels has several users: emitted code, the same behind pointers, and code loaded from a text. Tables,
-//! kernels and whole runs are the same, to the bit.
+//! Emitted code, the same code behind pointers, and code loaded from a text satisfy one contract. Tables, kernels and
+//! whole runs are the same to the bit.
 
 mod courses;
 mod kernels;
@@ -14,7 +14,7 @@ fn assert_same_tables(emitted: &Form, loaded: &Form) {
     assert_eq!(emitted.tables, loaded.tables, "{name}");
     assert_eq!(emitted.documentation, loaded.documentation, "{name}");
     assert_eq!((emitted.work)(), (loaded.work)(), "{name}");
-    // NOTE: without the numbers that a series begins with, which each user keeps in its own way.
+    // NOTE: `firsts` is not compared, since emitted and loaded series begin with different numbers.
     let lengths = |form: &Form| {
         let numbers = [form.series_gaps, form.room];
         (form.capacity(), numbers, form.forms.len())

@@ -1,4 +1,4 @@
-//! Every model that tests know, compiled and loaded from its text.
+//! The compared models, compiled and loaded from their texts.
 
 use std::sync::{Arc, OnceLock};
 
@@ -19,11 +19,11 @@ dalembert::model! {
     }
 }
 
-/// A model that was compiled.
+/// A compiled model.
 pub struct Compiled {
-    /// Its self-description.
+    /// The description of the model.
     pub description: &'static Description,
-    /// Its form and those of its scenes, by name; that of the model itself first, as `all`.
+    /// The form of the model, named `all`, then those of its scenes by name.
     pub emitted: Vec<(&'static str, &'static Form)>,
     loaded: OnceLock<Loaded>,
 }
@@ -48,7 +48,7 @@ impl Compiled {
         self.emitted.push((name, form));
     }
 
-    /// The form of a scene, loaded from the text of the model.
+    /// The form of a scene, loaded from the text of the model; `scene` is an index of `emitted`.
     pub fn loaded(&self, scene: usize) -> &Arc<Form> {
         let loaded = self.loaded.get_or_init(|| {
             let models = dalembert_jit::load(self.description.name, &self.description.source);
@@ -75,8 +75,8 @@ impl SceneVisitor for Compiled {
     }
 }
 
-/// The compared models. With the feature `every_model` these are every shipped model, the systems of the tests, and [`Folded`];
-/// else a few with all that the language has, since each is compiled over every kind of number.
+/// The compared models. With the feature `every_model` they are every shipped model, the systems of the tests, and
+/// [`Folded`]. Otherwise they are a few models that cover the language, since each is compiled for all number types.
 pub fn compared() -> &'static [Compiled] {
     static MODELS: OnceLock<Vec<Compiled>> = OnceLock::new();
     macro_rules! compiled {

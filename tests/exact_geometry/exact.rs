@@ -2,7 +2,7 @@
 
 use crate::families::Case;
 
-/// A start in the plane, with an acceleration downwards.
+/// A start in the plane, with the downward acceleration `g`.
 #[derive(Debug, Clone, Copy)]
 pub struct Flight {
     pub q: [f64; 2],
@@ -18,13 +18,13 @@ impl Flight {
         ]
     }
 
-    /// The largest speed until a time.
+    /// Bound on the speed until a time.
     pub fn speed(&self, until: f64) -> f64 {
         self.v[0].hypot(self.v[1].abs() + self.g * until)
     }
 }
 
-/// Result of the exact flight.
+/// First impact of the exact flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Exact {
     Hits {
@@ -32,11 +32,11 @@ pub enum Exact {
         surface: usize,
     },
     Passes,
-    /// It touches, or nearly: either is right, and the times say little.
+    /// The flight touches a surface or nearly does: a run may report an impact or not.
     Grazes,
 }
 
-/// Largest gap rate, relative to the speed, of an impact that counts as a graze.
+/// An impact counts as a graze if the gap falls slower than this fraction of the bound on its rate.
 pub const SHALLOW: f64 = 1e-3;
 
 /// The first impact, by conservative advancement.
@@ -68,6 +68,6 @@ pub fn exact(case: &Case) -> Exact {
             };
         }
     }
-    // So many short steps are made only beside a surface.
+    // The flight stays close to a surface: only there are the steps so short.
     Exact::Grazes
 }

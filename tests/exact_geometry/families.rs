@@ -1,4 +1,4 @@
-//! Families of surfaces, their distances in closed form, and random starts among them.
+//! Families of surfaces with distances in closed form, and random starts among the surfaces.
 
 use core::f64::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use dalembert_stability::text::{Model, Text};
 
 use crate::exact::Flight;
 
-/// Distances at a time and a place.
+/// Distances from every surface at a time and a position.
 type Distances = Box<dyn Fn(f64, [f64; 2]) -> Vec<f64>>;
 
 /// A model and a flight.
@@ -15,9 +15,9 @@ pub struct Case {
     pub model: Model,
     pub flight: Flight,
     pub until: f64,
-    /// Bound of the rate of every distance.
+    /// Bound on the rate of every distance.
     pub fastest: f64,
-    /// The time after which the motion has moved off what it begins on.
+    /// A time at which the motion has left a surface on which it starts.
     pub after: f64,
     distances: Distances,
 }
@@ -28,13 +28,13 @@ impl Case {
         (self.distances)(t, self.flight.at(t))
     }
 
-    /// The size of the numbers.
+    /// Scale of the coordinates along the flight.
     pub fn scale(&self) -> f64 {
         let [x, y] = self.flight.q;
         1.0 + x.abs() + y.abs() + self.flight.speed(self.until) * self.until
     }
 
-    /// True if a surface is at hand at the start, or behind it.
+    /// True if the flight starts very close to a surface or behind it.
     pub fn is_at_hand(&self) -> bool {
         self.distances(self.after)
             .iter()
@@ -46,7 +46,7 @@ impl Case {
 pub const FAMILIES: [fn(&mut Random) -> Case; 8] =
     [disks, post, diamond, moving, turning, waves, twins, leaving];
 
-/// Gaps as functions of the distance `d`, which have its sign and no other zero.
+/// Models of three disks whose gaps are functions of the distance with the same sign and zero.
 macro_rules! disks {
     ($($gap:literal),*) => {[$(Text::new(concat!(
         "Disks { coordinates { x; y; } parameters { a[3] = 0; b[3] = 0; r[3] > 0 = 1; g = 0; }
@@ -113,7 +113,7 @@ fn point(random: &mut Random, size: f64) -> [f64; 2] {
     [(); 2].map(|()| random.between(-size, size))
 }
 
-/// A velocity of this size towards a point.
+/// A velocity with this speed towards a point.
 fn towards([x, y]: [f64; 2], q: [f64; 2], speed: f64) -> [f64; 2] {
     let way = [x - q[0], y - q[1]];
     let length = way[0].hypot(way[1]);
@@ -275,7 +275,7 @@ fn turning(random: &mut Random) -> Case {
 
 fn waves(random: &mut Random) -> Case {
     let (k, c) = (size(random, 1e-3, 100.0), random.between(-PI, PI));
-    // In the corridor from 0 to pi.
+    // The start lies in the corridor with a phase from 0 to pi.
     let x = (random.between(0.01, PI - 0.01) - c) / k;
     let q = [x, random.between(-0.9, 3.0)];
     let speed = size(random, 0.1, 10.0);
@@ -314,7 +314,7 @@ fn twins(random: &mut Random) -> Case {
 fn leaving(random: &mut Random) -> Case {
     let mut case = disks(random);
     case.flight.g = 0.0;
-    // On the first disk, off it by rounding.
+    // The start lies on the first disk, up to rounding errors.
     let value = |name: &str| dalembert_stability::text::value(&case.model, name);
     let (a, b, r) = (value("a.1"), value("b.1"), value("r.1"));
     let angle = random.between(0.0, TAU);

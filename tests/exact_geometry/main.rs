@@ -1,19 +1,20 @@
-//! First impacts of random free flights against exact geometry, for gaps that are written in many ways: no impact is missed, and none
-//! invented, by any integrator at any tolerance.
+//! Compares first impacts of random free flights with exact geometry, for gaps that are written in many ways. No
+//! integrator misses or invents an impact at any of the tolerances.
 //!
-//! The exact answer comes from conservative advancement: along the exact flight time goes on by the distance over a bound of its rate, and
-//! so never passes a surface. What the model is given is not that distance but a function of it: scaled, flattened, bounded, steep.
+//! The exact impact comes from conservative advancement along the exact flight: every step of time is the distance
+//! divided by a bound on its rate and so never passes a surface. The gap of the model is a function of that distance:
+//! scaled, flattened, bounded or steep.
 //!
 //! | family | surfaces |
 //! |---|---|
-//! | `disks` | three disks in tables from 1 to 1e4 in size, their gaps in eight forms |
+//! | `disks` | three disks on tables of size 1 to 1e4, with gaps in eight forms |
 //! | `post` | a narrow post at the end of a flight of up to 1e4 units |
 //! | `diamond` | corners of absolute values |
-//! | `moving` | a wall that swings, and a disk that flies |
-//! | `turning` | a thin slab that turns about the origin |
-//! | `waves` | periodic gaps: a corridor between zeros of a sine |
+//! | `moving` | an oscillating wall, and a disk with constant velocity |
+//! | `turning` | a thin slab that rotates about the origin |
+//! | `waves` | periodic gaps: a corridor between zeros of a sine, and a wavy fence |
 //! | `twins` | two walls that are met within 1e-9 of each other |
-//! | `leaving` | starts on the surface, moving off |
+//! | `leaving` | starts on a surface, moving away from it |
 
 mod exact;
 mod families;
@@ -26,11 +27,11 @@ use dalembert_stability::text::Model;
 use exact::{Exact, SHALLOW, exact};
 use families::Case;
 
-/// Tolerances of the integrators that choose their steps; numbers of steps of the others.
+/// Tolerances of adaptive integrators, and numbers of steps of integrators with a fixed step.
 const TOLERANCES: [f64; 3] = [1e-3, 1e-8, 1e-13];
 const STEPS: [f64; 3] = [1.0, 7.0, 64.0];
 
-/// Counts of what was compared.
+/// Numbers of comparisons.
 #[derive(Debug, Default)]
 struct Tally {
     runs: u64,
@@ -38,7 +39,7 @@ struct Tally {
     grazes: u64,
 }
 
-/// Mistake in the first impact of a run, if there is one.
+/// Describes the mistake in the first impact of a run; `None` if the impact is right.
 fn mistake(
     case: &Case,
     course: Course<'_, Model>,
@@ -74,7 +75,7 @@ fn mistake(
     })
 }
 
-/// Runs a case with every integrator.
+/// Runs a case with every integrator and returns the mistakes.
 fn mistakes(case: &Case, tally: &mut Tally) -> Vec<String> {
     if case.is_at_hand() {
         return Vec::new();
@@ -98,7 +99,7 @@ fn mistakes(case: &Case, tally: &mut Tally) -> Vec<String> {
     wrong
 }
 
-/// Tries so many starts of every family.
+/// Compares `count` starts of every family.
 fn try_starts(count: u64, seed: u64) {
     let mut random = Random::new(seed);
     let mut tally = Tally::default();
@@ -122,7 +123,7 @@ fn try_starts(count: u64, seed: u64) {
     );
 }
 
-/// The number in a variable of the environment.
+/// The number in an environment variable.
 fn asked(name: &str, default: u64) -> u64 {
     let value = std::env::var(name).ok();
     value.and_then(|text| text.parse().ok()).unwrap_or(default)

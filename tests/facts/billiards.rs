@@ -60,8 +60,9 @@ fn an_impact_turns_the_gap_rate_and_gains_what_the_edge_gives() -> Result<(), Fa
             |state| -> Result<f64, Fault> { Ok(disk.gap_rates(t, state)?.as_ref()[surface]) };
         let (before, after) = (gap_rate(&event.before)?, gap_rate(&event.after)?);
         assert!((after + before).abs() < 1e-12 * before.abs());
-        // An impulse `P dh` adds the energy `P (dh(qdot-) + dh(qdot+))/2` and changes the gap rate by `P` times a positive
-        // number. Elastic, with `dh(qdot) = rate - d_t h`, it adds `-P d_t h`. At rest the gap rate is `d_t h`.
+        // An impulse `P dh` adds the energy `P (dh(qdot-) + dh(qdot+))/2` and changes the gap rate by `P` times a
+        // positive number. An elastic impulse adds `-P d_t h`, since `dh(qdot)` is the gap rate minus `d_t h`. At rest
+        // the gap rate is `d_t h`.
         let q = disk.position(&event.after);
         let still = disk.state(t, &q, &vector(&[0.0; 4])).expect("a state");
         let gain = disk.energy(t, &event.after)? - disk.energy(t, &event.before)?;

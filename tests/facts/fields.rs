@@ -1,4 +1,4 @@
-//! Discontinuous fields, media and metrics that change at a line, and a map that is a system of modes.
+//! Discontinuous fields, media and metrics that change at a curve, Mathieu's equation, and a map as a system of modes.
 
 use std::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ fn the_motion_slides_where_both_sides_lead_to_the_line() {
     );
 }
 
-/// Without a difference between the media the motion is unchanged, to the last bit.
+/// If the media are equal, the motion is unchanged to the last bit.
 #[test]
 fn between_equal_media_nothing_happens() -> Result<(), Fault> {
     let particle = shipped("refracted_particle").with([("m2", 1.0)]);
@@ -50,7 +50,7 @@ fn angular_momentum_and_energy_are_kept_across_the_circle() -> Result<(), Fault>
     Ok(())
 }
 
-/// The trace of the map of Mathieu's equation over a period, from the two motions that start as the axes do.
+/// The trace of the map of Mathieu's equation over a period, from the two motions that start at unit vectors.
 fn trace_of_mathieu(delta: f64, eps: f64) -> f64 {
     let equation = shipped("mathieu").with([("delta", delta), ("eps", eps)]);
     let component = |index: usize| {
@@ -72,7 +72,7 @@ fn without_amplitude_mathieu_s_equation_is_an_oscillator() {
     }
 }
 
-/// The series of both bounds, from 28.6(i) of the Digital Library of Mathematical Functions.
+/// Both bounds of the tongue have the series of 28.6(i) in the Digital Library of Mathematical Functions.
 #[test]
 fn the_first_tongue_of_mathieu_s_equation_lies_between_its_series() {
     for eps in [-0.1_f64, 0.1] {
@@ -83,7 +83,7 @@ fn the_first_tongue_of_mathieu_s_equation_lies_between_its_series() {
     assert!(trace_of_mathieu(0.25, 0.1) < -2.0);
 }
 
-/// Doubling is exact in binary: motions come to 1/2, from there to 1 and to 0, where they stay.
+/// Doubling is exact in binary. Heights come to 1/2, from there to 1 and to 0, where they stay.
 #[test]
 fn heights_of_one_half_stay_in_the_squares() {
     let squares = shipped("tent_map").model();

@@ -9,7 +9,7 @@ use dalembert_stability::text::{Model, shipped, value};
 
 use super::{course, end};
 
-/// The rate of change of the state with these positions and velocities.
+/// The rate of the state with these positions and velocities.
 fn rate(model: &Model, q: &[f64], qdot: &[f64]) -> Result<<Model as VectorField>::State, Fault> {
     let state = state(model, q, qdot);
     let mut rate = state;
@@ -24,13 +24,13 @@ fn follows_the_cosine() {
     assert!((run.state.as_ref()[0] - 20.0_f64.cos()).abs() < 1e-10);
 }
 
-/// The upright plane pendulum's textbook equations at a state worked by hand: both rods horizontal.
+/// The textbook equations of the double pendulum, evaluated by hand for two horizontal rods.
 #[test]
 fn horizontal_rods_at_rest_fall_as_a_beam_on_a_pivot() -> Result<(), Fault> {
     let pendulum = shipped("double_pendulum").model();
     let rate = rate(&pendulum, &[FRAC_PI_2, FRAC_PI_2], &[0.0, 0.0])?;
     let rate = rate.as_ref();
-    // pdot = dL/dq: the torques -(m1 + m2) g l1 and -m2 g l2.
+    // pdot = dL/dq has the torques -(m1 + m2) g l1 and -m2 g l2.
     assert!((rate[2] + 2.0 * 9.81).abs() < 1e-14);
     assert!((rate[3] + 9.81).abs() < 1e-14);
     Ok(())

@@ -1,4 +1,4 @@
-//! A known fact of each shipped model, in closed form or from its source, holds for its runs.
+//! Known facts about the shipped models, in closed form or from their sources, hold for their runs.
 
 mod billiards;
 mod fields;
@@ -21,7 +21,7 @@ fn end<M: Driven>(course: Course<'_, M>) -> Run<<M as VectorField>::State> {
     course.observed(Integrator::Dop853, &mut ())
 }
 
-/// The number of the mode of this name.
+/// The index of the mode of this name.
 fn mode_number<const C: usize>(model: &Erased<'_, C>, name: &str) -> usize {
     let mut modes = model.description().modes.iter();
     let place = modes.position(|mode| mode.name == name);

@@ -1,4 +1,4 @@
-//! Disks and balls that roll, on planes that are smooth in part, that turn, and against a wall.
+//! Rolling disks and balls: on a plane, on a partly smooth plane, on a rotating table, and against a wall.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -79,7 +79,7 @@ fn the_centre_of_the_circle_stands_still() -> Result<(), Fault> {
 #[test]
 fn the_table_changes_its_speed_each_time() {
     let ball = shipped("ball_on_switching_table").large([]);
-    // With psi = 0 the rates of the Euler angles are read off the angular velocities.
+    // With psi = 0 the rates of the Euler angles follow directly from the angular velocities.
     let (theta, speed) = (1.5_f64, [1.0, -0.5]);
     let spin = [0.5 * 0.5 - speed[1], speed[0] + 0.5 * 1.5];
     let qdot = [speed[0], speed[1], -spin[1] / theta.sin(), spin[0], 0.3];
@@ -96,7 +96,7 @@ fn the_table_changes_its_speed_each_time() {
     }
 }
 
-/// A ball that already rolls when it comes to the rough side keeps rolling, without loss.
+/// A ball that already rolls when it reaches the rough side keeps rolling without loss.
 #[test]
 fn a_ball_that_rolls_already_is_not_disturbed() -> Result<(), Fault> {
     let ball = shipped("smooth_and_rough_plane").large([]);

@@ -1,4 +1,4 @@
-//! Walkers: a foot that slips, in two systems of units, and legs that are springs.
+//! Walkers: a walker whose foot slips, in two systems of units, the simplest walker, and a walker on spring legs.
 
 use dalembert::{EventLog, Fault, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
@@ -12,7 +12,7 @@ fn a_step_repeats_itself() {
     let walker = shipped("dimensionless_walker").model();
     let delta = value(&walker, "delta");
     let start = [delta, -0.902_057_449_429_909_7, 0.991_308_369_223_558_5];
-    // A little after the step.
+    // The run ends within rounding errors of the step, before or after it.
     let run = end(course(&walker, &start, &[0.0; 3], 1.544_965_864_061_404).tol(1e-13));
     assert!(run.counters.impacts <= 1);
     let side = if run.counters.impacts == 0 { 1.0 } else { -1.0 };
@@ -20,7 +20,7 @@ fn a_step_repeats_itself() {
     assert!(angle.abs() < 1e-12);
 }
 
-/// The derivative of the field at a state by central differences, row after row.
+/// The derivative of the field at a state by central differences, by rows.
 fn slopes(walker: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
     const STEP: f64 = 1e-5;
     let rate = |at: [f64; 3]| {
@@ -40,7 +40,7 @@ fn slopes(walker: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|i| columns.map(|column| column[i]))
 }
 
-/// The thesis takes the stable plane of the upright walker for the boundary between starts that walk and starts that fall.
+/// In the thesis, the stable plane of the upright walker separates starts that walk from starts that fall.
 #[test]
 fn the_upright_walker_is_a_saddle_whose_plane_is_the_line_of_the_figure() {
     let walker = shipped("dimensionless_walker").model();
@@ -58,7 +58,7 @@ fn the_upright_walker_is_a_saddle_whose_plane_is_the_line_of_the_figure() {
         );
         assert!(below * above < 0.0, "{eigenvalue}: {below:e}, {above:e}");
     }
-    // The normal of the plane is the left eigenvector of the first of them, here with 1 for the rate of the leg.
+    // The normal of the plane is the left eigenvector of the first eigenvalue, scaled to 1 in the rate of the leg.
     let normal = [slopes[1][0] / 0.688_755, 1.0, -0.988_692];
     for j in 0..3 {
         let image: f64 = (0..3).map(|i| normal[i] * slopes[i][j]).sum();
@@ -79,7 +79,7 @@ fn is_the_dimensionless_walker_in_other_units() -> Result<(), Fault> {
         ("alpha", alpha),
         ("delta", delta),
     ]);
-    // Units of time `t0 = m/b`, of velocity `v0 = m g/b` and of the rate `v0/lf`: `eps = v0 t0/lf`.
+    // The units are `t0 = m/b` of time, `v0 = m g/b` of velocity and `v0/lf` of the rate, and `eps = v0 t0/lf`.
     let (t0, v0) = (m / b, m * g / b);
     let other = shipped("dimensionless_walker").with([
         ("mu", m * lf * lf / inertia),
@@ -110,7 +110,7 @@ fn the_simplest_walker_repeats_its_step() {
     let (theta, omega): (f64, f64) = (0.200_310_900_544_287, -0.199_832_473_004_977);
     let psi = (1.0 - (2.0 * theta).cos()) * omega;
     let start = vector(&[theta, 2.0 * theta, omega, psi]);
-    // A little after the step.
+    // The run ends shortly after the step.
     let run = end(Course::from_state(&walker, start, 3.8825).tol(1e-13));
     assert_eq!(run.counters.impacts, 1);
     let late = run.t - 3.882_463_752_85;

@@ -1,4 +1,4 @@
-//! Motion along a wall whose instantaneous constraints go on holding.
+//! Motion along a wall on which instantaneous constraints keep holding.
 
 use core::ops::ControlFlow;
 
@@ -23,7 +23,7 @@ fn forces(impacts: &Option<Impacts<Model>>, system: &Model, (t, state): (f64, &S
     forces.as_ref().to_vec()
 }
 
-/// The disk dropped on its floor from a height of 0.1, at rest.
+/// Outcome, force of the floor and state at the end of a run of the disk, dropped at rest from a height of 0.1.
 fn rolled(disk: &Model, law: Law) -> (Outcome, f64, State) {
     let start = state(disk, &[0.0, value(disk, "r") + 0.1, 0.0], &[0.0; 3]);
     let (run, effects) = Course::from_state(disk, start, 2.0)
@@ -43,7 +43,7 @@ fn a_disk_rolls_down_an_incline_where_it_did_not_slip_in_its_impact() {
         let [m, r, inertia, g] = ["m", "r", "I", "g"].map(of);
         let (sin, cos) = of("alpha").sin_cos();
         let fall = (0.2 / (g * cos)).sqrt();
-        // The impulse that stops the slip of the point of contact.
+        // The tangential impulse that stops the slip of the contact point.
         let speed = g * sin * fall;
         let inverse = 1.0 / m + r * r / inertia;
         let impulse = (belt - speed) / inverse;
@@ -110,10 +110,10 @@ fn a_wall_that_is_stuck_to_and_one_that_is_not_hold_together_and_two_that_are_do
     assert_eq!(began.0, [second, floor]);
     let held = &run.state.as_ref()[..4];
     assert_near("held", held, &[1.5, 0.0, 1.0, -1.0], 1e-12);
-    // -1 - 2 nu + lambda = 0 and nu + lambda = 0.
+    // The forces satisfy -1 - 2 nu + lambda = 0 and nu + lambda = 0.
     let forces = forces(&effects.1, &corner, (run.t, &run.state));
     assert_near("forces", &forces, &[0.0, 1.0, 1.0 / 3.0], 1e-12);
-    // The effects of one run serve for the next one.
+    // A second run uses the effects of the first.
     let again = Course::from_state(&corner, start, 3.0).effects(effects);
     let (end, _) = again.with_effects(Integrator::Dop853, &mut ());
     assert_eq!(end.outcome, Outcome::Contact { surface: first });
@@ -131,7 +131,7 @@ fn constraints_that_depend_on_others_somewhere_end_the_run_there() {
     assert_eq!(contact.err(), Some(Fault::SingularSurface { surface: 0 }));
 }
 
-/// The force of the trace against differences of the constraints along the motion.
+/// Checks by differences that motion with the force of `trace` keeps the instantaneous constraints.
 fn check_trace(system: &Model) {
     for state in states(system, 6, 9) {
         let mut rate = system.zero_state();

@@ -1,4 +1,4 @@
-//! Constraints that hold in the moment of an impact only: focusing, the law within them, and motion along the wall.
+//! Constraints that hold only in the moment of an impact: focusing, the impact law on them, and motion along the wall.
 
 mod along;
 
@@ -20,7 +20,7 @@ use serde_json::Value;
 
 type State = <Model as VectorField>::State;
 
-/// The ball at a wall with the sign that the source prints: a wall on the other side.
+/// The ball at a wall with the sign as printed in the source, which places the wall on the other side.
 static PRINTED_WALL: Text = Text::new(
     "PrintedWall {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
@@ -41,7 +41,7 @@ static PRINTED_WALL: Text = Text::new(
     }",
 );
 
-/// A disk that falls on a floor which is inclined by `alpha`, and does not slip on it.
+/// A disk that falls on a floor with the slope angle `alpha` and does not slip on it.
 static INCLINE: Text = Text::new(
     "Incline {
         coordinates { x; y; theta; }
@@ -54,7 +54,7 @@ static INCLINE: Text = Text::new(
     }",
 );
 
-/// A point that a rough wall lets move across one direction only.
+/// A rough wall on which a point can move in one direction only.
 static RAIL: Text = Text::new(
     "Rail {
         coordinates { x; y; }
@@ -82,7 +82,7 @@ dalembert::model! {
 
 static TIP: Text = Text::new(Tip::DESCRIPTION.source.value());
 
-/// Walls that a point sticks to, one for each coordinate, and a floor that it does not stick to.
+/// Two walls with instantaneous constraints, one for each coordinate, and a floor without.
 static CORNER: Text = Text::new(
     "Corner {
         const N = 2;
@@ -95,7 +95,7 @@ static CORNER: Text = Text::new(
     }",
 );
 
-/// A constraint that becomes dependent on another one where x is 0.
+/// An instantaneous constraint that depends on the other constraint at x = 0.
 static DEGENERATE: Text = Text::new(
     "Degenerate {
         coordinates { x; y; z; }
@@ -105,7 +105,7 @@ static DEGENERATE: Text = Text::new(
     }",
 );
 
-/// The state after an impact at `t = 0`, by the effect that runs use.
+/// The state after an impact at `t = 0`, by the impact effect of runs.
 fn struck<S: Driven>(system: &S, law: Law, state: S::State) -> S::State {
     let mut events = EventLog::<_, 4>::new();
     Course::from_state(system, state, 0.0)
@@ -114,7 +114,7 @@ fn struck<S: Driven>(system: &S, law: Law, state: S::State) -> S::State {
     events.iter().next().expect("an impact").after
 }
 
-/// Quasi-velocities to velocities of the ball.
+/// Velocities of the ball from its quasi-velocities.
 fn velocities(q: &[f64], [vx, vy, w1, w2, w3]: [f64; 5]) -> [f64; 5] {
     let ((s, c), (sp, cp)) = (q[3].sin_cos(), q[4].sin_cos());
     let theta = cp * w1 + sp * w2;
@@ -167,7 +167,7 @@ fn a_ball_leaves_a_wall_without_slip_as_the_references_say() {
     check_ball(&printed.global(), "printed");
 }
 
-/// The states of `Tip` on its wall that approach it.
+/// Random states of `Tip` on its wall that approach the wall.
 fn at_the_wall(tip: &Model, count: usize, seed: u64) -> Vec<State> {
     let mut random = Random::new(seed);
     (0..count)
@@ -189,7 +189,7 @@ fn at_the_wall(tip: &Model, count: usize, seed: u64) -> Vec<State> {
         .collect()
 }
 
-/// The instantaneous constraints of `Tip` at a position, by hand.
+/// The forms of the instantaneous constraints of `Tip`, written by hand.
 fn rough_forms(q: &[f64]) -> [[f64; 4]; 2] {
     [[0.0, 0.0, -q[1].cos(), 1.0], [0.0, 1.0, q[0], -q[3]]]
 }
@@ -198,7 +198,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The vector across three covectors of four components.
+/// The vector that three covectors of four components annihilate.
 fn across([a, b, c]: [[f64; 4]; 3]) -> [f64; 4] {
     std::array::from_fn(|skip| {
         let kept: Vec<usize> = (0..4).filter(|i| *i != skip).collect();
@@ -224,11 +224,11 @@ fn focusing_is_the_projection_on_all_constraints_and_the_law_acts_within_them() 
         for form in [blade, stick, drag] {
             assert!(dot(&form, qdot.as_ref()).abs() < 1e-13);
         }
-        // The change by an impulse of these constraints has no component along the velocities that they leave.
+        // The impulse of these constraints has no component along the velocities that they allow.
         let [after, start] =
             [&focused, &before].map(|state| tip.momentum(0.0, state).expect("momenta"));
         assert!(dot(&left, &difference(after.as_ref(), start.as_ref())).abs() < 1e-13);
-        // One direction is left, so that a law can only multiply the velocity along it.
+        // The constraints allow one direction, so that a law can only multiply the velocity by a factor.
         let rate = tip.gap_rates(0.0, &focused).expect("rates").as_ref()[0];
         let factor = if rate < 0.0 { -0.25 } else { 1.0 };
         turned += usize::from(rate >= 0.0);
@@ -250,7 +250,7 @@ fn focusing_is_the_projection_on_all_constraints_and_the_law_acts_within_them() 
     assert!((2..198).contains(&turned), "{turned} of 200");
 }
 
-/// The state once the constraints of the wall hold.
+/// The state after the impulse that makes the constraints of the wall hold.
 fn focused(tip: &Model, before: &State) -> State {
     let impulse = tip.focus(0, 0.0, before).expect("no fault");
     let mut focused = *before;
@@ -263,7 +263,7 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// Carnot's theorem for linear constraints (Cortes and Vinogradov, 5.7): the energy never grows, and focusing takes the
-/// energy of the velocity that it removes.
+/// kinetic energy of the velocity that it removes.
 #[test]
 fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints() {
     let tip = TIP.model();
@@ -290,7 +290,7 @@ fn energy_is_lost_in_focusing_and_kept_by_an_elastic_wall_within_the_constraints
             let lost = energy(&before) - energy(&struck(&tip, law, before));
             assert!(lost >= taken * (1.0 - 1e-12), "{law}: {lost} of {taken}");
         }
-        // A state that already satisfies them loses nothing.
+        // A state that already satisfies the constraints loses no energy.
         if tip.gap_rates(0.0, &focused).expect("rates").as_ref()[0] < 0.0 {
             let after = struck(&tip, Law::Elastic, focused);
             assert_near("focused", &[energy(&after)], &[energy(&focused)], 1e-14);
@@ -308,7 +308,7 @@ fn constraints_may_turn_the_motion_round_before_the_law_does() {
     }
 }
 
-/// Emitted functions beside the interpreter of the program they were emitted from.
+/// Compares emitted functions with the interpreted program that they were emitted from.
 fn check_emission<S: Described + Impacting>(system: &S, program: &Program) {
     let functions = program.impacting.as_ref().expect("surfaces");
     for state in states(system, 4, 3) {
@@ -365,7 +365,7 @@ fn integrators_agree_on_a_ball_that_rolls_against_its_wall() {
     assert_near("state", steps.as_ref(), series.as_ref(), 1e-11);
 }
 
-/// Notes on a model with claims; its messages if it is refused.
+/// Notes on a model with these claims, or its messages if it is refused.
 fn told(claims: &str) -> Result<Vec<String>, Vec<String>> {
     let model = format!(
         "P {{ coordinates {{ x; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
@@ -438,7 +438,7 @@ fn the_state_at_the_constraints_is_printed_beside_the_laws() {
     assert!(text.contains("psi[no_slip]"), "{text}");
 }
 
-/// The rail of one of two modes; the other one has a surface of its own before it.
+/// Two modes: the surface of the first has no instantaneous constraint, the wall of the second has one.
 static MODAL: Text = Text::new(
     "Modal {
         coordinates { x; y; }

@@ -1,4 +1,4 @@
-//! Models with modes against reference values: changes of constraints, refraction, wheels of many spokes.
+//! Models with modes compared with reference values: changes of constraints, refraction, wheels with many spokes.
 
 mod transitions;
 
@@ -41,7 +41,7 @@ fn large<const K: usize>(name: &str, values: [(&str, f64); K]) -> Large {
     model
 }
 
-/// Runs with both kinds of integrators, which agree; returns the events and the end.
+/// Runs with `Dop853` and `Taylor`, and asserts that their events agree. Returns the events and end of the first run.
 fn run<S: Driven>(
     system: &S,
     q: &[f64],
@@ -81,7 +81,7 @@ fn euler_rates(theta: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     [phi, x, z - theta.cos() * phi]
 }
 
-/// Velocities of the centre and angular velocities.
+/// Velocity of the centre, then angular velocity.
 fn speeds<S: Instance>(system: &S, t: f64, state: &S::State) -> [f64; 5] {
     let qdot = system.velocity(t, state).expect("a velocity");
     let qdot = qdot.as_slice();
@@ -98,7 +98,7 @@ fn a_ball_comes_onto_a_rough_plane() {
     let mut reflected = 0;
     for case in cases {
         let velocity = numbers(&case["velocity_smooth"]);
-        // Its own axis lies along the angular velocity and stands still, away from where the angles are singular.
+        // At these angles the angular velocity is that of `phi` alone, so that `theta` and `psi` are constant.
         let spin = [velocity[2], velocity[3], velocity[4]];
         let size = spin.iter().map(|rate| rate * rate).sum::<f64>().sqrt();
         let (theta, psi) = ((spin[2] / size).acos(), spin[0].atan2(-spin[1]));
@@ -272,7 +272,7 @@ fn a_point_crosses_a_sphere_in_a_plane() {
     }
 }
 
-/// The steps of one turn on the limit cycle, from the first spoke on.
+/// Compares the steps of one turn on the limit cycle, from the first spoke on, with stored values.
 fn check_wheel<S: Driven + Impacting>(wheel: &S, stored: &Value) {
     let cycle = &stored["limit_cycle_xi_true"];
     let steps = cycle["steps"].as_array().expect("steps");
@@ -321,7 +321,7 @@ fn wheels_of_many_spokes_have_the_stored_limit_cycles() {
     check_wheel(&ten, &file["wheels"][1]);
 }
 
-/// Every start is drawn to the limit cycle.
+/// A start off the limit cycle tends to it.
 #[test]
 fn a_wheel_tends_to_its_limit_cycle() {
     let file = read("rimless_wheels");
@@ -373,7 +373,7 @@ fn emitted_code_of_modes_is_what_the_interpreter_executes() {
     check_emitted::<refracted_particle::Right>(&modes[1]);
 }
 
-/// A field whose left side turns away from the line below `y = -1`.
+/// A field whose left side leads away from the line `x = 0` below `y = -1`.
 static LEAVING: Text = Text::new(
     "Leaving {
         coordinates { x; y; }
@@ -398,7 +398,7 @@ impl<Sys: System> Observer<Sys> for Slides {
     }
 }
 
-/// The motion slides down the line until one side leads away from it, and goes on there.
+/// The motion slides down the line until one side leads away from it, and continues on that side.
 #[test]
 fn a_slide_ends_where_one_side_leads_away() {
     let field = LEAVING.model();
@@ -413,7 +413,7 @@ fn a_slide_ends_where_one_side_leads_away() {
     assert!((times[0].0 - 0.5).abs() < 1e-14 && times[0].1);
     assert!((times[1].0 - 1.5).abs() < 1e-13 && !times[1].1, "{times:?}");
     assert_eq!(field.mode(&run.state), 1, "the left one");
-    // x = -(t - 1.5)^2/2, y = 1/2 - t
+    // The motion is x = -(t - 1.5)^2/2, y = 1/2 - t.
     let q = field.position(&run.state);
     let q = q.as_slice();
     assert!(

@@ -1,4 +1,5 @@
-//! Transitions one by one: the quantities they keep and take, their independence of names and coordinates, and the ends of runs at them.
+//! Single transitions: conserved and lost quantities, independence of names and coordinates, and ends of runs at
+//! transitions.
 
 use dalembert::policy::{Policies, Split};
 use dalembert::{EventLog, Impacting, Instance, Outcome, StateVector, System};
@@ -10,7 +11,7 @@ use serde_json::Value;
 
 use super::{close, large};
 
-/// A particle that can go on both refracted and reflected ends its run, if that is asked for; otherwise it goes on.
+/// With `Split::Stop` a run ends where both refraction and reflection are possible. The run continues if only one is.
 #[test]
 fn a_motion_that_splits_ends_where_that_is_asked_for() {
     let ends = |potential: Option<f64>| {
@@ -39,7 +40,7 @@ fn a_motion_that_splits_ends_where_that_is_asked_for() {
     assert_eq!(document["outcome"]["kind"], "ambiguous");
 }
 
-/// A mode by itself has no other modes.
+/// A system made of one mode cannot enter other modes.
 #[test]
 fn a_mode_by_itself_ends_at_a_transition() {
     let left = mode(&shipped("refracted_particle").model(), 0);
@@ -49,7 +50,7 @@ fn a_mode_by_itself_ends_at_a_transition() {
     close(run.t, 1.0, 1e-12, "time");
 }
 
-/// A point that is lifted by 0.3 into the upper half, with one round wall about both.
+/// A point that is lifted by 0.3 into the upper half, with a round wall around both halves.
 static WALLED: Text = Text::new(
     "Walled {
         coordinates { x; y; }
@@ -67,8 +68,7 @@ static WALLED: Text = Text::new(
     }",
 );
 
-/// A surface that several modes have is met in each of them: at y = 0.3 + (t - 1), x = t/2, the wall is reached where their squares add up
-/// to 4.
+/// Then the point meets the wall of the upper mode, at x^2 + y^2 = 4 with y = 0.3 + (t - 1) and x = t/2.
 #[test]
 fn a_surface_of_several_modes_is_met_in_each() {
     let point = WALLED.model();
@@ -81,7 +81,7 @@ fn a_surface_of_several_modes_is_met_in_each() {
     close(times[1], met, 1e-12, "wall");
 }
 
-/// The ball of `SmoothAndRoughPlane` in other words: names, orders, constraints and surfaces differ, motions do not.
+/// The ball of `SmoothAndRoughPlane` with other names, orders, constraints and surfaces, but the same motions.
 static REWORDED: Text = Text::new(
     "Reworded {
         parameters { k > 0 = 2/3; r > 0 = 1; }
@@ -105,7 +105,7 @@ static REWORDED: Text = Text::new(
     }",
 );
 
-/// A state of the ball on the smooth side of the line, and the same of the reworded one.
+/// Positions and velocities of the ball at the line, on its way to the rough side.
 fn at_the_line(n: u32) -> [[f64; 5]; 2] {
     let part = |k: f64| 2.0 * (f64::from(n) * k + 0.37 * k).fract() - 1.0;
     let q = [
@@ -125,8 +125,8 @@ fn at_the_line(n: u32) -> [[f64; 5]; 2] {
     [q, qdot]
 }
 
-/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin never add energy, and take the
-/// energy of the lost velocity. There is no loss exactly where the constraints already hold.
+/// Carnot's theorem (Cortes and Vinogradov, section 5.5): linear constraints that begin to hold never add energy, and
+/// take the kinetic energy of the lost velocity. They take no energy if and only if they already hold.
 #[test]
 fn constraints_that_begin_take_the_energy_of_what_is_lost() {
     let ball = large("smooth_and_rough_plane", []);
@@ -186,7 +186,7 @@ fn transitions_do_not_depend_on_words_and_factors() {
     }
 }
 
-/// A point that comes into another medium at one plane, and on a keel at another.
+/// A point that enters another medium at one plane, and gets a keel at another.
 static STRAIGHT: Text = Text::new(
     "Straight {
         coordinates { x; y; z; }
@@ -206,7 +206,7 @@ static STRAIGHT: Text = Text::new(
     }",
 );
 
-/// The same in coordinates that are bent.
+/// The system of [`STRAIGHT`] in curvilinear coordinates.
 static CROOKED: Text = Text::new(
     "Crooked {
         coordinates { u; v; w; }
@@ -229,7 +229,7 @@ static CROOKED: Text = Text::new(
     }",
 );
 
-/// Positions and velocities in straight coordinates, of those in bent ones.
+/// Positions and velocities in Cartesian coordinates, from those in curvilinear ones.
 fn straightened([u, v, w]: [f64; 3], [du, dv, dw]: [f64; 3]) -> [[f64; 3]; 2] {
     [
         [u + v * v / 3.0, v + u / 5.0, w + u * v / 2.0],
@@ -299,7 +299,7 @@ static TRAP: Text = Text::new(
     }",
 );
 
-/// At the meeting of the belts, each sends the motion back to the other.
+/// Each belt sends the motion back to the other where they meet.
 #[test]
 fn modes_that_lead_to_each_other_trap_the_motion() {
     let trap = TRAP.model();

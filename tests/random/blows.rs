@@ -1,4 +1,4 @@
-//! Blows by the declared laws of random surfaces, interpreted.
+//! Interpreted impulses of the declared laws of random surfaces.
 
 use dalembert_codegen::model::Law;
 use dalembert_codegen::program::Program;
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::interpreted::{Comparison, same_within};
 
-/// The blow of the declared law on D, from the contact that all laws share.
+/// Compares the impulse of each declared law with the impulse that the contact gives for this law.
 pub fn check_blows(comparison: &Comparison<'_>, program: &Program) -> Result<(), TestCaseError> {
     if let Some(functions) = &program.impacting {
         for (s, blow) in functions.blows.iter().enumerate() {

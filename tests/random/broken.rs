@@ -1,4 +1,4 @@
-//! Broken declarations are refused with messages at their tokens: no panic, and no message at the whole call.
+//! Broken declarations are refused without a panic, with messages that point at tokens and not at the whole call.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use proptest::strategy::BoxedStrategy;
 use super::config;
 use super::declaration::Declaration;
 
-/// Tokens with their text for a person to read.
+/// Tokens that are printed as text.
 #[derive(Clone)]
 struct Tokens(TokenStream);
 
@@ -23,7 +23,7 @@ impl fmt::Debug for Tokens {
     }
 }
 
-/// The declarations of every system that the tests know.
+/// The declarations of every system of [`every_system`].
 fn sources() -> Vec<&'static str> {
     let systems = every_system().iter();
     systems
@@ -31,7 +31,7 @@ fn sources() -> Vec<&'static str> {
         .collect()
 }
 
-/// The tokens, groups counted once for their brackets.
+/// Number of tokens, where the brackets of a group count once.
 fn count(tokens: &TokenStream) -> usize {
     let inner = |token: TokenTree| match token {
         TokenTree::Group(group) => 1 + count(&group.stream()),
@@ -40,7 +40,7 @@ fn count(tokens: &TokenStream) -> usize {
     tokens.clone().into_iter().map(inner).sum()
 }
 
-/// The tokens without those that are marked. Brackets go in pairs: an unpaired one never reaches a macro.
+/// The tokens without the marked ones. Brackets are deleted in pairs, since an unpaired bracket never reaches a macro.
 fn thinned(tokens: TokenStream, is_deleted: &mut impl Iterator<Item = bool>) -> TokenStream {
     let mut kept = TokenStream::new();
     for token in tokens {
@@ -63,7 +63,7 @@ fn thinned(tokens: TokenStream, is_deleted: &mut impl Iterator<Item = bool>) -> 
     kept
 }
 
-/// A declaration with three of ten tokens deleted; or with a few, so that mistakes of meaning are reached too.
+/// A declaration with three of ten tokens deleted, or with fewer, so that errors after parsing occur too.
 fn deleted(source: String) -> impl Strategy<Value = Tokens> {
     let tokens = count(&source.parse().expect("tokens"));
     let marks = |share| prop::collection::vec(prop::bool::weighted(share), tokens);
@@ -124,7 +124,7 @@ const MARKS: [char; 22] = [
     '@', '~', '\'',
 ];
 
-/// Any token, groups nested a few times.
+/// Any token, with groups nested a few times.
 fn token() -> BoxedStrategy<TokenTree> {
     let words = prop::sample::select(&WORDS[..])
         .prop_map(|word| TokenTree::from(Ident::new(word, Span::call_site())));
@@ -153,7 +153,7 @@ fn token() -> BoxedStrategy<TokenTree> {
     .boxed()
 }
 
-/// A model with anything in its braces.
+/// A model with arbitrary tokens in its braces.
 fn scrambled() -> impl Strategy<Value = Tokens> {
     prop::collection::vec(token(), 0..40).prop_map(|inner| {
         let name = Ident::new("Model", Span::call_site());
@@ -162,7 +162,7 @@ fn scrambled() -> impl Strategy<Value = Tokens> {
     })
 }
 
-/// The tokens are accepted, or every error has a text and points at some of them, but not at all.
+/// Checks that the tokens are accepted, or that every error has a text and points at some, but not all, of the tokens.
 fn check(tokens: &Tokens) -> Result<(), TestCaseError> {
     let Err(errors) = try_expand(tokens.0.clone()) else {
         return Ok(());
@@ -201,7 +201,7 @@ proptest! {
 
     #[test]
     fn tokens_may_be_anything(tokens in scrambled()) {
-        // These tokens were never read from a text, so they have no places.
+        // These tokens were not read from a text and have no places. The test asserts that nothing panics.
         let _ = try_expand(tokens.0);
     }
 }

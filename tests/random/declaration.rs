@@ -1,8 +1,9 @@
-//! Random declarations: natural systems with any metric, potential, constraints, forces and surfaces.
+//! Random declarations with random metrics, potentials, constraints, forces and surfaces.
 //!
-//! The demands of the language hold by construction. The metric is a positive diagonal plus squares. The constraint with
-//! number `a` begins with `d(x_a)` and goes on in later coordinates, so that the forms are independent. A gap is a
-//! coordinate plus a function of the others, so that it changes its sign with a gradient that is not zero.
+//! They satisfy the rules of the language by construction. The metric is a positive diagonal plus squares. The
+//! constraint with index `a` begins with `d(x_a)` and continues in later coordinates, so that the forms are
+//! independent. A gap is a coordinate plus a function of the others, so that it changes its sign with a nonzero
+//! gradient.
 
 use std::fmt;
 
@@ -10,12 +11,12 @@ use proptest::prelude::*;
 
 use super::function::{Function, Names, PARAMETERS};
 
-/// A declaration that has not been written down yet.
+/// A declaration as data.
 #[derive(Clone)]
 pub struct Declaration {
-    /// True for coordinates that are angles; the last one is a line.
+    /// True for coordinates that are angles. The last coordinate is on a line.
     angles: Vec<bool>,
-    /// Shift of the order of declaration against that of the numbers.
+    /// Shift between the order of declaration and the indices of coordinates.
     turned: usize,
     inertias: Vec<Inertia>,
     /// One-forms whose squares are added to the kinetic energy.
@@ -47,9 +48,9 @@ struct Constraint {
 enum Notation {
     Differentials,
     Velocities,
-    /// Multiplied by a function.
+    /// The form is multiplied by a function.
     Scaled,
-    /// The differential of a function.
+    /// The form is the differential of a function.
     Exact,
 }
 
@@ -80,7 +81,7 @@ const LAWS: [&str; 7] = [
 ];
 
 impl Declaration {
-    /// Any declaration with up to `most` coordinates.
+    /// A random declaration with up to `most` coordinates.
     pub fn any(most: usize) -> impl Strategy<Value = Self> {
         (1..=most)
             .prop_flat_map(|n| (Just(n), 0..n))
@@ -126,7 +127,7 @@ impl Declaration {
         self.angles.len()
     }
 
-    /// The declaration under another name.
+    /// The text of the declaration with this name.
     pub fn named(&self, name: &str) -> String {
         let sections = [
             self.coordinates(),
@@ -251,7 +252,7 @@ impl fmt::Debug for Declaration {
     }
 }
 
-/// `name { entry_0: ..; .. }`, nothing without entries.
+/// `name { name_0: ..; .. }`, or nothing without entries.
 fn section<T>(name: &str, entries: &[T], written: impl Fn(usize, &T) -> String) -> String {
     if entries.is_empty() {
         return String::new();
@@ -271,7 +272,7 @@ impl Inertia {
         ]
     }
 
-    /// A function of coordinate `i` that is positive.
+    /// A positive function: of coordinate `i`, of the last coordinate, or a constant.
     fn written(self, names: Names<'_>, i: usize) -> String {
         let last = names.end - 1;
         match self {

@@ -1,11 +1,11 @@
-//! The equations of motion at a point by dense linear algebra, from the expressions of a model alone:
+//! The equations of motion at a point by dense linear algebra, from the expressions of a model:
 //!
 //! ```text
 //! [ g  -eta^T ] [ qddot  ]   [ f - drift  ]
 //! [ eta   0   ] [ lambda ] = [ -curvature ]
 //! ```
 //!
-//! No factorisation, no sparsity, no elimination of the constraints: nothing of the program stage.
+//! Nothing of the program stage is used: no factorisation, no sparsity, no elimination of the constraints.
 
 use dalembert_codegen::Compiled;
 use dalembert_expr::{ExprId, SymbolId};
@@ -21,7 +21,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// The point after a step `h` along a direction of positions, and `h dt` of time.
+    /// The point moved by `h` along a direction of positions and by `h dt` in time.
     pub fn shifted(&self, h: f64, direction: &[f64], dt: f64) -> Self {
         Self {
             t: self.t + h * dt,
@@ -45,7 +45,7 @@ pub struct Dense<'a> {
     pub parameters: Vec<f64>,
 }
 
-/// Everything at a point.
+/// Quantities of a model at a point.
 pub struct Evaluated {
     pub metric: Vec<Vec<f64>>,
     /// `A`
@@ -60,7 +60,7 @@ pub struct Evaluated {
 }
 
 impl<'a> Dense<'a> {
-    /// With the defaults that are declared.
+    /// A model with its default parameters.
     pub fn new(compiled: &'a Compiled) -> Self {
         let pool = &compiled.model.pool;
         let parameters = compiled.model.parameters.iter();
@@ -106,7 +106,7 @@ impl<'a> Dense<'a> {
         self.values(&[expression], at)[0]
     }
 
-    /// Everything at a point.
+    /// Evaluates all quantities at a point.
     pub fn evaluate(&self, at: &Point) -> Evaluated {
         let (model, derivation) = (&self.compiled.model, &self.compiled.derivation);
         let rows = model.lagrangian.metric.iter();
@@ -171,7 +171,7 @@ impl Evaluated {
         rate
     }
 
-    /// `x`, `y` with `g x - eta^T y = upper` and `eta x = lower`.
+    /// Solves `g x - eta^T y = upper` and `eta x = lower` for `x` and `y`.
     pub fn saddle(&self, upper: &[f64], lower: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let solution = solve(&self.saddle_matrix(), &[upper, lower].concat());
         let (x, y) = solution.split_at(upper.len());
@@ -208,8 +208,8 @@ impl Evaluated {
         solve(&self.metric, covector)
     }
 
-    /// The condition number of the saddle matrix in the norm of the largest row sum: the largest growth of a relative
-    /// error of its entries in a solution.
+    /// The condition number of the saddle matrix in the norm of the largest row sum. It bounds the growth of relative
+    /// errors from the entries to a solution.
     pub fn condition(&self) -> f64 {
         let matrix = self.saddle_matrix();
         let columns: Vec<Vec<f64>> = (0..matrix.len())

@@ -1,6 +1,6 @@
 //! Emitted code of random declarations equals the interpreter, to the bit.
 //!
-//! `tests/random/models.rs` holds declarations that were drawn once; `ACCEPT=1` draws them anew.
+//! `tests/random/models.rs` has the drawn declarations. `ACCEPT=1` in the environment draws them anew.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -16,10 +16,10 @@ use super::declaration::Declaration;
 use super::interpreted::compiled;
 use super::models;
 
-/// Number of models that are drawn.
+/// Number of drawn models.
 const COUNT: usize = 12;
 
-/// Declarations that are not refused, from a fixed seed.
+/// Accepted declarations from a fixed seed.
 fn drawn() -> Vec<Declaration> {
     let config = Config {
         rng_seed: RngSeed::Fixed(28),
@@ -54,7 +54,8 @@ fn the_declarations_are_those_that_are_drawn() {
     golden::compare_file(&path, &source());
 }
 
-/// Compares all emitted functions of a model at random states, in both forms.
+/// Compares emitted functions of a model with the interpreter at random states: the motion in both forms, and the
+/// reported quantities.
 fn check<S: Described>(system: &S) {
     let tokens = S::DESCRIPTION.source.parse().expect("tokens");
     let compiled = dalembert_codegen::compile(tokens).expect("a model");

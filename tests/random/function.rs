@@ -12,7 +12,7 @@ struct Term {
     factors: Vec<Factor>,
 }
 
-/// Coordinates are numbers that are brought into range when the function is written down.
+/// A factor of a term. Numbers of coordinates are reduced to the allowed range when the function is written.
 #[derive(Debug, Clone)]
 enum Factor {
     Coordinate(usize),
@@ -26,7 +26,7 @@ enum Factor {
     Time,
 }
 
-/// The names a function may use.
+/// The names that a function may use.
 #[derive(Debug, Clone, Copy)]
 pub struct Names<'a> {
     /// True for coordinates that are angles.
@@ -42,7 +42,7 @@ pub const PARAMETERS: &str = "a > 0 = 3/2; b = -5/4; c in [0, 1] = 1/3;";
 const PARAMETER_NAMES: [&str; 3] = ["a", "b", "c"];
 
 impl Names<'_> {
-    /// The coordinate with this number, as a function of a point on the circle where it is an angle.
+    /// The coordinate with this number, or its sine if it is an angle.
     fn coordinate(self, number: usize) -> Option<String> {
         let index = self.index(number)?;
         Some(if self.angles[index] {
@@ -58,12 +58,12 @@ impl Names<'_> {
 }
 
 impl Function {
-    /// Up to three terms.
+    /// A random function with up to three terms.
     pub fn any() -> impl Strategy<Value = Self> {
         prop::collection::vec(Term::any(), 0..=3).prop_map(Self)
     }
 
-    /// The function as the language writes it; `0` without terms.
+    /// The function in the notation of the language; `0` without terms.
     pub fn written(&self, names: Names<'_>) -> String {
         if self.0.is_empty() {
             return "0".to_owned();
@@ -107,7 +107,7 @@ impl Factor {
         ]
     }
 
-    /// `None` where the factor needs a coordinate and none may occur.
+    /// The factor in the notation of the language; `None` if it needs a coordinate and none may occur.
     fn written(&self, names: Names<'_>) -> Option<String> {
         let coordinate = |number| names.coordinate(number);
         Some(match *self {

@@ -1,4 +1,4 @@
-//! The program of a random declaration, interpreted, against dense linear algebra and differences.
+//! Compares the interpreted program of a random declaration with dense linear algebra and finite differences.
 
 use dalembert_codegen::Compiled;
 use dalembert_codegen::program::{Function, Input, Program, interpret::interpret, verify::verify};
@@ -10,7 +10,7 @@ use super::config;
 use super::declaration::Declaration;
 use super::dense::{Dense, Evaluated, Point, dot, times, unit};
 
-/// Numbers in (-1, 1) with few digits, farther from 0 than differences reach: `abs` has a kink there.
+/// Numbers in (-1, 1) with few digits. They are farther from 0, where `abs` has a kink, than the steps of differences.
 fn numbers(n: usize) -> impl Strategy<Value = Vec<f64>> {
     let number = prop_oneof![64_i32..1024, -1023_i32..=-64];
     prop::collection::vec(number.prop_map(|k| f64::from(k) / 1024.0), n)
@@ -34,8 +34,8 @@ fn sample(most: usize) -> impl Strategy<Value = (Declaration, Point, Vec<f64>)> 
     })
 }
 
-/// The stages of the generator on a random declaration. Chance may make a declaration without content, which is refused
-/// with one of these messages; any other refusal is a mistake of the generator.
+/// Compiles a random declaration. A declaration without content, which the generator refuses with one of these
+/// messages, is rejected as a sample. Any other refusal is an error of the generator.
 pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
     const SAYS_NOTHING: [&str; 2] = ["this force is zero", "same surface as"];
     let source = declaration.named("Random");
@@ -50,18 +50,18 @@ pub fn compiled(declaration: &Declaration) -> Result<Compiled, TestCaseError> {
     })
 }
 
-/// Quantities that are compared, with the size of the allowed errors.
+/// Quantities at a point for comparison, with the allowed error.
 pub struct Comparison<'a> {
     pub compiled: &'a Compiled,
     dense: Dense<'a>,
     at: Point,
     evaluated: Evaluated,
     excess: Vec<f64>,
-    /// Quasi-velocities, where functions of a reduced form are run.
+    /// Quasi-velocities, for functions of a reduced form.
     quasi: Vec<f64>,
-    /// Rates of the motion's part of the state, or an impulse on it.
+    /// Rates of the velocities or momenta in the state, or an impulse on them.
     motion: Vec<f64>,
-    /// Allowed rounding, relative to the numbers that occur.
+    /// Allowed rounding error, relative to the compared numbers.
     pub tolerance: f64,
 }
 
@@ -136,7 +136,7 @@ pub fn same_within(
     Ok(())
 }
 
-/// Velocities, rates, multipliers and energy.
+/// Compares velocities, rates, multipliers and energy.
 fn check_motion(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     let values = comparison.run(&comparison.compiled.programs.global().geometry.function);
     let group = |name| comparison.group(&values, name);
@@ -180,7 +180,7 @@ fn check_motion(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     )
 }
 
-/// The geometry of the constraints, and the projections on them.
+/// Compares the geometry of the constraints and the projections onto them.
 fn check_constraints(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     let Some(program) = &comparison.compiled.programs.global().constrained else {
         return Ok(());
@@ -222,7 +222,7 @@ fn check_constraints(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     check_levels(comparison, &comparison.run(&program.level_correction))
 }
 
-/// In the frame, if there is one: velocities and rates of quasi-velocities at the nearest allowed velocity.
+/// Compares functions of the reduced form at the nearest allowed velocity, if there is a frame.
 fn check_reduced(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     let Ok(frame) = &comparison.compiled.derivation.frame else {
         return Ok(());
@@ -279,7 +279,7 @@ fn check_reduced(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     }
 }
 
-/// Second rates of gaps along the motion, by differences, and the compliances as responses, in both forms.
+/// Compares, in both forms, second rates of gaps with differences along the motion, and compliances with responses.
 fn check_surfaces(
     on: &mut Comparison<'_>,
     acceleration: &[f64],
@@ -312,7 +312,7 @@ fn check_surfaces(
     Ok(())
 }
 
-/// Restored momenta belong to velocities on the constraints.
+/// Checks that restored momenta belong to velocities on the constraints.
 fn check_restored(comparison: &Comparison<'_>, p: &[f64]) -> Result<(), TestCaseError> {
     let evaluated = &comparison.evaluated;
     let qdot = evaluated.raised(&moved(p, -1.0, &evaluated.linear));
@@ -320,7 +320,7 @@ fn check_restored(comparison: &Comparison<'_>, p: &[f64]) -> Result<(), TestCase
     comparison.same("restore", &residuals, &vec![0.0; residuals.len()])
 }
 
-/// The correction of positions is the least one, in the metric, that changes the levels by the excess.
+/// Checks that the correction of positions is the smallest one in the metric that changes the levels by the excess.
 fn check_levels(comparison: &Comparison<'_>, correction: &[f64]) -> Result<(), TestCaseError> {
     let evaluated = &comparison.evaluated;
     let levelled: Vec<usize> = comparison.compiled.derivation.levelled().collect();
@@ -348,7 +348,7 @@ fn check_levels(comparison: &Comparison<'_>, correction: &[f64]) -> Result<(), T
     comparison.same("level correction", &covector, &combined)
 }
 
-/// Gaps and the data of the impact laws.
+/// Compares gaps and contacts with differences of the gaps and with dense algebra.
 fn check_contacts(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     let Some(program) = &comparison.compiled.programs.global().impacting else {
         return Ok(());
@@ -383,7 +383,7 @@ fn check_contacts(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Derivatives of the derivation, by differences of the declared expressions.
+/// Compares derivatives in the derivation with differences of the declared expressions.
 fn check_derivatives(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     let (model, derivation) = (&comparison.compiled.model, &comparison.compiled.derivation);
     let n = comparison.at.q.len();
@@ -442,7 +442,7 @@ fn check_derivatives(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     )
 }
 
-/// The divergence of the field on T*Q, by differences.
+/// Compares the divergence of the field on T*Q with differences.
 fn check_divergence(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
     let (q, p) = (&comparison.at.q, &comparison.evaluated.p);
     let n = q.len();

@@ -1,7 +1,7 @@
-//! Random declarations: generated code agrees with independent routes, and broken declarations are refused.
+//! Random declarations: generated code agrees with independent computations, and broken declarations are refused.
 //!
-//! The quick tests draw from a fixed seed. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` ask for more cases and for other
-//! ones; a failure shrinks and prints the declaration that shows it.
+//! The quick tests draw from a fixed seed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` the seed.
+//! After a failure the declaration is shrunk and printed.
 
 mod blows;
 mod broken;
@@ -14,7 +14,7 @@ mod models;
 
 use proptest::test_runner::{Config, RngSeed};
 
-/// This number of cases, or the number that the environment asks for.
+/// Configuration with this number of cases, unless the environment sets another.
 fn config(cases: u32) -> Config {
     let environment = Config::default();
     let asked = std::env::var_os("PROPTEST_CASES").is_some();

@@ -1,4 +1,4 @@
-//! The audit confirms runs with correct impacts, and finds an impact that a run has missed, with every integrator.
+//! The audit confirms runs with correct impacts and finds impacts that a run missed, with every integrator.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::audit::{Audit, Finding};
@@ -34,7 +34,7 @@ static PEG: Text = Text::new(
     }",
 );
 
-/// A point among walls that count only in places, and a line that carries it back.
+/// A point over a ledge that counts only for `x <= 1`, and over the ground. A reset at `x = 4` moves it back by 4.
 static COURSE: Text = Text::new(
     "Course {
         coordinates { x; y; }
@@ -48,7 +48,7 @@ static COURSE: Text = Text::new(
     }",
 );
 
-/// A start: positions, velocities and the end.
+/// Positions and velocities at the start, and the end time.
 #[derive(Clone, Copy)]
 struct Start<'a> {
     q: &'a [f64],
@@ -69,7 +69,7 @@ struct Audited {
     impacts: usize,
 }
 
-/// The same run with every integrator, each under an audit of the surfaces.
+/// The same run with every integrator, each with an audit of its impacts.
 fn with_every_integrator(
     model: &Model,
     Start { q, v, until }: Start<'_>,
@@ -102,12 +102,13 @@ fn with_every_integrator(
         }
     };
     let runs = settings.map(run);
-    // Discrete principles do not run systems with modes.
+    // Integrators of the discrete principle do not run systems with modes.
     runs.filter(|run| run.outcome != Outcome::SeveralModes)
         .collect()
 }
 
-/// Shows that the first impact is met, that the audit confirms it, and that it finds it in a run without impacts.
+/// Asserts that every integrator finds the first impact, that the audit confirms the run, and that the audit finds the
+/// impact in a run without impacts.
 fn first_impact_is_audited(model: &Model, start: Start<'_>, (time, surface): (f64, usize)) {
     for run in with_every_integrator(model, start, |course| course) {
         assert_eq!(run.finding, None, "{run:?}");
@@ -188,7 +189,8 @@ fn a_peg_is_not_passed() {
 #[test]
 fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
     let course = COURSE.model();
-    // Over the edge of the ledge, onto the ground, and carried back twice, the second time under the ledge.
+    // The point passes the height of the ledge beyond its edge, bounces off the ground and is moved back once, above
+    // the ledge.
     let start = Start {
         q: &[0.0, 1.0],
         v: &[1.0, 0.0],
@@ -197,7 +199,7 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
     for run in with_every_integrator(&course, start, |course| course) {
         assert_eq!(run.finding, None, "{run:?}");
     }
-    // The surface that counts is found: only the reset, on the way through the ledge beyond its edge.
+    // Beyond the edge of the ledge, above its height, the audit finds the reset alone.
     let beyond = Start {
         q: &[2.0, 0.5],
         v: &[1.0, 0.0],

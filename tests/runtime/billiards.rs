@@ -1,11 +1,12 @@
-//! Billiards with known counts, orders and places of impacts.
+//! Billiards with known numbers, orders and positions of impacts.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{Event, Impacts, Observer, Outcome};
 use dalembert_tests::gap;
 use dalembert_tests::particle::*;
 
-/// In coordinates in which the metric is the identity: a small mass at `u`, a block of mass `M` at `v / sqrt(M)`.
+/// The distance of a point of mass 1 at `u` and a block of mass `M` at `v / sqrt(M)`, where `ROOT = sqrt(M)`. The
+/// metric is the identity in `u` and `v`.
 fn block<const ROOT: u64>() -> Gap {
     Gap {
         at: |[u, v]| {
@@ -55,7 +56,7 @@ fn c13_a_cusp_is_left_after_finitely_many_reflections() {
     cusp.active = |_, [x, _]| x > 0.0;
     for (vy, exact) in [(0.05, 5), (0.01, 14), (0.001, 73)] {
         let mut log = Log::new();
-        // Leaves through x > 1 well before this.
+        // The point is back at x = 1 before this time.
         let end = run(&cusp, at(1.0, 0.0, -1.0, vy), 2.0, &mut log);
         assert_done(&end, "cusp");
         assert_eq!(log.seen(), exact, "{vy}");

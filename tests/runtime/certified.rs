@@ -1,4 +1,4 @@
-//! Certified motion contains the motion, with boxes that stay narrow, and reports where it loses the motion.
+//! Certified motion encloses the exact motion in boxes that stay narrow, and reports where the enclosure is lost.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::Described;
@@ -28,10 +28,10 @@ dalembert::model! {
     }
 }
 
-/// The pendulum, loaded.
+/// The double pendulum, loaded from its text.
 static DOUBLE_PENDULUM: Text = Text::new(DoublePendulum::DESCRIPTION.source.value());
 
-/// A rate that grows without end: `x = 1/(1 - t)`.
+/// A motion that blows up at `t = 1`: `x = 1/(1 - t)`.
 static BURST: Text = Text::new(
     "Burst {
         coordinates { x; }
@@ -39,7 +39,7 @@ static BURST: Text = Text::new(
     }",
 );
 
-/// A force with a kink at 0.
+/// A force with a kink at `x = 0`.
 static KINKED: Text = Text::new(
     "Kinked {
         coordinates { x; }
@@ -49,14 +49,14 @@ static KINKED: Text = Text::new(
 );
 
 dalembert::model! {
-    /// A swing whose spring is driven, with functions of several kinds.
+    /// A driven oscillator whose potential contains several elementary functions.
     pub Driven {
         coordinates { x; y; }
         lagrangian = dot(x)^2/2 + dot(y)^2/2 - x^2/2 - sqrt(1 + x^2 + y^2) + sin(t)*x*exp(-y^2) - ln(2 + cos(x));
     }
 }
 
-/// The swing, loaded.
+/// The oscillator, loaded from its text.
 static DRIVEN: Text = Text::new(Driven::DESCRIPTION.source.value());
 
 fn from_point<'a>(system: &'a Model, start: &State) -> CertifiedFlow<'a, Model> {
@@ -64,7 +64,7 @@ fn from_point<'a>(system: &'a Model, start: &State) -> CertifiedFlow<'a, Model> 
     CertifiedFlow::new(system, 0.0, move |i| Interval::point(start.as_slice()[i]))
 }
 
-/// The state by a run with 32 digits.
+/// The state at the end of a run with 32 digits.
 fn digits<S: Variational>(system: &S, start: &[f64], until: f64) -> S::State {
     let start = At::<_, 2>::of(0.0, &S::State::of(start));
     let run = ExtendedSimulation::new(system, ())
@@ -193,7 +193,7 @@ fn a_kink_is_not_stepped_over() {
     let system = KINKED.model();
     let mut flow = from_point(&system, &state(&system, &[1.0], &[0.0]));
     let lost = certified::flow(&mut flow, 3.0).unwrap_err();
-    // It passes 0 after a quarter of a period.
+    // The point passes 0 after a quarter of a period.
     let kink = core::f64::consts::FRAC_PI_2 / (4.0_f64 / 3.0).sqrt();
     assert!(lost.t <= kink && lost.t > 0.99 * kink, "{lost}, {kink}");
 }

@@ -1,6 +1,6 @@
-//! Certified motion across impacts contains references of many digits, with boxes that stay narrow.
+//! Certified motion across impacts encloses references of many digits in boxes that stay narrow.
 //!
-//! Stored references are those of `tests/reference`. Parameters that are not doubles are given as ranges that contain them.
+//! Stored references are in `tests/reference`. Parameters that are not doubles are given as ranges that contain them.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -26,7 +26,7 @@ dalembert::model! {
     }
 }
 
-/// The ball, loaded.
+/// The ball, loaded from its text.
 static BALL: Text = Text::new(Ball::DESCRIPTION.source.value());
 
 dalembert::model! {
@@ -45,10 +45,10 @@ dalembert::model! {
     }
 }
 
-/// The disk, loaded.
+/// The disk, loaded from its text.
 static ROLLING_DISK: Text = Text::new(RollingDisk::DESCRIPTION.source.value());
 
-/// A sleigh on a blade, between the edges of an elliptical table (W. Clark, thesis, section 7.5).
+/// A sleigh on a blade, on an elliptical table (W. Clark, thesis, section 7.5).
 static SLEIGH: Text = Text::new(
     "Sleigh {
         coordinates { x; y; theta: angle; }
@@ -66,7 +66,7 @@ static SLEIGH: Text = Text::new(
 );
 
 dalembert::model! {
-    /// A point on a spring between a floor, which takes a third of its speed, and a wall that swings.
+    /// A point on a spring between a floor with restitution 2/3 and an oscillating wall.
     pub Swing {
         coordinates { x; }
         parameters { w = 1; }
@@ -75,7 +75,7 @@ dalembert::model! {
     }
 }
 
-/// The swing, loaded.
+/// The point on a spring, loaded from its text.
 static SWING: Text = Text::new(Swing::DESCRIPTION.source.value());
 
 /// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
@@ -101,7 +101,7 @@ static WALKER: Text = Text::new(
 );
 
 dalembert::model! {
-    /// Point mass that walks on spring legs (H. Geyer, A. Seyfarth and R. Blickhan, 2006).
+    /// Point mass that walks on spring legs (H. Geyer, A. Seyfarth and R. Blickhan 2006).
     pub SpringWalker {
         parameters { k > 0 = 17.84; alpha in [0, 1.5] = 1.2043; }
         coordinates { x; y; }
@@ -161,7 +161,7 @@ fn walker_transient() -> Vec<Reference> {
     references(steps, |_| 0, after)
 }
 
-/// References of stored impacts, from the surface of each and the components after it.
+/// References made of stored impacts. `surface` reads the surface of an impact, `after` the components after it.
 fn references(
     impacts: &Value,
     surface: impl Fn(&Value) -> usize,
@@ -176,7 +176,7 @@ fn references(
     impacts.map(reference).collect()
 }
 
-/// Number of a surface of which the models have two: the one in front, and the one behind.
+/// Index of the surface in front or of the surface behind.
 fn edge(name: &Value) -> usize {
     match name.as_str() {
         Some("leading_edge" | "front_tip") => 0,
@@ -193,7 +193,7 @@ fn texts(values: &Value) -> Vec<String> {
     values.as_array().unwrap().iter().map(text).collect()
 }
 
-/// The doubles on both sides of a decimal number.
+/// An interval of doubles that contains a decimal number.
 fn about(digits: &str) -> Interval {
     let nearest: f64 = digits.parse().unwrap();
     Interval::new(nearest.next_down(), nearest.next_up())
@@ -220,7 +220,7 @@ struct Reference {
     after: Vec<String>,
 }
 
-/// Follows a run along a reference. Returns the width of the widest enclosure of a time or of a component.
+/// Compares the impacts of a run with references. Returns the width of the widest enclosure of a time or component.
 fn along(mut run: CertifiedRun<'_, Model>, references: &[Reference], name: &str) -> f64 {
     let begun = Instant::now();
     let (mut count, mut widest) = (0, 0.0_f64);
@@ -249,7 +249,7 @@ fn along(mut run: CertifiedRun<'_, Model>, references: &[Reference], name: &str)
     widest
 }
 
-/// Impacts in numbers of 48 digits.
+/// Impacts of a run in numbers of 48 digits.
 fn impacts<S: Variational + Scene>(system: &S, start: &S::State, t_end: f64) -> Vec<Impact<S, 3>> {
     let mut impacts = Vec::new();
     let simulation = ExtendedSimulation::new(system, system.effects());
@@ -261,8 +261,8 @@ fn impacts<S: Variational + Scene>(system: &S, start: &S::State, t_end: f64) -> 
     impacts
 }
 
-/// Follows a start of a loaded model beside a run of its compiled type in numbers of 48 digits. Returns the width of the
-/// widest component at the end.
+/// Compares a certified run of a loaded model with a run of its compiled type in numbers of 48 digits. Returns the
+/// width of the widest component at the end.
 fn beside<S: Variational + Scene>(
     loaded: &(impl Variational + Impacting),
     system: &S,
@@ -311,7 +311,7 @@ fn beside<S: Variational + Scene>(
     width
 }
 
-/// `sqrt(2/g) (1 + 2 (e + .. + e^(n-1)))`, when a ball from the height 1 bounces.
+/// Times `sqrt(2/g) (1 + 2 (e + .. + e^(n-1)))` of the impacts of a ball dropped from the height 1.
 fn bounces(g: f64, e: f64, count: usize) -> Vec<Extended<3>> {
     let [fall, e] = [Extended::from(2.0) / Extended::from(g), Extended::from(e)];
     let fall = Numbers::sqrt(fall);
@@ -500,7 +500,7 @@ fn every_motion_from_a_box_is_held_across_impacts() {
             *range = range.hull(point(value.nearest()));
         }
     }
-    // The widest box is nearly as wide as the motions require.
+    // The widest component is at most a tenth wider than the motions from the corners.
     let found = enclosures.last().unwrap().1;
     let [found, reached] = [found, reached].map(|ranges| {
         let widths = ranges.map(Interval::width);

@@ -1,4 +1,5 @@
-//! Periodic orbits whose existence is proved: in enclosures that contain references of many digits, and refused where there are none.
+//! Proofs that periodic orbits exist. The enclosures contain references of many digits; where no proof is possible, the
+//! reason is reported.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::time::Instant;
@@ -41,7 +42,7 @@ static CONVEYOR: Text = Text::new(
     }",
 );
 
-/// The same, driven.
+/// The conveyor with a rate of `y` that depends on time.
 static DRIVEN: Text = Text::new(
     "Driven {
         coordinates { x; y; }
@@ -62,7 +63,8 @@ fn about(digits: &str) -> Interval {
     Interval::new(nearest.next_down(), nearest.next_up())
 }
 
-/// `walker_orbits.json`: fixed point after the step, period, and derivative in its last two components.
+/// Values from `walker_orbits.json`: the fixed point after the step, the period, and the derivative of the return map
+/// in the last two components.
 const POINT: [&str; 3] = [
     "0.4",
     "-0.902057449429909744803474157606",
@@ -161,7 +163,7 @@ fn multipliers_of_a_cycle_are_bounded_whether_it_attracts_or_not() {
             orbit.largest_multiplier
         );
     }
-    // With k = 0 every y belongs to a cycle.
+    // With k = 0 every y belongs to a periodic orbit.
     let conveyor = CONVEYOR.with([("k", 0.0)]);
     let found = periodic(
         &CertifiedSection::new(&conveyor, 0, 20.0),

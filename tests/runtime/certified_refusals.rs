@@ -1,4 +1,4 @@
-//! Certified runs end before an event that is not certain, and report the reason.
+//! Certified runs end before an event that they cannot decide, and report the reason.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -9,7 +9,7 @@ use dalembert::numbers::Interval;
 use dalembert_stability::text::{Model, Text};
 use dalembert_tests::certified::follow;
 
-/// A point that rises from a parabola's lowest place, over a floor.
+/// A point with constant acceleration away from a floor at `x = -depth`.
 static SKIMMER: Text = Text::new(
     "Skimmer {
         coordinates { x; }
@@ -49,7 +49,7 @@ static BALL: Text = Text::new(
     }",
 );
 
-/// A point that is stopped where it passes 1.
+/// A point on a spring with a reset at `x = 1` that changes nothing.
 static SECTION: Text = Text::new(
     "Section {
         coordinates { x; }
@@ -58,7 +58,7 @@ static SECTION: Text = Text::new(
     }",
 );
 
-/// Light and heavy halves of a line, which are passed at a price.
+/// A line whose right half has the potential energy 1/2.
 static HALVES: Text = Text::new(
     "Halves {
         coordinates { x; }
@@ -73,7 +73,7 @@ static HALVES: Text = Text::new(
     }",
 );
 
-/// A point that goes faster above 0, or back there.
+/// A point with velocity 1 below 0 and velocity `speed` above 0.
 static RELAY: Text = Text::new(
     "Relay {
         parameters { speed = 2; }
@@ -89,7 +89,7 @@ static RELAY: Text = Text::new(
     }",
 );
 
-/// A point under a wall, which is put back where it passes 1.
+/// A point below a wall at `y = 1`, with a reset at `x = 1` to `(-1, -1)`.
 static TREADMILL: Text = Text::new(
     "Treadmill {
         coordinates { x; y; }
@@ -98,7 +98,7 @@ static TREADMILL: Text = Text::new(
     }",
 );
 
-/// Impacts until the end, and the reason of the end.
+/// The surfaces of the impacts, and the result of the run.
 fn run(system: &Model, start: &[Interval], t_end: f64) -> (Vec<usize>, Result<(), Lost>) {
     let mut surfaces = Vec::new();
     let mut run = CertifiedRun::new(system, 0.0, |i| start[i]);
@@ -133,7 +133,7 @@ fn a_graze_is_refused_before_it_comes() {
         surfaces.is_empty() && lost.t <= 1.0 && lost.t > 0.99,
         "{lost}"
     );
-    // A little lower it passes, and the floor a little higher is met.
+    // The point misses a floor that is slightly lower and meets one that is slightly higher.
     let (surfaces, ended) = run(&SKIMMER.with([("depth", 1e-9)]), &start, 3.0);
     assert!(surfaces.is_empty() && ended.is_ok(), "{ended:?}");
     let (surfaces, _) = run(&SKIMMER.with([("depth", -1e-9)]), &start, 1.0);
@@ -159,7 +159,7 @@ fn two_walls_at_one_time_are_refused() {
         "{lost}"
     );
     assert!(surfaces.is_empty() && lost.t <= 1.0, "{lost}");
-    // One after the other, whichever comes first.
+    // The walls are met one after the other, in either order.
     for (place, order) in [(1e-9, [0, 1]), (-1e-9, [1, 0])] {
         let (surfaces, ended) = run(&CORNER.model(), &points([place, 0.0, 1.0, 1.0]), 2.5);
         assert!(
@@ -192,7 +192,7 @@ fn a_surface_that_may_be_met_before_a_reset_is_not_forgotten() {
 
 #[test]
 fn a_condition_that_is_not_certain_is_refused() {
-    // It falls to the ledge within the time sqrt(2) and goes a little more than 1 in the meantime.
+    // The ball falls to the height of the ledge in the time sqrt(2) and moves by sqrt(2)/2 meanwhile.
     let falling = |x: f64, radius: f64| {
         let x = Interval::point(x).widened(radius);
         [
@@ -218,11 +218,11 @@ fn a_condition_that_is_not_certain_is_refused() {
 
 #[test]
 fn motion_behind_a_surface_that_begins_to_count_is_refused() {
-    // Below the ledge, beyond its end, and back.
+    // The ball starts lower than the ledge, beyond its end, and moves towards it.
     let start = points([2.0, -0.5, -1.0, 0.0]);
     let (surfaces, ended) = run(&LEDGE.model(), &start, 5.0);
     let lost = lost(ended);
-    // It meets the floor at the time 1, at x = 1, on its way to the ledge.
+    // It meets the floor at the time 1, at x = 1, where the ledge begins to count.
     assert!(surfaces.len() <= 1 && lost.t <= 1.0, "{surfaces:?}, {lost}");
 }
 
@@ -314,7 +314,8 @@ fn a_reset_that_stays_at_its_surface_is_refused() {
 
 #[test]
 fn refraction_and_reflection_are_told_apart() {
-    // Energies of both modes are enclosed by themselves: ranges of speeds are narrow compared with their difference.
+    // The energies of the two modes are enclosed separately, so the ranges of speeds are narrow compared with the
+    // difference of the energies.
     let mode = |speed: Interval| {
         let start = [Interval::point(-1.0), speed, Interval::point(0.0)];
         let halves = HALVES.model();
@@ -323,7 +324,7 @@ fn refraction_and_reflection_are_told_apart() {
         Ok(impact.map(|_| run.component(2).middle().round()))
     };
     assert_eq!(mode(Interval::new(1.01, 1.0101)), Ok(Some(1.0)));
-    // A reflected point is at the surface that it came to, and its side is not known.
+    // A reflected point starts at the surface, and its side is not certain.
     assert_eq!(
         mode(Interval::new(0.9899, 0.99)),
         Err(Reason::MayStay { surface: 0 })

@@ -1,4 +1,4 @@
-//! Certified motion of what is loaded from a text has the enclosures of the compiled type, to the bit.
+//! A model loaded from a text has the same certified enclosures as the compiled type, to the bit.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::ops::ControlFlow;
@@ -47,7 +47,7 @@ fn start<M: Instance>(model: &M) -> Vec<f64> {
     state.as_slice().to_vec()
 }
 
-/// Times, states before and after, and the state at the end, from a box about a state.
+/// Surface, time, and states before and after each impact, then the state at the end, from a box about a state.
 fn enclosures<Sys: Variational + Impacting>(
     system: &Sys,
     start: &[f64],
@@ -76,7 +76,7 @@ fn enclosures<Sys: Variational + Impacting>(
     found
 }
 
-/// Runs on a stack that has room for the longest vectors in code that nothing optimises.
+/// Runs `work` on a stack with room for the longest vectors in unoptimised code.
 fn with_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(16 << 20);
@@ -89,7 +89,7 @@ fn bits(ranges: &[Interval]) -> Vec<[u64; 2]> {
     ranges.iter().map(bits).collect()
 }
 
-/// Asserts that a model and its text have the same enclosures, in rooms of two sizes.
+/// Asserts that a model and its text have the same enclosures, for erased systems of two capacities.
 fn assert_same<M>(model: &M, settings: &[(&str, f64)], radius: f64, until: (f64, u64))
 where
     M: Described + Instance + Variational + Impacting,

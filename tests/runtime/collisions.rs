@@ -1,4 +1,4 @@
-//! Impacts inside steps of fixed size: the quantities that the step across them preserves.
+//! Quantities that a step of fixed size preserves across an impact inside it.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -29,7 +29,7 @@ const WELL: Well = Well {
 };
 
 impl Well {
-    /// Between the walls.
+    /// A state between the walls.
     fn start(&self) -> Plane {
         Plane::new(self.far.min(1.0) - 0.05, 0.8)
     }
@@ -161,7 +161,8 @@ fn end<Step: Stepper<Well>>(well: &Well, stepper: Step, start: Plane, t_end: f64
     run.state
 }
 
-/// The mean of the energy over each of ten parts of a run, and the largest difference from the first.
+/// Sums and counts of the energy over ten equal parts of a run, relative to the first energy, and the largest
+/// difference from it.
 #[derive(Default)]
 struct Energies {
     until: f64,
@@ -198,7 +199,7 @@ impl Energies {
         energies
     }
 
-    /// The difference of the means over the last and the first tenth.
+    /// The mean energy over the last tenth minus that over the first.
     fn drift(&self) -> f64 {
         let mean = |part: usize| self.sums[part].0 / f64::from(self.sums[part].1);
         mean(9) - mean(0)
@@ -239,7 +240,7 @@ where
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Starts whose motion meets the wall in the first step of 0.4 or 0.8, early and late.
+/// First steps, and starts whose motion meets the wall early or late in that step.
 const MEETING: [(f64, [f64; 2]); 4] = [
     (0.4, [-0.15, -0.8]),
     (0.4, [-0.2, -0.8]),
@@ -307,7 +308,7 @@ fn the_discrete_principle_keeps_energy_over_impacts() {
 
 #[test]
 fn several_impacts_in_one_step_keep_the_energy_near() {
-    // A box of width 0.1 crossed in a third of a step.
+    // The walls are 0.1 apart; the point crosses this distance in less than half a step.
     let well = Well { far: -0.2, ..WELL };
     let run = Energies::of::<Gauss<2>>(&well, 0.3, 1e4);
     assert!(run.largest < 1e-4, "{}", run.largest);

@@ -1,4 +1,4 @@
-//! Projection, and initial velocities that the constraints complete.
+//! Projection onto constraints, and initial velocities that the constraints complete.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{
@@ -14,7 +14,7 @@ type State = SVector<f64, 4>;
 
 /// A point of mass 1 on the circle `x dx + y dy = 0`.
 struct Circle {
-    /// Part of the velocity along the radius that is left where it is restored.
+    /// Fraction of the radial velocity that `restore` leaves.
     left: f64,
 }
 
@@ -112,7 +112,7 @@ impl Constrained for Circle {
     }
 }
 
-/// Radius and residual after a long run, and the number of projections.
+/// Error of the radius and residual after a long run, and the number of projections.
 fn drift(effects: impl Effect<Circle>) -> (f64, f64, u64) {
     let stepper = DormandPrince5::new(Tolerance::new(1e-6).unwrap());
     let state = State::new(2.0, 0.0, 0.0, 1.0);
@@ -167,7 +167,7 @@ fn open_velocities_are_completed_and_contradictions_refused() {
     assert_eq!(complete([f64::NAN, 4.0], [0.0, 1.0]), Ok(completed));
 }
 
-/// State after projection where a step was cut.
+/// State after the projection at the end of a step that was cut.
 fn settled(left: f64, mut state: State) -> Result<State, Outcome> {
     let mut counters = Counters::default();
     let mut now = Moment {
@@ -184,7 +184,7 @@ fn settled(left: f64, mut state: State) -> Result<State, Outcome> {
 
 #[test]
 fn a_residual_of_vanishing_terms_is_no_failure() {
-    // At the lowest point only `y ydot` is left of the residual, and restoring leaves its rounding.
+    // At the lowest point the residual is `y ydot` alone, and `restore` leaves its rounding error.
     let rounding = f64::EPSILON;
     for velocity in [[-1.0, 1e-11], [1e-9, 1e-5], [0.0, 1e-30], [0.0, 1e-300]] {
         let state = State::new(0.0, -1.0, velocity[0], velocity[1]);

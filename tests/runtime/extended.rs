@@ -1,9 +1,9 @@
-//! Numbers of more than double precision: against values of 70 digits, by identities, and at infinite values and NaN.
+//! Extended numbers: reference values of 70 digits, identities, infinities and NaN, comparison and decimal text.
 
 use dalembert::extended::{Extended, NotDecimal};
 use dalembert::numbers::Numbers;
 
-/// Functions at doubles, made with `mpmath` 1.3 at 110 digits from the exact values of these doubles.
+/// Values of functions at doubles, computed by `mpmath` 1.3 with 110 digits from the exact values of these doubles.
 #[rustfmt::skip]
 const VALUES: &[(&str, &[f64], &str)] = &[
     ("sin", &[1e-30], "1.000000000000000083336420607585985350931336026868654502364509616882196e-30"),
@@ -109,7 +109,7 @@ fn check_values<const P: usize>(units: f64) {
     for (function, at, expected) in VALUES {
         let found = evaluated::<P>(function, at);
         let error = error(found, expected);
-        // Parts below the least double are lost.
+        // Digits below the smallest double are lost.
         let lost = 5e-324 / found.nearest().abs();
         let bound = units * Extended::<P>::ROUNDING + lost;
         assert!(
@@ -138,7 +138,7 @@ fn every_function_of_one_number_has_values() {
     dalembert_numbers::functions_of_one_number!(assert_tried);
 }
 
-/// Numbers with digits everywhere, of many sizes.
+/// Random numbers with random digits in all parts, of many magnitudes.
 fn samples<const P: usize>() -> impl Iterator<Item = Extended<P>> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = move || {
@@ -191,7 +191,7 @@ fn check_identities<const P: usize>() {
         );
         near("fused", x.mul_add(y, z), x * y + z, size(x * y) + size(z));
         near("roots", Numbers::sqrt(x * x), Numbers::abs(x), size(x));
-        // A number and its opposite cancel to 0.
+        // A number and its negative cancel to 0.
         assert_eq!((x + -x).parts(), [0.0; P]);
         if round % 20 > 0 {
             continue;

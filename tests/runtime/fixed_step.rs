@@ -1,4 +1,4 @@
-//! Invariants of methods of fixed step, their work, and their behaviour where a step cannot be made.
+//! Integrators with a fixed step: invariants, number of rate evaluations, and behaviour where a step fails.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -58,7 +58,7 @@ where
 
 #[test]
 fn gauss_keeps_areas_and_the_classical_method_does_not() {
-    // Steps so long that the flow itself is off by a percent; differences leave 1e-9.
+    // The steps are so long that the flow has an error of a percent. The finite differences have an error of 1e-9.
     for defect in [
         jacobian::<Gauss<2>>(20.0, 0.8),
         jacobian::<Gauss<3>>(20.0, 0.8),
@@ -92,7 +92,7 @@ fn gauss_runs_back_along_its_way() {
 
 #[test]
 fn quadratic_invariants_hold_to_rounding() {
-    // Angular momentum of the oscillator in its phase plane: x^2 + v^2.
+    // Twice the energy of the oscillator, `x^2 + v^2`, is a quadratic invariant.
     let oscillator = Line::new(|_, x, _| Ok(-x));
     for h in [0.3, 1.1] {
         let four = end(
@@ -113,7 +113,7 @@ fn quadratic_invariants_hold_to_rounding() {
     }
 }
 
-/// Counters of ten steps of 0.1 of the soliton.
+/// Counters of a run of the soliton with ten steps of 0.1.
 fn work<M: Method>() -> Counters
 where
     FixedStep<Plane, M>: Stepper<Line>,
@@ -135,8 +135,9 @@ fn work_is_as_counted() {
     for counters in counts {
         assert_eq!((counters.accepted, counters.rejected), (10, 0));
     }
-    // One at the start; then four per step, or one and two or three for each of 12.1 and 10.4 iterations: the guess is good
-    // to 1e-4 and 1e-5, and each iteration gains a factor 0.1.
+    // One evaluation at the start. `Rk4` then has four per step. Gauss methods have one per step, and two or three for
+    // each of 12.1 or 10.4 iterations: their guesses have errors of 1e-4 and 1e-5, and each iteration gains a factor
+    // 0.1.
     let evaluations = counts.map(|counters| counters.rate_evaluations);
     assert_eq!(evaluations, [41, 11 + 2 * 121, 11 + 3 * 104]);
 }
@@ -173,7 +174,7 @@ fn step_is_chosen_once_and_told() {
 
 #[test]
 fn a_step_too_long_to_be_solved_is_made_in_parts() {
-    // Frequency 40 at steps of 0.1: fixed point iteration contracts below about 0.05.
+    // The frequency is 40 and the step 0.1. The fixed-point iteration contracts for steps below about 0.05.
     let stiff = Line::new(|_, x, _| Ok(-1600.0 * x));
     let stepper = Gauss6::new(tolerance()).with_step(0.1);
     let run = Simulation::new(&stiff, stepper, ())
@@ -187,7 +188,7 @@ fn a_step_too_long_to_be_solved_is_made_in_parts() {
 
 #[test]
 fn a_step_that_cannot_be_solved_ends_the_run_by_name() {
-    // 1e9 per unit of time: the iteration does not contract even at a thousandth of the step.
+    // The frequency is 1e9: the iteration does not contract even at a thousandth of the step.
     let stiff = Line::new(|_, x, _| Ok(-1e18 * x));
     let run = Simulation::new(&stiff, Gauss4::new(tolerance()).with_step(0.1), ())
         .run(0.0, Plane::new(1.0, 0.0), 1.0, &mut ())
@@ -235,7 +236,7 @@ fn steps_grow_back_after_hops_and_accumulations_are_found() {
         "{}",
         run.outcome
     );
-    // A corner: one short flight, then a long one, over which steps are those of the run again.
+    // One long flight without impacts takes the steps of the run.
     let ball = Particle::new([-1.0, 0.0], [FLOOR]);
     let run = run_with(&ball, stepper, at(1e-6, 0.0, 30.0, 0.0), 50.0, &mut log);
     assert_eq!(run.outcome, Outcome::Done);
@@ -272,7 +273,7 @@ fn two_runs_agree_to_the_bit() {
     assert_eq!(run(0.07), run(0.07));
 }
 
-/// Beyond 0 the force of `ln(x)` is a number again, and its energy is NaN.
+/// Below 0 the force of the potential `ln(x)` is finite again, but the energy is NaN.
 #[test]
 fn a_run_ends_where_the_energy_is_no_number() {
     let system = Line {
@@ -286,7 +287,7 @@ fn a_run_ends_where_the_energy_is_no_number() {
         let run = Simulation::new(system, with_step::<M>(h), ())
             .run(0.0, Plane::new(1.0, -1.0), 5.0, &mut ())
             .unwrap();
-        // It falls into 0 at this time.
+        // The point reaches 0 at the time 0.65568.
         assert!(run.t <= 0.655_68 + h, "{} {h}: {}", M::NAME, run.t);
         assert_ne!(run.outcome, Outcome::Done, "{} {h}", M::NAME);
         let energy = system.energy(run.t, &run.state).unwrap();
@@ -302,7 +303,7 @@ fn a_run_ends_where_the_energy_is_no_number() {
     }
 }
 
-/// Beside the edge of the domain of the force an implicit step is shortened like any other.
+/// Near the edge of the domain of the force, implicit steps are shortened like explicit ones.
 #[test]
 fn implicit_steps_reach_the_edge_of_the_domain_of_the_force() {
     let system = Line {
@@ -322,7 +323,7 @@ fn implicit_steps_reach_the_edge_of_the_domain_of_the_force() {
             M::NAME,
             run.outcome
         );
-        // The closed form, from the energy.
+        // The time at which the point reaches 0, in closed form from the energy.
         let edge = 0.797_434_948_472_345;
         assert!((run.t - edge).abs() < 1e-3, "{} {h}: {}", M::NAME, run.t);
         assert!(run.state[0] >= 0.0 && run.state[0] < 1e-3);

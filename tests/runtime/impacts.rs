@@ -1,4 +1,4 @@
-//! Impacts found at the times of closed forms, and carried out once.
+//! Impacts are found at the times of closed forms, and each acts once.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
@@ -40,7 +40,7 @@ fn a04_leaving_from_rest_is_no_event() {
     with_every_integrator(&ball, at(0.0, 0.0, 0.0, 0.0), 2.0, |run, log, case| {
         assert_done(run, case);
         assert_eq!(log.seen(), 0, "{case}");
-        // Rounding adds up over the 2000 steps of the shortest limit.
+        // Rounding errors add up over the 2000 steps of the smallest step size.
         assert!(
             (run.state[0] - 2.0).abs() <= 1e-12,
             "{case}: {}",
@@ -66,14 +66,14 @@ fn near_graze(eps: f64, mut check: impl FnMut(f64, &Log, &str)) {
 #[test]
 fn a05_near_grazes_are_found_in_whatever_step() {
     for eps in [1e-2, 1e-4, 1e-8, 1e-12] {
-        // The start holds the number 1 - eps, not eps.
+        // The start contains the rounded 1 - eps, from which eps differs by a rounding error.
         let held: f64 = 1.0 - (1.0 - eps);
         let root = held.sqrt();
         near_graze(eps, |end, log, case| {
             let eta = 32.0 * U * 4.0 * if case.ends_with("0.001") { 16.0 } else { 1.0 };
             assert_times(log, &[1.0 - root], 2.0 * eta / (2.0 * root), case);
             let exact = 4.0 + 8.0 * root + 3.0 * held;
-            // An error of eta in the gap is one of eta / rate in the speed.
+            // An error eta in the gap gives an error eta / rate in the speed.
             assert!(
                 (end - exact).abs() <= 4.0 * eta / root + 16.0 * eta,
                 "{case}, {eps}: {end} for {exact}"
@@ -198,7 +198,7 @@ fn a15_a16_an_event_at_the_end_belongs_to_the_step_that_ends_there() {
             4.0 * U
         };
         if log.seen() == 0 {
-            // A thousand rounded steps may miss the wall by more than a unit in the last place.
+            // After a thousand rounded steps the point may end more than a unit in the last place before the wall.
             assert!(case.ends_with("0.001") && run.state[0] > 0.0, "{case}");
             return;
         }
@@ -213,7 +213,7 @@ fn a15_a16_an_event_at_the_end_belongs_to_the_step_that_ends_there() {
 
 #[test]
 fn a19_two_surfaces_in_one_step_are_taken_in_order_of_time() {
-    // The dip below 0.3 at t = 1 -+ 0.1 comes before the second surface at y = 2.
+    // The gap `x = (1 - t)^2 - 0.01` of `dip` falls through 0 at t = 0.9, before `y` reaches 1.05.
     let dip = gap!(c | x, y | x, [1.0, 0.0]);
     let end = gap!(c | x, y | c(1.05) - y, [0.0, -1.0]);
     let particle = Particle::new([2.0, 0.0], [end, dip]);
@@ -242,7 +242,7 @@ fn a20_a_pole_is_no_impact() {
     let mut log = Log::new();
     let run = run(&particle, at(3.0, 0.0, -1.1, 0.0), 2.5, &mut log);
     assert_eq!(log.seen(), 0);
-    // Behind the pole the surface counts and the gap is negative.
+    // Beyond the pole the surface counts and the gap is negative.
     assert!(
         matches!(run.outcome, Outcome::StartsInside { surface: 0, .. }),
         "{}",
@@ -260,7 +260,7 @@ fn b01_accumulating_impacts_end_as_zeno() {
                 let Outcome::Zeno { t, surface: 0 } = run.outcome else {
                     panic!("{case}, e = {e}: {} at {}", run.outcome, run.t);
                 };
-                // A floor away from zero stops hops at the rounding of its gap.
+                // At a floor away from zero, hops end at the rounding error of the gap.
                 let tolerance = if x == 0.0 { 1e-10 } else { 1e-6 };
                 assert!(
                     (t - exact).abs() <= tolerance * exact,
@@ -377,7 +377,7 @@ fn starting_inside_is_refused_as_an_outcome() {
 fn a_wall_that_counts_by_rounding_alone_is_not_met_from_inside() {
     let ledge = gap!(c | x, y | y - c(0.7), [0.0, 1.0]);
     let mut ball = Particle::new([0.0, -1.0], [ledge, FLOOR]);
-    // The wall x >= 0 lies below the ledge, which ends there.
+    // The ledge at y = 0.7 counts for x < 0. The wall x >= 0 counts below the height of the ledge.
     ball.active = |surface, [x, y]| if surface == 0 { x < 0.0 } else { y < 0.7 };
     for height in (0..40).map(|k| 0.8 + 0.01 * f64::from(k)) {
         let start = at(-9.0, height, 1.0, 0.0);
@@ -387,7 +387,7 @@ fn a_wall_that_counts_by_rounding_alone_is_not_met_from_inside() {
             assert!(log.seen() >= 1, "{case}");
         });
     }
-    // Without the ledge the motion comes below its height, and then the wall counts.
+    // Without the ledge the ball falls below this height, where the wall begins to count.
     ball.active = |surface, [_, y]| surface == 1 && y < 0.7;
     with_every_integrator(&ball, at(-9.0, 1.0, 1.0, 0.0), 5.0, |run, _, case| {
         let Outcome::BeginsBehind { surface: 1, gap } = run.outcome else {
@@ -414,8 +414,8 @@ fn plastic_impact_on_a_pressed_floor_is_contact() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_law(Law::ImpactPlastic);
     with_every_integrator(&ball, at(0.5, 0.0, 0.0, 1.0), 10.0, |run, log, case| {
         assert_eq!(run.outcome, Outcome::Contact { surface: 0 }, "{case}");
-        // An impact taken at the end of a step may leave the last bits of the gap to fall through, in hops that shrink by
-        // nine digits each.
+        // An impact at the end of a step may leave a gap of a few units in the last place. The ball falls through it in
+        // hops, each shorter by nine orders of magnitude.
         assert!((1..=4).contains(&log.seen()), "{case}");
         assert!((run.t - 1.0).abs() < 1e-7, "{case}: {}", run.t);
     });

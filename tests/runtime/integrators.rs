@@ -1,4 +1,4 @@
-//! Orders of the integrators and of their dense output, and how runs without impacts end.
+//! Orders of the integrators and of their dense output, and outcomes of runs without impacts.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
@@ -12,7 +12,7 @@ use dalembert::{
 };
 use dalembert_tests::line::{Line, Plane, soliton, soliton_at};
 
-/// Largest errors at the ends of `count` equal steps, and inside them.
+/// Largest error at the ends of `count` equal steps, and largest error inside them.
 fn errors<Step: Stepper<Line>>(count: u32, stepper: impl Fn(f64) -> Step) -> [f64; 2] {
     struct Watch([f64; 2]);
     impl Observer<Line> for Watch {
@@ -35,8 +35,8 @@ fn errors<Step: Stepper<Line>>(count: u32, stepper: impl Fn(f64) -> Step) -> [f6
     watch.0
 }
 
-/// At the ends of steps errors fall with the order; inside them with the lower of it and one more than that of the
-/// dense output.
+/// Asserts that errors at the ends of steps have the order of the integrator. Errors inside steps have that order or
+/// the order of the dense output plus one, whichever is lower.
 fn assert_orders<Step: Stepper<Line>>(
     count: u32,
     [order, dense_order]: [usize; 2],
@@ -55,7 +55,7 @@ fn assert_orders<Step: Stepper<Line>>(
     }
 }
 
-/// A pair at a tolerance so loose that the step limit alone decides.
+/// An embedded pair with so loose a tolerance that the step limit alone sets the step.
 fn limited<M: dalembert::integrate::Scheme>(h: f64) -> Embedded<Plane, M> {
     Embedded::new(Tolerance::new(1e3).unwrap())
         .with_max_step(h)
@@ -85,7 +85,7 @@ fn no_step_is_longer_than_the_largest() {
     }
     let system = soliton();
     let tolerance = Tolerance::new(1e3).unwrap();
-    // The last step would be a hundredth longer, to land on the end.
+    // One step more is taken where the last step would have to be slightly longer than the limit.
     for (t_end, steps) in [(0.1, 10), (0.10009, 11)] {
         let stepper = Dop853::new(tolerance).with_max_step(0.01).unwrap();
         let mut longest = Longest(0.0, 0);
@@ -116,7 +116,7 @@ fn methods_of_fixed_step_converge_at_their_orders() {
 
 #[test]
 fn time_reaches_every_stage() {
-    // x'' = 30 t^4: polynomial motion x = t^6, which both quadratures get right to rounding.
+    // `x'' = 30 t^4` has the solution `x = t^6`.
     let system = Line::new(|t, _, _| Ok(30.0 * t * t * t * t));
     fn end(system: &Line, stepper: impl Stepper<Line>) -> f64 {
         Simulation::new(system, stepper, ())

@@ -1,4 +1,4 @@
-//! Forces that act in a small part of a step are not passed over.
+//! Steps do not pass over forces that act in a small part of a step.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -8,7 +8,7 @@ use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, vector};
 use dalembert_stability::text::{Model, Text};
 
-/// A point that gets a unit impulse of width `s` at 5.3.
+/// A point with a unit impulse of width `s` at the time 5.3.
 static STRUCK: Text = Text::new(
     "Struck {
         coordinates { x; }
@@ -18,7 +18,7 @@ static STRUCK: Text = Text::new(
     }",
 );
 
-/// A point before a barrier of height 1 and width `s` at 2.
+/// A point with a potential barrier of height 1 and width `s` at `x = 2`.
 static BARRIER: Text = Text::new(
     "Barrier {
         coordinates { x; }
@@ -27,7 +27,7 @@ static BARRIER: Text = Text::new(
     }",
 );
 
-/// A bead on a spring that is struck by a needle of width `s`.
+/// A point on a spring with a unit impulse of width `s` at the time 5.3.
 static SPRING: Text = Text::new(
     "Spring {
         coordinates { x; }
@@ -37,7 +37,7 @@ static SPRING: Text = Text::new(
     }",
 );
 
-/// A point before a wall that is steep and thin.
+/// A point in a steep potential near `x = 0`.
 static STEEP: Text = Text::new(
     "Steep {
         coordinates { x in (0, 100); }
@@ -60,7 +60,7 @@ fn run(
     course.observed(integrator, &mut ())
 }
 
-/// The ends of a motion by every integrator, as positions and velocities; a motion that ended early must report its place.
+/// Position and velocity at the end, and the number of steps, by six integrators. Every run must reach its end.
 fn ends(model: &Model, start: [f64; 2], until: f64) -> Vec<(Integrator, [f64; 2], u64)> {
     let integrators = [
         Integrator::Dop853,
@@ -85,7 +85,7 @@ fn ends(model: &Model, start: [f64; 2], until: f64) -> Vec<(Integrator, [f64; 2]
     integrators.map(end).into()
 }
 
-/// NOTE: a step of fixed size that meets a narrow force is shortened, but the error of its integration is not estimated.
+/// True for integrators of fixed step: they shorten a step that meets a narrow force, but do not estimate its error.
 fn is_fixed(integrator: Integrator) -> bool {
     !integrator.is_adaptive()
 }
@@ -126,7 +126,7 @@ fn k06_a_barrier_above_the_energy_turns_the_motion_back() {
 fn a_needle_beside_other_forces_is_felt() {
     for s in [0.1, 1e-2, 1e-3] {
         let (integrator, [x, v], _) = ends(&SPRING.with([("s", s)]), [1.0, 0.0], 12.0)[0];
-        // A unit impulse at 5.3, smeared: its spectrum at the frequency of the spring.
+        // A smeared unit impulse acts with the value of its spectrum at the frequency of the spring.
         let strength = (-s * s / 4.0).exp();
         let exact = [
             12.0_f64.cos() + strength * (12.0 - 5.3_f64).sin(),
@@ -150,14 +150,14 @@ fn a_steep_wall_turns_the_motion_back() {
 
 #[test]
 fn smooth_forces_cost_no_steps() {
-    // Without a needle the steps are those of the integrator: as many as with the needle far out of reach.
+    // The run ends before the impulse acts: no step is rejected.
     let spring = |s: f64| SPRING.with([("s", s)]);
     let steps = |s: f64| run(&spring(s), Integrator::Dop853, [1.0, 0.0], 4.0).counters;
     let counters = steps(1e-3);
     assert_eq!(counters.rejected, 0, "{counters:?}");
 }
 
-/// A pointer that turns, and a point whose rate changes by a factor of 1 + m in every turn.
+/// A pointer that turns, and a point whose rate varies with the angle by a factor of 1 + m.
 static POINTER: Text = Text::new(
     "Pointer {
         coordinates { x; theta: angle; }
@@ -166,7 +166,7 @@ static POINTER: Text = Text::new(
     }",
 );
 
-/// A point that is struck as a pointer beside it passes a place, in a range of angles about 2.4/sqrt(n).
+/// A point with a force that depends on the angle of a pointer: `cos(theta)^n`, a bump of width about 2.4/sqrt(n).
 macro_rules! striker {
     ($n:literal) => {
         concat!(
@@ -186,7 +186,7 @@ static STRIKERS: [(u32, Text); 3] = [
     (4000, Text::new(striker!(4000))),
 ];
 
-/// The same by products of factors that change little on their own: bumps of cosines, and quotients.
+/// Forces that are narrow products of wide factors: powers of cosines, and quotients.
 static PRODUCTS: [Text; 2] = [
     Text::new(
         "Bumps {
@@ -214,7 +214,7 @@ static PRODUCTS: [Text; 2] = [
     ),
 ];
 
-/// A road that leads to a needle.
+/// A mode with wide rates, and one with a narrow barrier.
 static ROUTE: Text = Text::new(
     "Route {
         coordinates { x; theta: angle; }
@@ -227,7 +227,7 @@ static ROUTE: Text = Text::new(
     }",
 );
 
-/// 12 evaluations of the rates a step, and none to check it.
+/// Without the check a step takes 12 evaluations of the rates.
 #[test]
 fn a_denominator_that_changes_little_costs_no_check() {
     for (m, is_checked) in [(0.5, false), (2.9, false), (3.1, true), (100.0, true)] {
@@ -244,7 +244,7 @@ fn a_denominator_that_changes_little_costs_no_check() {
     }
 }
 
-/// Half a turn of the pointer, with the blow in the middle, by every adaptive integrator.
+/// Asserts that every adaptive integrator gets this impulse in half a turn of the pointer, with the bump in the middle.
 fn assert_gains(text: &Text, blow: f64) {
     let model = text.model();
     assert!(model.has_narrow_rates());
@@ -263,7 +263,7 @@ fn bump(n: u32) -> f64 {
     (1..=n / 2).fold(PI, |product, k| product * (1.0 - 0.5 / f64::from(k)))
 }
 
-/// A high power of a cosine is a bump, which a step from beside it does not see.
+/// A high power of a cosine is a narrow bump: a long step evaluates the force only beside it.
 #[test]
 fn a_blow_by_a_high_power_is_felt() {
     for (n, text) in &STRIKERS {
@@ -273,7 +273,7 @@ fn a_blow_by_a_high_power_is_felt() {
 
 #[test]
 fn a_blow_by_a_product_is_felt() {
-    // The second integral by the midpoint rule, which is exact to rounding for a function that is periodic and so smooth.
+    // The midpoint rule gives the second integral to rounding error, since the integrand is periodic and smooth.
     let places = (0..1000).map(|k| PI * (f64::from(k) + 0.5) / 1000.0);
     let quotients = places.map(|angle| (1.0 + 2.9 * angle.sin().powi(2)).powi(-40));
     assert_gains(&PRODUCTS[0], bump(180));

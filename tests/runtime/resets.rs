@@ -1,14 +1,14 @@
-//! Surfaces with a reset: crossed or bounced off, met once each time the gap falls through zero.
+//! Surfaces with a reset, which may be crossed. The reset acts once each time the gap falls through zero.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
 use dalembert_tests::gap;
 use dalembert_tests::particle::*;
 
-/// A wave along x with period 2 pi, as a gap that falls through 0 at `pi/2 + 2 pi n`.
+/// The gap `cos(x)`, which falls through 0 at `x = pi/2 + 2 pi n`.
 const WAVE: Gap = gap!(c | x, y | Numbers::cos(x), [-x.sin(), 0.0]);
 
-/// The same, where it rises.
+/// The gap `-cos(x)`, which falls through 0 where [`WAVE`] rises.
 const TROUGH: Gap = gap!(c | x, y | -Numbers::cos(x), [x.sin(), 0.0]);
 
 #[test]
@@ -32,13 +32,13 @@ fn several_falls_in_one_step_hide_none() {
     let point = Particle::new([0.0, 0.0], [WAVE]).with_reset(|_, state| state);
     let mut log = Log::new();
     let stepper = Dop853::new(Tolerance::new(1e-6).unwrap());
-    // A free motion: the first steps are as long as they may be.
+    // The motion is free, so steps have the largest length from the start.
     let run = run_with(&point, stepper, at(0.0, 0.0, 40.0, 0.0), 30.0, &mut log);
     assert_eq!(run.outcome, Outcome::Done);
     assert_eq!(log.seen(), 191);
 }
 
-/// Thrown up from the negative side: the gap rises through 0, and only its fall counts.
+/// A ball is thrown up from the negative side. The gap rises through 0, but only its fall counts.
 #[test]
 fn below_the_surface_is_no_fault_and_a_rise_no_event() {
     let ball = Particle::new([-1.0, 0.0], [FLOOR]).with_reset(|_, state| state);
@@ -97,7 +97,7 @@ fn bounces_of_a_reset_accumulate_as_others_do() {
     });
 }
 
-/// A circle of length 1: at `x = 1` the point is put back to 0, and the surface has no further effect there.
+/// A circle of length 1: the reset at `x = 1` moves the point to `x = 0` and counts the turn in `y`.
 #[test]
 fn a_position_that_is_reset_goes_on_from_there() {
     let point = Particle::new([0.0, 0.0], [CEILING])
@@ -110,7 +110,7 @@ fn a_position_that_is_reset_goes_on_from_there() {
     });
 }
 
-/// The reset puts the state onto the other surface, which it approaches: that one acts at the same time.
+/// The reset puts the state onto the other surface, moving towards it. The other surface acts at the same time.
 #[test]
 fn a_reset_onto_another_surface_acts_there_too() {
     let jump = |surface: usize, s: State| match surface {
@@ -126,7 +126,7 @@ fn a_reset_onto_another_surface_acts_there_too() {
     });
 }
 
-/// Two surfaces that send the state to each other: each acts once at a time, then the first is crossed.
+/// Two surfaces send the state to each other. Each acts once at that time, then the first is crossed.
 #[test]
 fn a_surface_acts_once_at_a_time() {
     let jump = |surface: usize, s: State| at(f64::from(surface == 0), s[1], -s[2], s[3]);

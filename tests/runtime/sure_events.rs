@@ -1,5 +1,5 @@
-//! No impact is stepped over and none is invented, for every gap. First impacts of random starts are compared with
-//! conservative advancement, which moves along the exact flight by the gap over a bound of its rate and so never passes a
+//! No impact is stepped over and none is invented. First impacts of random starts are compared with conservative
+//! advancement, which moves along the exact flight by the gap divided by a bound on its rate and so never passes a
 //! surface.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
@@ -18,7 +18,7 @@ static BUMP: Text = Text::new(
     }",
 );
 
-/// A point among three pegs, in a box, falling with `g`.
+/// A point among three pegs, under the gravity `g`.
 static PEGS: Text = Text::new(
     "Pegs {
         coordinates { x; y; }
@@ -28,7 +28,7 @@ static PEGS: Text = Text::new(
     }",
 );
 
-/// A point beside a slab and under a roof of absolute values.
+/// A point beside a slab and under a roof. Both gaps contain absolute values.
 static SLAB: Text = Text::new(
     "Slab {
         coordinates { x; y; }
@@ -65,19 +65,19 @@ impl Flight {
         ]
     }
 
-    /// The largest speed until a time.
+    /// Bound on the speed until a time.
     fn speed(&self, until: f64) -> f64 {
         self.v[0].hypot(self.v[1].abs() + self.g * until)
     }
 }
 
-/// A model with values for its parameters, and its gaps in closed form.
+/// Parameters of a model, with its gaps in closed form.
 trait Family: core::fmt::Debug {
     fn model(&self) -> Model;
 
     fn distances(&self, t: f64, point: [f64; 2]) -> Vec<f64>;
 
-    /// Bound of the rate of every gap at this speed.
+    /// Bound on the rate of every gap at this speed.
     fn fastest(&self, speed: f64) -> f64;
 }
 
@@ -187,7 +187,7 @@ impl Family for Needle {
     }
 }
 
-/// Outcome of the exact flight.
+/// First impact of the exact flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Exact {
     Hits {
@@ -195,11 +195,11 @@ enum Exact {
         surface: usize,
     },
     Passes,
-    /// It touches or nearly touches: both outcomes are right, and the times differ.
+    /// The flight touches a surface or nearly does: a run may report an impact or not.
     Grazes,
 }
 
-/// Normal speed, as a part of the speed, below which an impact is a graze; and the distance of a near miss.
+/// An impact counts as a graze if the gap falls slower than this fraction of the bound on its rate.
 const SHALLOW: f64 = 1e-3;
 
 /// The first impact, by conservative advancement.
@@ -233,11 +233,11 @@ fn exact(family: &dyn Family, flight: &Flight, until: f64) -> Exact {
             };
         }
     }
-    // So many short steps are made only beside a surface.
+    // The flight stays close to a surface: only there are the steps so short.
     Exact::Grazes
 }
 
-/// Counts of comparisons.
+/// Numbers of comparisons.
 #[derive(Debug, Default)]
 struct Tally {
     runs: u64,
@@ -283,7 +283,7 @@ fn compare(family: &dyn Family, setting: Setting<'_>, flight: &Flight, until: f6
     }
 }
 
-/// A model, and how it is run.
+/// A model, and the settings of its run.
 #[derive(Clone, Copy)]
 struct Setting<'a> {
     model: &'a Model,
@@ -336,7 +336,7 @@ impl Random {
         lo + (hi - lo) * self.next()
     }
 
-    /// Between two sizes, uniform in the logarithm.
+    /// A number between two bounds, uniform in its logarithm.
     fn size(&mut self, lo: f64, hi: f64) -> f64 {
         (self.between(lo.ln(), hi.ln())).exp()
     }
@@ -354,7 +354,7 @@ impl Random {
     }
 }
 
-/// Random starts of every family.
+/// Compares `count` random starts of every family.
 fn try_starts(count: u32, seed: u64) {
     let mut random = Random(seed);
     let mut tally = Tally::default();
@@ -410,7 +410,7 @@ fn pegs(random: &mut Random, tally: &mut Tally) {
         r: [(); 3].map(|()| random.size(0.05, 1.0) * size.min(random.size(1.0, 1e4))),
         g,
     };
-    // Half of them head for a peg, more or less.
+    // About half of the flights aim at the first peg.
     let q = random.point(size);
     let mut v = random.velocity();
     let (speed, aimed) = (v[0].hypot(v[1]), random.next() < 0.5);

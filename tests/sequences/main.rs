@@ -1,8 +1,8 @@
 //! Random starts of every shipped model with surfaces: all integrators meet the same surfaces in the same order.
 //!
-//! Two runs at a tolerance of 1e-13, by different methods, are the reference as far as they agree: up to there no error has grown yet, whatever
-//! chaos makes of it later. A run by another integrator is compared with it until its error reaches [`LOST`], at an impact or just before
-//! the one in question, or a graze is flagged. Impacts that are certified bound the times of the reference.
+//! Two runs at the tolerance 1e-13 by different methods are the reference as far as they agree. Up to there no error
+//! has grown, even in chaotic motion. A run by another integrator is compared with the reference until its error
+//! reaches [`LOST`], or until a graze is flagged. Certified impacts bound the times of the reference.
 
 mod runs;
 mod starts;
@@ -14,10 +14,10 @@ use dalembert_tests::sampling::Random;
 use runs::{Course, IMPACTS, Way, apart, certified, error, run, state_at};
 use starts::{Case, Shipped};
 
-/// Differences of two references beyond which they are none.
+/// Largest difference between two reference runs that agree.
 const AGREED: f64 = 1e-7;
 
-/// The error of a run beyond which its order of impacts says nothing.
+/// Error of a run beyond which its impacts are not compared.
 const LOST: f64 = 1e-4;
 
 /// The reference of a start.
@@ -27,7 +27,7 @@ struct Reference {
     sure: usize,
 }
 
-/// Mistakes of all runs, and what was compared.
+/// Mistakes of all runs, and numbers of comparisons.
 #[derive(Debug, Default)]
 struct Tally {
     starts: u64,
@@ -46,7 +46,7 @@ fn references() -> [Way; 2] {
     })
 }
 
-/// The reference of a start; `None` of one that is refused.
+/// The reference of a start; `None` if the start is refused.
 fn reference(case: &Case, tally: &mut Tally) -> Option<Reference> {
     let [first, second] = references();
     let course = run(case, first, case.until)?;
@@ -70,7 +70,7 @@ fn reference(case: &Case, tally: &mut Tally) -> Option<Reference> {
             .map(|hit| (hit.t, hit.surface, hit.graze))
     });
     let kinds = [&course, &other].map(|measured| measured.ending.outcome.kind());
-    // What ends the agreement is an error that has grown, a graze, or a mistake.
+    // The agreement ends by an error that has grown, by a graze, or by a mistake.
     let before = sure.checked_sub(1).map_or(0.0, |k| {
         error(&course.impacts[k], &other.impacts[k], case.until)
     });
@@ -89,7 +89,7 @@ fn reference(case: &Case, tally: &mut Tally) -> Option<Reference> {
     Some(Reference { course, sure })
 }
 
-/// The start in words.
+/// The start as text.
 fn told(case: &Case) -> String {
     let description = case.model.description();
     let parameters = description.parameters.iter().enumerate();
@@ -99,7 +99,7 @@ fn told(case: &Case) -> String {
     format!("    {} {:?}", values.join(" "), case.origin)
 }
 
-/// Mistake of a run, if there is one.
+/// Describes the mistake of a run; `None` if it has none.
 fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     let Reference { course, sure } = reference;
     let last = course.ending.t;
@@ -160,7 +160,8 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
     }
 }
 
-/// True if the error of a run reaches [`LOST`] just before a time. The run and its reference may last that long.
+/// True if the error of a run reaches [`LOST`] just before the time `t`. The run lasts until `until`, its reference
+/// until `reference_until`.
 fn is_lost(case: &Case, way: Way, [until, reference_until]: [f64; 2], t: f64) -> bool {
     let before = t - 1e-9 * case.until;
     let states = state_at(case, way, until, before).and_then(|(t, ours)| {
@@ -172,7 +173,7 @@ fn is_lost(case: &Case, way: Way, [until, reference_until]: [f64; 2], t: f64) ->
     })
 }
 
-/// The ways that a model is run in.
+/// The integrators, forms and tolerances with which a model is run.
 fn ways(case: &Case, adaptive: &[f64], fixed: &[f64]) -> Vec<Way> {
     let description = case.model.description();
     let has_no_principle = description.is_first_order || !description.modes.is_empty();
@@ -221,7 +222,7 @@ fn check_certified(case: &Case, reference: &Reference, tally: &mut Tally) {
     }
 }
 
-/// Compares all runs of a start; false if it is refused.
+/// Compares all runs of a start. Returns false if the start is refused.
 fn compare(case: &Case, [adaptive, fixed]: [&[f64]; 2], tally: &mut Tally) -> bool {
     let Some(reference) = reference(case, tally) else {
         return false;
@@ -236,10 +237,10 @@ fn compare(case: &Case, [adaptive, fixed]: [&[f64]; 2], tally: &mut Tally) -> bo
     true
 }
 
-/// Draws until a start is accepted.
+/// Largest number of draws until a start is accepted.
 const DRAWS: u64 = 200;
 
-/// Runs the declared start of every model and so many others, from a seed.
+/// Compares the declared start and `count` drawn starts of every model.
 fn compare_all(count: u64, seed: u64, tolerances: [&[f64]; 2]) {
     let mut tally = Tally::default();
     let only = std::env::var("SEQUENCES_MODEL").ok();
@@ -274,7 +275,7 @@ fn compare_all(count: u64, seed: u64, tolerances: [&[f64]; 2]) {
     assert!(only.is_some() || tally.impacts > tally.starts * IMPACTS / 4);
 }
 
-/// The number in a variable of the environment.
+/// The number in an environment variable.
 fn asked(name: &str, default: u64) -> u64 {
     let value = std::env::var(name).ok();
     value.and_then(|text| text.parse().ok()).unwrap_or(default)

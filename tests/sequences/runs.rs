@@ -1,4 +1,4 @@
-//! Runs of a start, their impacts, and certified ones.
+//! Runs of a start, and their impacts, computed and certified.
 
 use dalembert::Policies;
 use dalembert_driver::{
@@ -8,7 +8,7 @@ use dalembert_driver::{
 
 use crate::starts::Case;
 
-/// Impacts that are followed.
+/// Largest number of impacts of a run.
 pub const IMPACTS: u64 = 16;
 
 /// Impacts and end of a run.
@@ -38,7 +38,7 @@ pub struct Way {
     pub tol: f64,
 }
 
-/// Waits for the state at a time.
+/// Keeps the state at a time, and stops the run there.
 struct Moment {
     t: f64,
     point: Option<Point>,
@@ -61,7 +61,7 @@ impl Watch for Moment {
     }
 }
 
-/// Makes a run; `None` where the start is refused.
+/// Makes a run; `None` if the start is refused.
 pub fn run(case: &Case, way: Way, until: f64) -> Option<Course> {
     let mut log = Log::default();
     let ending = watched(case, way, until, &mut log)?;
@@ -71,7 +71,7 @@ pub fn run(case: &Case, way: Way, until: f64) -> Option<Course> {
     })
 }
 
-/// The state at a time of a run, or its last state and the time of that if the run ends before.
+/// A time and the state of a run at it: the time `t`, or the end of the run if it comes first.
 pub fn state_at(case: &Case, way: Way, until: f64, t: f64) -> Option<(f64, Point)> {
     let mut moment = Moment { t, point: None };
     let ending = watched(case, way, until, &mut moment)?;
@@ -98,7 +98,7 @@ fn watched(case: &Case, way: Way, until: f64, watch: &mut dyn Watch) -> Option<E
     case.model.simulate(&case.origin, &settings, watch).ok()
 }
 
-/// The first impacts as enclosures, as far as motion is certified; `None` where the model has no certified motion.
+/// Enclosures of the first impacts, as far as the motion is certified; `None` if the model has no certified motion.
 pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> {
     let request = Certification {
         form: Form::Reduced,
@@ -115,7 +115,7 @@ pub fn certified(case: &Case, impacts: u64) -> Option<(Vec<Strike>, Certified)> 
     Some((strikes, certified))
 }
 
-/// The error of a run behind an impact, by that of a reference: of time in parts of the run, of the state in parts of its size.
+/// The error of an impact compared with the reference: the larger of the relative errors of its time and state.
 pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
     let time = (impact.t - reference.t).abs() / until;
     let after = (&impact.after, &reference.after);
@@ -123,7 +123,7 @@ pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
         .max(apart(&after.0.qdot, &after.1.qdot))
 }
 
-/// The largest difference of two vectors, in parts of their size; coordinates that the mode does not have are left out.
+/// The largest difference of two vectors relative to their size. Coordinates that the mode does not have are left out.
 pub fn apart(a: &[f64], b: &[f64]) -> f64 {
     let pairs = || a.iter().zip(b).filter(|(a, b)| !(a.is_nan() && b.is_nan()));
     let largest = pairs().fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));

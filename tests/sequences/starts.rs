@@ -9,9 +9,9 @@ use dalembert_tests::sampling::Random;
 
 /// A model with parameters and a start.
 pub struct Case {
-    /// The name of the model with the number of the start.
+    /// The name of the model, with the number of the start.
     pub name: String,
-    /// The model with its parameters, in the mode that it begins in.
+    /// The model with its parameters and initial mode.
     pub model: Box<dyn AnyModel>,
     /// The start.
     pub origin: Origin,
@@ -21,12 +21,12 @@ pub struct Case {
 
 /// A shipped model.
 pub struct Shipped {
-    /// Its name.
+    /// The name of the model.
     pub name: &'static str,
     form: Arc<Form>,
 }
 
-/// Runs go so many times as far as the model declares.
+/// Length of runs, as a multiple of the declared length.
 const LONGER: f64 = 3.0;
 
 impl Shipped {
@@ -63,7 +63,8 @@ impl Shipped {
         }
     }
 
-    /// A start of this number: even ones near the declared one, odd ones anywhere in the chart, all with other parameters.
+    /// A random start with random parameters. Even numbers give starts near the declared one, odd numbers starts
+    /// anywhere in the chart.
     pub fn drawn(&self, number: u64, random: &mut Random) -> Case {
         let mut case = self.declared();
         let description = &self.form.documentation.description;
@@ -95,7 +96,7 @@ impl Shipped {
     }
 }
 
-/// Draws every parameter within a fifth of its declared value, if the declaration allows it.
+/// Draws every parameter within a fifth of its declared value, as far as the declaration allows it.
 fn vary_parameters(model: &mut dyn AnyModel, description: &Description, random: &mut Random) {
     for index in 0..description.parameters.len() {
         let value = model.parameter(index);
@@ -106,7 +107,7 @@ fn vary_parameters(model: &mut dyn AnyModel, description: &Description, random: 
     }
 }
 
-/// Draws positions in the chart, coordinates of lines about their declared values.
+/// Draws positions in the chart. Coordinates on lines are drawn near their declared values.
 fn draw_positions(q: &mut [f64], description: &Description, random: &mut Random) {
     let size = 10.0_f64.powf(random.within(-2.0, 0.5));
     for (q, coordinate) in q.iter_mut().zip(&description.coordinates) {

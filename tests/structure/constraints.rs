@@ -1,5 +1,5 @@
-//! D under the discrete Lagrange-d'Alembert principle: kept to rounding at the ends of steps, in the global form, which
-//! could leave it.
+//! Integrators of the discrete Lagrange-d'Alembert principle keep states on D to rounding errors at the ends of steps,
+//! even in the global form, in which states can leave D.
 
 use core::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ type State = <Large as VectorField>::State;
 /// A few units in the last place; the effect `Projection` begins to act at `2^-44 = 6e-14`.
 const ROUNDING: f64 = 1e-14;
 
-/// The largest residual at the ends of steps, and the largest sum of absolute terms of one.
+/// The largest residual at the ends of steps, and the largest sum of the absolute terms of a residual.
 struct Residual<'a> {
     system: &'a Large,
     worst: f64,
@@ -27,7 +27,7 @@ struct Residual<'a> {
 impl Observer<Large> for Residual<'_> {
     fn step(&mut self, segment: &mut Segment<'_, State>) -> ControlFlow<()> {
         let (t, q) = (segment.t_end(), self.system.position(segment.end()));
-        // At the end of a chart there may be no velocity.
+        // At the edge of a chart the velocity may not exist.
         let Ok(qdot) = self.system.velocity(t, segment.end()) else {
             return ControlFlow::Continue(());
         };
@@ -40,7 +40,7 @@ impl Observer<Large> for Residual<'_> {
     }
 }
 
-/// The largest residual of a run without projection, as a part of the largest sum of absolute terms.
+/// The largest residual of a run without projection, relative to the largest sum of absolute terms.
 fn residual(system: &Large, state: State, mut stepper: impl Stepper<Large>, until: f64) -> f64 {
     let mut residual = Residual {
         system,
@@ -80,12 +80,12 @@ fn check(name: &str, until: f64) {
 
 #[test]
 fn constraints_hold_to_rounding_at_the_ends_of_steps() {
-    // Affine, time dependent, with forces, velocity-linear terms and metrics that depend on positions among them.
+    // These include affine and time-dependent constraints, forces, velocity-linear terms and variable metrics.
     check("chaplygin_sleigh", 1000.0);
     check("rolling_disk", 1000.0);
     check("ball_on_rotating_table", 5.0);
     check("rolling_ball_euler", 5.0);
-    // Soon after this its motion blows up.
+    // The motion of the affine sleigh blows up soon after this time.
     check("affine_sleigh", 0.4);
     check("magnetic_disk", 100.0);
     check("damped_sleigh", 100.0);

@@ -1,4 +1,4 @@
-//! Integrators of fixed step on declared systems: their orders, their invariants, and their work.
+//! Integrators on declared systems: their orders, their invariants, and their work.
 
 mod constraints;
 mod orders;

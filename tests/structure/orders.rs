@@ -1,5 +1,5 @@
-//! The observed order of every method, on every declared system, against DOP853 at its finest. Methods with step-size
-//! control are held to a fixed length, at a tolerance so loose that it does not act.
+//! The observed order of every method on every declared system, with DOP853 at the finest tolerance as the reference.
+//! Methods with step-size control run at a step limit and a tolerance so loose that it does not act.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -14,14 +14,14 @@ type State = <Large as VectorField>::State;
 /// Duration of the motions.
 const TIME: f64 = 0.5;
 
-/// Errors between which the slope is measured. Below them are rounding and the error of the reference; above them steps
+/// Errors between which the slope is measured. Below are rounding errors and the error of the reference. Above, steps
 /// are so long that the leading term does not dominate.
 const RANGE: [f64; 2] = [2e-11, 1e-4];
 
-/// The order of series, for which the leading term dominates within the range.
+/// Order of the power series, chosen so that the leading term dominates within the range.
 const TAYLOR_ORDER: usize = 5;
 
-/// Positions and velocities at the end, and the number of steps.
+/// Positions and velocities at the end, and the number of steps; `None` if the run ends early.
 fn end(
     system: &Large,
     mut stepper: impl Stepper<Large>,
@@ -49,7 +49,7 @@ fn difference<V: StateVector>(a: &[V; 2], b: &[V; 2]) -> f64 {
         / size
 }
 
-/// The slopes between halved steps whose errors lie in the range; empty for a method that is exact on this motion.
+/// The slopes between halved steps whose errors lie in the range; empty if the method is exact for this motion.
 fn slopes(error: impl Fn(f64) -> f64) -> Vec<f64> {
     let errors: Vec<f64> = (0..12).map(|k| error(TIME / f64::from(1 << k))).collect();
     let in_range = |error: &f64| (RANGE[0]..RANGE[1]).contains(error);
@@ -79,7 +79,7 @@ impl Orders {
             return;
         };
         self.measured += 1;
-        // Errors of high orders reach rounding before their leading term dominates: until then they fall faster.
+        // Errors of methods of high order reach rounding errors before their leading term dominates, and fall faster.
         let ceiling = if is_exact {
             order as f64 + 0.3
         } else {
@@ -114,7 +114,7 @@ impl Orders {
         macro_rules! check_limited {
             ($method:ident, $order:expr, $limited:expr) => {{
                 let error = |h: f64| {
-                    // Steps shortened by the tolerance do not count.
+                    // Runs with steps that the tolerance shortened do not count.
                     let reached = end(system, $limited(h), state);
                     let reached = reached.filter(|(_, steps)| *steps == (TIME / h).round() as u64);
                     reached.map_or(f64::NAN, |(reached, _)| difference(&reached, &reference))

@@ -1,4 +1,4 @@
-//! Reversible systems under symmetric methods: with velocities reversed they run back along their path.
+//! Symmetric methods on reversible systems: with reversed velocities a run returns along its path.
 
 use dalembert::integrate::Chosen;
 use dalembert::{
@@ -17,7 +17,7 @@ fn miss(system: &Large, state: State, stepper: impl Stepper<Large> + Copy) -> f6
         let end =
             Simulation::new(system, Chosen::new(&mut stepper), ()).run(0.0, state, 4.0, &mut ());
         let end = end.expect("a start");
-        // Where a step is divided, the way back may be divided in another way.
+        // A divided step may be divided differently on the way back.
         assert_eq!((end.outcome, end.counters.rejected), (Outcome::Done, 0));
         end.state
     };

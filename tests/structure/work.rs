@@ -1,4 +1,4 @@
-//! The work of small runs of every integrator on every declared system, exactly: a change of these numbers is a change of
+//! The exact work of short runs of every integrator on every declared system. A change of these numbers is a change of
 //! the method. `ACCEPT=1 cargo test --release -p dalembert-tests --test structure` stores them anew.
 
 use std::fmt::Write as _;
@@ -26,7 +26,7 @@ const INTEGRATORS: [(&str, [&str; 2]); 8] = [
     ("dla4", ["--step", "0.015625"]),
 ];
 
-/// Rate evaluations, coefficients of series, accepted and rejected steps, dense constructions, impacts, projections.
+/// Counters with the widths of their columns.
 const COUNTERS: [(&str, usize); 7] = [
     ("rate_evaluations", 6),
     ("coefficients", 6),
@@ -42,7 +42,7 @@ fn list<V: StateVector>(vector: V) -> String {
     numbers.join(",")
 }
 
-/// Lines of the work of a system.
+/// Appends the lines of a system, one for each integrator.
 fn write_work(work: &mut String, system: &Large) {
     let state = states(system, 1, 7)[0];
     let q = list(system.position(&state));

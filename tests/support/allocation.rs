@@ -1,4 +1,4 @@
-//! Counts allocations of the current thread, so that a test can assert that there were none, and the bytes that it holds.
+//! Counts allocations of the current thread, so that a test can assert that there are none, and the bytes in use.
 
 #![allow(unsafe_code, reason = "a global allocator cannot be written without")]
 
@@ -15,7 +15,7 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// Counts bytes that are allocated, or freed.
+/// Adds to the bytes that this thread holds; freed bytes are negative.
 fn hold(bytes: isize) {
     let _ = HELD.try_with(|held| {
         held.set(held.get() + bytes);
@@ -39,14 +39,14 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// The allocations that `work` makes on this thread, with [`Counting`] as the global allocator.
+/// Number of allocations that `work` makes on this thread, with [`Counting`] as the global allocator.
 pub fn allocations(work: impl FnOnce()) -> u64 {
     let before = COUNT.with(Cell::get);
     work();
     COUNT.with(Cell::get) - before
 }
 
-/// The most bytes that `work` holds on this thread in addition to those held before it, with [`Counting`] as the global allocator.
+/// The most bytes that `work` holds on this thread beyond those held before, if [`Counting`] is the global allocator.
 pub fn peak(work: impl FnOnce()) -> isize {
     let before = HELD.with(Cell::get);
     PEAK.with(|peak| peak.set(before));

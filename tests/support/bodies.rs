@@ -1,6 +1,6 @@
-//! Declarations of rigid bodies and trains, with kinetic energies and constraints to choose.
+//! Declarations of rigid bodies and trains, with given kinetic energies and constraints.
 
-/// Bodies with Euler angles: angular velocity in the body and in space.
+/// Angular velocity in Euler angles: `b1`, `b2`, `b3` in the body frame, `s1`, `s2`, `s3` in space.
 pub const BODY: &str = "
     let b1 = dot(phi)*sin(theta)*sin(psi) + dot(theta)*cos(psi);
     let b2 = dot(phi)*sin(theta)*cos(psi) - dot(theta)*sin(psi);
@@ -9,7 +9,7 @@ pub const BODY: &str = "
     let s2 = dot(theta)*sin(phi) - dot(psi)*sin(theta)*cos(phi);
     let s3 = dot(phi) + dot(psi)*cos(theta);";
 
-/// The coordinates of such a body.
+/// Euler angles as coordinates.
 pub const EULER: &str = "phi: angle; theta in (0, pi); psi: angle;";
 
 /// A body with a fixed point.
@@ -20,7 +20,8 @@ pub fn top(parameters: &str, kinetic: &str, constraint: &str) -> String {
     )
 }
 
-/// A ball of radius 1 on a plane, its centre of mass at `(l1, l2, l3)` in the body, measured from the centre.
+/// A ball of radius 1 that rolls on a plane. `offset` has the body coordinates of its centre of mass, measured from the
+/// centre and parted by commas; `more` has further constraints.
 pub fn ball(offset: &str, inertia: &str, more: &str) -> String {
     format!(
         "Ball {{

@@ -9,10 +9,10 @@ use dalembert::certified::{
 use dalembert_stability::course::vector;
 use dalembert_stability::text::Model;
 
-/// The state of these positions and velocities.
+/// The state with these positions and velocities.
 ///
 /// # Panics
-/// If they are refused.
+/// If the system refuses them.
 pub fn state<S: System>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     let state = system.state_unchecked(0.0, &vector(q), &vector(qdot));
     state.expect("a state")
@@ -38,7 +38,7 @@ pub fn flow(flow: &mut CertifiedFlow<'_, Model>, until: f64) -> Result<(), Lost>
     flow.run(until)
 }
 
-/// Proves the periodic orbit near a state.
+/// Proves that a periodic orbit exists near a state.
 ///
 /// # Errors
 /// Those of [`CertifiedSection::periodic`].

@@ -1,4 +1,4 @@
-//! Declarations with other claims, and the results of the claims: verdicts, and the numbers of a message.
+//! Declarations whose claims are replaced, and results of claims: verdicts, and the numbers in messages.
 
 use dalembert_codegen::claims::{Finding, Verdict, examine};
 use dalembert_codegen::{mechanics, model, spec};
@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use crate::numeric::Numeric;
 
-/// A declaration, taken apart.
+/// A declaration with its claims taken out.
 #[derive(Debug, Clone)]
 pub struct Declaration {
     before: TokenStream,
@@ -17,7 +17,7 @@ pub struct Declaration {
 }
 
 impl Declaration {
-    /// Takes a declaration apart.
+    /// Takes the claims out of a declaration.
     ///
     /// # Panics
     /// If it is not a declaration.
@@ -42,7 +42,7 @@ impl Declaration {
                 Some(TokenTree::Group(claims)) => {
                     declaration.claims.extend(entries_of(claims.stream()))
                 }
-                // Those about a scene stay where they are: `claims for free { .. }`.
+                // Claims about a scene stay in place: `claims for free { .. }`.
                 Some(other) => declaration.body.extend([token, other]),
                 None => {}
             }
@@ -50,7 +50,7 @@ impl Declaration {
         declaration
     }
 
-    /// The declaration with one claim, on a line of its own, and that line.
+    /// The declaration with one claim on a line of its own, and the number of that line.
     pub fn claiming(&self, claim: &str) -> (String, usize) {
         let body = Group::new(Delimiter::Brace, self.body.iter().cloned().collect());
         let body = body.to_string();
@@ -60,7 +60,7 @@ impl Declaration {
         (format!("{head}{claim};\n}}\n}}"), line)
     }
 
-    /// Finding on a claim.
+    /// The finding on a claim.
     pub fn verdict(&self, claim: &str) -> Finding {
         verdict(&self.claiming(claim).0)
     }
@@ -93,7 +93,7 @@ pub fn verdict(source: &str) -> Finding {
     findings.remove(0)
 }
 
-/// The only message of a declaration that is refused, and the lines it points at.
+/// The only message of a refused declaration, and the first and last line it points at.
 ///
 /// # Panics
 /// If the declaration is accepted, or has another number of messages.
@@ -110,17 +110,17 @@ pub fn refusal(source: &str) -> (String, [usize; 2]) {
 /// Result of a claim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
-    /// It is true, and proved.
+    /// Proved.
     Proved,
-    /// It is false, and refuted with this in the message.
+    /// Refuted; the message contains this text.
     Refuted(&'static str),
-    /// Left open with this as the reason.
+    /// Left open; the reason contains this text.
     Undecided(&'static str),
-    /// Refused before it is examined, with this message.
+    /// Refused before it is examined; the message contains this text.
     Refused(&'static str),
 }
 
-/// Checks the result of a claim of a model with these declarations.
+/// Checks the result of one claim about a model with these declarations.
 ///
 /// # Panics
 /// If the result differs.
@@ -149,9 +149,9 @@ pub fn check(declarations: &str, claim: &str, expected: Outcome) {
 /// The numbers of a message.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {
-    /// Computed values, as `delta = -0.39`: names and values in order.
+    /// Computed values such as `delta = -0.39`: names and values in order.
     pub values: Vec<(String, f64)>,
-    /// Place, as `at x = 0.36, m = 2`: names and values in order.
+    /// State and parameters such as `at x = 0.36, m = 2`: names and values in order.
     pub at: Vec<(String, f64)>,
 }
 
@@ -161,7 +161,7 @@ impl Witness {
     /// # Panics
     /// If a number cannot be read.
     pub fn of(message: &str) -> Option<Self> {
-        // A state at which parts cancel is an example, see below.
+        // Lines with an example are read by `example`.
         let is_value = |line: &&str| {
             let number = line.rsplit_once(" = ");
             let is_number = number.is_some_and(|(_, value)| value.parse::<f64>().is_ok());
@@ -178,7 +178,7 @@ impl Witness {
         (!values.is_empty()).then_some(Self { values, at })
     }
 
-    /// Reads the example of a message, a state at which parts cancel; `None` if it has none.
+    /// Reads the example of a message, a state at which the terms of a rate cancel; `None` if it has none.
     ///
     /// # Panics
     /// If a number cannot be read.
@@ -235,7 +235,7 @@ fn pair(text: &str) -> (String, f64) {
     (name.to_owned(), value.parse().expect("a number"))
 }
 
-/// Names and values of `x = 1.5, dot(x) = -2`. Names may have commas.
+/// Names and values of `x = 1.5, dot(x) = -2`. Names may contain commas.
 fn pairs(text: &str) -> Vec<(String, f64)> {
     let mut found = Vec::new();
     let mut open = String::new();

@@ -1,24 +1,25 @@
-//! The criterion by another route: the mean curvature of the orthogonal complement of D, and brackets, by differences.
+//! The criterion for an invariant density, computed independently: the mean curvature of the orthogonal complement of
+//! D, and brackets, by finite differences.
 //!
 //! For an orthonormal frame `w_a` of the complement, `theta(X) = sum_a g(nabla_{w_a} w_a, X) + 1/2 X(ln det m)` for X
-//! in D. Everything here is double precision and five-point stencils; nothing is shared with the generator but the
-//! entries of metric and forms.
+//! in D. All derivatives are five-point stencils in double precision. The only shared values are the entries of metric
+//! and forms.
 
 use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;
 use dalembert_expr::{ExprId, SymbolId};
 
-/// A step of the stencils: their error `h^4` is near that of rounding, `1e-16/h^3` after three nested ones.
+/// Step `h` of the stencils. Their error `h^4` is near the rounding error `1e-16/h^3` of three nested stencils.
 const STEP: f64 = 0.004;
 
-/// A model with linear constraints without time, at fixed parameters, as a function of its coordinates.
+/// A model with linear constraints that do not depend on time, at fixed parameters.
 #[derive(Debug)]
 pub struct Curved<'m> {
     model: &'m Model,
     roots: Vec<ExprId>,
     forms: usize,
     parameters: Vec<(SymbolId, f64)>,
-    /// The positions of the dependent velocities.
+    /// The indices of the dependent velocities.
     pub dependent: Vec<usize>,
 }
 
@@ -121,7 +122,7 @@ impl<'m> Curved<'m> {
         sum
     }
 
-    /// A nested bracket such as `[X1,[X1,X2]]`: its components, then its demand on the derivative of G.
+    /// A nested bracket such as `[X1,[X1,X2]]`: its components, then the value it demands for the derivative of G.
     ///
     /// # Panics
     /// If the text is not a bracket.
@@ -168,7 +169,7 @@ fn inner(metric: &[Vec<f64>], a: &[f64], b: &[f64]) -> f64 {
     metric.iter().zip(a).map(row).sum()
 }
 
-/// Elimination with pivots.
+/// Solves a linear system by elimination with pivots.
 ///
 /// # Panics
 /// If the matrix is singular.

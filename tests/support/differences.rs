@@ -1,4 +1,4 @@
-//! Derivatives of runs against differences of runs.
+//! Comparison of derivatives of runs with differences of runs.
 
 use core::ops::ControlFlow;
 
@@ -8,10 +8,11 @@ use dalembert_cli::Integrator;
 use dalembert_stability::course::Course;
 use dalembert_stability::varied::Varied;
 
-/// The largest difference between a derivative and a difference of runs, in units of the largest entry of its column.
+/// Bound on the difference between a derivative and a difference of runs, relative to the largest entry of the column,
+/// or to 1 if that is larger.
 const DIFFERENCE: f64 = 2e-9;
 
-/// The derivative of `f` at 0, by differences over four steps and their halves.
+/// The derivative of `f` at 0, by central differences over one, two and four steps, extrapolated to order 6.
 pub fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
     let central = |h: f64| {
         let (ahead, behind) = (f(h), f(-h));
@@ -30,11 +31,12 @@ pub fn difference<V: StateVector>(step: f64, f: impl Fn(f64) -> V) -> V {
     slope
 }
 
-/// Compares derivatives of the end of a run, with respect to the first `used` components of its start and to all
-/// parameters, with differences of runs with as many impacts. Returns the number of impacts.
+/// Compares derivatives of the end of a run with differences of runs. The derivatives are taken with respect to the
+/// first `used` components of the start and to all parameters; all runs have the same number of impacts. Returns that
+/// number.
 ///
 /// # Panics
-/// If they differ, or if a run does not come to its end.
+/// If they differ, or if a run does not reach its end.
 pub fn check_differences<M: Varied>(
     system: &M,
     start: M::State,
@@ -81,7 +83,7 @@ pub fn check_differences<M: Varied>(
     impacts
 }
 
-/// Number of times that motion begins to be held, and ceases to be.
+/// Numbers of contacts that begin to hold the motion, and of contacts that release it.
 #[derive(Default)]
 pub struct Turns(pub [usize; 2]);
 

@@ -1,14 +1,14 @@
-//! The divergence of the motion on D with respect to `mu_C`, by differences in the coordinates `(q, v_ind)`.
+//! The divergence of the motion on D with respect to `mu_C`, by finite differences in the coordinates `(q, v_ind)`.
 
 use dalembert_codegen::claims::{Geometry, geometry_at};
 use dalembert_expr::{RealPoint, SymbolId};
 
 use crate::verdict::Decided;
 
-/// A step of the stencils, whose error is `h^4`.
+/// Step `h` of the stencils, whose error is of order `h^4`.
 const STEP: f64 = 1e-3;
 
-/// A model on D with its dependent velocities and values of parameters.
+/// The motion of a model on D, with its dependent velocities and the values of its parameters.
 #[derive(Debug)]
 pub struct Flow<'d> {
     decided: &'d Decided,
@@ -37,14 +37,14 @@ impl<'d> Flow<'d> {
         }
     }
 
-    /// The flow near a state, at the defaults of the parameters and with regular dependent velocities.
+    /// The flow near a state, with default parameters and with dependent velocities that are regular there.
     pub fn at(decided: &'d Decided, state: &State) -> Self {
         let mut flow = Self::new(decided, &decided.defaults(), &[]);
         flow.dependent = decided.regular_dependent(&flow.values(state));
         flow
     }
 
-    /// The positions of the dependent velocities.
+    /// The indices of the dependent velocities.
     pub fn dependent(&self) -> &[usize] {
         &self.dependent
     }
@@ -101,7 +101,7 @@ impl<'d> Flow<'d> {
         .expect("a regular point")
     }
 
-    /// Demand of `X_i(G) = c_i` on the rate of `G` along the motion.
+    /// The rate of `G` along the motion that the equations `X_i(G) = c_i` demand.
     pub fn demand(&self, state: &State) -> f64 {
         let demands = self.geometry(state).demands;
         let drifts = demands.len() - state.v.len();

@@ -17,7 +17,7 @@ impl<S: Described> Flow<'_, S> {
     /// The positions and all velocities at `(q, v_ind)`.
     ///
     /// # Panics
-    /// If the independent velocities do not determine the others.
+    /// If the constraints do not determine the other velocities.
     pub fn velocities(&self, t: f64, at: &[f64]) -> [S::Vector; 2] {
         let (positions, velocities) = at.split_at(S::DESCRIPTION.coordinates.len());
         let [mut q, mut qdot, mut named] = [S::Vector::zeros(S::Vector::CAPACITY); 3];
@@ -30,8 +30,8 @@ impl<S: Described> Flow<'_, S> {
         [q, completed.expect("velocities that follow")]
     }
 
-    /// The rates of `(q, v_ind)`: that of `v_ind` is the derivative of the velocity of the emitted momenta along the
-    /// emitted field.
+    /// The rates of `(q, v_ind)`. The accelerations are derivatives, along the emitted vector field, of the velocities
+    /// that the emitted momenta give.
     ///
     /// # Panics
     /// At singular states.
@@ -40,7 +40,7 @@ impl<S: Described> Flow<'_, S> {
         let state = self.system.state_unchecked(t, &q, &qdot).expect("a state");
         let mut rate = S::State::zeros(S::State::CAPACITY);
         self.system.rate(t, &state, &mut rate).expect("a rate");
-        // Fast motion is followed for a short time.
+        // The larger the rate, the shorter the time over which differences are taken.
         let size = rate
             .as_slice()
             .iter()

@@ -1,4 +1,4 @@
-//! Stored texts: `ACCEPT=1` stores them anew.
+//! Comparison with stored texts. `ACCEPT=1` in the environment rewrites them.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Emitted code beside the interpreter of the program it was emitted from.
+//! Comparison of emitted code with the interpreted program that it was emitted from.
 
 use dalembert::{Instance, StateVector, System, VectorField};
 use dalembert_codegen::program::{Function, Input, Program, interpret::interpret};
@@ -46,7 +46,7 @@ pub fn compare_motion<S: Instance>(system: &S, program: &Program) -> usize {
     states.len()
 }
 
-/// Same as [`compare_motion`], for all quantities that are reported at a state.
+/// Same as [`compare_motion`], for all quantities that `inspect` reports.
 ///
 /// # Panics
 /// If they differ.

@@ -1,4 +1,4 @@
-//! A point of mass 1 on a line, and a nonlinear motion of it in closed form.
+//! A point of mass 1 on a line, and a nonlinear motion with a closed form.
 
 use dalembert::{Fault, ParameterError, System, VectorField, describe::Assumption};
 use nalgebra::SVector;

@@ -1,4 +1,4 @@
-//! Emitted models as functions of slices, so that one test can use any of them; nothing of the generator is used.
+//! Emitted models as functions of slices, so that one test can use any of them. Nothing here uses the generator.
 
 use std::collections::BTreeMap;
 
@@ -43,16 +43,16 @@ impl Reported {
     /// A reported number.
     ///
     /// # Panics
-    /// When there is no number of this name.
+    /// If there is no number of this name.
     pub fn number(&self, name: &str) -> f64 {
         self.0[name][0]
     }
 }
 
-/// An emitted model with its types forgotten. States are those of its global form, positions and momenta.
+/// An emitted model behind one type. States are those of its global form: positions and momenta.
 ///
 /// # Panics
-/// All functions, where the model has no value.
+/// All functions panic where the model has no value.
 pub trait Numeric {
     /// The description.
     fn description(&self) -> &Description;
@@ -166,8 +166,8 @@ fn vector<V: StateVector>(values: &[f64]) -> V {
     V::of(values)
 }
 
-/// Steps of the stencil [`slope`]: its error is `STEP^6` times a seventh derivative over 140, and `1e-15/STEP` of the
-/// size of the values by rounding.
+/// Step of the stencil of [`slope`]. The truncation error is `STEP^6/140` times the seventh derivative, the rounding
+/// error about `1e-15/STEP` times the size of the values.
 const STEP: f64 = 3e-3;
 
 /// The derivative of `f` at 0, by central differences of sixth order.
@@ -193,10 +193,10 @@ pub fn moved(state: &[f64], s: f64, direction: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Asserts that numbers are near the right ones.
+/// Asserts that every number differs from the right one by at most `bound`.
 ///
 /// # Panics
-/// If they are not.
+/// If one differs by more.
 #[track_caller]
 pub fn assert_near(label: &str, found: &[f64], right: &[f64], bound: f64) {
     assert_eq!(found.len(), right.len(), "{label}");

@@ -1,5 +1,5 @@
-//! Brackets of the frame of D with their demands on the derivative of a density, in plain double precision. Metric and
-//! forms are those that a model reports; every derivative is a central difference.
+//! Brackets of the frame of D with their demands on the derivative of `G`, the logarithm of the density. Metric and
+//! forms are those that a model reports; every derivative is a central difference in double precision.
 //!
 //! ```text
 //! X_i = e_i - A_dep^{-1} A e_i          theta_k = m_ab (W^{a,j} d_j eta_bk + eta_bj d_k W^{a,j})
@@ -8,10 +8,10 @@
 
 use crate::numeric::{Numeric, moved, slopes};
 
-/// A field with its demand at the end.
+/// Components of a vector field, then its demand.
 type Element = Vec<f64>;
 
-/// The criterion of a model with linear constraints that do not depend on time.
+/// The criterion for a density of a model with linear constraints that do not depend on time.
 pub struct Criterion<'c> {
     system: &'c dyn Numeric,
     dependent: Vec<usize>,
@@ -24,7 +24,7 @@ struct Geometry {
 }
 
 impl<'c> Criterion<'c> {
-    /// The criterion with the choice of dependent velocities for which the frame at `q` is `frame`; `None` if there is none.
+    /// The criterion with the dependent velocities for which the frame at `q` is `frame`; `None` if no choice gives it.
     pub fn new(system: &'c dyn Numeric, q: &[f64], frame: &[Vec<f64>]) -> Option<Self> {
         let (n, m) = (q.len(), q.len() - frame.len());
         let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
@@ -41,7 +41,7 @@ impl<'c> Criterion<'c> {
             })
     }
 
-    /// The criterion with the first choice of dependent velocities that is regular at `q`; `None` if there is none.
+    /// The criterion with the first choice of dependent velocities that is regular at `q`; `None` if all are singular.
     pub fn regular(system: &'c dyn Numeric, q: &[f64]) -> Option<Self> {
         let (n, m) = (q.len(), system.description().constraints.len());
         let choices = (0..1_usize << n).filter(|bits| bits.count_ones() as usize == m);
@@ -53,7 +53,7 @@ impl<'c> Criterion<'c> {
             .find(|criterion| criterion.frame(q).is_some())
     }
 
-    /// The derivative of G by each coordinate, where the frame and its brackets of two span all directions.
+    /// The derivative of G in each coordinate; `None` unless the frame and the brackets of its pairs span everything.
     pub fn differential(&self, q: &[f64]) -> Option<Vec<f64>> {
         let free = q.len() - self.dependent.len();
         let fields = (1..=free).map(|i| format!("X{i}"));
@@ -105,7 +105,7 @@ impl<'c> Criterion<'c> {
     pub fn theta(&self, q: &[f64]) -> Vec<f64> {
         let n = q.len();
         let geometry = self.geometry(q);
-        // Forms and duals, one after the other, along a direction.
+        // Derivatives along a direction: of the forms, then of the duals.
         let along = |direction: &[f64]| {
             slopes(&|s| {
                 let there = self.geometry(&moved(q, s, direction));
@@ -142,7 +142,7 @@ impl<'c> Criterion<'c> {
             .collect()
     }
 
-    /// The element of a name: `X1`, `[X2,[X1,X2]]`.
+    /// The element with a name such as `X1` or `[X2,[X1,X2]]`.
     pub fn element(&self, name: &str, q: &[f64]) -> Element {
         if let Some(inner) = name.strip_prefix('[') {
             let (first, second) = inner

@@ -16,16 +16,16 @@ pub type Vector = SVector<f64, 2>;
 /// A position and a velocity.
 pub type State = SVector<f64, 4>;
 
-/// A surface: its gap and gradient at a point, and its gap along a stretch.
+/// A surface: its gap and gradient at a point, and its gap along a part of the motion.
 #[derive(Clone, Copy)]
 pub struct Gap {
     /// Gap and gradient at a point.
     pub at: fn([f64; 2]) -> (f64, [f64; 2]),
-    /// The gap along a stretch of motion.
+    /// The gap along a part of the motion.
     pub along: fn([TaylorModel; 2]) -> TaylorModel,
 }
 
-/// A surface from its gap, in which `c` makes constants, and its gradient: `gap!(c |x, y| c(1.0) - x, [-1.0, 0.0])`.
+/// A surface from its gap and the gradient of the gap. `c` makes constants: `gap!(c |x, y| c(1.0) - x, [-1.0, 0.0])`.
 #[macro_export]
 macro_rules! gap {
     ($c:ident |$x:ident, $y:ident| $gap:expr, $gradient:expr) => {{
@@ -43,10 +43,10 @@ macro_rules! gap {
     }};
 }
 
-/// Surfaces of a [`Particle`], at most.
+/// Largest number of surfaces of a [`Particle`].
 pub const MOST_SURFACES: usize = 8;
 
-/// The point, between its surfaces.
+/// The point with its surfaces.
 #[derive(Clone)]
 pub struct Particle {
     /// The force.
@@ -73,7 +73,7 @@ impl Particle {
         }
     }
 
-    /// Sets the reset of every surface.
+    /// Gives every surface the law `reset`, with this function.
     pub fn with_reset(mut self, reset: fn(usize, State) -> State) -> Self {
         self.law = Law::Reset;
         self.reset = reset;
@@ -255,13 +255,13 @@ impl Impacting for Particle {
     }
 }
 
-/// A floor at 0.
+/// A floor at `x = 0`.
 pub const FLOOR: Gap = gap!(c | x, y | x, [1.0, 0.0]);
 
-/// A ceiling at 1.
+/// A ceiling at `x = 1`.
 pub const CEILING: Gap = gap!(c | x, y | c(1.0) - x, [-1.0, 0.0]);
 
-/// A floor away from zero, where the gap rounds.
+/// A floor at `x = 1`, whose gap has rounding errors.
 pub const RAISED_FLOOR: Gap = gap!(c | x, y | x - c(1.0), [1.0, 0.0]);
 
 /// The last impacts of a run.
@@ -272,7 +272,8 @@ pub fn at(x: f64, y: f64, vx: f64, vy: f64) -> State {
     State::new(x, y, vx, vy)
 }
 
-/// Runs with every integrator and several sizes of step; each result goes to `check` with its events.
+/// Runs with every integrator that suits the particle and with several step sizes. `check` gets each run, its events
+/// and the name of the integrator.
 pub fn with_every_integrator(
     particle: &Particle,
     state: State,
@@ -346,7 +347,7 @@ pub fn run(particle: &Particle, state: State, t_end: f64, log: &mut Log) -> Run<
     observed(particle, Impacts::declared(particle), (state, t_end), log)
 }
 
-/// The same from a time to another.
+/// Same as [`run`], from the time `t` to `t_end`.
 pub fn run_on(particle: &Particle, t: f64, state: State, t_end: f64, log: &mut Log) -> Run<State> {
     let mut stepper = Dop853::new(Tolerance::new(1e-12).expect("a valid setting"));
     let effects = Impacts::declared(particle);
@@ -354,7 +355,7 @@ pub fn run_on(particle: &Particle, t: f64, state: State, t_end: f64, log: &mut L
     drive(particle, stepper, effects, (t, state, t_end), log)
 }
 
-/// The same with effects and an observer.
+/// Same as [`run`], with given effects and an observer.
 pub fn observed(
     particle: &Particle,
     effects: Impacts<Particle>,
@@ -396,7 +397,7 @@ pub fn assert_done(run: &Run<State>, case: &str) {
     assert_eq!(run.outcome, Outcome::Done, "{case} at t = {}", run.t);
 }
 
-/// Asserts that impacts have these times.
+/// Asserts that the impacts of a run have these times, up to the tolerance.
 ///
 /// # Panics
 /// Otherwise.

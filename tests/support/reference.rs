@@ -5,7 +5,7 @@ use serde_json::Value;
 /// Reads `tests/reference/NAME.json`.
 ///
 /// # Panics
-/// When there is no such file.
+/// If there is no such file.
 pub fn read(name: &str) -> Value {
     let path = format!("{}/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -15,7 +15,7 @@ pub fn read(name: &str) -> Value {
 /// A number, a decimal string or a fraction such as `1/400`.
 ///
 /// # Panics
-/// When the value is none of these.
+/// If the value is none of these.
 pub fn number(value: &Value) -> f64 {
     let text = match value {
         Value::Number(number) => return number.as_f64().unwrap_or(f64::NAN),
@@ -36,7 +36,7 @@ fn parse(text: &str) -> f64 {
 /// The numbers of an array.
 ///
 /// # Panics
-/// When it is not an array of numbers.
+/// If the value is not an array of numbers.
 pub fn numbers(value: &Value) -> Vec<f64> {
     value
         .as_array()
@@ -47,10 +47,10 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 }
 
 /// Compares nested arrays of numbers component by component: relative error at most `tolerance`, absolute where the
-/// expected value is 0. Describes the first mismatch.
+/// expected value is 0.
 ///
 /// # Errors
-/// The first component that differs, or a difference of shape.
+/// Describes the first component that differs, or the difference of shape.
 pub fn compare(path: &str, actual: &Value, expected: &Value, tolerance: f64) -> Result<(), String> {
     if let (Some(actual), Some(expected)) = (actual.as_array(), expected.as_array()) {
         if actual.len() != expected.len() {

@@ -50,12 +50,12 @@ impl Random {
 /// Random states of a system inside its chart, projected on the constraints.
 ///
 /// # Panics
-/// When a state cannot be made.
+/// If a state cannot be made.
 pub fn states<S: System>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|_| {
-            // Inside every shipped chart: intervals are (0, pi).
+            // These ranges lie inside every chart: intervals are (0, pi).
             let zero = system.zero_vector();
             let (q, qdot) = (random.like(&zero, 0.1, 1.4), random.like(&zero, -1.0, 1.0));
             system.state_projected(0.0, &q, &qdot).expect("a state")
@@ -63,7 +63,8 @@ pub fn states<S: System>(system: &S, count: usize, seed: u64) -> Vec<S::State> {
         .collect()
 }
 
-/// Every shipped model of mechanics without modes, and every system of [`systems`], loaded from their texts, with their declared values.
+/// Every shipped second-order model without modes and every system of [`systems`], loaded from their texts, with
+/// default parameters.
 pub fn every_system() -> &'static [Large] {
     static ALL: OnceLock<Vec<Large>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -79,10 +80,10 @@ pub fn every_system() -> &'static [Large] {
     })
 }
 
-/// The one of [`every_system`] with this name.
+/// The system of [`every_system`] with this name.
 ///
 /// # Panics
-/// If there is none.
+/// If there is no system of this name.
 pub fn system(name: &str) -> Large {
     let mut systems = every_system().iter();
     let system = systems.find(|system| system.description().name == name);

@@ -1,10 +1,11 @@
-//! The criterion `X_i(G) = theta(X_i)` in symbols, by Cramer's rule: no series, no residues until the last zero test.
+//! The criterion `X_i(G) = theta(X_i)` as expressions, by Cramer's rule. Series and residues modulo primes are used by
+//! the final zero test alone.
 
 use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;
 use dalembert_expr::{ExprId, Pool, SymbolId};
 
-/// Metric, forms and the quantities derived from them, for linear constraints without time.
+/// Metric, forms and the quantities derived from them, for linear constraints that do not depend on time.
 #[derive(Debug)]
 pub struct Geometry {
     symbols: Vec<SymbolId>,
@@ -165,7 +166,7 @@ fn determinant(pool: &mut Pool, rows: &[Vec<ExprId>]) -> ExprId {
     pool.sum(&terms)
 }
 
-/// Cramer's rule.
+/// Solves a linear system by Cramer's rule.
 fn solve(pool: &mut Pool, rows: &[Vec<ExprId>], right: &[ExprId]) -> Vec<ExprId> {
     let whole = determinant(pool, rows);
     (0..rows.len())

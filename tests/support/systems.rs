@@ -1,6 +1,7 @@
-//! Systems that only tests declare: affine constraints, velocity-linear terms, time, forces, integrable constraints.
+//! Systems that only tests declare: affine constraints, velocity-linear terms, dependence on time, forces, integrable
+//! constraints.
 //!
-//! Names, order, parameters and surfaces are those of the reference files in `tests/reference`, where there is one.
+//! If `tests/reference` has a file for a system, names, order, parameters and surfaces are those of the file.
 
 use dalembert::Described;
 use dalembert_cli::Entry;
@@ -24,7 +25,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Ball on a turning table with a wall that stands still.
+    /// Ball on a rotating table with a wall at rest.
     pub TableWall {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { r > 0 = 1; k > 0 = 2/3; Om = 1/2; ta > 0 = 3; tb > 0 = 2; }
@@ -82,7 +83,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Bead on an ellipse with gravity and a spring: an integrable constraint kept on position level.
+    /// Bead on an ellipse with gravity and a spring: an integrable constraint, written as a differential.
     pub IntegrableBead {
         coordinates { x; y; }
         parameters { m > 0 = 1; g = 1; k >= 0 = 3/4; w = 7/4; }
@@ -93,7 +94,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Everything depends on time: metric and linear terms, potential, constraint, force and wall.
+    /// Linear terms, potential, constraint, force and wall depend on time.
     pub Rheonomic {
         coordinates { x; y; z; }
         parameters { m > 0 = 1; b = 3/10; k >= 0 = 1/2; s = 1/4; c >= 0 = 1/5; d_ = 1/10; w = 3/2; }
@@ -110,9 +111,9 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A particle whose density has no elementary closed form: with the form and its dual field of length 1, `dG` along
-    /// `X = d_x + (y + z h) d_z` is the curvature of the dual field, `-h = -1/(1 + x^4) - cos(phi)/(2 + sin(phi)^3)` with
-    /// each part along its own coordinate.
+    /// A particle whose density has no closed form of the searched kinds. The constraint form and its dual field `d_z`
+    /// have length 1, so `theta = L_{d_z} eta = -h dx - k dphi`: `G` has the derivative `-h` along
+    /// `d_x + (y + z*h)*d_z` and `-k` along `d_phi + z*k*d_z`.
     pub CurvedDual {
         coordinates { x; y; z; phi: angle; }
         let h = 1/(1 + x^4);
@@ -125,7 +126,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A ball that rolls, its centre of mass off its centre (Routh). Its density is not of a searched kind.
+    /// A rolling ball with its centre of mass off its centre (Routh). Its density is not of a searched kind.
     pub RouthSphere {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { m > 0 = 1; I > 0 = 1/2; J > 0 = 1/3; R > 0 = 1; l > 0 = 1/4; }
@@ -153,7 +154,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Walker with its foot held by a multiplier (W. Clark, thesis, section 4.2, signs as they should be).
+    /// Walker with its foot held by a multiplier (W. Clark, thesis, section 4.2, with corrected signs).
     pub WalkerWithMultiplier {
         coordinates { x_c; y_c; theta; }
         parameters { m > 0 = 1; I > 0 = 1/4; lf > 0 = 1/2; b >= 0 = 1; g = 1; alpha = 1/10; }
@@ -168,7 +169,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Rolling disk that may fall, in Euler angles.
+    /// Rolling disk that may tilt, in Euler angles.
     pub FallingDisk {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }
         parameters { m > 0 = 2; R > 0 = 3/4; I > 0 = 1/3; J > 0 = 1/2; gravity > 0 = 1; }
@@ -185,7 +186,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Vertical disk with its two constraints mixed: every entry stands beside and below another one.
+    /// Vertical disk with two combinations of its constraints, each with entries in `d(x)`, `d(y)` and `d(theta)`.
     pub MixedDisk {
         coordinates { x; y; theta: angle; phi: angle; }
         parameters { m > 0 = 2; R > 0 = 1/2; I > 0 = 1/3; J > 0 = 1/5; }
@@ -199,7 +200,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Particle with `dz = y dx`; its author states the density.
+    /// Particle with `dz = y dx` and a stated density.
     pub NonholonomicParticle {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;

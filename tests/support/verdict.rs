@@ -1,4 +1,4 @@
-//! Models with the verdict on their densities.
+//! Models with verdicts on their invariant densities.
 
 use dalembert_codegen::claims::{
     Dynamics, Exactness, Geometry, Global, Problem, Term, Undecided, decide, geometry_at,
@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use crate::reference::number;
 
-/// A model with everything that is decided about densities of its configuration.
+/// A model with the decision on densities that depend on the configuration.
 #[derive(Debug)]
 pub struct Decided {
     /// The model.
@@ -22,20 +22,20 @@ pub struct Decided {
     pub derivation: Derivation,
     /// The motion on D.
     pub dynamics: Dynamics,
-    /// The problem of the density.
+    /// The equations for the density.
     pub problem: Problem,
     /// The verdict.
     pub exactness: Result<Exactness, Undecided>,
 }
 
-/// The verdict in a word.
+/// The verdict as one of five cases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existence {
     /// A density exists on all of Q.
     Global,
-    /// A density exists locally, and none on all of Q.
+    /// A density exists locally, but none on all of Q.
     Local,
-    /// A density exists locally; on all of Q, the question stays open.
+    /// A density exists locally; the question stays open for all of Q.
     LocalAtLeast,
     /// No density exists.
     None,
@@ -44,7 +44,7 @@ pub enum Existence {
 }
 
 impl Decided {
-    /// The model of a declaration, decided at the points of a seed.
+    /// The model of a declaration, decided at random points with this seed.
     ///
     /// # Panics
     /// If the declaration is refused.
@@ -66,7 +66,7 @@ impl Decided {
         }
     }
 
-    /// The model of a declaration, decided.
+    /// Same as [`Decided::with_seed`], with the seed 1.
     ///
     /// # Panics
     /// If the declaration is refused.
@@ -82,7 +82,7 @@ impl Decided {
         self.exactness.as_ref().expect("a verdict")
     }
 
-    /// The verdict in a word.
+    /// The verdict as one of five cases.
     pub fn existence(&self) -> Existence {
         match &self.exactness {
             Err(_) => Existence::Open,
@@ -95,13 +95,13 @@ impl Decided {
         }
     }
 
-    /// The logarithm of the density, where it was found in closed form.
+    /// The logarithm `G` of the density, if it was found in closed form.
     pub fn potential(&self) -> Option<String> {
         let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
         Some(potential_text(&self.model.pool, potential))
     }
 
-    /// The value of `G` at a point with its geometry, where it was found in closed form.
+    /// The value of `G` at a point with this geometry, if `G` was found in closed form.
     pub fn log_density(&self, values: &[(SymbolId, f64)], geometry: &Geometry) -> Option<f64> {
         let (potential, _) = self.exactness.as_ref().ok()?.density.as_ref()?;
         let value = |symbol: SymbolId| {
@@ -120,8 +120,7 @@ impl Decided {
         Some(terms.map(|(k, factor)| number(*k) * term(factor)).sum())
     }
 
-    /// Same as [`Decided::log_density`], with the geometry of the point and the generator's choice of dependent
-    /// velocities.
+    /// Same as [`Decided::log_density`], with the geometry of the point for the generator's dependent velocities.
     pub fn log_density_at(&self, values: &[(SymbolId, f64)]) -> Option<f64> {
         let geometry = geometry_at(&self.model.pool, &self.problem, values, None)?;
         self.log_density(values, &geometry)
@@ -179,10 +178,10 @@ impl Decided {
         largest.expect("a regular point").1
     }
 
-    /// The point at which the file gives the values of a system: coordinates and parameters.
+    /// The coordinates and parameters at which the reference file gives values of a system.
     ///
     /// # Panics
-    /// If the file has not the documented form.
+    /// If the file does not have the documented form.
     pub fn golden_point(&self, system: &Value) -> Vec<(SymbolId, f64)> {
         let golden = &system["golden"];
         ["point", "params"]
@@ -192,10 +191,10 @@ impl Decided {
             .collect()
     }
 
-    /// The positions of the coordinates whose velocities the file takes as dependent.
+    /// The indices of the coordinates whose velocities the reference file takes as dependent.
     ///
     /// # Panics
-    /// If the file has not the documented form.
+    /// If the file does not have the documented form.
     pub fn golden_dependent(&self, system: &Value) -> Vec<usize> {
         let names = system["golden"]["dependent"].as_array().expect("names");
         let position = |name: &Value| {
@@ -223,15 +222,15 @@ pub fn refusal(source: &str) -> Vec<String> {
 /// The answer to a claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// It holds.
+    /// Proved.
     Proved,
-    /// It does not, with the message.
+    /// Refuted, with the message.
     Refuted(String),
-    /// It stays open, with the message.
+    /// Left open, with the message.
     Undecided(String),
 }
 
-/// The answer of the generator to a claim that is added to a declaration.
+/// The answer of the generator to a claim that is added to a declaration without claims.
 ///
 /// # Panics
 /// If the declaration is refused for another reason.

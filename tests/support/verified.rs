@@ -1,5 +1,5 @@
-//! Verdicts that are checked by other routes: demands against the mean curvature and against the divergence of the
-//! motion by differences, densities against that divergence, obstructions against brackets by differences.
+//! Verdicts with independent checks by finite differences: demands are compared with the mean curvature and with the
+//! divergence of the motion, densities with that divergence, obstructions with brackets.
 
 use dalembert_codegen::claims::find_obstruction;
 use dalembert_codegen::model::Coordinate;
@@ -8,7 +8,7 @@ use crate::curvature::Curved;
 use crate::divergence::{Flow, State};
 use crate::verdict::{Decided, Existence};
 
-/// A state with coordinates inside of every chart, and velocities.
+/// A state with coordinates inside every chart.
 fn state(n: usize, independent: usize, attempt: usize) -> State {
     let number = |i: usize| 0.37 + ((5 * i + 3 * attempt) % 11) as f64 * 0.083;
     State {
@@ -18,7 +18,7 @@ fn state(n: usize, independent: usize, attempt: usize) -> State {
     }
 }
 
-/// The verdict on a model, with everything that was decided about it checked by other routes.
+/// The verdict on a model, after independent checks of demands, density and obstruction.
 ///
 /// # Panics
 /// If a check fails.
@@ -46,7 +46,7 @@ pub fn verified(source: &str) -> Existence {
     decided.existence()
 }
 
-/// Demands and obstruction by differences.
+/// Compares demands and obstruction with differences.
 fn check_curvature(decided: &Decided, source: &str) {
     let (model, parameters) = (&decided.model, decided.defaults());
     let n = model.coordinates.len();
@@ -73,7 +73,7 @@ fn check_curvature(decided: &Decided, source: &str) {
             .values
             .iter()
             .find(|(name, _)| *name == coordinate.name.display);
-        // Coordinates that nothing depends on are not part of the sample.
+        // The sample lacks coordinates that nothing depends on.
         found.map_or(0.5, |(_, value)| *value)
     };
     let q: Vec<f64> = model.coordinates.iter().map(values).collect();

@@ -7,7 +7,7 @@ use crate::reference::read;
 /// The systems of `reference/verdicts_visible.json`.
 ///
 /// # Panics
-/// If the file has not the documented form.
+/// If the file does not have the documented form.
 pub fn visible_systems() -> Vec<Value> {
     let file = read("verdicts_visible");
     let systems = file["systems"].as_array().expect("systems");
@@ -18,7 +18,7 @@ pub fn visible_systems() -> Vec<Value> {
 /// The system of this name.
 ///
 /// # Panics
-/// If there is none.
+/// If there is no system of this name.
 pub fn visible_system(name: &str) -> Value {
     let mut systems = visible_systems().into_iter();
     systems.find(|system| system["name"] == name).expect(name)
@@ -45,7 +45,7 @@ impl Scheme {
     /// A system of the file.
     ///
     /// # Panics
-    /// If the file has not the documented form.
+    /// If the file does not have the documented form.
     pub fn of(system: &Value) -> Self {
         let list = |value: &Value| value.as_array().expect("a list").clone();
         let text = |value: &Value| value.as_str().expect("a text").to_owned();
@@ -111,7 +111,7 @@ impl Scheme {
 /// The body of a `model!` for a system of the file.
 ///
 /// # Panics
-/// If the file has not the documented form.
+/// If the file does not have the documented form.
 pub fn declaration(system: &Value) -> String {
     Scheme::of(system).declaration()
 }

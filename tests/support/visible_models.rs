@@ -1,5 +1,5 @@
-//! The systems of `reference/verdicts_visible.json` as a user writes them, each with its true claims: this file compiles
-//! only if they are proved. `tests/claims/visible.rs` shows that they are those systems.
+//! The systems of `reference/verdicts_visible.json` as a user writes them, each with true claims: this file compiles
+//! only if they are proved. `tests/claims/visible.rs` shows that these are the systems of the file.
 
 use crate::numeric::Numeric;
 
@@ -24,7 +24,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Chaplygin's sleigh, its centre of mass ahead of the blade.
+    /// Chaplygin's sleigh with its centre of mass ahead of the blade.
     pub Sleigh {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 2; I > 0 = 3; a = 3/4; }
@@ -165,7 +165,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A point on ellipsoids, its form multiplied by a function.
+    /// A point on an ellipsoid: an integrable form multiplied by a function.
     pub HolonomicRescaled {
         coordinates { x; y; z; }
         lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -180,7 +180,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// A screw: its density is one on the line, and none on the circle.
+    /// A screw. Its density exists where `phi` runs over the line, but not on the circle.
     pub HelicalCircle {
         coordinates { phi: angle; x; z; }
         parameters { k = 1/3; b > 0 = 1; }
@@ -335,7 +335,7 @@ dalembert::model! {
     }
 }
 
-/// Name in the file, and model, in the order of the file.
+/// Names in the file with their models, in the order of the file.
 pub fn systems() -> Vec<(&'static str, Box<dyn Numeric>)> {
     macro_rules! named {
         ($($name:literal $model:ident)*) => { vec![$(($name, Box::new($model::default()) as Box<dyn Numeric>),)*] };

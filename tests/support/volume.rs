@@ -1,4 +1,4 @@
-//! The invariant volume of a declared system, and the divergence of its motion by differences.
+//! The invariant volume of a declared system, and the divergence of its motion by finite differences.
 
 use dalembert_codegen::claims::{Exactness, Problem, Volume, decide};
 use dalembert_codegen::mechanics::{self, Derivation};
@@ -16,7 +16,7 @@ pub struct WithVolume {
     pub model: Model,
     /// The derivation of the model.
     pub derivation: Derivation,
-    /// The decision.
+    /// The decision on the existence of a density.
     pub exactness: Exactness,
     /// The volume.
     pub volume: Volume,
@@ -24,14 +24,14 @@ pub struct WithVolume {
     pub program: Program,
 }
 
-/// Shifts and weights of the central difference of eighth order, for one side.
+/// Shifts and weights of one side of the central difference of eighth order.
 const STENCIL: [(f64, f64); 4] = [
     (1.0, 4.0 / 5.0),
     (2.0, -1.0 / 5.0),
     (3.0, 4.0 / 105.0),
     (4.0, -1.0 / 280.0),
 ];
-/// Balances the eighth power of the step against the rounding that is divided by the step.
+/// Step that balances the truncation error, its eighth power, against the rounding error, which is divided by it.
 const STEP: f64 = 4e-3;
 
 impl WithVolume {
@@ -58,7 +58,7 @@ impl WithVolume {
         Self::with(source, natural).expect("regular constraints")
     }
 
-    /// The system of a declaration with the volume that `choose` returns for the one that was found.
+    /// The system of a declaration with the volume that `choose` returns when given the volume that was found.
     ///
     /// # Panics
     /// Same as [`WithVolume::declared`].
@@ -123,7 +123,7 @@ impl WithVolume {
         interpret(function, &self.input(t, q, qdot, p)).expect("a regular state")
     }
 
-    /// The group of this name among the results of the function that derives everything; empty if there is none.
+    /// The group of this name among the results of the program's `geometry` function; empty if there is none.
     pub fn reported<'a>(&self, name: &str, values: &'a [f64]) -> &'a [f64] {
         let mut rest = values;
         for group in &self.program.geometry.groups {
@@ -153,7 +153,7 @@ impl WithVolume {
         self.run(function, t, q, &[], &[])[0]
     }
 
-    /// Expressions at a configuration, without the program.
+    /// Values of expressions at a configuration, evaluated in the pool rather than by the program.
     pub fn evaluate(&self, expressions: &[ExprId], t: f64, q: &[f64]) -> Vec<f64> {
         let value = |symbol| self.value(symbol, t, q);
         self.model.pool.eval(expressions, &value)
@@ -176,7 +176,7 @@ impl WithVolume {
         self.parameter(k.expect("a parameter"))
     }
 
-    /// The constraint forms by rows, the affine part last.
+    /// The constraint forms by rows, each with its affine part last.
     pub fn forms(&self, t: f64, q: &[f64]) -> Vec<Vec<f64>> {
         let row = |constraint: &mechanics::constraint::ConstraintForm| {
             let entries = [constraint.form.clone(), vec![constraint.affine]].concat();
@@ -203,7 +203,7 @@ impl WithVolume {
         [metric, mass].map(determinant)
     }
 
-    /// All velocities, from the independent ones.
+    /// All velocities, completed from the independent ones.
     pub fn velocities(&self, t: f64, q: &[f64], independent: &[f64]) -> Vec<f64> {
         let chosen = &self.program.volume.as_ref().expect("a volume").independent;
         let mut qdot = vec![0.0; q.len()];
@@ -228,7 +228,7 @@ impl WithVolume {
         qdot
     }
 
-    /// The motion in the coordinates `(q, v_ind)` of the volume.
+    /// Rates of the coordinates `(q, v_ind)` of the volume along the motion.
     pub fn motion(&self, t: f64, at: &[f64]) -> Vec<f64> {
         let (q, independent) = at.split_at(self.model.coordinates.len());
         let qdot = self.velocities(t, q, independent);
@@ -240,7 +240,7 @@ impl WithVolume {
         qdot.iter().copied().chain(independent).collect()
     }
 
-    /// The divergence of the motion with respect to `exp(log_volume) dq dv_ind` at `(q, v_ind)`: see [`divergence`].
+    /// Same as [`divergence`], for the motion and the volume `exp(log_volume) dq dv_ind` at `(q, v_ind)`.
     pub fn divergence(
         &self,
         t: f64,
@@ -251,8 +251,8 @@ impl WithVolume {
     }
 }
 
-/// The divergence of a motion `F` with respect to `exp(log_volume)`, and the sum of the absolute values of its terms, by
-/// differences: `d_t ln rho + (1/rho) d_k (rho F^k)`.
+/// The divergence `d_t ln rho + (1/rho) d_k (rho F^k)` of a motion `F` with respect to `rho = exp(log_volume)` by
+/// finite differences, and the sum of the absolute values of its terms.
 pub fn divergence(
     t: f64,
     at: &[f64],
@@ -274,7 +274,7 @@ pub fn divergence(
     [terms.iter().sum(), sizes.sum()]
 }
 
-/// The derivative at 0.
+/// The derivative at 0, by the central difference of eighth order.
 pub fn difference(f: impl Fn(f64) -> f64) -> f64 {
     let side = |(shift, weight): (f64, f64)| weight * (f(shift * STEP) - f(-shift * STEP));
     STENCIL.into_iter().map(side).sum::<f64>() / STEP

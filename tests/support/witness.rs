@@ -1,4 +1,4 @@
-//! The numbers of messages about claims, computed again by other means: differences along the emitted motion.
+//! Independent computation of the numbers in messages about claims, by finite differences along the emitted motion.
 
 use dalembert::law::Law;
 
@@ -7,12 +7,12 @@ use crate::formula::{Scope, definitions, value};
 use crate::numeric::{Numeric, Snapshot, moved, slope, slopes};
 use crate::obstruction::Criterion;
 
-/// Relative and absolute errors. Differences of sixth order with steps of 3/1000 over states of order 1 are right to
-/// about 1e-12; nested three times, as in brackets, to about 1e-7, the absolute error of the vector field included.
+/// Relative and absolute tolerances. Differences of sixth order with steps of 3/1000 over states of order 1 have errors
+/// of about 1e-12. Nested three times, as in brackets, they have errors of about 1e-7.
 const ONCE: [f64; 2] = [1e-7, 1e-10];
 const NESTED: [f64; 2] = [1e-5, 1e-6];
 
-/// The value of an expression of a claim at a state of a system.
+/// The value of an expression of a claim at a state of a system. In a vector field, `partial` selects the component.
 pub fn at(system: &dyn Numeric, text: &str, state: &Snapshot, partial: Option<usize>) -> f64 {
     let coordinates: Vec<&str> = system
         .description()
@@ -52,7 +52,7 @@ pub fn rate(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
 /// `m^{ab}` and bars for absolute values.
 ///
 /// # Panics
-/// On forms of potentials that do not occur in messages.
+/// If messages do not contain potentials of this form.
 pub fn rate_of_potential(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
     let text = text.replace("ln(det m)", "mass");
     let direction = system.rate(t, state);
@@ -75,10 +75,10 @@ fn determinant(rows: &[f64]) -> f64 {
     }
 }
 
-/// Compares every number of a message with one computed in this file; `claim` is the claim of the message.
+/// Compares every number of the message about `claim` with a number computed in this file.
 ///
 /// # Panics
-/// If one differs, or is unknown.
+/// If one differs, is unknown, or does not contradict the claim.
 pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
     let witness = Witness::of(message).unwrap_or_else(|| panic!("no witness: {message}"));
     let (t, q, qdot) = witness.place(system);
@@ -105,11 +105,11 @@ pub fn check(system: &mut dyn Numeric, claim: &str, message: &str) {
     );
 }
 
-/// Compares the example of a message, a state at which the parts of a rate cancel or two values agree, with numbers computed in this file; `claim` is the
-/// true one.
+/// Compares the example of a message with numbers computed in this file. The example is a state at which the terms of a
+/// rate cancel, or at which two values agree; `claim` is the true claim.
 ///
 /// # Panics
-/// If parts do not add up, the rate is not 0 there, or a value differs.
+/// If the terms do not cancel, the rate is not 0 there, or a value differs.
 pub fn check_example(system: &mut dyn Numeric, claim: &str, example: &Witness) {
     let (t, q, qdot) = example.place(system);
     let system = &*system;
@@ -145,7 +145,7 @@ pub fn check_example(system: &mut dyn Numeric, claim: &str, example: &Witness) {
     }
 }
 
-/// The two numbers that would agree if the claim were true.
+/// Two numbers that would agree if the claim were true.
 fn opposites(witness: &Witness) -> [f64; 2] {
     match witness.values.as_slice() {
         [(_, only)] => [*only, 0.0],
@@ -226,7 +226,7 @@ fn rate_of_lagrangian(system: &dyn Numeric, field: &str, t: f64, q: &[f64], qdot
     })
 }
 
-/// The second derivative of that rate in two velocities. The rate is a polynomial of degree 2 in them.
+/// The second derivative of the rate of the Lagrangian in two velocities. The rate is a polynomial of degree 2 in them.
 fn twice(system: &dyn Numeric, field: &str, t: f64, state: &[f64], pair: [usize; 2]) -> f64 {
     let here = system.snapshot(t, state);
     let at = |[a, b]: [f64; 2]| {
@@ -239,7 +239,7 @@ fn twice(system: &dyn Numeric, field: &str, t: f64, state: &[f64], pair: [usize;
     corners[0] - corners[1] - corners[2] + corners[3]
 }
 
-/// `(qdot^j d_j + d_t) dR/dqdot^i - dR/dq^i` of that rate `R`.
+/// `(qdot^j d_j + d_t) dR/dqdot^i - dR/dq^i` for the rate `R` of the Lagrangian.
 fn euler_lagrange(system: &dyn Numeric, field: &str, t: f64, state: &[f64], i: usize) -> f64 {
     let here = system.snapshot(t, state);
     let along = slope(&mut |s| {
@@ -259,7 +259,7 @@ fn euler_lagrange(system: &dyn Numeric, field: &str, t: f64, state: &[f64], i: u
     along - gradient
 }
 
-/// The rate of a function of position and velocity along a field that is lifted to velocities.
+/// The rate of a function of position and velocity along the lift of a field to velocities.
 fn flow(
     system: &dyn Numeric,
     field: &str,
@@ -287,7 +287,7 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Demand of the bracket of a message less the demand of the combination; the vector fields must agree.
+/// Demand of the bracket in a message minus the demand of the combination of fields that equals the bracket.
 fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     let names: Vec<&str> = system
         .description()
@@ -323,7 +323,7 @@ fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     delta
 }
 
-/// Growth of G on the turn of a message, by the trapezoidal rule.
+/// Growth of G over the turn of an angle that a message names, by the trapezoidal rule.
 fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     const POINTS: u32 = 32;
     let (_, turn) = message.split_once("by `period` when ").expect("a turn");
@@ -344,10 +344,10 @@ fn period(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     step * slopes.sum::<f64>()
 }
 
-/// The largest `d_i b_j - d_j b_i` of the form b that is the differential of G, if G exists.
+/// The largest `|d_i b_j - d_j b_i|` of the form `b` that the demands determine; `b = dG` if G exists.
 ///
 /// # Panics
-/// If the frame of D and its brackets of two do not span all directions.
+/// If the frame of D and the brackets of its pairs do not span all directions.
 pub fn curl(system: &dyn Numeric, q: &[f64]) -> f64 {
     let criterion = Criterion::regular(system, q).expect("a regular position");
     let rows: Vec<Vec<f64>> = (0..q.len())
@@ -365,7 +365,7 @@ pub fn curl(system: &dyn Numeric, q: &[f64]) -> f64 {
     })
 }
 
-/// `d_x + 0.41*d_y` in components.
+/// Components of a field such as `d_x + 0.41*d_y`.
 fn vector(text: &str, names: &[&str]) -> Vec<f64> {
     let mut components = vec![0.0; names.len()];
     let text = text.replace(" - ", " + -");

@@ -1,4 +1,4 @@
-//! A pendulum with a constraint and a wall, simulated without an operating system.
+//! A bead with a constraint and a floor, simulated without an operating system.
 
 #![no_std]
 #![no_main]
@@ -29,7 +29,7 @@ fn impacts() -> Option<u64> {
     Some(run.counters.impacts)
 }
 
-/// Entry of the processor.
+/// Entry point.
 #[unsafe(no_mangle)]
 pub extern "C" fn _start() -> ! {
     let mut impacts = impacts();

@@ -1,10 +1,10 @@
-//! Files of shards that are merged: those of one run, to the byte; mistakes that are named.
+//! Merged shards give the files of one run, to the byte. Messages name shards that do not fit.
 
 use super::*;
 
 const COUNTED: &str = "--density x_dot=-3..3,x=0..4:8 --every 0.25";
 
-/// Runs the shards of an ensemble to files, and returns their paths, last first.
+/// Runs the shards of an ensemble, and returns the paths of their files, last shard first.
 fn shards(folder: &Folder, line: &str, of: u64) -> Vec<String> {
     let paths = (1..=of).rev().map(|shard| {
         let path = folder.path(&format!("part{shard}.csv"));

@@ -1,4 +1,4 @@
-//! The rows as Parquet, read back.
+//! Rows written as Parquet and read back.
 
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::record::Field;
@@ -12,7 +12,7 @@ fn parquet_holds_the_rows_of_the_table() {
     let done = run(&line);
     assert_eq!(done.exit, Exit::Other, "{}", done.errors);
     let written = fs::read(folder.0.join("rows.parquet")).unwrap();
-    // Nothing else is left, and with a table beside it the file is the same.
+    // No other file is left. With `--csv` as well, the Parquet file is the same.
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
     run(&format!("{line} --csv {}", folder.path("rows.csv")));
     assert_eq!(fs::read(folder.0.join("rows.parquet")).unwrap(), written);
@@ -57,7 +57,7 @@ fn parquet_is_made_of_what_is_continued() {
     let line = format!("{BALLS} --parquet {}", folder.path("rows.parquet"));
     run(&line);
     let whole = fs::read(folder.0.join("rows.parquet")).unwrap();
-    // As after a cut: some rows beside the file that is to be.
+    // An interrupted run leaves some rows and no Parquet file.
     run(&format!(
         "{BALLS} --csv {}",
         folder.path("rows.parquet.rows.csv")

@@ -1,7 +1,8 @@
-//! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an
-//! oscillator with a view of the plane, a bead held to a line by a constraint, and a mass that is pushed for a short time.
+//! Systems written by hand, so that the command line is tested without the generator: a ball on a floor, an oscillator
+//! with a view of the plane, a bead that a constraint holds on a line, a mass that is pushed for a short time, and
+//! systems with an unsure event search.
 //!
-//! All have the metric `m` times the identity, and a potential.
+//! All but the last have the metric `m` times the identity.
 
 mod particle;
 mod pushed;
@@ -43,7 +44,7 @@ where
     Ok(())
 }
 
-/// Facts that a description is made of.
+/// Entries of a description.
 #[derive(Clone, Copy)]
 struct Facts {
     type_name: &'static str,
@@ -55,7 +56,7 @@ struct Facts {
     constraints: &'static [ConstraintInfo],
     surfaces: &'static [SurfaceInfo],
     outputs: &'static [&'static str],
-    /// The labels of a region in the plane of the first two coordinates.
+    /// The axis labels of a region in the plane of the first two coordinates.
     region: Option<[&'static str; 2]>,
 }
 
@@ -292,7 +293,7 @@ impl Instance for BouncingBall {
     }
 }
 
-/// Two springs of different strength in a round dish.
+/// Two springs of different strength, with a disk as the region of the view.
 #[derive(Debug, Clone)]
 pub struct Oscillator {
     pub k: f64,

@@ -1,6 +1,6 @@
-//! Common part of the systems: the motion of a particle, as a macro because lengths of vectors are part of the types.
+//! The motion of a particle, which the systems share. These are macros, since types contain the lengths of vectors.
 
-/// Distinct parts of the systems: mass, force and potential.
+/// Mass, force and potential of a system.
 pub(super) trait Particle<const N: usize> {
     fn mass(&self) -> f64;
     fn force(&self, q: &[f64; N]) -> [f64; N];
@@ -28,7 +28,7 @@ macro_rules! field {
             }
         }
 
-        // The forces are those of springs along the axes and a constant: so are their series.
+        // Every force is that of a spring along its axis plus a constant, which gives a linear recurrence.
         impl TaylorField for $type {
             type Parameters<L: Numbers> = [L; 1 + $dim];
             type Row<L: Numbers> = [L; $dim];
@@ -86,7 +86,7 @@ macro_rules! field {
     };
 }
 
-/// The field and `System` of a [`Particle`] with state `(q, p)`; the hooks are the caller's.
+/// The field and `System` of a [`Particle`] with state `(q, p)`. `hooks` are further methods of `System`.
 macro_rules! particle {
     ($type:ty, $n:literal, $dim:literal, { $($hooks:tt)* }) => {
         field!($type, $n, $dim);
@@ -94,7 +94,7 @@ macro_rules! particle {
     };
 }
 
-/// `System` of a [`Particle`] with state `(q, p)`; the hooks are the caller's.
+/// `System` of a [`Particle`] with state `(q, p)`. `hooks` are further methods of `System`.
 macro_rules! system {
     ($type:ty, $n:literal, $dim:literal, { $($hooks:tt)* }) => {
         impl System for $type {

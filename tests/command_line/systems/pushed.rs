@@ -1,10 +1,10 @@
-//! A mass on a line that is at rest until a force with impulse 1 acts on it for a short time.
+//! A mass on a line, at rest until a force with impulse 1 acts on it for a short time.
 
 use std::f64::consts::PI;
 
 use super::*;
 
-/// The time of the push, and how long it lasts.
+/// Time and width of the push.
 const TIME: f64 = 5.3;
 const WIDTH: f64 = 0.1;
 
@@ -65,7 +65,7 @@ impl TaylorField for Pushed {
         Ok(())
     }
 
-    /// Density of `f' = -2 u u' f` with constant `u'`.
+    /// The coefficients follow from `f' = -2 u u' f` with constant `u'`.
     fn advance<L: Numbers>(
         &self,
         _parameters: &Self::Parameters<L>,

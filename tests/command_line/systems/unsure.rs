@@ -1,4 +1,4 @@
-//! Systems whose search for impacts is unsure: it looks at nine places of a step, and overlooks what lies between them.
+//! Systems with an unsure event search: it evaluates gaps at nine points of a step and misses impacts between them.
 
 use dalembert::audit::{Audit, Auditor};
 use dalembert::declaration::Described;
@@ -16,7 +16,7 @@ use dalembert::{
 };
 use dalembert_driver::Model;
 
-/// A model with impacts that are looked for at samples.
+/// A model whose event search samples the gaps.
 #[derive(Debug, Clone)]
 pub struct Unsure<M>(M);
 
@@ -286,16 +286,16 @@ impl<M: Impacting> Scene for Unsure<M> {
     }
 }
 
-/// Impacts by declared laws, where one of nine places of a step finds a gap negative.
+/// Impacts by the declared laws, found if a gap is not positive at one of nine points of a step.
 #[derive(Debug, Clone)]
 pub struct NineSamples {
-    /// The surface that the step is cut for.
+    /// The surface at whose impact the step is cut.
     found: Option<usize>,
     /// The surface that was met last: its gap is 0 at the start of the step.
     left: Option<usize>,
 }
 
-/// Points at which a step is evaluated.
+/// Points of a step at which gaps are evaluated, as fractions of the step.
 const PLACES: [f64; 9] = [0.0, 0.038, 0.146, 0.309, 0.5, 0.691, 0.854, 0.962, 1.0];
 
 impl<M: Impacting> Effect<Unsure<M>> for NineSamples {

@@ -1,4 +1,4 @@
-//! Simulates a bouncing ball without the standard library; exit status 0 if it bounced correctly.
+//! Simulates a bouncing ball without the standard library. The exit status is 0 if there are five impacts.
 
 #![no_std]
 #![no_main]
@@ -23,7 +23,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
 }
 
-/// The compiled core library names this even where panics abort; nothing ever calls it.
+/// The compiled core library refers to this symbol even if panics abort; nothing calls it.
 #[unsafe(no_mangle)]
 pub extern "C" fn rust_eh_personality() {}
 
@@ -35,9 +35,9 @@ fn bounces() -> Option<u64> {
     (run.outcome == Outcome::Done).then_some(run.counters.impacts)
 }
 
-/// The C runtime's entry.
+/// Entry point of the C runtime.
 #[unsafe(no_mangle)]
 pub extern "C" fn main() -> i32 {
-    // Impacts at 1, 3, 5, 7, 9.
+    // The impacts are at the times 1, 3, 5, 7, 9.
     i32::from(bounces() != Some(5))
 }

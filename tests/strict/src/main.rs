@@ -1,5 +1,5 @@
-//! Prints a hash of the bits of long runs: steps of both integrators with every elementary function, a constraint, and
-//! impacts.
+//! Prints hashes of the bits of long runs of two integrators, for a model with many elementary functions, a constraint
+//! and impacts.
 
 use std::ops::ControlFlow;
 
@@ -9,7 +9,7 @@ use dalembert::{
 };
 
 dalembert::model! {
-    /// A skate in a bowl of every function, between two walls.
+    /// A skate in a potential with many functions, between two walls.
     pub Skate {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 1; I > 0 = 1/5; k > 0 = 2; a > 0 = 1/3; }

@@ -1,11 +1,11 @@
-//! The chain of N unit masses on unit rods, declared twice: by the angles of its rods, and by the places of its masses
-//! with the rods as constraints.
+//! The chain of N unit masses on unit rods, declared twice: by the angles of its rods, and by the positions of its
+//! masses with the rods as constraints.
 
-/// Declares the first form of the chain with the given number of links.
+/// Declares the chain of this number of links by angles.
 macro_rules! by_angles {
     ($angles:ident, $links:literal) => {
         dalembert::model! {
-            /// By absolute angles from the downward vertical.
+            /// Chain in absolute angles from the downward vertical.
             pub $angles {
                 const N = $links;
                 coordinates { theta[N]: angle; }
@@ -20,11 +20,11 @@ macro_rules! by_angles {
     };
 }
 
-/// Declares the other.
+/// Declares the chain of this number of links by the positions of its masses.
 macro_rules! by_rods {
     ($rods:ident, $links:literal) => {
         dalembert::model! {
-            /// By the places of its masses.
+            /// Chain in the positions of its masses.
             pub $rods {
                 const N = $links;
                 coordinates { x[N]; y[N]; }

@@ -1,4 +1,4 @@
-//! A course from one state: timed, and its impacts and end as JSON.
+//! A timed run from one state, with its impacts and its end as JSON.
 
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ pub struct Course<'a, S: System, E> {
     pub effects: E,
     pub start: State<S>,
     pub until: f64,
-    /// Times at which the state is compared besides.
+    /// Further times at which the state is compared.
     pub probes: &'static [f64],
 }
 
@@ -105,14 +105,14 @@ impl<S: TaylorField + System, E: Effect<S> + Clone> Course<'_, S, E> {
         self.system.energy(0.0, state).expect("an energy")
     }
 
-    /// Positions, then velocities.
+    /// Positions, then velocities, of a state.
     fn motion(&self, state: &State<S>) -> Vec<f64> {
         let qdot = self.system.velocity(0.0, state).expect("a velocity");
         let q = self.system.position(state);
         [q.as_slice(), qdot.as_slice()].concat()
     }
 
-    /// The motion after impacts 1, 5, 10 and 20.
+    /// Positions and velocities after impacts 1, 5, 10 and 20.
     fn after(&self, impacts: &Impacts<S>) -> Vec<Vec<f64>> {
         let states = [0, 4, 9, 19].map(|k| impacts.after.get(k));
         states
@@ -123,7 +123,7 @@ impl<S: TaylorField + System, E: Effect<S> + Clone> Course<'_, S, E> {
     }
 }
 
-/// Time at which impacts accumulate.
+/// Time at which impacts accumulate; null if the run ended otherwise.
 fn accumulation(outcome: Outcome) -> Value {
     match outcome {
         Outcome::Zeno { t, .. } => json!(t),

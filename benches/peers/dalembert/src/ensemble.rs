@@ -1,4 +1,4 @@
-//! W5: many disks that differ in their rate of rolling, on one core.
+//! W5: many disks that differ in their angular velocity of rolling, on one core.
 
 use dalembert::lanes::{Member, run_abreast};
 use dalembert::{Dop853, Scene, Simulation, Stepper, Taylor, Tolerance};
@@ -9,16 +9,16 @@ use crate::models::Disk;
 use crate::timing::timed;
 use crate::works::rolling;
 
-/// Trajectories.
+/// Number of trajectories.
 const TRAJECTORIES: usize = 10_000;
 
-/// Trajectories whose ends are compared one by one.
+/// Number of trajectories whose ends are compared one by one.
 const SAMPLES: usize = 10;
 
-/// Trajectories that are timed together: a stretch so short that some repetition is undisturbed.
+/// Number of trajectories that are timed together: so few that other programs disturb some repetitions, but not all.
 const PART: usize = 400;
 
-/// W5, and W5r.
+/// Measures W5 and W5r.
 pub fn disks(plan: &Plan) {
     for &value in plan.ensemble_tolerances {
         let tolerance = Tolerance::new(value).expect("a tolerance");
@@ -34,8 +34,8 @@ pub fn disks(plan: &Plan) {
     }
 }
 
-/// `run` runs trajectories from the first on for 10 seconds, sets the places where they end along x, and gives the number of
-/// impacts.
+/// Times an ensemble and prints its results. `run` takes the index of a first trajectory and a slice for the final `x`
+/// of that trajectory and the following ones; it returns the number of impacts.
 fn report(
     tolerance: f64,
     peer: &str,
@@ -64,7 +64,7 @@ fn report(
     );
 }
 
-/// Rate of rolling of a trajectory.
+/// Angular velocity of rolling of a trajectory.
 fn roll(index: usize) -> f64 {
     10.0 + 0.005 * (2.0 * index as f64 / (TRAJECTORIES - 1) as f64 - 1.0)
 }

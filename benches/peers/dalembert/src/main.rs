@@ -1,5 +1,5 @@
-//! This project's side of the comparison with other programs: works with known results, one line of JSON for each
-//! integrator and tolerance. `benches/peers/run.py` runs it beside the others and compares.
+//! Measurements of this project for the comparison with other programs: tasks with known results, one line of JSON for
+//! each integrator and tolerance. `benches/peers/run.py` runs all programs and compares them.
 //!
 //! `cargo run --release -- [WORK..] [--repetitions N]`
 
@@ -17,11 +17,11 @@ type State<S> = <S as dalembert::VectorField>::State;
 /// Extent of the measurements.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
-    /// Relative and absolute, of one course.
+    /// Relative and absolute tolerances of single runs.
     tolerances: &'static [f64],
-    /// The same for the ensemble.
+    /// Relative and absolute tolerances of the ensemble.
     ensemble_tolerances: &'static [f64],
-    /// Times each case is timed; the least counts, as others use the machine.
+    /// Number of timings of each case. The shortest counts, as other programs use the machine.
     repetitions: usize,
 }
 
@@ -31,7 +31,7 @@ const PLAN: Plan = Plan {
     repetitions: 5,
 };
 
-/// Names of works with their measuring functions.
+/// Names of tasks with their measuring functions.
 const WORKS: [(&str, fn(&Plan)); 7] = [
     ("W1", works::disk_billiard),
     ("W2", works::sleigh),
@@ -42,7 +42,7 @@ const WORKS: [(&str, fn(&Plan)); 7] = [
     ("W5", ensemble::disks),
 ];
 
-/// The plan, with as many repetitions as `--repetitions` says, and the names of works.
+/// The plan, with the number of `--repetitions`, and the names of tasks.
 fn arguments() -> (Plan, Vec<String>) {
     let mut plan = PLAN;
     let mut names = Vec::new();

@@ -1,5 +1,6 @@
-//! The systems of the works, by their Lagrangians, constraints and surfaces alone: nothing is claimed. The sleigh has a
-//! frame, since no coordinate's velocity follows from its constraint at every angle; the disk's is found.
+//! The systems of the tasks, with Lagrangians, constraints and surfaces, but without claims. The sleigh declares a
+//! frame, since its constraint determines no coordinate velocity at every angle. The generator finds the frame of the
+//! disk.
 
 dalembert::model! {
     /// A vertical disk that rolls on an elliptical table.

@@ -1,4 +1,4 @@
-//! W3b: the right-hand side of the chain of N links, by angles and by the places of its masses.
+//! W3b: the right-hand side of the chain of N links, by angles and by the positions of its masses.
 
 use std::hint::black_box;
 
@@ -9,15 +9,15 @@ use crate::chains::*;
 use crate::timing::timed;
 use crate::{Plan, State};
 
-/// States that are evaluated in turn.
+/// Number of states that are evaluated in turn.
 const STATES: usize = 64;
 
-/// Evaluations in one timing, of one link.
+/// Evaluations in one timing, multiplied by the number of links.
 const EVALUATIONS: usize = 1 << 17;
 
 const GRAVITY: f64 = 9.81;
 
-/// Both forms at every size.
+/// Measures both forms at every size.
 pub fn chains(plan: &Plan) {
     angles(&Angles2::default(), plan);
     angles(&Angles4::default(), plan);
@@ -31,7 +31,7 @@ pub fn chains(plan: &Plan) {
     rods(&Rods32::default(), plan);
 }
 
-/// Angles and their rates at random, from a fixed seed.
+/// Random angles and angular velocities, from a fixed seed.
 fn motions(links: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut seed = links as u64;
     let mut random = |size: f64| {
@@ -44,8 +44,9 @@ fn motions(links: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
     (0..STATES).map(|_| (vector(2.0), vector(1.0))).collect()
 }
 
-/// `sum_j (N + 1 - max(i, j)) (cos(theta_i - theta_j) a_j + sin(theta_i - theta_j) omega_j^2) + (N + 1 - i) g
-/// sin(theta_i)`, which vanishes where `a` are the angular accelerations; and the sum of the terms' sizes.
+/// `sum_j (N - max(i, j)) (cos(theta_i - theta_j) a_j + sin(theta_i - theta_j) omega_j^2) + (N - i) g sin(theta_i)`
+/// with indices from 0, and the sum of the absolute values of its terms. It vanishes if `a` are the angular
+/// accelerations.
 fn residual(theta: &[f64], omega: &[f64], a: &[f64], i: usize) -> (f64, f64) {
     let weight = (theta.len() - i) as f64 * GRAVITY * theta[i].sin();
     let (mut sum, mut size) = (weight, weight.abs());
@@ -60,7 +61,7 @@ fn residual(theta: &[f64], omega: &[f64], a: &[f64], i: usize) -> (f64, f64) {
     (sum, size)
 }
 
-/// By angles: `qdot` is given back, and `pdot = dL/dtheta`, the terms of the residual in which `omega_i` is a factor.
+/// Measures the chain by angles. The rate must return `qdot`, and `pdot = dL/dtheta`.
 fn angles<S: System + Described>(chain: &S, plan: &Plan) {
     let mut error = 0.0_f64;
     let mut states = Vec::new();
@@ -78,7 +79,7 @@ fn angles<S: System + Described>(chain: &S, plan: &Plan) {
     report("dalembert-angles", chain, &states, error, plan);
 }
 
-/// `pdot_i - dL/dtheta_i`, and the sum of the terms' sizes.
+/// `pdot_i - dL/dtheta_i`, and the sum of the absolute values of its terms.
 fn torque(theta: &[f64], omega: &[f64], pdot: f64, i: usize) -> (f64, f64) {
     let weight = (theta.len() - i) as f64 * GRAVITY * theta[i].sin();
     let (mut sum, mut size) = (pdot + weight, pdot.abs() + weight.abs());
@@ -91,7 +92,8 @@ fn torque(theta: &[f64], omega: &[f64], pdot: f64, i: usize) -> (f64, f64) {
     (sum, size)
 }
 
-/// By places: an angular acceleration is the difference of the accelerations of neighbouring masses, across the rod.
+/// Measures the chain by positions. An angular acceleration is the component across the rod of the difference of the
+/// accelerations of neighbouring masses.
 fn rods<S: System + Described>(chain: &S, plan: &Plan) {
     let mut error = 0.0_f64;
     let mut states = Vec::new();
@@ -113,7 +115,7 @@ fn dimension<S: Described>() -> usize {
     S::DESCRIPTION.coordinates.len()
 }
 
-/// All `x`, then all `y`.
+/// Positions of the masses: all `x`, then all `y`.
 fn places(theta: &[f64]) -> Vec<f64> {
     let x = sums(theta.iter().map(|theta| theta.sin()));
     let y = sums(theta.iter().map(|theta| -theta.cos()));
@@ -136,7 +138,7 @@ fn velocities(theta: &[f64], omega: &[f64]) -> Vec<f64> {
     [x, y].concat()
 }
 
-/// The sums of the first, of the first two, ..
+/// Partial sums.
 fn sums(terms: impl Iterator<Item = f64>) -> Vec<f64> {
     terms
         .scan(0.0, |sum, term| {

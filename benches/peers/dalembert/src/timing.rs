@@ -1,8 +1,8 @@
-//! Time that something takes.
+//! Wall-clock timing.
 
 use std::time::{Duration, Instant};
 
-/// The time of some work, with its result.
+/// The time that `work` takes, and its result.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (Duration, T) {
     let start = Instant::now();
     let result = work();

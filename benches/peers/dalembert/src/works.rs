@@ -1,4 +1,4 @@
-//! The works that are one course each. `README.md` beside this file defines them.
+//! The tasks that consist of one run each. `benches/peers/README.md` defines them.
 
 use dalembert::{Scene, System, VectorField};
 
@@ -6,7 +6,7 @@ use crate::Plan;
 use crate::course::Course;
 use crate::models::{Ball, Disk, Pendulum, Sleigh, sleigh};
 
-/// The state from which the disk starts with this rate of rolling.
+/// The start of the disk with this angular velocity of rolling.
 pub fn rolling(disk: &Disk, roll: f64) -> <Disk as VectorField>::State {
     let phi = core::f64::consts::FRAC_PI_2;
     let (sin, cos) = phi.sin_cos();
@@ -15,7 +15,7 @@ pub fn rolling(disk: &Disk, roll: f64) -> <Disk as VectorField>::State {
         .expect("an admissible state")
 }
 
-/// W1, and W1r: the reduction to the velocities of rolling and turning is found.
+/// Measures W1 and W1r: the generator finds the reduction to the velocities of rolling and turning.
 pub fn disk_billiard(plan: &Plan) {
     let disk = Disk::default();
     Course {
@@ -29,7 +29,7 @@ pub fn disk_billiard(plan: &Plan) {
     .measure(plan);
 }
 
-/// W2.
+/// Measures W2.
 pub fn sleigh(plan: &Plan) {
     let sleigh = sleigh::Free(Sleigh::default());
     let start = sleigh.state(0.0, &[0.0; 3].into(), &[-1.0, 0.0, 0.2].into());
@@ -44,7 +44,7 @@ pub fn sleigh(plan: &Plan) {
     .measure(plan);
 }
 
-/// W2b.
+/// Measures W2b.
 pub fn sleigh_billiard(plan: &Plan) {
     let sleigh = Sleigh::default();
     let theta = 0.3_f64;
@@ -61,7 +61,7 @@ pub fn sleigh_billiard(plan: &Plan) {
     .measure(plan);
 }
 
-/// W3.
+/// Measures W3.
 pub fn double_pendulum(plan: &Plan) {
     let pendulum = Pendulum::default();
     let start = pendulum.state(0.0, &[2.0, 2.5].into(), &[0.0, 0.0].into());
@@ -76,7 +76,7 @@ pub fn double_pendulum(plan: &Plan) {
     .measure(plan);
 }
 
-/// W4.
+/// Measures W4.
 pub fn bouncing_ball(plan: &Plan) {
     let ball = Ball::default();
     let start = ball.state(0.0, &[1.0].into(), &[0.0].into());
