@@ -407,7 +407,12 @@ impl AtImpact for Change<'_> {
                 format!("{written} after times the Jacobian"),
                 format!("{factor} times {written} before"),
             ],
-            (None, factor) => ["Jacobian".to_owned(), factor.unwrap_or("1").to_owned()],
+            (None, factor) => [
+                "Jacobian".to_owned(),
+                factor
+                    .unwrap_or("Jacobian where volumes are kept")
+                    .to_owned(),
+            ],
         };
         let sizes = [terms[0].abs().sqrt(), terms[1].abs().sqrt()];
         with_difference(names, sizes, sum / (sizes[0] + sizes[1]))

@@ -28,7 +28,6 @@ const COORDINATES: usize = 4;
 /// structure that the author wrote, so that an N-link chain costs O(N^2) operations and not O(N^3). With few
 /// coordinates both are tried: terms that cancel in the metric do not occur in its derivatives.
 pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> FieldTerms {
-    let motion = coordinates.motion(model);
     let whole = model.lagrangian.whole;
     let mut terms = FieldTerms {
         force: Vec::new(),
@@ -39,17 +38,14 @@ pub(super) fn derive_field(model: &mut Model, coordinates: &Coordinates) -> Fiel
             false => model.pool.diff(whole, coordinates.time),
         },
     };
-    let gradient = gradient_of_whole(model, coordinates);
-    for (k, &gradient) in gradient.iter().enumerate() {
+    let (gradient, drift) = gradient_and_drift(model, coordinates);
+    for (k, (&gradient, &drift)) in gradient.iter().zip(&drift).enumerate() {
         let mut force = vec![gradient];
         force.extend(model.forces.iter().map(|named| named.form[k]));
-        terms.force.push(model.pool.sum(&force));
-        let momentum = model.pool.diff(whole, coordinates.qdot[k]);
-        terms
-            .drift
-            .push(model.pool.derivative_along(momentum, &motion));
-        let cancels = cancel(&mut model.pool, terms.force[k], terms.drift[k]);
-        terms.cancels.push(cancels);
+        let force = model.pool.sum(&force);
+        terms.cancels.push(cancel(&mut model.pool, force, drift));
+        terms.force.push(force);
+        terms.drift.push(drift);
     }
     terms
 }
@@ -63,24 +59,50 @@ fn cancel(pool: &mut Pool, a: ExprId, b: ExprId) -> bool {
     pool.zero_test(difference) == Verdict::Proved
 }
 
-/// `d_k L`, in the form with fewer parts.
-fn gradient_of_whole(model: &mut Model, coordinates: &Coordinates) -> Vec<ExprId> {
+/// `d_k L` and `d/dt dL/dqdot^k` at fixed velocity, each of `L` as written or of its expanded metric: the pair with the
+/// fewest parts.
+fn gradient_and_drift(model: &mut Model, coordinates: &Coordinates) -> (Vec<ExprId>, Vec<ExprId>) {
     let whole = model.lagrangian.whole;
-    let of = |model: &mut Model, expression: ExprId| -> Vec<ExprId> {
-        let symbols = coordinates.q.iter();
-        symbols.map(|&q| model.pool.diff(expression, q)).collect()
-    };
-    let written = of(model, whole);
+    let written = (
+        gradient(model, coordinates, whole),
+        drift(model, coordinates, whole),
+    );
     if coordinates.q.len() > COORDINATES {
         return written;
     }
     let parts = expanded(model, coordinates);
-    let expanded = of(model, parts);
-    let size = |gradient: &[ExprId]| model.pool.reachable(gradient).len();
-    match size(&expanded) < size(&written) {
-        true => expanded,
-        false => written,
-    }
+    let expanded = (
+        gradient(model, coordinates, parts),
+        drift(model, coordinates, parts),
+    );
+    let pairs = [
+        written.clone(),
+        (expanded.0.clone(), written.1.clone()),
+        (written.0, expanded.1.clone()),
+        expanded,
+    ];
+    // Of equal ones the first, as written.
+    let pairs = pairs.into_iter().min_by_key(|(gradient, drift)| {
+        let both: Vec<ExprId> = gradient.iter().chain(drift).copied().collect();
+        model.pool.reachable(&both).len()
+    });
+    pairs.unwrap_or_default()
+}
+
+/// The derivatives with respect to the coordinates.
+fn gradient(model: &mut Model, coordinates: &Coordinates, lagrangian: ExprId) -> Vec<ExprId> {
+    let symbols = coordinates.q.iter();
+    symbols.map(|&q| model.pool.diff(lagrangian, q)).collect()
+}
+
+/// `d/dt dL/dqdot^k` at fixed velocity.
+fn drift(model: &mut Model, coordinates: &Coordinates, lagrangian: ExprId) -> Vec<ExprId> {
+    let motion = coordinates.motion(model);
+    let along = |&velocity| {
+        let momentum = model.pool.diff(lagrangian, velocity);
+        model.pool.derivative_along(momentum, &motion)
+    };
+    coordinates.qdot.iter().map(along).collect()
 }
 
 /// `1/2 qdot^T g qdot + A.qdot - V`
