@@ -3,6 +3,7 @@
 use dalembert_expr::{Arithmetic, ExpansionPoint, ExprId, RealPoint, SymbolId};
 
 use super::continuity::{poles, possible_jump};
+use super::defaults::Defaults;
 use super::dynamics::{Dynamics, Motion, Number};
 use super::evidence::{Evidence, Vanishing, Wording, evidence, in_arguments};
 use super::finding::Verdict;
@@ -57,7 +58,43 @@ pub(super) fn check_conserved(
         let text = format!("its rate is 0 wherever it exists, but it may jump {place}");
         return Verdict::Undecided(text);
     }
-    verdict
+    match (holds, &verdict) {
+        (true, Verdict::Refuted(_)) | (false, Verdict::Proved(_)) => {
+            change_at_defaults(model, parts, (value, written), verdict, seed)
+        }
+        _ => verdict,
+    }
+}
+
+/// The verdict that a quantity changes for indeterminate parameters, after a look at the declared defaults. A quantity that
+/// is conserved there is not shown to change, and a refutation says so.
+fn change_at_defaults(
+    model: &mut Model,
+    parts: &[Dynamics],
+    (value, written): (ExprId, &str),
+    generic: Verdict,
+    seed: u64,
+) -> Verdict {
+    let roots = parts.iter().flat_map(Dynamics::roots).chain([value]);
+    let defaults = Defaults::of(model, &roots.collect::<Vec<_>>());
+    if defaults.is_empty() {
+        return generic;
+    }
+    let value = model.pool.substitute(value, defaults.replacements());
+    let is_conserved = parts.iter().all(|dynamics| {
+        let dynamics = dynamics.substituted(&mut model.pool, defaults.replacements());
+        let rate = Rate {
+            quantity: Quantity::of(model, value),
+            dynamics: &dynamics,
+            written,
+        };
+        evidence(model, &rate, seed).shows_that_it_vanishes()
+            && jump(model, &dynamics, value, seed).is_none()
+    });
+    match is_conserved {
+        true => defaults.without_change(generic),
+        false => generic,
+    }
 }
 
 /// Description of places where a quantity may jump along a motion; `None` if it does not.

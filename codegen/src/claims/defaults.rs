@@ -10,7 +10,7 @@ use super::contraction::{Dependence, dependence};
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide, sample_points, screen};
 use super::existence::{Decision, check_existence};
-use super::finding::Verdict;
+use super::finding::{Verdict, Witness};
 use super::fit::certify;
 use super::potential::Potential;
 use super::problem::Problem;
@@ -61,6 +61,22 @@ impl Defaults {
     /// Symbols of the parameters and their values.
     pub(super) fn replacements(&self) -> &[(SymbolId, ExprId)] {
         &self.values
+    }
+
+    /// The verdict that a quantity changes for indeterminate parameters, where it is conserved at the defaults.
+    pub(super) fn without_change(&self, generic: Verdict) -> Verdict {
+        let place = format!("conserved at the declared defaults {}", self.text);
+        let remedy = "write these numbers in place of the parameters";
+        match generic {
+            Verdict::Refuted(witness) => Verdict::Refuted(Witness {
+                help: format!("it is {place}: {remedy} to claim that"),
+                ..witness
+            }),
+            Verdict::Proved(_) => Verdict::Undecided(format!(
+                "it changes for almost all values of the parameters, and is {place}; {remedy} to claim that it is conserved"
+            )),
+            undecided => undecided,
+        }
     }
 
     /// The verdict on a claim that is proved for indeterminate parameters. `declared`: the verdict at the defaults.
@@ -226,6 +242,37 @@ mod tests {
         assert!(message.contains("at the declared defaults"), "{message}");
         assert!(message.contains("k = 0"), "{message}");
         assert!(message.contains("delta"), "{message}");
+    }
+
+    /// A bead on a hoop that turns at the rate w: the energy in the frame at rest is conserved if w = 0.
+    #[test]
+    fn a_quantity_that_is_conserved_at_the_defaults_is_not_shown_to_change() {
+        let bead = |default: &str, claim: &str| {
+            messages(&format!(
+                "pub Bead {{
+                    coordinates {{ theta: angle; }}
+                    parameters {{ w = {default}; g > 0 = 9.81; }}
+                    lagrangian = (dot(theta)^2 + w^2*sin(theta)^2)/2 + g*cos(theta);
+                    let lab = (dot(theta)^2 + w^2*sin(theta)^2)/2 - g*cos(theta);
+                    claims {{ {claim}; }}
+                }}"
+            ))
+        };
+        assert_eq!(bead("1/2", "not conserved: lab"), "");
+        let message = bead("0", "not conserved: lab");
+        assert!(
+            message.contains("`not conserved: lab` is undecided"),
+            "{message}"
+        );
+        assert!(message.contains("declared defaults w = 0"), "{message}");
+        let message = bead("0", "conserved: lab");
+        assert!(message.contains("`conserved: lab` is refuted"), "{message}");
+        assert!(
+            message.contains("conserved at the declared defaults w = 0"),
+            "{message}"
+        );
+        let message = bead("1/2", "conserved: lab");
+        assert!(!message.contains("declared defaults"), "{message}");
     }
 
     #[test]
