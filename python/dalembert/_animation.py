@@ -7,11 +7,11 @@ import secrets
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _native
 from ._plot import border, with_corners
 
 if TYPE_CHECKING:
@@ -195,15 +195,8 @@ class Animation:
 
     def to_html(self) -> str:
         """The animation as HTML with its own script: a canvas, a button and a slider."""
-        name = f"dalembert-{secrets.token_hex(6)}"
-        # Nothing in a name may end the script.
-        data = json.dumps(self.data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-        script = files(__package__).joinpath("_canvas.js").read_text(encoding="utf-8").rstrip()
-        return (
-            f"<div id='{name}'><canvas></canvas><br><button style='width: 3em'></button> "
-            "<input type='range' min='0' value='0' style='width: 560px'></div>"
-            f"<script>{script}(document.getElementById('{name}'), {data});</script>"
-        )
+        data = json.dumps(self.data(), allow_nan=False, separators=(",", ":"))
+        return _native.player(f"dalembert-{secrets.token_hex(6)}", data)
 
     def _repr_html_(self) -> str:
         return self.to_html()

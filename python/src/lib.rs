@@ -33,11 +33,17 @@ fn version() -> &'static str {
     env!("CARGO_PKG_VERSION")
 }
 
+/// The player of an animation, as HTML; `data` is JSON.
+#[pyo3::pyfunction]
+fn player(name: &str, data: &str) -> String {
+    dalembert_driver::player::element(name, data)
+}
+
 /// The functions and classes of the module.
 #[pyo3::pymodule(gil_used = false)]
 mod _native {
     #[pymodule_export]
-    use super::version;
+    use super::{player, version};
     #[pymodule_export]
     use crate::ensemble::NativeEnsemble;
     #[pymodule_export]

@@ -23,7 +23,7 @@ mod series;
 use std::path::PathBuf;
 
 use clap::builder::ValueParser;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use dalembert::law::Law;
 use dalembert::policy::{Corner, Penetration, Policies, Rest, Split};
 use dalembert_driver::{Form, Integrator, OffConstraint};
@@ -477,6 +477,7 @@ pub struct CourseArgs {
 
 /// `simulate`
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("drawn").args(["plot", "html"]).multiple(true))]
 pub struct SimulateArgs {
     /// Run.
     #[command(flatten)]
@@ -521,9 +522,15 @@ pub struct SimulateArgs {
     /// Draw the run: the axes of --axes, else the declared view, else all coordinates against time.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Write a page that plays the same picture as a motion, with a slider for the time. It needs no other file.
+    #[arg(long, value_name = "FILE.html", conflicts_with = "certify")]
+    pub html: Option<PathBuf>,
+    /// Seconds that the page of --html plays.
+    #[arg(long, value_name = "S", requires = "html", value_parser = ValueParser::new(scalar::positive), default_value = "10")]
+    pub duration: f64,
     /// Quantities of the picture: one along x, one or more along y. Quantities are `t`, coordinates, velocities `x_dot`,
     /// momenta `p_x`, `energy`, `energy_error` and outputs. `q`, `qdot`, `p` and `outputs` stand for all of their kind.
-    #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
+    #[arg(long, value_name = "X,Y[,Y..]", requires = "drawn")]
     pub axes: Option<String>,
     /// Width of the picture, in pixels.
     #[arg(long, value_name = "PIXELS", requires = "plot", value_parser = clap::value_parser!(u32).range(300..=4000), default_value_t = 900)]

@@ -17,6 +17,7 @@
 //! | `modulo.rs` | symmetry groups up to which orbits close |
 //! | `certify.rs` | enclosures of motions and impacts |
 //! | `drift.rs` | drift of a conserved quantity over a long run |
+//! | `player.rs` | pages that play a motion |
 //! | `course.rs` | defaults for values that the request of a run leaves open |
 //! | `beginning.rs` | initial states from given components |
 //! | `names.rs`, `words.rs`, `outcome.rs` | names of quantities; refusals, faults and outcomes in the names of the model |
@@ -48,6 +49,7 @@ pub mod names;
 mod orbit;
 pub mod outcome;
 mod owner;
+pub mod player;
 mod refusal;
 mod run;
 mod typed;

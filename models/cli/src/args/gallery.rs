@@ -13,6 +13,7 @@ was not.
 More examples:
   dalembert gallery pictures
   dalembert gallery pictures rolling_disk chaplygin_sleigh --quick
+  dalembert gallery pictures --animations
   dalembert gallery --list
   dalembert gallery . --picture rolling_disk-motion-path";
 
@@ -31,6 +32,10 @@ pub struct GalleryArgs {
     /// Print the names and titles of the pictures without drawing them.
     #[arg(long)]
     pub list: bool,
+    /// Write a page that plays the run of each picture of `simulate`, NAME.html, and list these pages on the page of the
+    /// gallery.
+    #[arg(long)]
+    pub animations: bool,
     /// Draw densities from shorter runs, and leave out diagrams of measured times.
     #[arg(long)]
     pub quick: bool,

@@ -30,7 +30,7 @@ pub fn run(
         true => Effort::Quick,
         false => Effort::Full,
     };
-    let plates = chosen(Plate::all(&figures, effort), &args.picture)?;
+    let plates = chosen(Plate::all(&figures, effort, args.animations), &args.picture)?;
     let folder = match &args.out {
         Some(folder) if !args.list => folder,
         _ => {
@@ -144,8 +144,13 @@ fn make_all(
 }
 
 fn save(folder: &Path, plate: &Plate<'_>, print: &Print) -> Result<(), CliError> {
-    let path = folder.join(plate.file());
-    fs::write(&path, &print.svg).map_err(|source| unwritten(path, source))
+    let animation = print.animation.as_ref();
+    let files = [(plate.file(), &print.svg)].into_iter();
+    for (name, text) in files.chain(animation.map(|page| (plate.animation_file(), page))) {
+        let path = folder.join(name);
+        fs::write(&path, text).map_err(|source| unwritten(path, source))?;
+    }
+    Ok(())
 }
 
 fn unwritten(path: PathBuf, source: std::io::Error) -> CliError {

@@ -60,13 +60,14 @@ pub fn run(
     if args.certify.certify {
         return certify::run(models, args, streams);
     }
-    run_request::check_outputs([&args.csv, &args.json, &args.plot])?;
+    run_request::check_outputs([&args.csv, &args.json, &args.html, &args.plot])?;
     let model = build_run(models, &args.run)?;
     let prepared = prepare(model.as_ref(), args)?;
     // Opened before the run, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
+    let html = Sink::open_given("--html", args.html.as_deref())?;
 
     let (finished, rows) =
         write_as_it_goes(model.as_ref(), prepared, args, csv, json.as_ref(), streams)?;
@@ -79,6 +80,10 @@ pub fn run(
     if let Some(sink) = plot {
         let svg = picture(&finished, args)?;
         sink.write(streams, |output| output.write_all(svg.as_bytes()))?;
+    }
+    if let Some(sink) = html {
+        let page = page(&finished, args);
+        sink.write(streams, |output| output.write_all(page.as_bytes()))?;
     }
     if !run_request::uses_stdout([&args.csv, &args.json]) {
         summary::write(streams.output, &finished)?;
@@ -134,15 +139,16 @@ pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
 /// Invalid flags, a state that is refused.
 pub fn prepare(model: &dyn AnyModel, args: &SimulateArgs) -> Result<Prepared, CliError> {
     let description = model.description();
-    let source = match (&args.plot, &args.axes) {
-        (None, _) => None,
-        (Some(_), Some(axes)) => Some(Source::Quantities(quantity::parse(
+    let is_drawn = args.plot.is_some() || args.html.is_some();
+    let source = match &args.axes {
+        _ if !is_drawn => None,
+        Some(axes) => Some(Source::Quantities(quantity::parse(
             "--axes",
             axes,
             description,
         )?)),
-        (Some(_), None) if description.view.is_some() => Some(Source::View),
-        (Some(_), None) => Some(Source::Coordinates),
+        None if description.view.is_some() => Some(Source::View),
+        None => Some(Source::Coordinates),
     };
     Ok(Prepared {
         settings: run_request::course(model, &args.run, &args.course)?,
@@ -235,20 +241,44 @@ fn carry_out(
     Ok((record, ending))
 }
 
+/// The page that plays the run of these flags.
+///
+/// # Errors
+/// The errors of [`run`] except those of files.
+pub fn play(models: &[Entry], args: &SimulateArgs) -> Result<String, CliError> {
+    let models = &*expression::with_outputs(models, &args.run.model.model, &args.output)?;
+    let model = build_run(models, &args.run)?;
+    let prepared = prepare(model.as_ref(), args)?;
+    let finished = finish(model.as_ref(), prepared, args, Vec::new(), false)?;
+    Ok(page(&finished, args))
+}
+
+/// The page that plays the run.
+fn page(finished: &Finished<'_>, args: &SimulateArgs) -> String {
+    let drawn = drawing(finished, args);
+    drawn.map_or_else(String::new, |drawn| {
+        plot::player::page(&drawn, args.duration)
+    })
+}
+
 /// The run's picture as SVG.
 fn picture(finished: &Finished<'_>, args: &SimulateArgs) -> Result<String, CliError> {
-    let Some(trace) = &finished.record.trace else {
+    let Some(drawn) = drawing(finished, args) else {
         return Ok(String::new());
     };
-    let drawn = plot::draw(&Picture {
+    plot::draw(&drawn).map_err(|reason| CliError::picture(&args.plot, reason))
+}
+
+/// The content of the run's picture; `None` if no picture was requested.
+fn drawing<'a>(finished: &'a Finished<'_>, args: &SimulateArgs) -> Option<Picture<'a>> {
+    Some(Picture {
         model: finished.model,
         title: summary::title(finished),
         subtitle: summary::subtitle(finished),
         width: f64::from(args.plot_width),
-        trace,
+        trace: finished.record.trace.as_ref()?,
         impacts: &finished.record.impacts,
         first: &finished.ending.first,
         last: (finished.ending.t, &finished.ending.last),
-    });
-    drawn.map_err(|reason| CliError::picture(&args.plot, reason))
+    })
 }

@@ -14,7 +14,7 @@ mod standard;
 mod starts;
 
 pub(crate) use manifest::write as write_manifest;
-pub(crate) use page::page;
+pub(crate) use page::{escaped, page};
 pub(crate) use plate::{Effort, Plate, Print};
 pub(crate) use standard::figure as standard_figure;
 

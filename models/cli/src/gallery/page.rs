@@ -49,6 +49,7 @@ pub fn page(models: &[Entry], plates: &[Plate<'_>], prints: &[Result<Print, CliE
     page += "</p>\n";
     page += &highlights(&chapters);
     page += &contents(&chapters);
+    page += &animations(&drawn);
     for (number, (chapter, figures)) in chapters.iter().enumerate() {
         let _ = write!(
             page,
@@ -145,6 +146,26 @@ fn contents(chapters: &Chapters<'_>) -> String {
     list + "</ul></nav>\n"
 }
 
+/// The index of the animations; empty if there are none.
+fn animations(drawn: &[Drawn<'_>]) -> String {
+    let has_animation =
+        |(_, print): &&Drawn<'_>| matches!(print, Ok(print) if print.animation.is_some());
+    let mut list = String::new();
+    for (plate, _) in drawn.iter().filter(has_animation) {
+        let _ = write!(
+            list,
+            "<li><a href=\"{}\">{}: {}</a></li>",
+            plate.animation_file(),
+            escaped(plate.figure.title),
+            escaped(&plate.panel.title)
+        );
+    }
+    match list.is_empty() {
+        true => list,
+        false => format!("<nav id=\"animations\"><h2>Animations</h2><ul>{list}</ul></nav>\n"),
+    }
+}
+
 fn anchor(drawn: &[Drawn<'_>]) -> String {
     let Figure { model, name, .. } = drawn[0].0.figure;
     format!("{model}-{name}")
@@ -187,8 +208,14 @@ fn panel(plate: &Plate<'_>, print: &Result<Print, CliError>) -> String {
         Ok(print) => labelled(&print.svg, &plate.panel.title),
         Err(error) => format!("<p class=\"error\">{}</p>\n", escaped(&error.to_string())),
     };
+    let play = match print {
+        Ok(print) if print.animation.is_some() => {
+            format!(" <a href=\"{}\">Play</a>", plate.animation_file())
+        }
+        _ => String::new(),
+    };
     format!(
-        "<div class=\"panel\">{picture}<p>{}</p><code>{}</code></div>\n",
+        "<div class=\"panel\">{picture}<p>{}{play}</p><code>{}</code></div>\n",
         escaped(&plate.panel.title),
         words(&plate.command())
     )
@@ -248,7 +275,7 @@ fn documented(text: &str) -> String {
     page
 }
 
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

@@ -31,12 +31,16 @@ pub struct Plate<'a> {
     pub panel: &'a Panel,
     /// The effort.
     pub effort: Effort,
+    /// True if pictures of `simulate` are animated, too.
+    pub is_animated: bool,
 }
 
 /// A finished picture.
 pub struct Print {
     /// The picture.
     pub svg: String,
+    /// A page that plays the run of the picture, for a picture of `simulate` in a gallery with animations.
+    pub animation: Option<String>,
     /// The outcome of the run, in words.
     pub outcome: String,
     /// Seconds taken to make it.
@@ -45,12 +49,13 @@ pub struct Print {
 
 impl<'a> Plate<'a> {
     /// All pictures of the figures; timed ones only with full effort.
-    pub fn all(figures: &'a [Figure], effort: Effort) -> Vec<Self> {
+    pub fn all(figures: &'a [Figure], effort: Effort, is_animated: bool) -> Vec<Self> {
         let plates = figures.iter().flat_map(|figure| {
             figure.panels.iter().map(move |panel| Plate {
                 figure,
                 panel,
                 effort,
+                is_animated,
             })
         });
         plates
@@ -70,6 +75,11 @@ impl<'a> Plate<'a> {
     /// Its file name.
     pub fn file(&self) -> String {
         format!("{}.svg", self.name())
+    }
+
+    /// The file name of the page that plays its run.
+    pub fn animation_file(&self) -> String {
+        format!("{}.html", self.name())
     }
 
     /// True if it shows measured times, so that no other work may run at the same time.
@@ -116,9 +126,18 @@ impl<'a> Plate<'a> {
         let Drawn { svg, outcome } = self.draw(models)?;
         Ok(Print {
             svg,
+            animation: self.animation(models)?,
             outcome,
             seconds: started.elapsed().as_secs_f64(),
         })
+    }
+
+    fn animation(&self, models: &[Entry]) -> Result<Option<String>, CliError> {
+        if !self.is_animated || !matches!(self.panel.picture, Picture::Simulate(_)) {
+            return Ok(None);
+        }
+        let args = self.simulate(&self.command())?;
+        simulate::play(models, &args).map(Some)
     }
 
     fn draw(&self, models: &[Entry]) -> Result<Drawn, CliError> {

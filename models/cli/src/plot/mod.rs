@@ -20,6 +20,7 @@ pub mod map;
 pub mod paths;
 mod phase;
 mod plane;
+pub mod player;
 mod portrait;
 pub mod quantity;
 mod region;

@@ -66,7 +66,7 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
 }
 
 /// The bounding rectangle of the path, with positive width and height.
-fn extent(points: &[[f64; 2]]) -> Window {
+pub(super) fn extent(points: &[[f64; 2]]) -> Window {
     let x = padded(points.iter().map(|point| point[0]), 0.0);
     let y = padded(points.iter().map(|point| point[1]), 0.0);
     let tight = Window::around(points.iter().copied());
@@ -135,7 +135,7 @@ pub fn draw_contours(
 }
 
 /// The parts of a contour inside the window.
-fn strokes(contour: &Contour) -> Vec<Vec<(f64, f64)>> {
+pub(super) fn strokes(contour: &Contour) -> Vec<Vec<(f64, f64)>> {
     let corner = |index: usize| {
         let point = contour.points[index % contour.points.len()];
         (point[0], point[1])

@@ -54,6 +54,24 @@ impl<'a> Region<'a> {
         contours(window, cells, |point| self.value(point))
     }
 
+    /// Like [`Self::contours`], at a time.
+    pub fn contours_at(&self, t: f64, window: Window, cells: usize) -> Vec<Contour> {
+        contours(window, cells, |point| self.value_at(t, self.q, point))
+    }
+
+    /// True if the region depends on time and the coordinates of the plane only. The test compares the other coordinates
+    /// of the first and of the last state, at four points and three times.
+    pub fn depends_on_time_only(&self, (end, last): (f64, &Point), path: Window) -> bool {
+        let times = [0.37 * end, 0.61 * end, end];
+        probes(path).into_iter().all(|point| {
+            let same = |t: f64| {
+                let values = [self.q, &last.q].map(|q| self.value_at(t, q, point));
+                values[0] == values[1] || values.iter().all(|value| value.is_nan())
+            };
+            times.into_iter().all(same)
+        })
+    }
+
     /// The visible part of the plane: the path, and the whole region if it is bounded.
     pub fn window(&self, path: Window) -> Window {
         let with_path = |region: Window| {
@@ -98,17 +116,20 @@ impl<'a> Region<'a> {
     /// True if the region depends on the coordinates of the plane only. The test compares four points at the first and
     /// the last time, and at two times between with the other coordinates of the first and of the last state.
     fn stands_still(&self, (end, last): (f64, &Point), path: Window) -> bool {
-        let points =
-            [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y));
         let same = |t: f64, q: &[f64], point: [f64; 2]| {
             let (now, then) = (self.value(point), self.value_at(t, q, point));
             now == then || (now.is_nan() && then.is_nan())
         };
         let first = self.q;
-        points.into_iter().all(|point| {
+        probes(path).into_iter().all(|point| {
             same(end, &last.q, point)
                 && same(0.37 * end, first, point)
                 && same(0.61 * end, &last.q, point)
         })
     }
+}
+
+/// Points near a path at which values of a region are compared.
+fn probes(path: Window) -> [[f64; 2]; 4] {
+    [(0.1, 0.3), (0.5, 0.5), (0.8, 0.6), (0.3, 0.9)].map(|(x, y)| path.grown(0.2).at(x, y))
 }

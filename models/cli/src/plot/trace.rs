@@ -28,7 +28,8 @@ pub enum Source {
 }
 
 impl Source {
-    fn values(&self, t: f64, point: &Point, start: f64) -> Vec<f64> {
+    /// The components at a state. `start` is the energy at the start of the run.
+    pub(super) fn values(&self, t: f64, point: &Point, start: f64) -> Vec<f64> {
         match self {
             Self::View => point.view.map_or_else(Vec::new, |view| view.to_vec()),
             Self::Coordinates => point.q.iter().chain(&point.outputs).copied().collect(),
@@ -84,7 +85,7 @@ pub struct Mark {
 
 impl Mark {
     /// True if an impact or a transition changes the values from this point to the next.
-    fn jumps_to(&self, next: &Self) -> bool {
+    pub(super) fn jumps_to(&self, next: &Self) -> bool {
         self.corner && next.corner && self.t == next.t && self.values != next.values
     }
 }

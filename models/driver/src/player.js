@@ -1,4 +1,4 @@
-// Plays an animation in a canvas. `root` has the canvas, a button and a slider; `data` is what `_animation.py` writes.
+// Plays an animation in a canvas. `root` has the canvas, a button and a slider; player.rs describes `data`.
 (function (root, data) {
   const canvas = root.querySelector("canvas"), button = root.querySelector("button"), slider = root.querySelector("input");
   const scale = window.devicePixelRatio || 1, width = 640, height = data.height, margin = { left: 56, right: 12, top: 26, bottom: 36 };
