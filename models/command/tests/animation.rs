@@ -110,7 +110,7 @@ fn walls_are_drawn_where_they_are() {
             lagrangian = (dot(x)^2 + dot(y)^2)/2;
             impacts { wall: x >= sin(t); }
             initial { x = 2; y = 0; dot(x) = 1/10; dot(y) = 1/2; until = 3; }
-            view { path: (x, y); region: x - sin(t); }
+            view { path: (x, y); region: x >= sin(t); }
         }";
     let moving = played(&folder, wall, "- --duration 1");
     let times = list(&moving["times"]);
