@@ -6,8 +6,10 @@ use dalembert::numbers::{Numbers, Row};
 use dalembert::variations::Dual;
 use dalembert::{Described, Event, Impacting, Instance, System, Tangent, TaylorField, VectorField};
 use dalembert_cli::Integrator;
-use dalembert_stability::course::{Course, Driven, declared, state as state_of, vector};
-use dalembert_stability::text::{Large, Text, shipped};
+use dalembert_stability::course::{
+    Course, Driven, declared, is_discrete, state as state_of, vector,
+};
+use dalembert_stability::text::{Large, Model, Text, shipped};
 use dalembert_stability::varied::Varied;
 use dalembert_tests::differences;
 use dalembert_tests::reference::{number, numbers, read};
@@ -54,6 +56,16 @@ static SWAPPED: Text = Text::new(
         lagrangian = (dot(a)^2 + 2*dot(b)^2)/2 + k*cos(a - b)*dot(a)*dot(b);
         impacts { step: sin(a + b) <= c => reset { a = b - k; b = a; dot(a) = -dot(b) - t/8; dot(b) = -k*dot(a); }; }
         initial { a = 0.1; b = 0.1; dot(a) = 0.7; dot(b) = 0.3; until = 2; }
+    }",
+);
+
+/// A point that meets a round peg and leaves it after every impulse: along the peg after a plastic one.
+static GLANCE: Text = Text::new(
+    "Glance {
+        coordinates { x; y; }
+        parameters { r > 0 = 1; k = 1/2; }
+        lagrangian = (dot(x)^2 + 2*dot(y)^2)/2 + k*x*dot(x)*dot(y)/3;
+        impacts { peg: x^2 + y^2 >= r^2; }
     }",
 );
 
@@ -289,6 +301,8 @@ fn derivatives_are_limits_of_differences() {
     check_differences(&everything, start, &[(0, Law::Newton(0.75))], 1.5);
 }
 
+/// The laws that are impulses. A declared reset has its derivative in `derivatives_are_limits_of_differences`, and
+/// nothing follows a stop.
 #[test]
 fn every_law_has_its_derivative() {
     let laws = [
@@ -296,32 +310,78 @@ fn every_law_has_its_derivative() {
         Law::Restitution(0.5),
         Law::Newton(0.25),
         Law::NonholonomicPlastic,
+        Law::ImpactPlastic,
+        Law::TotallyPlastic,
     ];
+    let names = laws.iter().map(Law::name).chain(["reset", "stop"]);
+    let known = Law::NAMES.map(|(name, _)| name);
+    assert_eq!(names.collect::<Vec<_>>(), known);
     for law in laws {
+        let point = GLANCE.model();
+        let start = state_of(&point, &[-2.0, 0.4], &[0.9, 0.1]);
+        check_differences(&point, start, &[(0, law)], 3.0);
+    }
+    // After a plastic impact, the sleigh would stay at the edge of the table or still press against it.
+    for &law in &laws[..4] {
         let sleigh = shipped("chaplygin_sleigh").model();
         check_differences(&sleigh, declared(&sleigh), &[(0, law), (1, law)], 3.0);
     }
 }
 
+/// Derivatives of the end of a run with respect to the components of its start.
+fn tangents(
+    system: &Model,
+    until: f64,
+    (integrator, step): (Integrator, Option<f64>),
+) -> Vec<Tangent<Model>> {
+    let components = 0..system.state_len();
+    let mut columns: Vec<Tangent<Model>> = components.map(Tangent::of_component).collect();
+    let mut course = course(system, declared(system), &[], until).tol(1e-13);
+    if let Some(step) = step {
+        course = course.step(step);
+    }
+    let (run, derived) = course.vary(integrator, &mut columns);
+    assert!(run.outcome.is_done(), "{integrator:?}: {}", run.outcome);
+    assert!(run.counters.impacts > 0, "{integrator:?}");
+    derived.expect("derivatives");
+    columns
+}
+
 #[test]
 fn any_integrator_may_make_the_run() {
-    let system = shipped("dimensionless_walker").model();
-    let start = declared(&system);
-    let tangents = |integrator| {
-        let mut columns = [0, 1, 2].map(Tangent::of_component);
-        let course = course(&system, start, &[], 4.0).tol(1e-13);
-        let (run, _) = course.vary(integrator, &mut columns);
-        assert!(run.outcome.is_done(), "{}", run.outcome);
-        columns.map(|column| column.state)
-    };
-    let (one, other) = (tangents(Integrator::Taylor), tangents(Integrator::Dop853));
-    for (one, other) in one.iter().zip(&other) {
-        let (one, other) = (one.as_ref(), other.as_ref());
-        let size = one
-            .iter()
-            .fold(0.0, |size: f64, value| size.max(value.abs()));
-        for (a, b) in one.iter().zip(other) {
-            assert!((a - b).abs() <= 1e-11 * size, "{one:?} {other:?}");
+    let (walker, bent) = (shipped("dimensionless_walker").model(), BENT.model());
+    for &integrator in Integrator::every() {
+        // The walker is a first-order system, to which the discrete principle does not apply.
+        let (system, until) = match is_discrete(integrator) {
+            true => (&bent, 2.0),
+            false => (&walker, 4.0),
+        };
+        // The bounds allow for the errors of the states of the run.
+        let (step, bound) = match integrator {
+            Integrator::Dla2 => (Some(1.0 / 512.0), 1e-4),
+            Integrator::Rk4 | Integrator::Gauss4 | Integrator::Dla4 => (Some(1.0 / 128.0), 1e-8),
+            Integrator::Gauss6 => (Some(1.0 / 128.0), 1e-10),
+            Integrator::Dop853 | Integrator::Dopri5 | Integrator::Taylor => (None, 1e-11),
+        };
+        let known = match integrator {
+            Integrator::Taylor => Integrator::Dop853,
+            _ => Integrator::Taylor,
+        };
+        let (one, other) = (
+            tangents(system, until, (integrator, step)),
+            tangents(system, until, (known, None)),
+        );
+        for (one, other) in one.iter().zip(&other) {
+            let (one, other) = (one.state.as_ref(), other.state.as_ref());
+            let size = other
+                .iter()
+                .fold(0.0, |size: f64, value| size.max(value.abs()));
+            for (a, b) in one.iter().zip(other) {
+                assert!(
+                    (a - b).abs() <= bound * size,
+                    "{integrator:?}: {one:?} {other:?}"
+                );
+            }
         }
     }
 }

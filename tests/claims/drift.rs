@@ -81,6 +81,7 @@ fn affine_constraints_add_the_divergence_of_their_drift() {
     );
 }
 
+/// The density of a round ball is 1. That of a ball with an axis of symmetry is `sqrt(det m)`.
 #[test]
 fn balls_on_a_turning_table_keep_a_volume() {
     let table = |inertia: &str| {
@@ -94,7 +95,10 @@ fn balls_on_a_turning_table_keep_a_volume() {
         verified(&table("A*(b1^2 + b2^2 + b3^2)")),
         Existence::Global
     );
-    verified(&table("A*(b1^2 + b2^2) + C*b3^2"));
+    let symmetric = table("A*(b1^2 + b2^2) + C*b3^2");
+    assert_eq!(verified(&symmetric), Existence::Global);
+    let potential = Decided::of(&symmetric).potential();
+    assert_eq!(potential.as_deref(), Some("1/2*ln(det m)"));
 }
 
 /// Without constraints the volume of phase space is kept although metric and potential depend on time. With constraints
@@ -118,11 +122,13 @@ fn time_enters_metric_and_constraints() {
         verified(&blade("(1 + t^2)", "d(y) - t*d(x)")),
         Existence::Global
     );
-    for form in [
-        "d(y) - (t + x)*d(theta) + x*d(t)",
-        "d(y) - (t + x)*d(theta) + y*d(t)",
-    ] {
-        verified(&blade("1", form));
-    }
-    verified(&blade("(1 + x^2*t^2)", "d(y) - t*x*d(theta)"));
+    // With `s = t + x` the divergence is the rate of `-ln(1 + s^2)/2` for the drift `-x`. The drift `-y` adds
+    // `-1/(1 + s^2)`, which is not the rate of a function of the configuration.
+    let drift = |drift: &str| blade("1", &format!("d(y) - (t + x)*d(theta) + {drift}*d(t)"));
+    assert_eq!(verified(&drift("x")), Existence::Global);
+    assert_eq!(verified(&drift("y")), Existence::None);
+    // With `s = t*x` and `a = 1 + s^2` the divergence is the rate of `-ln(a) - F(s)` with
+    // `F' = s*(1 + 3*s^2)/(1 + a*s^2)`.
+    let scaled = blade("(1 + x^2*t^2)", "d(y) - t*x*d(theta)");
+    assert_eq!(verified(&scaled), Existence::Global);
 }

@@ -2,7 +2,7 @@
 //! that are singular far from the origin, small periods, conditions of surfaces.
 
 use dalembert_codegen::claims::{Finding, Verdict};
-use dalembert_tests::claim::verdict;
+use dalembert_tests::claim::{Witness, verdict};
 
 /// The finding on a claim of a declaration with this name.
 fn finding(name: &str, declarations: &str, claim: &str) -> Finding {
@@ -231,7 +231,8 @@ fn small_changes_in_impacts_are_seen_with_their_digits() {
     }
 }
 
-/// Ratios of obstructions show that small ones keep their digits.
+/// The frame is `X1 = d_phi - cos(th) d_psi`, `X2 = d_th`, with the demands `X1(G) = I13/I11*sin(th)*cos(psi)` and
+/// `X2(G) = -I13/I11*sin(psi)`. The bracket `[X1,[X1,X2]]` is 0, and its demand is `-I13/I11*sin(th)^2*sin(psi)`.
 #[test]
 fn obstructions_are_printed_with_the_digits_they_have() {
     let suslov = |i13: &str| {
@@ -245,18 +246,25 @@ fn obstructions_are_printed_with_the_digits_they_have() {
             constraints {{ c: o3 = 0; }}"
         )
     };
-    let delta = |i13: &str| {
+    for i13 in ["1e-14", "1e-12", "1e-4"] {
         let found = finding("Sample", &suslov(i13), "density: exact");
-        let Verdict::Refuted(witness) = found.verdict else {
+        let Verdict::Refuted(refuted) = &found.verdict else {
             panic!("{}", found.note());
         };
-        witness.values[0].1
-    };
-    // The obstruction is proportional to the product of inertia, up to its square.
-    let ratio = delta("1e-14") / delta("1e-4") * 1e10;
-    assert!((ratio - 1.0).abs() < 1e-7, "{ratio}");
-    let ratio = delta("1e-14") / delta("1e-12") * 1e2;
-    assert!((ratio - 1.0).abs() < 1e-11, "{ratio}");
+        let text = refuted.to_string();
+        let bracket = "[X1,[X1,X2]] = 0 as a vector field";
+        assert!(text.contains(bracket), "{text}");
+        let printed = Witness::of(&text).expect("numbers");
+        let place = |name: &str| {
+            let found = printed.at.iter().find(|(known, _)| known == name);
+            found.unwrap_or_else(|| panic!("no `{name}` in {text}")).1
+        };
+        let slope = place("I13") / place("I11");
+        let exact = -slope * place("th").sin().powi(2) * place("psi").sin();
+        // Twelve digits are printed.
+        let error = printed.value("delta") / exact - 1.0;
+        assert!(error.abs() < 1e-11, "{error:e} in {text}");
+    }
 }
 
 #[test]

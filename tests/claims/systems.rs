@@ -2,6 +2,7 @@
 
 use dalembert_tests::bodies::{ball, top, train};
 use dalembert_tests::divergence::{Flow, State};
+use dalembert_tests::numeric::{moved, slope};
 use dalembert_tests::verdict::{Decided, Existence};
 use dalembert_tests::verified::verified;
 
@@ -94,6 +95,22 @@ fn the_density_of_routh_s_sphere_is_the_known_one() {
     assert!(flow.divergence(&state, &|_, _| 1.0).abs() > 1e-3);
     let divergence = flow.divergence(&state, &known);
     assert!(divergence.abs() < 1e-9, "{divergence}");
+    // The logarithm of the known density has the derivatives that the generator demands of every density.
+    assert_eq!(decided.existence(), Existence::Global);
+    for theta in [0.4, 1.1, 2.3] {
+        let mut state = state.clone();
+        state.q[3] = theta;
+        let flow = Flow::at(&decided, &state);
+        let geometry = flow.geometry(&state);
+        assert_eq!((geometry.frame.len(), geometry.demands.len()), (3, 3));
+        for (field, demand) in geometry.frame.iter().zip(&geometry.demands) {
+            let rate = slope(&mut |s| {
+                let q = moved(&state.q, s, field);
+                known(&flow, &State { q, ..state.clone() }).ln()
+            });
+            assert!((rate - demand).abs() < 1e-9, "{rate} for {demand}");
+        }
+    }
 }
 
 #[test]

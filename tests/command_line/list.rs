@@ -25,17 +25,28 @@ fn json_has_the_same_and_the_names() {
     assert_eq!(list[1]["coordinates"][1], "x.2");
 }
 
+/// Names of all commands but `help`, from the help of the command line.
+fn commands() -> Vec<String> {
+    let help = run("--help");
+    assert_eq!(help.exit, Exit::Reached);
+    let (_, rest) = help.output.split_once("\nCommands:\n").expect("commands");
+    let (commands, _) = rest.split_once("\n\n").expect("options");
+    // Further lines of a description are indented by more than two spaces.
+    let lines = commands.lines().filter_map(|line| line.strip_prefix("  "));
+    let names = lines
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split_whitespace().next());
+    names
+        .filter(|name| *name != "help")
+        .map(str::to_owned)
+        .collect()
+}
+
 #[test]
 fn every_command_has_help_with_examples() {
-    for command in [
-        "list",
-        "derive",
-        "check",
-        "simulate",
-        "orbit",
-        "eval",
-        "stability",
-    ] {
+    let commands = commands();
+    assert!(commands.len() >= 19, "{commands:?}");
+    for command in commands {
         let done = run(&format!("{command} --help"));
         assert_eq!(done.exit, Exit::Reached, "{command}");
         let (head, rest) = done.output.split_once("\nUsage:").expect("the usage");

@@ -68,17 +68,33 @@ static WALLED: Text = Text::new(
     }",
 );
 
-/// Then the point meets the wall of the upper mode, at x^2 + y^2 = 4 with y = 0.3 + (t - 1) and x = t/2.
+/// The point meets the wall of the lower mode at x^2 + y^2 = 4 with y = -1 - t and x = t/2. Upwards it is lifted, and
+/// meets the wall of the upper mode with y = 0.3 + (t - 1).
 #[test]
 fn a_surface_of_several_modes_is_met_in_each() {
     let point = WALLED.model();
-    let state = state(&point, &[0.0, -1.0], &[0.5, 1.0]);
-    let mut impacts = EventLog::<_, 4>::new();
-    Course::from_state(&point, state, 4.0).observed(Integrator::Dop853, &mut impacts);
-    let times: Vec<f64> = impacts.iter().map(|event| event.t).collect();
-    let met = (0.7 + (0.49_f64 + 1.25 * 3.51).sqrt()) / 1.25;
-    close(times[0], 1.0, 1e-12, "transition");
-    close(times[1], met, 1e-12, "wall");
+    // Times, surfaces and modes of the impacts.
+    let met = |speed: f64, until: f64| -> Vec<(f64, usize, usize)> {
+        let state = state(&point, &[0.0, -1.0], &[0.5, speed]);
+        let mut impacts = EventLog::<_, 4>::new();
+        Course::from_state(&point, state, until).observed(Integrator::Dop853, &mut impacts);
+        let events = impacts.iter();
+        events
+            .map(|event| (event.t, event.surface, point.mode(&event.after)))
+            .collect()
+    };
+    let (lower, upper) = (met(-1.0, 1.5), met(1.0, 3.0));
+    let [(t, wall, 0)] = lower[..] else {
+        panic!("{lower:?}");
+    };
+    close(t, (4.75_f64.sqrt() - 1.0) / 1.25, 1e-12, "wall below");
+    let [(lifted, transition, 1), (t, wall_above, 1)] = upper[..] else {
+        panic!("{upper:?}");
+    };
+    close(lifted, 1.0, 1e-12, "transition");
+    let exact = (0.7 + (0.49_f64 + 1.25 * 3.51).sqrt()) / 1.25;
+    close(t, exact, 1e-12, "wall above");
+    assert!(wall_above == wall && transition != wall, "{upper:?}");
 }
 
 /// The ball of `SmoothAndRoughPlane` with other names, orders, constraints and surfaces, but the same motions.

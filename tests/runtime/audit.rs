@@ -198,14 +198,18 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
     };
     for run in with_every_integrator(&course, start, |course| course) {
         assert_eq!(run.finding, None, "{run:?}");
+        assert_eq!((run.outcome, run.impacts), (Outcome::Done, 2), "{run:?}");
+        let (t, met) = run.first.unwrap_or_else(|| panic!("{run:?}"));
+        assert!((t - 2.0).abs() < 1e-3 && met == 1, "{run:?}");
     }
-    // Beyond the edge of the ledge, above its height, the audit finds the reset alone.
+    // Beyond the edge of the ledge the point falls below its height at the time 1.77. The ground is lower than the whole
+    // flight. The audit finds the reset alone.
     let beyond = Start {
         q: &[2.0, 0.5],
         v: &[1.0, 0.0],
         until: 2.5,
     };
-    let slow = COURSE.with([("g", 0.1)]);
+    let slow = COURSE.with([("g", 0.32)]);
     for run in with_every_integrator(&slow, beyond, |course| course.alone()) {
         match run.finding {
             Some(Finding::MayBeMet { surface: 2, t }) => assert!((t - 2.0).abs() < 1e-6),

@@ -81,6 +81,8 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
     struct Watch {
         bounces: f64,
         worst: f64,
+        /// Largest error of the angular momentum before or after a bounce.
+        momentum: f64,
     }
     const TURN: f64 = core::f64::consts::PI - 0.6;
     impl Observer<Particle> for Watch {
@@ -90,6 +92,10 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
             self.worst = self
                 .worst
                 .max((event.after[0] - x).hypot(event.after[1] - y));
+            for state in [event.before, event.after] {
+                let momentum = state[0] * state[3] - state[1] * state[2];
+                self.momentum = self.momentum.max((momentum - 0.3_f64.sin()).abs());
+            }
             core::ops::ControlFlow::Continue(())
         }
     }
@@ -97,6 +103,7 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
     let mut watch = Watch {
         bounces: 0.0,
         worst: 0.0,
+        momentum: 0.0,
     };
     let (vy, vx) = 0.3_f64.sin_cos();
     let effects = Impacts::declared(&table).with_budget(1000);
@@ -106,6 +113,7 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
         (Outcome::ImpactBudget, 1000.0)
     );
     assert!(watch.worst < 6.8e-11, "{:e}", watch.worst);
+    assert!(watch.momentum < 1e-12, "{:e}", watch.momentum);
 }
 
 #[test]

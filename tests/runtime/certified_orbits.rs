@@ -2,35 +2,13 @@
 //! reason is reported.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
+use core::ops::ControlFlow;
 use std::time::Instant;
 
-use dalembert::certified::{CertifiedSection, NotProved};
-use dalembert::extended::Extended;
+use dalembert::certified::{CertifiedRun, CertifiedSection, NotProved};
 use dalembert::numbers::Interval;
 use dalembert_stability::text::Text;
-use dalembert_tests::certified::periodic;
-
-/// A walker on a slope whose foot slips, in dimensionless form (W. Clark, thesis, section 4.2).
-static WALKER: Text = Text::new(
-    "Walker {
-        coordinates { theta; xi; eta; }
-        parameters { mu > 0 = 5/2; eps > 0 = 1/2; alpha = 2/5; delta > 0 = 2/5; }
-        let foot = eta + xi*cos(theta);
-        let weight = mu/(1 + mu*sin(theta)^2);
-        field {
-            dot(theta) = eps*xi;
-            dot(xi) = weight*(sin(theta)*(cos(alpha) - eps*xi^2*cos(theta)) - cos(theta)*foot);
-            dot(eta) = sin(alpha) - foot;
-        }
-        impacts {
-            step: theta >= -delta => reset {
-                theta = theta + 2*delta;
-                xi = cos(2*delta)*xi;
-                eta = eta + cos(delta)*(1 - cos(2*delta))*xi;
-            };
-        }
-    }",
-);
+use dalembert_tests::certified::{WALKER, about, digits, follow, holds, periodic};
 
 /// A conveyor: `x` falls from 1 to 0 in one unit of time, while `y` grows by the factor `e^k`.
 static CONVEYOR: Text = Text::new(
@@ -50,18 +28,6 @@ static DRIVEN: Text = Text::new(
         impacts { end: x >= 0 => reset { x = 1; y = y; }; }
     }",
 );
-
-/// True if a number of many digits lies between the ends of an interval.
-fn holds(range: Interval, digits: &str) -> bool {
-    let number: Extended<3> = digits.parse().unwrap();
-    let [lo, hi] = [range.lo, range.hi].map(Extended::<3>::from);
-    (number - lo).nearest() >= 0.0 && (hi - number).nearest() >= 0.0
-}
-
-fn about(digits: &str) -> Interval {
-    let nearest: f64 = digits.parse().unwrap();
-    Interval::new(nearest.next_down(), nearest.next_up())
-}
 
 /// Values from `walker_orbits.json`: the fixed point after the step, the period, and the derivative of the return map
 /// in the last two components.
@@ -95,13 +61,14 @@ fn a_walkers_cycle_exists_and_attracts() {
             begun.elapsed()
         );
         for i in 0..3 {
-            assert!(holds(orbit.point(i), POINT[i]), "{i}: {:?}", orbit.point(i));
+            let (found, exact) = (orbit.point(i), digits(POINT[i]));
+            assert!(holds(found, exact), "{i}: {found:?}");
         }
-        assert!(holds(orbit.period, PERIOD), "{:?}", orbit.period);
+        assert!(holds(orbit.period, digits(PERIOD)), "{:?}", orbit.period);
         for i in 0..2 {
             for j in 0..2 {
-                let (found, digits) = (orbit.derivative(i + 1, j + 1), DERIVATIVE[i][j]);
-                assert!(holds(found, digits), "{i}, {j}: {found:?}, {digits}");
+                let (found, exact) = (orbit.derivative(i + 1, j + 1), DERIVATIVE[i][j]);
+                assert!(holds(found, digits(exact)), "{i}, {j}: {found:?}, {exact}");
             }
         }
         assert!(orbit.largest_multiplier > MULTIPLIER && orbit.largest_multiplier < 0.53);
@@ -109,14 +76,28 @@ fn a_walkers_cycle_exists_and_attracts() {
     }
 }
 
+/// The first return of every motion from the box lies beside the box, so that the box contains no orbit of one return.
 #[test]
-fn there_is_no_orbit_elsewhere() {
+fn no_orbit_is_proved_in_a_box_without_one() {
+    const RADIUS: f64 = 1e-4;
     let walker = WALKER.model();
+    let near = [0.4, -0.95, 1.05];
     let section = CertifiedSection::new(&walker, 0, 10.0);
-    let Err(error) = periodic(&section, &[0.4, -0.95, 1.05], 1e-4) else {
-        panic!("an orbit that is not there");
-    };
-    assert_eq!(error, NotProved::NotContained);
+    let found = periodic(&section, &near, RADIUS);
+    assert_eq!(found.err(), Some(NotProved::NotContained));
+    let start = near.map(|value| Interval::point(value).widened(RADIUS));
+    let mut returned = None;
+    let mut run = CertifiedRun::new(&walker, 0.0, |i| start[i]);
+    follow(&mut run, 10.0, &mut |impact| {
+        returned = Some([0, 1, 2].map(|i| impact.after(i)));
+        ControlFlow::Break(())
+    })
+    .unwrap();
+    let returned = returned.expect("a return");
+    for i in [1, 2] {
+        let common = returned[i].intersection(start[i]);
+        assert!(common.is_none(), "{i}: {returned:?} from {start:?}");
+    }
 }
 
 #[test]

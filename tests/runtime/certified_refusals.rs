@@ -218,12 +218,18 @@ fn a_condition_that_is_not_certain_is_refused() {
 
 #[test]
 fn motion_behind_a_surface_that_begins_to_count_is_refused() {
-    // The ball starts lower than the ledge, beyond its end, and moves towards it.
-    let start = points([2.0, -0.5, -1.0, 0.0]);
+    // The ball starts lower than the ledge, beyond its end, and moves towards it. At the time 1 the ledge begins to count,
+    // and the ball is at y = -3/4. It would reach the floor at the time 1.28.
+    let start = points([2.0, -0.5, -1.0, 0.25]);
     let (surfaces, ended) = run(&LEDGE.model(), &start, 5.0);
     let lost = lost(ended);
-    // It meets the floor at the time 1, at x = 1, where the ledge begins to count.
-    assert!(surfaces.len() <= 1 && lost.t <= 1.0, "{surfaces:?}, {lost}");
+    assert_eq!(lost.reason, Reason::MayBeBehind { surface: 0 });
+    assert!(
+        surfaces.is_empty() && lost.t > 0.99 && lost.t <= 1.0,
+        "{surfaces:?}, {lost}"
+    );
+    let (surfaces, ended) = run(&LEDGE.model(), &start, 0.9999);
+    assert!(surfaces.is_empty() && ended.is_ok(), "{ended:?}");
 }
 
 #[test]

@@ -150,10 +150,19 @@ fn a_steep_wall_turns_the_motion_back() {
 
 #[test]
 fn smooth_forces_cost_no_steps() {
-    // The run ends before the impulse acts: no step is rejected.
-    let spring = |s: f64| SPRING.with([("s", s)]);
-    let steps = |s: f64| run(&spring(s), Integrator::Dop853, [1.0, 0.0], 4.0).counters;
-    let counters = steps(1e-3);
+    // The blow is longer than every step. Its rates are checked, and no step is rejected.
+    let spring = SPRING.with([("s", 2.0)]);
+    assert!(spring.has_narrow_rates());
+    for integrator in [Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor] {
+        let run = run(&spring, integrator, [1.0, 0.0], 12.0);
+        assert_eq!(run.counters.rejected, 0, "{integrator:?}");
+        // Without the blow the velocity is `-sin(12)`. The blow adds about `cos(12 - 5.3)/e`.
+        let gained = run.state.as_ref()[1] + 12.0_f64.sin();
+        assert!((0.33..0.35).contains(&gained), "{integrator:?}: {gained}");
+    }
+    // A narrow blow costs nothing before it acts.
+    let spring = SPRING.with([("s", 1e-3)]);
+    let counters = run(&spring, Integrator::Dop853, [1.0, 0.0], 4.0).counters;
     assert_eq!(counters.rejected, 0, "{counters:?}");
 }
 

@@ -46,6 +46,17 @@ pub fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
+/// Pairs of found numbers and the numbers of an array.
+///
+/// # Panics
+/// If the value is not an array of as many numbers.
+#[track_caller]
+pub fn paired(found: &[f64], stored: &Value) -> Vec<(f64, f64)> {
+    let stored = numbers(stored);
+    assert_eq!(found.len(), stored.len(), "{found:?} for {stored:?}");
+    found.iter().copied().zip(stored).collect()
+}
+
 /// Compares nested arrays of numbers component by component: relative error at most `tolerance`, absolute where the
 /// expected value is 0.
 ///
