@@ -108,13 +108,14 @@ pub fn run(
     } = args.rows.write(&plan.table, streams.output, |rows| {
         ensemble::execute(&plan, rows, streams.terminal)
     })?;
+    let members = tally.members;
     let finished = Finished {
         model,
         settings: &settings,
         metadata: &metadata,
         tally,
         density: density.as_ref().zip(counts).map(|(density, counts)| {
-            let checkpoints = convergence(&counts);
+            let checkpoints = convergence(&counts, density, members);
             (density, counts, checkpoints)
         }),
         kept,
