@@ -180,7 +180,9 @@ impl NativeEnsemble {
 
     /// Convergence of a density from the counts of all members: fraction, states, distances between halves.
     fn convergence(&self, counts: &[u8]) -> PyResult<Vec<Checked>> {
-        let checkpoints = convergence(&self.read(counts)?).into_iter();
+        let density = self.counted()?;
+        let members = self.members.count();
+        let checkpoints = convergence(&self.read(counts)?, density, members).into_iter();
         Ok(checkpoints
             .map(|it| {
                 let distances = (it.over_time, it.over_members, it.independent);
@@ -302,10 +304,13 @@ impl NativeEnsemble {
         Ok(dict)
     }
 
-    fn read(&self, mut bytes: &[u8]) -> PyResult<Counts> {
+    fn counted(&self) -> PyResult<&Density> {
         let density = self.density.as_ref();
-        let density = density.ok_or_else(|| refused("the ensemble counts no density"))?;
-        let mut counts = Counts::new(density);
+        density.ok_or_else(|| refused("the ensemble counts no density"))
+    }
+
+    fn read(&self, mut bytes: &[u8]) -> PyResult<Counts> {
+        let mut counts = Counts::new(self.counted()?);
         counts.read(&mut bytes)?;
         Ok(counts)
     }

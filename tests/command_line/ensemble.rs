@@ -495,9 +495,31 @@ fn counts_do_not_depend_on_threads_and_tell_of_what_is_outside() {
     let range = numbers(&document["density"]["axes"][0]["range"]);
     assert!(range[0] < -2.0 && range[1] > 2.0, "{range:?}");
     let text = run(&format!("{BALLS} --density x_dot,x=0..1:7")).output;
-    for part in ["more outside of it", "1/16", "independent"] {
+    for part in ["more outside of it", "1/2", "independent"] {
         assert!(text.contains(part), "{text}");
     }
+    assert!(!text.contains("1/4"), "6 states have no quarter: {text}");
+}
+
+#[test]
+fn fractions_of_a_density_have_the_states_that_their_names_tell() {
+    // All states are within the ranges. 20 states of each member have a quarter, but no eighth.
+    let line = format!(
+        "{BALLS} --density x_dot=-20..20,x=0..20:7 --discard 0.001 --every 0.29995 --json -"
+    );
+    let document: Value = serde_json::from_str(&run(&line).output).unwrap();
+    let all = document["density_states"].as_f64().unwrap();
+    assert_eq!(all, 112.0 * 20.0);
+    let convergence = document["convergence"].as_array().unwrap();
+    let parts: Vec<f64> = convergence
+        .iter()
+        .map(|row| {
+            let part = row["part"].as_f64().unwrap();
+            assert_eq!(row["states"].as_f64(), Some(part * all));
+            part
+        })
+        .collect();
+    assert_eq!(parts, [0.25, 0.5, 1.0]);
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn ensemble(more: &str, rows: &Path, output: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_dalembert"));
     command.args(DISKS.split_whitespace());
     command.args(more.split_whitespace()).args(output);
-    command.arg("--resume").arg("--csv").arg(rows);
+    command.arg("--csv").arg(rows);
     command.stdout(Stdio::piped()).stderr(Stdio::inherit());
     command
 }
@@ -36,14 +36,14 @@ fn kill_and_go_on(name: &str, more: &str) {
     let folder = std::env::temp_dir().join(folder);
     fs::create_dir_all(&folder).unwrap();
     let [whole, killed] = ["whole.csv", "killed.csv"].map(|name| folder.join(name));
-    let document = ["--json", "-"];
+    let document = ["--resume", "--json", "-"];
     let expected = ensemble(more, &whole, &document).output().unwrap();
     assert!(expected.status.success());
     let rows = fs::read(&whole).unwrap();
 
     let mut cuts = 0;
     for part in [4, 2] {
-        let mut process = ensemble(more, &killed, &[]).spawn().unwrap();
+        let mut process = ensemble(more, &killed, &["--resume"]).spawn().unwrap();
         wait_for(&killed, rows.len() as u64 / part);
         process.kill().unwrap();
         process.wait().unwrap();
@@ -67,6 +67,44 @@ fn a_killed_ensemble_goes_on_to_the_same_rows() {
 #[test]
 fn a_killed_ensemble_goes_on_to_the_same_density() {
     kill_and_go_on("density", "--density x,y:20");
+}
+
+/// The rows, and the files beside them, in this folder under this name.
+fn files(rows: &Path) -> [Vec<u8>; 3] {
+    ["", ".meta.json", ".sums"]
+        .map(|ending| fs::read(format!("{}{ending}", rows.display())).unwrap())
+}
+
+#[test]
+fn a_killed_ensemble_keeps_the_rows_that_it_was_to_replace() {
+    let folder = format!("dalembert-killed-replacing-{}", std::process::id());
+    let folder = std::env::temp_dir().join(folder);
+    fs::create_dir_all(&folder).unwrap();
+    let [whole, rows] = ["whole.csv", "rows.csv"].map(|name| folder.join(name));
+    let succeed = |more: &str, rows: &Path, flags: &[&str]| {
+        let done = ensemble(more, rows, flags).output().unwrap();
+        assert!(done.status.success());
+    };
+    succeed("--shard 1/6", &whole, &[]);
+    succeed("--shard 1/100", &rows, &[]);
+    let old = files(&rows);
+
+    let mut process = ensemble("--shard 1/6", &rows, &[]).spawn().unwrap();
+    wait_for(
+        &folder.join("rows.csv.new"),
+        files(&whole)[0].len() as u64 / 4,
+    );
+    process.kill().unwrap();
+    process.wait().unwrap();
+    assert_eq!(files(&rows), old);
+    // The old rows are found by their flags, the new ones by theirs.
+    succeed("--shard 1/100", &rows, &["--resume"]);
+    assert_eq!(files(&rows), old);
+    succeed("--shard 1/6", &rows, &["--resume"]);
+    assert_eq!(files(&rows), files(&whole));
+    let names = fs::read_dir(&folder).unwrap();
+    assert_eq!(names.count(), 6, "no new file is left");
+    fs::remove_dir_all(&folder).unwrap();
 }
 
 /// Rows that began in one mode are not continued in another.

@@ -77,7 +77,10 @@ fn shards_that_are_not_the_whole_are_refused() {
     );
     let other = line.replace("--until 6", "--until 7");
     let message = refused(&other, &[first, middle, last]);
-    assert!(message.contains("`until` was 6.0 and is 7.0"), "{message}");
+    assert!(
+        message.contains("`until` was 6.0 and is 7.0; give --until 6.0"),
+        "{message}"
+    );
     let output = run(&format!("{line} --merge {first} --csv {first}"));
     assert!(
         output.errors.contains("cannot be an output"),
@@ -111,4 +114,63 @@ fn a_shard_that_is_not_finished_is_named() {
     for part in ["part1.csv", "62 of the 63 members", "--shard 1/2 --resume"] {
         assert!(message.contains(part), "{message}");
     }
+}
+
+/// The files of a finished ensemble, with their content.
+fn files(folder: &Folder, name: &str) -> Vec<(String, Option<Vec<u8>>)> {
+    let endings = ["", ".meta.json", ".sums", ".counts"].iter();
+    let named = endings.map(|ending| format!("{name}{ending}"));
+    let read = |name: String| {
+        let content = fs::read(folder.0.join(&name)).ok();
+        (name, content)
+    };
+    named.map(read).collect()
+}
+
+/// The names of all files of a folder.
+fn names(folder: &Folder) -> Vec<String> {
+    let entries = fs::read_dir(&folder.0).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_refused_merge_changes_no_file() {
+    let folder = Folder::new("untouched");
+    let line = format!("{BALLS} {COUNTED}");
+    let parts = shards(&folder, &line, 2);
+    let (both, one) = (parts.join(" "), &parts[1]);
+    let whole = run(&format!("{line} --csv {}", folder.path("all.csv")));
+    assert_ne!(whole.exit, Exit::Refused, "{}", whole.errors);
+    let (before, listed) = (files(&folder, "all.csv"), names(&folder));
+    assert!(before.iter().all(|(_, content)| content.is_some()));
+    let assert_untouched = |line: &str, part: &str| {
+        for name in ["all.csv", "fresh.csv"] {
+            let done = run(&format!("{line} --csv {}", folder.path(name)));
+            assert_eq!(done.exit, Exit::Refused, "{line}");
+            assert!(done.errors.contains(part), "{}", done.errors);
+            assert_eq!(files(&folder, "all.csv"), before, "{line}");
+            assert_eq!(names(&folder), listed, "{line}");
+        }
+    };
+    assert_untouched(&format!("{line} --merge {one}"), "members 63 to 125");
+    let flags = "give --density x_dot=-3.0..3.0,x=0.0..4.0:8x8 --every 0.25 --discard 0.0";
+    assert_untouched(&format!("{BALLS} --merge {both}"), flags);
+
+    // A row that was altered is found when it is read.
+    let rows = folder.read("part2.csv");
+    fs::write(folder.0.join("part2.csv"), rows.replacen("done", "gone", 1)).unwrap();
+    assert_untouched(&format!("{line} --merge {both}"), "altered");
+    fs::write(folder.0.join("part2.csv"), rows).unwrap();
+
+    let done = run(&format!(
+        "{line} --merge {both} --csv {}",
+        folder.path("all.csv")
+    ));
+    assert_eq!(done.exit, whole.exit, "{}", done.errors);
+    assert_eq!(files(&folder, "all.csv"), before);
+    assert_eq!(names(&folder), listed);
 }

@@ -19,7 +19,7 @@ use crate::ensemble::common::Flags;
 use crate::ensemble::members::{self, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::output::Table;
-use crate::ensemble::{self, Plan, Summary, density, listed};
+use crate::ensemble::{self, Plan, Summary, density, listed, merge};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -83,6 +83,7 @@ pub fn run(
     let metadata = metadata(model, &args.run, &shared, shard)?;
     let columns = Columns::of(model.description(), &members);
     let range = shard.range(members.count());
+    let merged = merge::parts(&args.merge, &metadata, members.count())?;
     let plan = Plan {
         shared,
         range: range.clone(),
@@ -92,7 +93,7 @@ pub fn run(
             metadata: &metadata,
             first: range.start,
         },
-        merged: &args.merge,
+        merged: &merged,
     };
     // Opened before the runs, so that a path that cannot be written is reported at once.
     let cells = Sink::open_given("--cells", args.cells.as_deref())?;
@@ -107,13 +108,14 @@ pub fn run(
     } = args.rows.write(&plan.table, streams.output, |rows| {
         ensemble::execute(&plan, rows, streams.terminal)
     })?;
+    let members = tally.members;
     let finished = Finished {
         model,
         settings: &settings,
         metadata: &metadata,
         tally,
         density: density.as_ref().zip(counts).map(|(density, counts)| {
-            let checkpoints = convergence(&counts);
+            let checkpoints = convergence(&counts, density, members);
             (density, counts, checkpoints)
         }),
         kept,

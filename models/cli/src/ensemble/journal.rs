@@ -9,10 +9,12 @@
 //! After an interruption, complete rows whose counts were saved are kept. A row that was changed since it was written is
 //! an error. Checksums are written before their rows, so that every complete row has one.
 //!
-//! `FILE` is locked during the run.
+//! A `FILE` with rows keeps them until the new rows are complete: these are written to `FILE.new`, with the same files
+//! beside it, and renamed at the end. `FILE` is locked during the run.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::mem;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -20,6 +22,8 @@ use dalembert_driver::ensemble::density::Counts;
 use dalembert_driver::ensemble::row::{Columns, Field, Row};
 use serde_json::{Map, Value};
 
+use super::beside::{self, beside, replace};
+use super::difference;
 use super::fingerprint::{fingerprint, hash};
 use super::line;
 use crate::error::CliError;
@@ -40,8 +44,15 @@ pub type Receiver<'a> = &'a mut dyn FnMut(&[u8], &Row) -> Result<(), CliError>;
 /// The open and locked file.
 pub struct Journal {
     flag: &'static str,
+    /// The file that the flag names.
+    target: PathBuf,
+    /// The file of the rows: the target, or the new file beside it that replaces the target at the end.
     path: PathBuf,
     file: File,
+    /// The locked target, while the rows are in the new file.
+    claimed: Option<File>,
+    /// True if this run began the file of the rows.
+    is_begun: bool,
     /// The file of checksums; `None` before the rows are begun or resumed.
     sums: Option<File>,
     saved: Instant,
@@ -49,15 +60,8 @@ pub struct Journal {
     patience: Duration,
 }
 
-/// The path with an ending appended to its name.
-fn beside(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(ending);
-    PathBuf::from(name)
-}
-
 impl Journal {
-    /// Opens a file; its content is kept until [`begin`](Self::begin).
+    /// Opens a file. Its content is kept until [`finish`](Self::finish).
     ///
     /// # Errors
     /// A file that cannot be written, or that another run is writing.
@@ -65,15 +69,26 @@ impl Journal {
         let file = sink::claim(flag, path, OpenOptions::new().read(true))?;
         Ok(Self {
             flag,
+            target: path.to_owned(),
             path: path.to_owned(),
             file,
+            claimed: None,
+            is_begun: false,
             sums: None,
             saved: Instant::now(),
             patience: SAVE,
         })
     }
 
-    /// Begins the file.
+    /// Continues in the new file beside the target.
+    fn switch(&mut self) -> Result<(), CliError> {
+        self.path = beside(&self.target, beside::NEW);
+        let file = sink::claim(self.flag, &self.path, OpenOptions::new().read(true))?;
+        self.claimed = Some(mem::replace(&mut self.file, file));
+        Ok(())
+    }
+
+    /// Begins the file. If the target holds anything, the rows go to the new file.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -82,6 +97,11 @@ impl Journal {
         columns: &Columns,
         metadata: &Map<String, Value>,
     ) -> Result<(), CliError> {
+        let whole = |source| failed(self.flag, &self.target, source);
+        if self.claimed.is_none() && self.file.metadata().map_err(whole)?.len() > 0 {
+            self.switch()?;
+        }
+        self.is_begun = true;
         self.try_begin(columns, metadata)
             .map_err(|source| failed(self.flag, &self.path, source))
     }
@@ -92,13 +112,13 @@ impl Journal {
         let mut text = serde_json::to_string_pretty(metadata)?;
         text.push('\n');
         replace(&beside(&self.path, ".meta.json"), text.as_bytes())?;
-        remove(&beside(&self.path, ".counts"))?;
+        beside::remove(&beside(&self.path, ".counts"))?;
         self.sums = Some(File::create(beside(&self.path, ".sums"))?);
         self.file.write_all(&columns.header())
     }
 
-    /// Continues a file that was begun: passes the kept rows to `see`, and returns their number. `None` if no row can
-    /// be kept; the caller must then discard rows that `see` has received.
+    /// Continues a file that was begun, the new file if it belongs to the same ensemble: passes the kept rows to `see`,
+    /// and returns their number. `None` if no row can be kept; the caller must then discard rows that `see` has received.
     ///
     /// # Errors
     /// A file that cannot be read or written, that belongs to another ensemble, or that was altered.
@@ -109,6 +129,9 @@ impl Journal {
         (first_member, counts): (u64, Option<&mut Counts>),
         see: &mut dyn FnMut(&Row),
     ) -> Result<Option<u64>, CliError> {
+        if is_interrupted(&beside(&self.target, beside::NEW), metadata) {
+            self.switch()?;
+        }
         let (flag, path) = (self.flag, self.path.clone());
         let whole = |source| failed(flag, &path, source);
         // An empty file is a new one; the files next to it may belong to another ensemble.
@@ -177,17 +200,46 @@ impl Journal {
         }
     }
 
-    /// Completes the file.
+    /// Completes the file. A new file replaces the target.
     ///
     /// # Errors
     /// An I/O error of the file.
     pub fn finish(self, members: u64, counts: Option<&Counts>) -> Result<(), CliError> {
-        let finished = match counts {
-            Some(counts) => save(&beside(&self.path, ".counts"), members, counts),
-            None => Ok(()),
-        };
-        finished.map_err(|source| failed(self.flag, &self.path, source))
+        let (flag, path) = (self.flag, self.path.clone());
+        let finished = self.try_finish(members, counts);
+        finished.map_err(|source| failed(flag, &path, source))
     }
+
+    fn try_finish(self, members: u64, counts: Option<&Counts>) -> io::Result<()> {
+        if let Some(counts) = counts {
+            save(&beside(&self.path, ".counts"), members, counts)?;
+        }
+        if self.claimed.is_none() {
+            return Ok(());
+        }
+        // Some systems do not rename open files.
+        drop((self.file, self.sums, self.claimed));
+        beside::publish(&self.path, &self.target)
+    }
+
+    /// Removes the rows that this run began. Rows of an earlier run stay.
+    pub fn abandon(self) {
+        let is_file = self.file.metadata().is_ok_and(|it| it.is_file());
+        if self.is_begun && is_file {
+            drop((self.file, self.sums));
+            // The error that ended the run is reported, not that of a file which stays behind.
+            let _ = beside::discard(&self.path);
+        }
+    }
+}
+
+/// True if a file holds rows of this ensemble.
+fn is_interrupted(path: &Path, metadata: &Map<String, Value>) -> bool {
+    let has_rows = fs::metadata(path).is_ok_and(|file| file.len() > 0);
+    let before = has_rows
+        .then(|| metadata_of("--resume", path).ok())
+        .flatten();
+    before.is_some_and(|before| difference::explain(&before, metadata).is_none())
 }
 
 fn failed(flag: &'static str, path: &Path, source: io::Error) -> CliError {
@@ -215,17 +267,6 @@ pub fn read_rows(
         .map(drop)
 }
 
-/// Removes a journal that was not requested, and the files next to it.
-///
-/// # Errors
-/// An I/O error of the file system.
-pub fn discard(path: &Path) -> io::Result<()> {
-    remove(path)?;
-    remove(&beside(path, ".meta.json"))?;
-    remove(&beside(path, ".sums"))?;
-    remove(&beside(path, ".counts"))
-}
-
 /// The metadata that were written beside a file: they identify its ensemble.
 ///
 /// # Errors
@@ -239,30 +280,15 @@ pub fn metadata_of(flag: &'static str, path: &Path) -> Result<Map<String, Value>
     })
 }
 
-/// The first key of `metadata` whose value differs from that of `before`, with both values. An absent key counts as
-/// `null`, because older files lack keys of newer flags.
-pub fn difference<'a>(
-    before: &Map<String, Value>,
-    metadata: &'a Map<String, Value>,
-) -> Option<(&'a str, String, &'a Value)> {
-    let (key, value) = metadata
-        .iter()
-        .find(|(key, value)| before.get(*key).unwrap_or(&Value::Null) != *value)?;
-    let was = before.get(key);
-    let was = was.map_or_else(|| "absent".to_owned(), Value::to_string);
-    Some((key, was, value))
-}
-
 /// Refuses to continue the file of another ensemble.
 fn compare(path: &Path, metadata: &Map<String, Value>) -> Result<(), CliError> {
     let before = metadata_of("--resume", path)?;
-    match difference(&before, metadata) {
+    match difference::explain(&before, metadata) {
         None => Ok(()),
-        Some((key, was, value)) => Err(CliError::Input {
+        Some(difference) => Err(CliError::Input {
             place: format!("--resume {}", beside(path, ".meta.json").display()),
             reason: format!(
-                "the file is of another ensemble: `{key}` was {was} and is {value}; give the same flags, or leave out --resume \
-                 to start again"
+                "the file is of another ensemble: {difference}, or leave out --resume to start again"
             ),
         }),
     }
@@ -446,20 +472,6 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// Writes a file atomically.
-fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
-    let new = beside(path, ".new");
-    fs::write(&new, content)?;
-    fs::rename(&new, path)
-}
-
-fn remove(path: &Path) -> io::Result<()> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
-}
-
 fn save(path: &Path, members: u64, counts: &Counts) -> io::Result<()> {
     let mut content = members.to_le_bytes().to_vec();
     counts.write(&mut content)?;
@@ -538,7 +550,7 @@ mod tests {
         let resumed = open().resume(&columns, &metadata, (7, counts), &mut see);
         let rows = resumed.expect("the file can be read");
         let lines = fs::read_to_string(&path).map_or(0, |text| text.lines().count() as u64 - 1);
-        discard(&path).expect("the files can be removed");
+        beside::discard(&path).expect("the files can be removed");
         rows.map(|rows| {
             assert_eq!(rows, seen);
             (rows, lines)

@@ -3,17 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use dalembert_driver::ensemble::density::Counts;
+use dalembert_driver::ensemble::row::Columns;
 use serde_json::{Map, Value};
 
+use super::difference;
 use super::journal::{self, Receiver};
-use super::output::Table;
 use crate::error::CliError;
 
 /// The flag, for messages.
 const FLAG: &str = "--merge";
 
 /// A shard in a file.
-struct Part<'a> {
+pub struct Part<'a> {
     path: &'a Path,
     index: u64,
     of: u64,
@@ -21,22 +22,18 @@ struct Part<'a> {
     members: u64,
 }
 
-/// Passes the rows of all shards to `see`, in the order of members, and adds their counts.
+/// The shards in files, in the order of members. This reads metadata only, so that shards which do not fit are refused
+/// before any output is opened.
 ///
 /// # Errors
-/// A file that cannot be read, that belongs to another ensemble, that was altered or is not finished; members that are in
-/// no file, or in two.
-pub fn read(
-    files: &[PathBuf],
-    table: &Table<'_>,
+/// A file that cannot be read, or that belongs to another ensemble; members that are in no file, or in two.
+pub fn parts<'a>(
+    files: &'a [PathBuf],
+    metadata: &Map<String, Value>,
     members: u64,
-    mut counts: Option<&mut Counts>,
-    see: Receiver<'_>,
-) -> Result<(), CliError> {
-    let parts: Result<Vec<Part<'_>>, CliError> = files
-        .iter()
-        .map(|path| part(path, table.metadata))
-        .collect();
+) -> Result<Vec<Part<'a>>, CliError> {
+    let parts: Result<Vec<Part<'_>>, CliError> =
+        files.iter().map(|path| part(path, metadata)).collect();
     let mut parts = parts?;
     parts.sort_by_key(|part| (part.first, part.members));
     let mut next = 0;
@@ -46,11 +43,24 @@ pub fn read(
         }
         next += part.members;
     }
-    if let Some(last) = parts.last().filter(|_| next != members) {
-        return Err(uncovered(next..members, last));
+    match parts.last().filter(|_| next != members) {
+        Some(last) => Err(uncovered(next..members, last)),
+        None => Ok(parts),
     }
-    for part in &parts {
-        let rows = (table.columns, part.first);
+}
+
+/// Passes the rows of all shards to `see`, in the order of members, and adds their counts.
+///
+/// # Errors
+/// A file that cannot be read, that was altered or is not finished.
+pub fn read(
+    parts: &[Part<'_>],
+    columns: &Columns,
+    mut counts: Option<&mut Counts>,
+    see: Receiver<'_>,
+) -> Result<(), CliError> {
+    for part in parts {
+        let rows = (columns, part.first);
         let rows = journal::read_shard(FLAG, part.path, rows, counts.as_deref_mut(), see)?;
         if rows != part.members {
             return Err(CliError::Input {
@@ -72,12 +82,10 @@ fn part<'a>(path: &'a Path, metadata: &Map<String, Value>) -> Result<Part<'a>, C
     let mut metadata = metadata.clone();
     metadata.remove("shard");
     let place = format!("{FLAG} {}", path.display());
-    if let Some((key, was, value)) = journal::difference(&before, &metadata) {
+    if let Some(difference) = difference::explain(&before, &metadata) {
         return Err(CliError::Input {
             place,
-            reason: format!(
-                "the file is of another ensemble: `{key}` was {was} and is {value}; give the flags that its shards were run with"
-            ),
+            reason: format!("the file is of another ensemble: {difference}"),
         });
     }
     let number = |key: &str| shard.get(key).and_then(Value::as_u64);

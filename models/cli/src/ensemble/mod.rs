@@ -7,20 +7,24 @@
 //! | `pool` | runs members on threads and returns the rows in order |
 //! | `output` | the destination of the rows |
 //! | `journal`, `line` | the file to which rows are appended and from which an interrupted run continues, and the parser of its lines |
+//! | `beside` | the file of rows and the files beside it, replaced and removed together |
+//! | `difference` | flags that a file was made with, where they differ from those of a request |
 //! | `parquet` | the rows as Parquet |
 //! | `merge` | rows and counts from the files of shards |
 //! | `metadata` | metadata that identify an ensemble |
 //!
 //! The types of members, rows and sums are in [`dalembert_driver::ensemble`].
 
+mod beside;
 pub mod common;
 pub mod density;
+mod difference;
 mod fingerprint;
 pub mod journal;
 mod line;
 pub mod listed;
 pub mod members;
-mod merge;
+pub mod merge;
 pub mod metadata;
 pub mod output;
 #[cfg(feature = "parquet")]
@@ -29,7 +33,6 @@ pub mod pool;
 pub mod vary;
 
 use std::ops::Range;
-use std::path::PathBuf;
 
 use dalembert_driver::ensemble::density::{Counts, Density};
 use dalembert_driver::ensemble::row::csv_line;
@@ -38,6 +41,7 @@ use dalembert_driver::ensemble::{Tally, is_reached};
 
 use crate::error::CliError;
 use crate::progress::Count;
+use merge::Part;
 use output::{Output, Rows, Table};
 use pool::Division;
 
@@ -60,8 +64,8 @@ pub struct Plan<'a> {
     pub threads: u64,
     /// The table of the rows.
     pub table: Table<'a>,
-    /// Files of shards to take the rows from, in place of runs.
-    pub merged: &'a [PathBuf],
+    /// Shards to take the rows from, in place of runs.
+    pub merged: &'a [Part<'a>],
 }
 
 /// Results over all members.
@@ -83,8 +87,11 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
     let Plan { shared, range, .. } = plan;
     let reached = |outcome: &str| is_reached(outcome, shared.settings);
     let (mut summary, mut output) = begin(plan, rows)?;
-    if !plan.merged.is_empty() {
-        merge(plan, &mut summary, &mut output)?;
+    if !plan.merged.is_empty()
+        && let Err(error) = merge(plan, &mut summary, &mut output)
+    {
+        output.abandon();
+        return Err(error);
     }
     let left = range.start + summary.kept..range.end;
     let mut progress = Count::new(left.end - left.start, terminal);
@@ -132,8 +139,7 @@ fn merge(plan: &Plan<'_>, summary: &mut Summary, output: &mut Output<'_>) -> Res
     let mut lines = Vec::new();
     merge::read(
         plan.merged,
-        table,
-        members,
+        table.columns,
         counts.as_mut(),
         &mut |line, row| {
             tally.add(row, |outcome| is_reached(outcome, shared.settings));

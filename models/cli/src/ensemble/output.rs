@@ -7,7 +7,8 @@ use dalembert_driver::ensemble::density::Counts;
 use dalembert_driver::ensemble::row::{Columns, Row};
 use serde_json::{Map, Value};
 
-use super::journal::{self, Journal};
+use super::beside::{self, beside};
+use super::journal::Journal;
 use crate::args::RowsArgs;
 use crate::error::CliError;
 use crate::sink::is_stdout;
@@ -114,6 +115,13 @@ impl<'a> Output<'a> {
             Self::Nowhere | Self::Stream(_) => Ok(()),
         }
     }
+
+    /// Removes the rows that this run began.
+    pub fn abandon(self) {
+        if let Self::Journal(journal) = self {
+            journal.abandon();
+        }
+    }
 }
 
 impl RowsArgs {
@@ -121,11 +129,7 @@ impl RowsArgs {
     pub fn file(&self) -> Option<(&'static str, PathBuf)> {
         match (&self.csv, &self.parquet) {
             (Some(csv), _) => (!is_stdout(csv)).then(|| ("--csv", csv.clone())),
-            (None, Some(parquet)) => {
-                let mut name = parquet.clone().into_os_string();
-                name.push(".rows.csv");
-                Some(("--parquet", PathBuf::from(name)))
-            }
+            (None, Some(parquet)) => Some(("--parquet", beside(parquet, ".rows.csv"))),
             (None, None) => None,
         }
     }
@@ -181,7 +185,7 @@ impl RowsArgs {
         if let (Some(parquet), Some((flag, path))) = (&self.parquet, &file) {
             write_parquet(parquet, path, table)?;
             if self.csv.is_none() {
-                journal::discard(path).map_err(|source| CliError::File {
+                beside::discard(path).map_err(|source| CliError::File {
                     flag,
                     path: path.clone(),
                     source,
@@ -192,13 +196,17 @@ impl RowsArgs {
     }
 }
 
+/// Writes a new file, and puts it in the place of an existing one when it is complete.
 #[cfg(feature = "parquet")]
 fn write_parquet(path: &Path, rows: &Path, table: &Table<'_>) -> Result<(), CliError> {
-    let written = super::parquet::write(path, rows, table.columns, table.metadata, table.first);
-    written.map_err(|error| CliError::File {
+    let new = beside(path, beside::NEW);
+    let written = super::parquet::write(&new, rows, table.columns, table.metadata, table.first);
+    let written = written.map_err(std::io::Error::other);
+    let renamed = written.and_then(|()| std::fs::rename(&new, path));
+    renamed.map_err(|source| CliError::File {
         flag: "--parquet",
         path: path.to_owned(),
-        source: std::io::Error::other(error),
+        source,
     })
 }
 

@@ -1,8 +1,11 @@
 //! Convergence test of a density, by the total variation distance (half of the sum of absolute differences) between the
 //! densities of two halves of the states.
 
-use super::Counts;
 use super::counts::CLASSES;
+use super::{Counts, Density};
+
+/// Largest relative difference between the size of a part in whole states or members and the fraction that names it.
+const ROUNDING: f64 = 0.05;
 
 /// Distances between two halves of a fraction of all states.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,20 +16,23 @@ pub struct Checkpoint {
     pub samples: u64,
     /// The distance between the earlier and the later half of the fraction; NaN if one of them is empty.
     pub over_time: f64,
-    /// The distance between two halves of the members; NaN if one of them is empty.
+    /// The distance between two halves of this fraction of the members; NaN if one of them is empty, or if the number of
+    /// members does not allow the fraction.
     pub over_members: f64,
     /// The expected distance between halves of the same number of independent states, drawn from the density of all
     /// states.
     pub independent: f64,
 }
 
-/// The checkpoints, in increasing order of the fraction.
-pub fn convergence(counts: &Counts) -> Vec<Checkpoint> {
+/// The checkpoints, in increasing order of the fraction. Fractions that the number of states of a member does not allow
+/// are left out: 20 states have no eighth.
+pub fn convergence(counts: &Counts, density: &Density, members: u64) -> Vec<Checkpoint> {
     let total = counts.total();
     let all: u64 = total.iter().sum();
     let cells = total.len();
     (0..CLASSES - 1)
         .rev()
+        .filter(|&class| divides(class, density.samples))
         .map(|class| {
             let over_time = halves(|class| &counts.of_time(class)[..cells], class);
             let over_members = halves(|class| &counts.of_members(class)[..cells], class);
@@ -35,11 +41,22 @@ pub fn convergence(counts: &Counts) -> Vec<Checkpoint> {
                 part: 1.0 / (1_u64 << class) as f64,
                 samples,
                 over_time: over_time.distance,
-                over_members: over_members.distance,
+                over_members: match divides(class, members) {
+                    true => over_members.distance,
+                    false => f64::NAN,
+                },
                 independent: expected(&total, all, samples),
             }
         })
         .collect()
+}
+
+/// True if the fraction `1/2^class` of this many states or members is a whole number of them, nearly. The fraction is
+/// rounded up.
+fn divides(class: usize, count: u64) -> bool {
+    let part = 1_u64 << class;
+    let rounded = count.div_ceil(part) * part;
+    (rounded - count) as f64 <= ROUNDING * count as f64
 }
 
 struct Halves {
@@ -129,6 +146,18 @@ mod tests {
                 "{mean}: {got} for {right}"
             );
         }
+    }
+
+    #[test]
+    fn fractions_are_those_that_the_number_of_states_allows() {
+        let allowed = |count| {
+            let classes = (0..CLASSES - 1).filter(|&class| divides(class, count));
+            classes.map(|class| 1 << class).collect::<Vec<u64>>()
+        };
+        assert_eq!(allowed(20), [1, 2, 4]);
+        assert_eq!(allowed(16), [1, 2, 4, 8, 16]);
+        assert_eq!(allowed(199), [1, 2, 4, 8, 16]);
+        assert_eq!(allowed(7), [1]);
     }
 
     #[test]
