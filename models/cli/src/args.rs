@@ -21,6 +21,7 @@ mod search;
 mod series;
 
 use std::path::PathBuf;
+use std::thread::available_parallelism;
 
 use clap::builder::ValueParser;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
@@ -213,6 +214,14 @@ impl Command {
             Self::Eval(args) => Some(&mut args.model),
             _ => None,
         }
+    }
+}
+
+/// The given number of threads, or the number that the machine runs in parallel.
+fn thread_count(given: Option<u16>) -> u64 {
+    match given {
+        Some(threads) => u64::from(threads),
+        None => available_parallelism().map_or(1, |threads| threads.get() as u64),
     }
 }
 

@@ -37,6 +37,14 @@ pub fn assignment<'a>(
     Ok((name.trim(), value.trim()))
 }
 
+/// The name of the model, and that of its scene unless it is the model itself.
+pub fn titled(description: &Description, scene: &str) -> String {
+    match scene {
+        "all" => description.name.to_owned(),
+        scene => format!("{}, scene {scene}", description.name),
+    }
+}
+
 /// The first line of the model's documentation that is not empty.
 pub fn summary(description: &Description) -> &str {
     description

@@ -1,7 +1,5 @@
 //! The flags of dynamic programming.
 
-use std::thread::available_parallelism;
-
 use clap::builder::ValueParser;
 use clap::{Args, ValueEnum};
 
@@ -61,9 +59,6 @@ impl DynamicArgs {
 
     /// Number of threads.
     pub fn thread_count(&self) -> u64 {
-        match self.threads {
-            Some(threads) => u64::from(threads),
-            None => available_parallelism().map_or(1, |threads| threads.get() as u64),
-        }
+        super::thread_count(self.threads)
     }
 }

@@ -1,7 +1,6 @@
 //! The flags of commands that write a row for each of many runs.
 
 use std::path::PathBuf;
-use std::thread::available_parallelism;
 
 use clap::Args;
 
@@ -26,9 +25,6 @@ pub struct RowsArgs {
 impl RowsArgs {
     /// Number of threads.
     pub fn thread_count(&self) -> u64 {
-        match self.threads {
-            Some(threads) => u64::from(threads),
-            None => available_parallelism().map_or(1, |threads| threads.get() as u64),
-        }
+        super::thread_count(self.threads)
     }
 }

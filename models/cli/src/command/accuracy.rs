@@ -13,6 +13,7 @@ use crate::args::AccuracyArgs;
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::names;
 use crate::plot::{Drawn, work};
 use crate::progress::Steps;
 use crate::sink::Sink;
@@ -129,11 +130,8 @@ fn plan(args: &AccuracyArgs, until: f64) -> Plan {
 
 impl Finished<'_> {
     fn title(&self) -> String {
-        let name = self.model.description().name;
-        match self.scene {
-            "all" => format!("Cost of accuracy: {name}"),
-            scene => format!("Cost of accuracy: {name}, scene {scene}"),
-        }
+        let model = names::titled(self.model.description(), self.scene);
+        format!("Cost of accuracy: {model}")
     }
 
     fn subtitle(&self) -> String {

@@ -39,11 +39,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
 
 /// The model and its scene.
 pub(super) fn title(finished: &Finished<'_>) -> String {
-    let name = finished.model.description().name;
-    match finished.scene {
-        "all" => name.to_owned(),
-        scene => format!("{name}, scene {scene}"),
-    }
+    names::titled(finished.model.description(), finished.scene)
 }
 
 /// The configurations and the time.

@@ -31,11 +31,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
 
 /// The model and its scene.
 pub(super) fn title(finished: &Finished<'_>) -> String {
-    let name = finished.description().name;
-    match finished.scene {
-        "all" => name.to_owned(),
-        scene => format!("{name}, scene {scene}"),
-    }
+    names::titled(finished.description(), finished.scene)
 }
 
 /// Subtitle: the start and the end of the task.

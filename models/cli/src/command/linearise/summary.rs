@@ -6,6 +6,7 @@ use dalembert_driver::{Linearisation, Tendency};
 
 use super::{Finished, text};
 use crate::error::counted;
+use crate::names;
 
 /// Writes the summary.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
@@ -15,10 +16,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
         Ok(found) => found,
         Err(reason) => return writeln!(output, "{}", text(description, reason)),
     };
-    match finished.scene {
-        "all" => write!(output, "{}", description.name)?,
-        scene => write!(output, "{}, scene {scene}", description.name)?,
-    }
+    write!(output, "{}", names::titled(description, finished.scene))?;
     if let Some(mode) = finished.mode {
         write!(output, ", mode {mode}")?;
     }

@@ -50,14 +50,11 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
 
 /// The model, its scene and the size of the grid.
 pub fn title(finished: &Finished<'_>) -> String {
-    let name = finished.model.description().name;
     let scene = finished.metadata["scene"].as_str().unwrap_or("all");
+    let model = names::titled(finished.model.description(), scene);
     let counts = finished.axes.iter().map(|axis| axis.count.to_string());
     let grid = counts.collect::<Vec<_>>().join(" x ");
-    match scene {
-        "all" => format!("{name}, {grid} cells"),
-        scene => format!("{name}, scene {scene}, {grid} cells"),
-    }
+    format!("{model}, {grid} cells")
 }
 
 /// The caption under the title of a picture.

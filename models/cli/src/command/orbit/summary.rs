@@ -78,11 +78,7 @@ pub(super) fn head<T>(output: &mut dyn Write, finished: &Finished<'_, T>) -> io:
 
 /// The model and its scene.
 pub(super) fn title<T>(finished: &Finished<'_, T>) -> String {
-    let name = finished.model.description().name;
-    match finished.scene {
-        "all" => name.to_owned(),
-        scene => format!("{name}, scene {scene}"),
-    }
+    names::titled(finished.model.description(), finished.scene)
 }
 
 /// `wall, 2 returns`

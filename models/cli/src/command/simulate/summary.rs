@@ -9,6 +9,7 @@ use dalembert_driver::accuracy::Verified;
 use dalembert_driver::{Ending, Settings};
 
 use super::Finished;
+use crate::names;
 use crate::outcome;
 
 /// Remedy against a run whose impacts are not confirmed.
@@ -77,11 +78,7 @@ fn error(verified: &Verified) -> String {
 
 /// The model and its scene.
 pub fn title(finished: &Finished<'_>) -> String {
-    let name = finished.model.description().name;
-    match finished.scene {
-        "all" => name.to_owned(),
-        scene => format!("{name}, scene {scene}"),
-    }
+    names::titled(finished.model.description(), finished.scene)
 }
 
 /// The laws that act and the parameters that differ from their defaults, for a picture.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::gallery::escaped;
 use crate::plot::logarithmic;
 use crate::suite::{Curve, Finding, Verdict};
 
@@ -81,10 +82,4 @@ fn figures(finding: &Finding) -> Result<String, String> {
         let _ = writeln!(figures, "<figure>{svg}</figure>");
     }
     Ok(figures)
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

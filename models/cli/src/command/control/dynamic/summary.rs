@@ -6,6 +6,7 @@ use super::Finished;
 use super::path::{Compared, Path};
 use super::problem::Problem;
 use crate::error::counted;
+use crate::names;
 
 /// Writes the summary.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished) -> io::Result<()> {
@@ -37,11 +38,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished) -> io::Result<(
 
 /// The model and its scene.
 pub(super) fn title(problem: &Problem) -> String {
-    let name = problem.model.description().name;
-    match problem.scene.as_str() {
-        "all" => name.to_owned(),
-        scene => format!("{name}, scene {scene}"),
-    }
+    names::titled(problem.model.description(), &problem.scene)
 }
 
 /// The axes and the steps.

@@ -22,10 +22,7 @@ pub(super) fn write(output: &mut dyn Write, enclosed: &Enclosed<'_>) -> io::Resu
         ..
     } = enclosed;
     let description = model.description();
-    match *scene {
-        "all" => writeln!(output, "{}", description.name)?,
-        scene => writeln!(output, "{}, scene {scene}", description.name)?,
-    }
+    writeln!(output, "{}", names::titled(description, scene))?;
     let rows = rows(enclosed);
     let names = rows.iter().map(|(name, _)| name.chars().count());
     let width = names.max().unwrap_or_default().max(10) + 2;
