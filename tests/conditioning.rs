@@ -1,4 +1,4 @@
-//! Nearly dependent constraints and very different inertias. The vector field keeps its digits because the constraint
+//! Nearly dependent constraints and widely different inertias. The vector field keeps its digits because the constraint
 //! mass matrix is never formed.
 
 use dalembert::{Fault, Instance, System, VectorField};

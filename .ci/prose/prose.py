@@ -8,8 +8,8 @@ import re
 import sys
 from pathlib import Path
 
-#: Code within a line, formulas and addresses.
-INLINE = re.compile(r"`[^`]*`|\$[^$]+\$|<[^<>]*>|https?://\S+")
+#: Code within a line, formulas, addresses and numbers.
+INLINE = re.compile(r"`[^`]*`|\$[^$]+\$|<[^<>]*>|https?://\S+|\d+")
 
 #: A comment at the end of a line or on a line by itself.
 COMMENT = {".rs": re.compile(r"^\s*//[/!]?( .*)?$"), ".py": re.compile(r"^\s*#[: ](.*)$")}
@@ -31,7 +31,7 @@ def prose(lines: list[str], ending: str) -> list[str]:
             text = ""
         elif inside or text.startswith("    "):
             text = ""
-        found.append(INLINE.sub(lambda _: f"code{next(codes)}", text) or ".")
+        found.append(INLINE.sub(lambda _: f"Item{next(codes)}", text) or ".")
     return found
 
 

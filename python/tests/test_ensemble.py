@@ -25,7 +25,7 @@ from dalembert import EnsembleError, Normal, RequestError, _sweep, _units
 #: Members whose runs differ in length, with some that cannot start.
 VARY = {"x": (-0.5, 3.5, 9), "x_dot": (-1.0, 1.0, 14)}
 FLAGS = ["--vary", "x=-0.5..3.5:9", "--vary", "x_dot=-1..1:14"]
-#: With `fork` a pool starts workers while others run, and may wait for ever for one that it starts while another is lost.
+#: With `fork` a pool starts workers while others run, and may wait forever for one that it starts while another is lost.
 SPAWN = multiprocessing.get_context("spawn")
 SMALL = {"unit": 0.001, "until": 6}
 DENSITY = {"density": {"x_dot": (-3, 3), "x": (0, 4)}, "bins": 8, "every": 0.25}

@@ -34,7 +34,7 @@ impl Case {
         1.0 + x.abs() + y.abs() + self.flight.speed(self.until) * self.until
     }
 
-    /// True if the flight starts very close to a surface or behind it.
+    /// True if the flight starts at most 1e-6 away from a surface, or behind it.
     pub fn is_at_hand(&self) -> bool {
         self.distances(self.after)
             .iter()

@@ -111,7 +111,7 @@ impl<'m> Curved<'m> {
         let (metric, _) = self.tensors(q);
         let mut sum = along(q, x, |q| vec![self.normals(q).1])[0];
         for (a, w) in normals.iter().enumerate() {
-            // nabla_w w = w(w) + Gamma(w, w), lowered and applied to X.
+            // `nabla_w w = w(w) + Gamma(w, w)`, lowered and applied to X.
             let rate = along(q, w, |q| self.normals(q).0[a].clone());
             sum += inner(&metric, &rate, x);
             let slope = |v: &[f64]| along(q, v, |q| self.tensors(q).0.concat());

@@ -136,7 +136,7 @@ impl Pool {
         };
         let (function, plus, sign) = match cross.functions {
             [Function::Cos, Function::Cos] => (Function::Cos, !alike, true),
-            // sin sin +- cos cos = +- (cos cos +- sin sin)
+            // `sin sin +- cos cos = +- (cos cos +- sin sin)`
             [Function::Sin, Function::Sin] => (Function::Cos, !alike, alike),
             [Function::Sin, _] => (Function::Sin, alike, true),
             // cos sin +- sin cos = +- (sin cos +- cos sin)

@@ -107,7 +107,7 @@ impl Finding {
         }
     }
 
-    /// The verdict in a word.
+    /// The verdict as one word.
     pub fn word(&self) -> &'static str {
         match &self.verdict {
             Verdict::Proved(_) => "proved",

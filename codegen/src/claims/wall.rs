@@ -37,7 +37,7 @@ const STEPS: usize = 4;
 /// An impact surface with the expressions of its map.
 #[derive(Debug)]
 pub(super) struct Wall {
-    /// Metric (N N), forms of the constraints and of the K instantaneous constraints ((M + K) N), dh (N), psi_0 (K),
+    /// Metric (`N N`), forms of the constraints and of the K instantaneous constraints (`(M + K) N`), dh (N), psi_0 (K),
     /// d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,

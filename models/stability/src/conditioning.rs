@@ -1,4 +1,4 @@
-//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of very different
+//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of widely different
 //! magnitude.
 
 use dalembert::{StateError, System};

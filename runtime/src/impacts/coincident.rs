@@ -1,7 +1,7 @@
 //! Impacts at one time: a test for infinitely many impacts.
 //!
 //! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner with an open exit have
-//! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of very different
+//! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of widely different
 //! masses. Impacts that lose speed accumulate where their speeds have decayed, impacts that gain speed at once.
 
 use super::accumulation::Bounce;

@@ -72,7 +72,7 @@ pub struct MapArgs {
         default_value = "end"
     )]
     pub class: String,
-    /// Draw the line of starts on which this equation holds, such as `xi = 2*eta`, or on which this expression is 0. May
+    /// Draw the curve of starts on which this equation holds, such as `xi = 2*eta`, or on which this expression is 0. May
     /// be repeated.
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub contour: Vec<String>,

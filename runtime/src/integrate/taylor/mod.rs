@@ -152,7 +152,7 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// Sets the order of the series, clamped to 3 to 32. The default is chosen by the tolerance.
+    /// Sets the order of the series, clamped to the range from 3 to 32. The default is chosen by the tolerance.
     #[must_use]
     pub fn with_order(mut self, order: usize) -> Self {
         self.given_order = Some(order.clamp(LEAST_ORDER, LENGTH - 1));

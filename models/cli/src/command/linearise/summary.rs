@@ -120,7 +120,7 @@ fn complex([re, im]: [f64; 2]) -> String {
     }
 }
 
-/// A number with nine decimals, or with an exponent if it is very large or very small.
+/// A number with nine decimals, or with an exponent if it is extremely large or small.
 fn shown(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
