@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use super::tables::{Folder, column, numbers_of};
+use super::folder::Folder;
+use super::tables::{column, numbers_of};
 use super::{Done, Exit, run_on};
 
 /// A ball over a floor, with the action and the time as integrals.

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use super::tables::{Folder, column, numbers_of};
+use super::folder::Folder;
+use super::tables::{column, numbers_of};
 use super::*;
 
 /// A particle that tends to 1 or -1 or stays at 0, and a clock that ticks once per unit of time.
