@@ -14,6 +14,7 @@ pub mod command;
 pub mod curvature;
 pub mod differences;
 pub mod divergence;
+pub mod flight;
 pub mod flow;
 pub mod formula;
 pub mod golden;
