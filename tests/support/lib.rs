@@ -20,6 +20,7 @@ pub mod formula;
 pub mod golden;
 pub mod interpreted;
 pub mod line;
+pub mod linear;
 pub mod numeric;
 pub mod obstruction;
 pub mod particle;
