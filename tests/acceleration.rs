@@ -70,6 +70,7 @@ fn check(name: &str, file: &str) {
             let size = expected
                 .iter()
                 .fold(1.0, |size: f64, value| size.max(value.abs()));
+            assert_eq!(found.len(), expected.len(), "{name} {key}");
             for (found, expected) in found.iter().zip(&expected) {
                 let error = (found - expected).abs() / size;
                 assert!(error <= TOLERANCE, "{name} {key}: {found} {expected}");

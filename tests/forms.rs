@@ -124,6 +124,7 @@ impl SameMotion {
             let size = expected
                 .iter()
                 .fold(1.0_f64, |size, value| size.max(value.abs()));
+            assert_eq!(actual.len(), expected.len(), "{name}");
             for (actual, expected) in actual.iter().zip(expected) {
                 let error = (actual - expected).abs();
                 assert!(error < 1e-7 * size, "{name}: {actual} for {expected}");

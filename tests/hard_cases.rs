@@ -43,7 +43,6 @@ fn cases(document: &Value, name: &str) -> Vec<Value> {
         .clone()
 }
 
-#[track_caller]
 #[test]
 fn whispering_galleries_keep_their_angle() {
     let table = elliptic_table(1.0, 1.0);

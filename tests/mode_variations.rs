@@ -186,8 +186,11 @@ fn a_crossing_has_the_differential_of_the_reference() {
         assert_eq!((crossed, layers.mode(&run.state)), (1, 1));
         derived.expect("derivatives");
         let rows = case["augmented_differential"].as_array().expect("rows");
+        assert_eq!(rows.len(), 3);
         for (i, row) in rows.iter().enumerate() {
-            for (column, expected) in columns.iter().zip(numbers(row)) {
+            let row = numbers(row);
+            assert_eq!(row.len(), columns.len());
+            for (column, expected) in columns.iter().zip(row) {
                 assert!(
                     (column.state.as_slice()[i] - expected).abs() < 1e-14,
                     "{column:?}"

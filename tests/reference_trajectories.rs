@@ -15,7 +15,7 @@ use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, state, vector};
 use dalembert_stability::text::{Large, Model, Text, shipped, value};
 use dalembert_stability::varied::Varied;
-use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::reference::{number, numbers, paired, read};
 use serde_json::Value;
 
 type State = <Model as VectorField>::State;
@@ -167,6 +167,7 @@ fn the_rolling_disk_meets_its_impacts() {
 /// The largest error of the first eight impacts of the elastic disk and sleigh on their elliptical tables.
 fn errors_at(method: Method) -> f64 {
     let largest = |impacts: &Impacts, case: &Value| {
+        assert_eq!(impacts.times.len(), 8);
         let pairs = impacts.times.iter().zip(times(case)).take(8);
         pairs.fold(0.0, |worst: f64, (a, e)| worst.max((a - e).abs()))
     };
@@ -405,6 +406,7 @@ fn ladder(tolerances: &[f64], integrator: Integrator) -> Vec<f64> {
             let (sleigh, state) = sleigh_state(case);
             let (impacts, _) = run(&sleigh, state, Law::Elastic, 8, (integrator, tol, None));
             let expected = times(case);
+            assert_eq!(impacts.times.len(), 8, "{integrator:?}, {tol:e}");
             impacts
                 .times
                 .into_iter()
@@ -478,8 +480,7 @@ fn check_free_runs(source: &'static str, bound: f64) {
                 let qdot = system.velocity(t, &end.state).expect("a velocity");
                 let q = system.position(&end.state);
                 for (key, actual) in [("q", q), ("qdot", qdot)] {
-                    let pairs = actual.as_slice().iter().zip(numbers(&checkpoint[key]));
-                    for (a, e) in pairs {
+                    for (a, e) in paired(actual.as_slice(), &checkpoint[key]) {
                         let error = (a - e).abs() / e.abs().max(1.0);
                         assert!(
                             error < bound,

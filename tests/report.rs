@@ -40,6 +40,7 @@ impl Compared {
                 known.map_or(f64::NAN, |(_, value)| *value)
             };
             let printed = decided.model.pool.eval(&theta, &value);
+            assert_eq!(printed.len(), expected.len(), "{name}");
             for (k, (printed, expected)) in printed.iter().zip(&expected).enumerate() {
                 let error = (printed - expected).abs();
                 assert!(

@@ -6,7 +6,7 @@ use dalembert::{Event, Observer, Outcome, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, state};
 use dalembert_stability::text::{Model, shipped, value};
-use dalembert_tests::reference::{number, numbers, read};
+use dalembert_tests::reference::{number, numbers, paired, read};
 use serde_json::Value;
 
 type State = <Model as VectorField>::State;
@@ -49,14 +49,11 @@ fn error(steps: &Steps, stored: &[Value]) -> f64 {
     for ((t, before, after), stored) in steps.0.iter().zip(stored) {
         let mut compare = |found: f64, stored: f64| largest = largest.max((found - stored).abs());
         compare(*t, number(&stored["t"]));
-        for (found, stored) in before.as_ref().iter().zip(numbers(&stored["before"])) {
-            compare(*found, stored);
+        for (found, stored) in paired(before.as_ref(), &stored["before"]) {
+            compare(found, stored);
         }
-        for (found, stored) in after.as_ref()[1..]
-            .iter()
-            .zip(numbers(&stored["after(xi,eta)"]))
-        {
-            compare(*found, stored);
+        for (found, stored) in paired(&after.as_ref()[1..], &stored["after(xi,eta)"]) {
+            compare(found, stored);
         }
     }
     largest
@@ -92,11 +89,7 @@ fn the_fixed_point_comes_back_after_a_period() {
             panic!("{} steps", steps.0.len());
         };
         assert!((t - period).abs() <= 1e-11, "{t} for {period}");
-        for (found, stored) in before
-            .as_ref()
-            .iter()
-            .zip(numbers(&set["state_before_impact"]))
-        {
+        for (found, stored) in paired(before.as_ref(), &set["state_before_impact"]) {
             assert!((found - stored).abs() <= 1e-11, "{found} for {stored}");
         }
         for (found, stored) in after.as_ref()[1..].iter().zip(fixed) {

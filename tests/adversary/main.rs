@@ -22,6 +22,7 @@ use std::collections::BTreeMap;
 
 use dalembert_codegen::claims::Verdict;
 use dalembert_tests::claim::verdict;
+use dalembert_tests::sampling::asked;
 
 use draw::Draw;
 use families::{Case, case};
@@ -63,9 +64,8 @@ fn judged(seed: u64, case: &Case, tally: &mut Tally) -> Result<(), String> {
 
 /// Judges this many cases, unless the environment sets another number, and prints the counts of the verdicts.
 fn judge(cases: u64) {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first = asked("ADVERSARY_SEED").unwrap_or(0_u64);
-    let cases = asked("ADVERSARY_CASES").unwrap_or(cases);
+    let first = asked("ADVERSARY_SEED", 0);
+    let cases = asked("ADVERSARY_CASES", cases);
     let mut tallies: BTreeMap<&str, Tally> = BTreeMap::new();
     let mut wrong = Vec::new();
     for seed in first..first + cases {

@@ -5,6 +5,7 @@
 use dalembert::{Described, Impacting, StateVector, System};
 use dalembert_models::ChaplyginSleigh;
 use dalembert_tests::claim::Declaration;
+use dalembert_tests::linear::determinant;
 use dalembert_tests::numeric::slope;
 use dalembert_tests::sampling::Random;
 use dalembert_tests::witness;
@@ -155,29 +156,8 @@ fn jacobian<S: Impacting>(
     let (state, contact) = impact(u);
     let rates = system.gap_rates(0.0, &state).expect("gap rates");
     let rates = [contact.gap_rate, rates.as_slice()[surface]];
-    let value = determinant(columns) * rates[1] / rates[0];
+    let value = determinant(&columns) * rates[1] / rates[0];
     (value, contact.rho(), rates)
-}
-
-fn determinant(mut rows: Vec<Vec<f64>>) -> f64 {
-    let mut value = 1.0;
-    for step in 0..rows.len() {
-        let pivot =
-            (step..rows.len()).max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()));
-        let pivot = pivot.expect("a row");
-        if pivot != step {
-            rows.swap(pivot, step);
-            value = -value;
-        }
-        value *= rows[step][step];
-        for row in step + 1..rows.len() {
-            let factor = rows[row][step] / rows[step][step];
-            for column in step..rows.len() {
-                rows[row][column] -= factor * rows[step][column];
-            }
-        }
-    }
-    value
 }
 
 /// Impact maps are affine in the velocities, so that differences are exact up to rounding errors.

@@ -6,11 +6,12 @@ use dalembert_codegen::claims::{Potential, Term, Volume};
 use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Guard, interpret::interpret, verify::verify};
 use dalembert_expr::Rational;
+use dalembert_tests::linear::determinant;
 use dalembert_tests::reference::read;
 use dalembert_tests::sampling::{Random, every_system};
 use dalembert_tests::systems::MixedDisk;
 use dalembert_tests::visible::declaration;
-use dalembert_tests::volume::{WithVolume, determinant, difference};
+use dalembert_tests::volume::{WithVolume, difference};
 use serde_json::Value;
 
 /// Every system of `verdicts_visible.json`, with its declaration.
@@ -285,7 +286,7 @@ fn every_term_is_lowered() {
         let q = mixed.configuration(&mut random);
         let [metric, mass] = mixed.determinants(0.0, &q);
         let forms = mixed.forms(0.0, &q);
-        let minor = |chosen: &[usize]| determinant(columns(&forms, chosen)).abs().ln();
+        let minor = |chosen: &[usize]| determinant(&columns(&forms, chosen)).abs().ln();
         let density = 0.5 * mass.ln() - 3.0 * metric.ln()
             + 2.0 / 7.0 * minor(&[1, 2])
             + 0.5 * q[0].abs().ln()

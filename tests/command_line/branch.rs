@@ -5,7 +5,8 @@ use std::fs;
 
 use dalembert_driver::BranchEnd;
 
-use super::tables::{Folder, column, numbers_of};
+use super::folder::Folder;
+use super::tables::{column, numbers_of};
 use super::*;
 
 /// The logistic map: a clock ticks once per unit of time, and each tick applies the map.

@@ -176,7 +176,9 @@ fn quasi_velocities_have_ranges() {
     let q = ranges(&document["outcome"]["q"]);
     let line = "simulate - --initial x=-0.01 --until 1 --tol 1e-13 --samples 2 --json -";
     let run = run_on(SLEIGH, &line.split(' ').collect::<Vec<_>>()).json();
-    for ([lo, hi], q) in q.iter().zip(numbers(&run["outcome"]["q"])) {
+    let sample = numbers(&run["outcome"]["q"]);
+    assert_eq!(q.len(), sample.len());
+    for ([lo, hi], q) in q.iter().zip(sample) {
         assert!(lo - 1e-9 < q && q < hi + 1e-9);
     }
     assert!(q[0][1] - q[0][0] > 0.02);

@@ -1,6 +1,7 @@
 //! Bifurcation curves over two parameters, compared with closed forms.
 
-use super::tables::{Folder, column, numbers_of};
+use super::folder::Folder;
+use super::tables::{column, numbers_of};
 use super::*;
 
 /// A clock that maps a point of the plane at every tick, with folds, flips and Neimark-Sacker bifurcations.

@@ -5,35 +5,9 @@ mod merge;
 mod parquet;
 
 use std::fs;
-use std::path::PathBuf;
 
+use super::folder::Folder;
 use super::*;
-
-/// A folder that is removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = format!("dalembert-ensemble-{name}-{}", std::process::id());
-        let path = std::env::temp_dir().join(folder);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        fs::remove_dir_all(&self.0).unwrap();
-    }
-}
 
 /// An ensemble of balls. One ninth of them start below the floor.
 const BALLS: &str = "ensemble bouncing_ball --vary x=-0.5..3.5:9 --vary x_dot=-1..1:14 --until 6";

@@ -2,32 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::folder::Folder;
 use super::*;
-
-/// A folder of this test that is removed with it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("dalembert-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-
-    /// The path of a file with this text.
-    fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // A folder that stays does no harm.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 const BALL: &str = "
     /// A ball that bounces.

@@ -1,32 +1,11 @@
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use dalembert_cli::Catalogue;
 use dalembert_cli::gallery::{Density, Figure, Panel, Picture, Starts};
 
+use super::folder::Folder;
 use super::*;
-
-/// A folder that is removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let name = format!("dalembert-gallery-{name}-{}", std::process::id());
-        Self(std::env::temp_dir().join(name))
-    }
-
-    fn read(&self, name: &str) -> String {
-        let path = self.0.join(name);
-        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // A test that fails before it has written has nothing to remove.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 fn figures() -> Vec<Figure> {
     let panel = |name: &str, picture| Panel {
@@ -121,7 +100,7 @@ fn assert_well_formed(page: &str) {
 
 #[test]
 fn the_commands_of_a_page_draw_its_pictures() {
-    let (folder, alone) = (Folder::new("page"), Folder::new("alone"));
+    let (folder, alone) = (Folder::not_made("page"), Folder::not_made("alone"));
     let done = gallery(&folder.0, "oscillator bead --quick");
     // The motion of the oscillator cannot be drawn, since its parameter has no default.
     assert_eq!(done.exit, Exit::Other, "{}", done.errors);
@@ -174,7 +153,7 @@ fn the_commands_of_a_page_draw_its_pictures() {
 
 #[test]
 fn two_galleries_are_the_same_to_the_byte_and_the_manifest_names_what_was_drawn() {
-    let folders = [Folder::new("first"), Folder::new("second")];
+    let folders = [Folder::not_made("first"), Folder::not_made("second")];
     for folder in &folders {
         assert_eq!(gallery(&folder.0, "oscillator --quick").exit, Exit::Other);
     }
@@ -224,7 +203,7 @@ fn pictures_are_listed_and_drawn_by_name() {
             .contains("oscillator-work")
     );
 
-    let folder = Folder::new("one");
+    let folder = Folder::not_made("one");
     let done = gallery(&folder.0, "--picture oscillator-lissajous-density");
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
     let files = fs::read_dir(&folder.0).unwrap().count();
@@ -257,7 +236,7 @@ fn what_does_not_exist_or_cannot_be_written_is_refused() {
     assert!(error.contains("--picture: unknown picture"), "{error}");
     assert!(refused("").contains("<OUT>"));
 
-    let folder = Folder::new("file");
+    let folder = Folder::not_made("file");
     fs::write(&folder.0, "").unwrap();
     let error = refused(&format!("{} bead", folder.0.display()));
     assert!(error.starts_with("error: OUT "), "{error}");

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use super::tables::{Folder, column, numbers_of};
+use super::folder::Folder;
+use super::tables::{column, numbers_of};
 use super::{Done, Exit, run_on};
 
 /// A ball over a floor, with the action and the time as integrals.
@@ -121,6 +122,7 @@ fn ensembles_have_the_integrals_of_single_runs() {
         let line =
             format!("ensemble - --initial x=0 --vary x_dot=1..2:9 --integrator {integrator}");
         let many = table(BALL, &line);
+        assert_eq!(numbers_of(&many, "out.S").len(), 9);
         for (speed, action) in numbers_of(&many, "in.x_dot")
             .iter()
             .zip(numbers_of(&many, "out.S"))
@@ -165,6 +167,7 @@ fn flags_add_outputs() {
     let done = run(&["W = integral(momentum(x)*dot(x))", "double = 2*x"]);
     let x = numbers_of(&done.output, "x");
     let doubles = numbers_of(&done.output, "double");
+    assert!(x.len() > 2);
     assert!(x.iter().zip(&doubles).all(|(x, double)| 2.0 * x == *double));
     // The abbreviated action W is the action plus the energy times the time.
     let energy = 2.54 * 2.54 / 2.0;

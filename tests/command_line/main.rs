@@ -12,6 +12,7 @@ mod derive;
 mod ensemble;
 mod eval;
 mod files;
+mod folder;
 mod gallery;
 mod hostile;
 mod integrals;

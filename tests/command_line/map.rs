@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use super::tables::{Folder, column, numbers_of};
+use super::folder::Folder;
+use super::tables::{column, numbers_of};
 use super::*;
 
 /// A particle that tends to 1 or -1 or stays at 0, and a clock that ticks once per unit of time.
@@ -110,6 +111,7 @@ fn an_expression_ends_runs_as_failed() {
     // For starts at 1 and above the condition holds at once; from 0.5 it begins to hold after the first return.
     let (stays, later, once) = ("orbit", "failed", "failed at once");
     let expected = [stays, stays, stays, stays, stays, later, once, once, once];
+    assert_eq!(class.len(), expected.len());
     for (class, expected) in class.iter().zip(expected) {
         let same = class == expected || (expected == stays && class.starts_with("orbit "));
         assert!(same, "{class} for {expected}");

@@ -4,8 +4,7 @@ use core::f64::consts::{PI, TAU};
 
 use dalembert_stability::course::Random;
 use dalembert_stability::text::{Model, Text};
-
-use crate::exact::Flight;
+use dalembert_tests::flight::{Flight, direction, point, size, towards};
 
 /// Distances from every surface at a time and a position.
 type Distances = Box<dyn Fn(f64, [f64; 2]) -> Vec<f64>>;
@@ -30,8 +29,7 @@ impl Case {
 
     /// Scale of the coordinates along the flight.
     pub fn scale(&self) -> f64 {
-        let [x, y] = self.flight.q;
-        1.0 + x.abs() + y.abs() + self.flight.speed(self.until) * self.until
+        self.flight.scale(self.until)
     }
 
     /// True if the flight starts at most 1e-6 away from a surface, or behind it.
@@ -99,26 +97,6 @@ static TWINS: Text = Text::new(
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         impacts { first: c - x >= 0; second: c + far - x + slope*y >= 0; } }",
 );
-
-fn size(random: &mut Random, low: f64, high: f64) -> f64 {
-    random.between(low.ln(), high.ln()).exp()
-}
-
-fn direction(random: &mut Random, speed: f64) -> [f64; 2] {
-    let angle = random.between(0.0, TAU);
-    [speed * angle.cos(), speed * angle.sin()]
-}
-
-fn point(random: &mut Random, size: f64) -> [f64; 2] {
-    [(); 2].map(|()| random.between(-size, size))
-}
-
-/// A velocity with this speed towards a point.
-fn towards([x, y]: [f64; 2], q: [f64; 2], speed: f64) -> [f64; 2] {
-    let way = [x - q[0], y - q[1]];
-    let length = way[0].hypot(way[1]);
-    way.map(|part| speed * part / length)
-}
 
 fn disks(random: &mut Random) -> Case {
     let table = size(random, 1.0, 1e4);

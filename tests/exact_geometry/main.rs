@@ -16,15 +16,15 @@
 //! | `twins` | two walls that are met within 1e-9 of each other |
 //! | `leaving` | starts on a surface, moving away from it |
 
-mod exact;
 mod families;
 
 use dalembert::Outcome;
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, Random, state};
 use dalembert_stability::text::Model;
+use dalembert_tests::flight::{Exact, SHALLOW, first_impact};
+use dalembert_tests::sampling::asked;
 
-use exact::{Exact, SHALLOW, exact};
 use families::Case;
 
 /// Tolerances of adaptive integrators, and numbers of steps of integrators with a fixed step.
@@ -80,7 +80,8 @@ fn mistakes(case: &Case, tally: &mut Tally) -> Vec<String> {
     if case.is_at_hand() {
         return Vec::new();
     }
-    let exact = exact(case);
+    let times = [case.after, case.until];
+    let exact = first_impact(&case.flight, times, case.fastest, &|t| case.distances(t));
     tally.hits += u64::from(matches!(exact, Exact::Hits { .. }));
     tally.grazes += u64::from(exact == Exact::Grazes);
     let mut wrong = Vec::new();
@@ -121,12 +122,6 @@ fn try_starts(count: u64, seed: u64) {
         tally.hits > count && tally.grazes < tally.runs / 100,
         "{tally:?}"
     );
-}
-
-/// The number in an environment variable.
-fn asked(name: &str, default: u64) -> u64 {
-    let value = std::env::var(name).ok();
-    value.and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
 #[test]

@@ -119,9 +119,9 @@ const WORDS: [&str; 34] = [
 const LITERALS: [&str; 10] = [
     "0", "1", "2", "0.5", "1e400", "2x", "\"a\"", "'a'", "70", "1e-9",
 ];
-const MARKS: [char; 22] = [
+const MARKS: [char; 21] = [
     '=', ';', ',', ':', '+', '-', '*', '/', '^', '%', '<', '>', '.', '#', '!', '|', '&', '?', '$',
-    '@', '~', '\'',
+    '@', '~',
 ];
 
 /// Any token, with groups nested a few times.
@@ -130,7 +130,7 @@ fn token() -> BoxedStrategy<TokenTree> {
         .prop_map(|word| TokenTree::from(Ident::new(word, Span::call_site())));
     let literals = prop::sample::select(&LITERALS[..])
         .prop_map(|text| TokenTree::from(text.parse::<Literal>().expect("a literal")));
-    let marks = (prop::sample::select(&MARKS[..21]), any::<bool>()).prop_map(|(mark, is_joint)| {
+    let marks = (prop::sample::select(&MARKS[..]), any::<bool>()).prop_map(|(mark, is_joint)| {
         let spacing = if is_joint {
             Spacing::Joint
         } else {

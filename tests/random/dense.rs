@@ -9,7 +9,7 @@
 
 use dalembert_codegen::Compiled;
 use dalembert_expr::{ExprId, SymbolId};
-use dalembert_tests::curvature::solve;
+use dalembert_tests::linear::solve;
 use dalembert_tests::numeric::moved;
 
 /// A point of the tangent bundle.

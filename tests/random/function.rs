@@ -17,7 +17,7 @@ struct Term {
 enum Factor {
     Coordinate(usize),
     Sine(usize),
-    CosineOfSum(usize, usize),
+    CosineOfDifference(usize, usize),
     Bell(usize),
     Root(usize),
     Hyperbolic(usize),
@@ -97,7 +97,7 @@ impl Factor {
         prop_oneof![
             number().prop_map(Self::Coordinate),
             number().prop_map(Self::Sine),
-            (number(), number()).prop_map(|(i, j)| Self::CosineOfSum(i, j)),
+            (number(), number()).prop_map(|(i, j)| Self::CosineOfDifference(i, j)),
             number().prop_map(Self::Bell),
             number().prop_map(Self::Root),
             number().prop_map(Self::Hyperbolic),
@@ -113,7 +113,9 @@ impl Factor {
         Some(match *self {
             Self::Coordinate(i) => coordinate(i)?,
             Self::Sine(i) => format!("sin(2*x{})", names.index(i)?),
-            Self::CosineOfSum(i, j) => format!("cos(x{} - x{})", names.index(i)?, names.index(j)?),
+            Self::CosineOfDifference(i, j) => {
+                format!("cos(x{} - x{})", names.index(i)?, names.index(j)?)
+            }
             Self::Bell(i) => format!("exp(-{}^2)", coordinate(i)?),
             Self::Root(i) => format!("sqrt(1 + {}^2)", coordinate(i)?),
             Self::Hyperbolic(i) => format!("tanh({})", coordinate(i)?),

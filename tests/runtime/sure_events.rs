@@ -3,10 +3,13 @@
 //! surface.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
+use core::f64::consts::TAU;
+
 use dalembert::{EventLog, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
-use dalembert_stability::course::{Course, vector};
+use dalembert_stability::course::{Course, Random, vector};
 use dalembert_stability::text::{Model, Text};
+use dalembert_tests::flight::{Exact, Flight, SHALLOW, first_impact, point, size, towards};
 
 /// A point over a bump that is narrow for small `s`.
 static BUMP: Text = Text::new(
@@ -47,29 +50,6 @@ static NEEDLE: Text = Text::new(
         impacts { tip: sqrt((x - l*cos(w*t))^2 + (y - l*sin(w*t))^2) - rho >= 0; }
     }",
 );
-
-/// A start in the plane.
-#[derive(Debug, Clone, Copy)]
-struct Flight {
-    q: [f64; 2],
-    v: [f64; 2],
-    /// Acceleration downwards.
-    g: f64,
-}
-
-impl Flight {
-    fn at(&self, t: f64) -> [f64; 2] {
-        [
-            self.q[0] + self.v[0] * t,
-            self.q[1] + (self.v[1] - 0.5 * self.g * t) * t,
-        ]
-    }
-
-    /// Bound on the speed until a time.
-    fn speed(&self, until: f64) -> f64 {
-        self.v[0].hypot(self.v[1].abs() + self.g * until)
-    }
-}
 
 /// Parameters of a model, with its gaps in closed form.
 trait Family: core::fmt::Debug {
@@ -187,56 +167,6 @@ impl Family for Needle {
     }
 }
 
-/// First impact of the exact flight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Exact {
-    Hits {
-        t: f64,
-        surface: usize,
-    },
-    Passes,
-    /// The flight touches a surface or nearly does: a run may report an impact or not.
-    Grazes,
-}
-
-/// An impact counts as a graze if the gap falls slower than this fraction of the bound on its rate.
-const SHALLOW: f64 = 1e-3;
-
-/// The first impact, by conservative advancement.
-fn exact(family: &dyn Family, flight: &Flight, until: f64) -> Exact {
-    let fastest = family.fastest(flight.speed(until));
-    let scale = 1.0 + flight.q[0].abs() + flight.q[1].abs() + flight.speed(until) * until;
-    let close = 64.0 * f64::EPSILON * scale;
-    let (mut t, mut nearest) = (0.0, f64::INFINITY);
-    for _ in 0..200_000 {
-        let distances = family.distances(t, flight.at(t));
-        let (surface, least) = distances
-            .iter()
-            .copied()
-            .enumerate()
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap();
-        nearest = f64::min(nearest, least);
-        if least <= close {
-            let later = t + 1e-6 * until.min(1.0);
-            let rate = (family.distances(later, flight.at(later))[surface] - least) / (later - t);
-            return match rate < -SHALLOW * fastest {
-                true => Exact::Hits { t, surface },
-                false => Exact::Grazes,
-            };
-        }
-        t += least / fastest;
-        if t > until {
-            return match nearest < 1e-9 * scale {
-                true => Exact::Grazes,
-                false => Exact::Passes,
-            };
-        }
-    }
-    // The flight stays close to a surface: only there are the steps so short.
-    Exact::Grazes
-}
-
 /// Numbers of comparisons.
 #[derive(Debug, Default)]
 struct Tally {
@@ -271,8 +201,7 @@ fn compare(family: &dyn Family, setting: Setting<'_>, flight: &Flight, until: f6
             let event = first.unwrap_or_else(|| panic!("{}", case()));
             let fastest = family.fastest(flight.speed(until));
             let late = (event.t - t).abs() * fastest * SHALLOW;
-            let allowed =
-                1e-11 * (1.0 + flight.speed(until) * until + flight.q[0].abs() + flight.q[1].abs());
+            let allowed = 1e-11 * flight.scale(until);
             assert!(late <= allowed && event.surface == surface, "{}", case());
         }
         Exact::Passes => {
@@ -298,7 +227,9 @@ fn with_every_integrator(family: &dyn Family, flight: &Flight, until: f64, tally
     if start.iter().any(|gap| *gap <= 1e-6) {
         return;
     }
-    let exact = exact(family, flight, until);
+    let fastest = family.fastest(flight.speed(until));
+    let distances = |t: f64| family.distances(t, flight.at(t));
+    let exact = first_impact(flight, [0.0, until], fastest, &distances);
     tally.hits += u64::from(matches!(exact, Exact::Hits { .. }));
     tally.grazes += u64::from(exact == Exact::Grazes);
     let model = &family.model();
@@ -320,43 +251,15 @@ fn with_every_integrator(family: &dyn Family, flight: &Flight, until: f64, tally
     }
 }
 
-/// Uniform numbers by splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.next()
-    }
-
-    /// A number between two bounds, uniform in its logarithm.
-    fn size(&mut self, lo: f64, hi: f64) -> f64 {
-        (self.between(lo.ln(), hi.ln())).exp()
-    }
-
-    fn point(&mut self, size: f64) -> [f64; 2] {
-        [self.between(-size, size), self.between(-size, size)]
-    }
-
-    fn velocity(&mut self) -> [f64; 2] {
-        let (angle, speed) = (
-            self.between(0.0, core::f64::consts::TAU),
-            self.size(0.1, 10.0),
-        );
-        [speed * angle.cos(), speed * angle.sin()]
-    }
+/// A velocity of any direction and of many magnitudes.
+fn velocity(random: &mut Random) -> [f64; 2] {
+    let (angle, speed) = (random.between(0.0, TAU), size(random, 0.1, 10.0));
+    [speed * angle.cos(), speed * angle.sin()]
 }
 
 /// Compares `count` random starts of every family.
 fn try_starts(count: u32, seed: u64) {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut tally = Tally::default();
     for _ in 0..count {
         bump(&mut random, &mut tally);
@@ -371,11 +274,11 @@ fn try_starts(count: u32, seed: u64) {
 
 fn bump(random: &mut Random, tally: &mut Tally) {
     let bump = Bump {
-        s: random.size(1e-3, 0.3),
+        s: size(random, 1e-3, 0.3),
     };
     let flight = Flight {
         q: [-random.between(0.5, 2.0), random.between(0.01, 1.1)],
-        v: [random.size(0.1, 10.0), 0.0],
+        v: [size(random, 0.1, 10.0), 0.0],
         g: 0.0,
     };
     let until = 4.0 / flight.v[0];
@@ -385,11 +288,11 @@ fn bump(random: &mut Random, tally: &mut Tally) {
 /// Flights through the top of a bump that is about as wide as a step.
 fn top(random: &mut Random, tally: &mut Tally) {
     let bump = Bump {
-        s: random.size(0.02, 0.5),
+        s: size(random, 0.02, 0.5),
     };
     let flight = Flight {
-        q: [-random.between(0.8, 2.0), 1.0 - random.size(1e-4, 0.3)],
-        v: [random.size(0.1, 10.0), 0.0],
+        q: [-random.between(0.8, 2.0), 1.0 - size(random, 1e-4, 0.3)],
+        v: [size(random, 0.1, 10.0), 0.0],
         g: 0.0,
     };
     let until = 4.0 / flight.v[0];
@@ -397,61 +300,59 @@ fn top(random: &mut Random, tally: &mut Tally) {
 }
 
 fn pegs(random: &mut Random, tally: &mut Tally) {
-    let size = random.size(1.0, 1e4);
-    let centre = |random: &mut Random| [(); 3].map(|()| random.between(-size, size));
+    let table = size(random, 1.0, 1e4);
+    let centre = |random: &mut Random| [(); 3].map(|()| random.between(-table, table));
     let (a, b) = (centre(random), centre(random));
-    let g = match random.next() < 0.5 {
+    let g = match random.between(0.0, 1.0) < 0.5 {
         true => 0.0,
-        false => random.size(0.1, 10.0),
+        false => size(random, 0.1, 10.0),
     };
     let pegs = Pegs {
         a,
         b,
-        r: [(); 3].map(|()| random.size(0.05, 1.0) * size.min(random.size(1.0, 1e4))),
+        r: [(); 3].map(|()| size(random, 0.05, 1.0) * table.min(size(random, 1.0, 1e4))),
         g,
     };
     // About half of the flights aim at the first peg.
-    let q = random.point(size);
-    let mut v = random.velocity();
-    let (speed, aimed) = (v[0].hypot(v[1]), random.next() < 0.5);
+    let q = point(random, table);
+    let mut v = velocity(random);
+    let (speed, aimed) = (v[0].hypot(v[1]), random.between(0.0, 1.0) < 0.5);
     if aimed {
-        let aim = random.point(pegs.r[0]);
-        let way = [a[0] + aim[0] - q[0], b[0] + aim[1] - q[1]];
-        let length = way[0].hypot(way[1]);
-        v = way.map(|part| speed * part / length);
+        let aim = point(random, pegs.r[0]);
+        v = towards([a[0] + aim[0], b[0] + aim[1]], q, speed);
     }
     let until = match g == 0.0 {
-        true => 4.0 * size / speed,
-        false => 2.0 * (size / g).sqrt() + speed / g,
+        true => 4.0 * table / speed,
+        false => 2.0 * (table / g).sqrt() + speed / g,
     };
     with_every_integrator(&pegs, &Flight { q, v, g }, until, tally);
 }
 
 fn slab(random: &mut Random, tally: &mut Tally) {
-    let size = random.size(1.0, 1e4);
+    let table = size(random, 1.0, 1e4);
     let slab = Slab {
-        a: random.between(-size, size),
-        w: random.size(1e-6, 1.0),
-        h: random.between(0.1, 2.0) * size,
+        a: random.between(-table, table),
+        w: size(random, 1e-6, 1.0),
+        h: random.between(0.1, 2.0) * table,
     };
     let flight = Flight {
-        q: random.point(size),
-        v: random.velocity(),
+        q: point(random, table),
+        v: velocity(random),
         g: 0.0,
     };
-    let until = 4.0 * size / flight.speed(0.0);
+    let until = 4.0 * table / flight.speed(0.0);
     with_every_integrator(&slab, &flight, until, tally);
 }
 
 fn needle(random: &mut Random, tally: &mut Tally) {
     let needle = Needle {
         l: random.between(0.5, 2.0),
-        rho: random.size(1e-3, 0.3),
+        rho: size(random, 1e-3, 0.3),
         w: random.between(-20.0, 20.0),
     };
     let flight = Flight {
-        q: random.point(3.0),
-        v: random.velocity(),
+        q: point(random, 3.0),
+        v: velocity(random),
         g: 0.0,
     };
     let until = 6.0 / flight.speed(0.0).max(0.5);

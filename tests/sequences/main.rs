@@ -9,7 +9,7 @@ mod starts;
 
 use dalembert::Outcome;
 use dalembert_driver::{Form, Integrator};
-use dalembert_tests::sampling::Random;
+use dalembert_tests::sampling::{Random, asked};
 
 use runs::{Course, IMPACTS, Way, apart, certified, error, run, state_at};
 use starts::{Case, Shipped};
@@ -273,12 +273,6 @@ fn compare_all(count: u64, seed: u64, tolerances: [&[f64]; 2]) {
         tally.wrong.join("\n")
     );
     assert!(only.is_some() || tally.impacts > tally.starts * IMPACTS / 4);
-}
-
-/// The number in an environment variable.
-fn asked(name: &str, default: u64) -> u64 {
-    let value = std::env::var(name).ok();
-    value.and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
 #[test]

@@ -9,6 +9,8 @@ use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;
 use dalembert_expr::{ExprId, SymbolId};
 
+use crate::linear::solve;
+
 /// Step `h` of the stencils. Their error `h^4` is near the rounding error `1e-16/h^3` of three nested stencils.
 const STEP: f64 = 0.004;
 
@@ -167,58 +169,4 @@ fn unflatten(values: &[f64], n: usize) -> Matrix {
 fn inner(metric: &[Vec<f64>], a: &[f64], b: &[f64]) -> f64 {
     let row = |(row, a): (&Vec<f64>, &f64)| a * row.iter().zip(b).map(|(g, b)| g * b).sum::<f64>();
     metric.iter().zip(a).map(row).sum()
-}
-
-/// Solves a linear system by elimination with pivots.
-///
-/// # Panics
-/// If the matrix is singular.
-pub fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
-    let n = right.len();
-    let mut rows: Matrix = matrix
-        .iter()
-        .zip(right)
-        .map(|(row, right)| row.iter().copied().chain([*right]).collect())
-        .collect();
-    for step in 0..n {
-        let pivot = (step..n)
-            .max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))
-            .expect("a row");
-        rows.swap(step, pivot);
-        let pivot = rows[step].clone();
-        assert!(pivot[step] != 0.0, "a singular matrix");
-        for (i, row) in rows.iter_mut().enumerate() {
-            if i != step {
-                let factor = row[step] / pivot[step];
-                row.iter_mut()
-                    .zip(&pivot)
-                    .for_each(|(entry, pivot)| *entry -= factor * pivot);
-            }
-        }
-    }
-    (0..n).map(|i| rows[i][n] / rows[i][i]).collect()
-}
-
-/// The determinant, by elimination with pivots.
-pub fn determinant(matrix: &[Vec<f64>]) -> f64 {
-    let mut rows = matrix.to_vec();
-    let mut product = 1.0;
-    for step in 0..rows.len() {
-        let pivot = (step..rows.len())
-            .max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))
-            .unwrap_or(step);
-        if pivot != step {
-            rows.swap(step, pivot);
-            product = -product;
-        }
-        let pivot = rows[step].clone();
-        product *= pivot[step];
-        for row in &mut rows[step + 1..] {
-            let factor = row[step] / pivot[step];
-            row.iter_mut()
-                .zip(&pivot)
-                .for_each(|(entry, pivot)| *entry -= factor * pivot);
-        }
-    }
-    product
 }

@@ -6,6 +6,7 @@
 //! [(X, c), (Y, d)] = ([X, Y], X(d) - Y(c)),  c_i = theta(X_i)
 //! ```
 
+use crate::linear::solve_regular;
 use crate::numeric::{Numeric, moved, slopes};
 
 /// Components of a vector field, then its demand.
@@ -171,26 +172,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves a small system by elimination with pivots; `None` if it is singular.
+/// Solves a small system; `None` if it is singular.
 fn solve(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
-    let size = right.len();
-    let mut rows: Vec<Vec<f64>> = matrix
-        .iter()
-        .zip(right)
-        .map(|(row, value)| row[..size].iter().copied().chain([*value]).collect())
-        .collect();
-    for step in 0..size {
-        let pivot =
-            (step..size).max_by(|a, b| rows[*a][step].abs().total_cmp(&rows[*b][step].abs()))?;
-        rows.swap(step, pivot);
-        let pivot = rows[step].clone();
-        if pivot[step].abs() < 1e-12 {
-            return None;
-        }
-        for row in (0..size).filter(|row| *row != step) {
-            let factor = rows[row][step] / pivot[step];
-            rows[row] = moved(&rows[row], -factor, &pivot);
-        }
-    }
-    Some((0..size).map(|i| rows[i][size] / rows[i][i]).collect())
+    solve_regular(matrix, right, 1e-12)
 }

@@ -3,32 +3,24 @@
 use std::sync::OnceLock;
 
 use dalembert::{Instance, StateVector, System};
+use dalembert_stability::course;
 use dalembert_stability::text::{Large, Text, shipped};
 
 use crate::systems;
 
-/// A small generator (SplitMix64): the same numbers everywhere.
+/// The generator of [`course::Random`] with numbers and vectors. The same seed gives the same numbers everywhere.
 #[derive(Debug, Clone)]
-pub struct Random(u64);
+pub struct Random(course::Random);
 
 impl Random {
     /// A generator with this seed.
     pub const fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        Self(course::Random::new(seed))
     }
 
     /// A number in `[low, high)`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        let unit = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + (high - low) * unit
+        self.0.between(low, high)
     }
 
     /// A vector with components in `[low, high)`.
@@ -88,4 +80,10 @@ pub fn system(name: &str) -> Large {
     let mut systems = every_system().iter();
     let system = systems.find(|system| system.description().name == name);
     *system.unwrap_or_else(|| panic!("no system `{name}`"))
+}
+
+/// The number in an environment variable, for nightly tests; `default` if there is none.
+pub fn asked(name: &str, default: u64) -> u64 {
+    let value = std::env::var(name).ok();
+    value.and_then(|text| text.parse().ok()).unwrap_or(default)
 }

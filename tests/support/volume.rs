@@ -7,6 +7,7 @@ use dalembert_codegen::program::{self, Function, Input, Program, interpret::inte
 use dalembert_codegen::spec;
 use dalembert_expr::{ExprId, SymbolId};
 
+use crate::linear::{determinant, solve};
 use crate::sampling::Random;
 
 /// A system with a volume in closed form, lowered.
@@ -195,12 +196,12 @@ impl WithVolume {
             .map(|form| form[..q.len()].to_vec())
             .collect();
         let mass = forms.iter().map(|a| {
-            let dual = solve(metric.clone(), a.clone()).0;
+            let dual = solve(&metric, a);
             let entry = |b: &Vec<f64>| b.iter().zip(&dual).map(|(x, y)| x * y).sum();
             forms.iter().map(entry).collect()
         });
         let mass: Vec<Vec<f64>> = mass.collect();
-        [metric, mass].map(determinant)
+        [metric, mass].map(|matrix| determinant(&matrix))
     }
 
     /// All velocities, completed from the independent ones.
@@ -211,18 +212,18 @@ impl WithVolume {
             qdot[i] = v;
         }
         let forms = self.forms(t, q);
-        let minor = forms
+        let minor: Vec<Vec<f64>> = forms
             .iter()
             .map(|form| self.volume.dependent.iter().map(|&j| form[j]).collect())
             .collect();
-        let right = forms
+        let right: Vec<f64> = forms
             .iter()
             .map(|form| {
                 let known: f64 = form.iter().zip(&qdot).map(|(a, v)| a * v).sum();
                 -(known + form[q.len()])
             })
             .collect();
-        for (&j, v) in self.volume.dependent.iter().zip(solve(minor, right).0) {
+        for (&j, v) in self.volume.dependent.iter().zip(solve(&minor, &right)) {
             qdot[j] = v;
         }
         qdot
@@ -278,39 +279,4 @@ pub fn divergence(
 pub fn difference(f: impl Fn(f64) -> f64) -> f64 {
     let side = |(shift, weight): (f64, f64)| weight * (f(shift * STEP) - f(-shift * STEP));
     STENCIL.into_iter().map(side).sum::<f64>() / STEP
-}
-
-/// The solution of a square system and the determinant, by elimination with pivots.
-fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> (Vec<f64>, f64) {
-    let n = matrix.len();
-    let mut determinant = 1.0;
-    for step in 0..n {
-        let largest = (step..n)
-            .max_by(|&a, &b| f64::total_cmp(&matrix[a][step].abs(), &matrix[b][step].abs()))
-            .unwrap_or(step);
-        if largest != step {
-            matrix.swap(step, largest);
-            right.swap(step, largest);
-            determinant = -determinant;
-        }
-        determinant *= matrix[step][step];
-        for row in step + 1..n {
-            let factor = matrix[row][step] / matrix[step][step];
-            for column in step..n {
-                matrix[row][column] -= factor * matrix[step][column];
-            }
-            right[row] -= factor * right[step];
-        }
-    }
-    for step in (0..n).rev() {
-        let known: f64 = (step + 1..n).map(|k| matrix[step][k] * right[k]).sum();
-        right[step] = (right[step] - known) / matrix[step][step];
-    }
-    (right, determinant)
-}
-
-/// The determinant of a square matrix.
-pub fn determinant(matrix: Vec<Vec<f64>>) -> f64 {
-    let zero = vec![0.0; matrix.len()];
-    solve(matrix, zero).1
 }

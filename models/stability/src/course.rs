@@ -530,6 +530,7 @@ pub fn location(t: f64, eta: f64, rate: f64, bend: f64) -> f64 {
 }
 
 /// A deterministic sequence of pseudorandom numbers: splitmix64.
+#[derive(Debug, Clone)]
 pub struct Random(u64);
 
 impl Random {
@@ -538,13 +539,17 @@ impl Random {
         Self(seed)
     }
 
-    /// The next number, uniform between `low` and `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        bits ^= bits >> 31;
-        low + (high - low) * ((bits >> 11) as f64 / (1_u64 << 53) as f64)
+        bits ^ (bits >> 31)
+    }
+
+    /// The next number, uniform between `low` and `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 }
