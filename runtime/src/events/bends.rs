@@ -116,13 +116,8 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
             }
             let inverse = 1.0 / self.measured.as_slice()[i];
             let (speed, turn) = (speed * inverse, turn * inverse);
-            // Written so that NaN is kept.
-            self.speed = if speed <= self.speed {
-                self.speed
-            } else {
-                speed
-            };
-            self.turn = if turn <= self.turn { self.turn } else { turn };
+            self.speed = larger(self.speed, speed);
+            self.turn = larger(self.turn, turn);
         }
     }
 
@@ -187,5 +182,14 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
             false if self.is_inside => self.score -= 2,
             false => {}
         }
+    }
+}
+
+/// The larger number; NaN if one of them is none.
+#[inline(always)]
+fn larger(left: f64, right: f64) -> f64 {
+    match right <= left || left.is_nan() {
+        true => left,
+        false => right,
     }
 }

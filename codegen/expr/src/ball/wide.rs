@@ -104,7 +104,8 @@ impl Wide {
 
     /// Upper bound of the absolute value.
     pub(super) fn at_most(&self) -> f64 {
-        self.leading(1, f64::INFINITY, f64::MIN_POSITIVE)
+        // What `leading` calls below its range is less than 2^53 times 2^-1023.
+        self.leading(1, f64::INFINITY, power_of_two(-970))
     }
 
     /// Lower bound of the absolute value.
@@ -448,6 +449,14 @@ mod tests {
         assert!(large.at_least() <= 2f64.powi(1023) && large.at_most() == f64::INFINITY);
         let small = Wide::integer(1).shifted(-1100);
         assert!(small.at_least() == 0.0 && small.at_most() > 0.0);
+        for exponent in [-1080, -1074, -1022, -1000, -971, -970, -969, -900] {
+            let number = Wide::integer(1).shifted(exponent);
+            let size = 2f64.powi(exponent);
+            assert!(
+                number.at_least() <= size && size <= number.at_most(),
+                "2^{exponent}"
+            );
+        }
         assert_eq!(large.shifted(-1100).nearest(), 2f64.powi(-77));
     }
 
