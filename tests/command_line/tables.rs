@@ -1,5 +1,9 @@
 //! Tables that commands write.
 
+use dalembert_cli::Exit;
+
+use crate::run;
+
 /// A column of a table in CSV.
 pub fn column(table: &str, name: &str) -> Vec<String> {
     let mut reader = csv::Reader::from_reader(table.as_bytes());
