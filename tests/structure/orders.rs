@@ -99,7 +99,7 @@ impl Orders {
             // The method is exact for this motion, or its errors pass the range in one halving.
             let finest = errors[errors.len() - 1];
             if finest.is_nan() || finest > RANGE[0] {
-                self.wrong.push(format!("{name} {method}: {errors:.1e?}"));
+                self.wrong.push(format!("{name} {method}: {errors:?}"));
             }
             return;
         };
