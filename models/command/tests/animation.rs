@@ -156,6 +156,7 @@ fn a_gallery_lists_its_animations() {
         &format!("gallery {out} bouncing_ball --quick --animations"),
     );
     assert_eq!(done.exit, Exit::Reached, "{}", done.errors);
+    assert!(done.output.contains("index.html"), "{}", done.output);
     let index = fs::read_to_string(format!("{out}/index.html")).unwrap();
     let (_, animations) = index.split_once("<nav id=\"animations\">").unwrap();
     let (animations, _) = animations.split_once("</nav>").unwrap();
