@@ -1,5 +1,7 @@
 //! `integrable: f, g, ..`.
 
+use dalembert_codegen::claims::Verdict;
+
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;
 use crate::systems::{ball, disk, particle};
