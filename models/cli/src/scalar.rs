@@ -56,7 +56,7 @@ fn decimal(text: &str) -> Option<f64> {
     starts_as_number.then(|| text.parse().ok()).flatten()
 }
 
-/// A number with all its digits, and with an exponent if it is large or small.
+/// A number with all its digits, and with an exponent below 1e-4 and from 1e16 on.
 pub fn full(number: f64) -> String {
     match number.abs() {
         0.0 => "0".to_owned(),
@@ -65,7 +65,7 @@ pub fn full(number: f64) -> String {
     }
 }
 
-/// A number with nine significant digits, and with an exponent if it is large or small.
+/// A number with nine significant digits, and with an exponent below 1e-4 and from 1e9 on.
 pub fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
     match rounded.abs() {
