@@ -352,7 +352,7 @@ fn the_driven_oscillator_folds_and_grazes_where_formulas_say() {
     }
 }
 
-/// A ball on a floor that adds `w` to its speed after each impact. The orbit has the speed `2 w` and the period `4 w`.
+/// A ball on a floor. An impact halves its speed and then adds `w`. The orbit has the speed `2 w` and the period `4 w`.
 const KICKED: &str = "
     Kicked {
         coordinates { x; v; }

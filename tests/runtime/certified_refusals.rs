@@ -167,7 +167,7 @@ fn two_walls_at_one_time_are_refused() {
             "{surfaces:?}, {ended:?}"
         );
     }
-    // A wider box may meet either first.
+    // From a wider box, either wall may be met first.
     let start = [
         Interval::new(-1e-3, 2e-3),
         Interval::point(0.0),

@@ -12,8 +12,9 @@ use crate::claims::{Dynamics, Verdict, check_symmetry, keeps_lagrangian};
 use crate::mechanics::reduction::{NoReduction, Reduction, derive_reduction};
 use crate::model::Statement;
 
-/// The reduction of a model. `source`: the declaration. `part`: name of a scene or mode; `None` for the model. `fields`
-/// are written as in claims, separated by commas: `partial(x), partial(phi) - y*partial(x) + x*partial(y)`.
+/// The reduction of a model. `source` is the declaration. `part` is the name of a scene or mode, or `None` for the
+/// model. `fields` are written as in claims and separated by commas: `partial(x), partial(phi) - y*partial(x) +
+/// x*partial(y)`.
 ///
 /// # Errors
 /// [`ReportError`]: a field that is no symmetry, with the reason, or fields that span no group.

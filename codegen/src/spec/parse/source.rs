@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use super::super::cursor::tokens_of;
 
-/// The tokens without invisible groups. A visibility passed through `macro_rules` is in one.
+/// The tokens without invisible groups. A visibility that `macro_rules` passes on arrives in such a group.
 pub(super) fn flatten_header(tokens: TokenStream) -> Vec<TokenTree> {
     let mut flat = Vec::new();
     for token in tokens {
