@@ -111,9 +111,9 @@ pub struct Member {
 pub enum Stability {
     /// All multipliers lie inside the unit circle.
     Stable,
-    /// None lies outside, some on it.
+    /// No multiplier lies outside the unit circle, and some lie on it.
     Neutral,
-    /// Some multiplier lies outside.
+    /// Some multiplier lies outside the unit circle.
     Unstable,
 }
 
