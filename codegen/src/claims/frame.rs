@@ -304,7 +304,8 @@ pub(super) fn column<T: Clone>(rows: &[Vec<T>], j: usize) -> Vec<T> {
     rows.iter().map(|row| row[j].clone()).collect()
 }
 
-/// `K = g^{-1} - W^a m_ab W^b`, given the dual fields and the inverse of the constraint mass matrix; `None` if the metric is singular.
+/// `K = g^{-1} - W^a m_ab W^b`, given the dual fields and the inverse of the constraint mass matrix; `None` if the
+/// metric is singular.
 fn projected<A: Arithmetic>(
     jets: &Jets<'_, A>,
     metric: &Matrix<A>,

@@ -1,5 +1,5 @@
-//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of widely different
-//! magnitude.
+//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of widely
+//! different magnitude.
 
 use dalembert::{StateError, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting};

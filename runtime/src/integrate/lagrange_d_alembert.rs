@@ -56,9 +56,9 @@ use crate::state::{StateVector, scaled};
 /// systems with constraints, where the shape of the motion matters more than the digits of one orbit.
 ///
 /// # References
-/// J. Cortes, S. Martinez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter, *Integrators
-/// for nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006); S. Ferraro, D. Iglesias, D. Martin de Diego,
-/// *Momentum and energy preserving integrators for nonholonomic dynamics*, Nonlinearity 21 (2008).
+/// J. Cortes, S. Martinez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter,
+/// *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006); S. Ferraro, D. Iglesias, D. Martin
+/// de Diego, *Momentum and energy preserving integrators for nonholonomic dynamics*, Nonlinearity 21 (2008).
 pub type Dla2<S> = FixedStep<S, MidpointPrinciple>;
 
 /// Five steps of [`Dla2`] composed to order 4 (Suzuki): dense output of order 4.

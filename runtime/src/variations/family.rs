@@ -1,5 +1,5 @@
-//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives with respect to the state and to
-//! the parameter.
+//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives with respect to the
+//! state and to the parameter.
 
 use super::OrbitError;
 use super::chart::{Fixed, columns};
@@ -66,9 +66,9 @@ where
         Ok(Anchor(Fixed::of(self.system, self.surface, 0.0, point)?))
     }
 
-    /// Maps the point of the section next to `point`, and computes the derivatives of the map with respect to the state and to the
-    /// parameter with index `parameter`. The derivatives are those of [`Variations`](super::Variations), exact to
-    /// rounding.
+    /// Maps the point of the section next to `point`, and computes the derivatives of the map with respect to the state
+    /// and to the parameter with index `parameter`. The derivatives are those of [`Variations`](super::Variations),
+    /// exact to rounding.
     ///
     /// # Errors
     /// [`OrbitError::Section`] if the point has no image or the map has no derivative there,
