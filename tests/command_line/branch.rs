@@ -382,7 +382,7 @@ fn periods_may_change_by_any_factor_in_both_directions() {
     }
 }
 
-/// Two equal maps side by side, whose multipliers pass the unit circle in pairs, and two that are nearly equal.
+/// Two equal maps side by side, whose multipliers cross the unit circle in pairs, and two that are nearly equal.
 #[test]
 fn multipliers_that_pass_the_circle_together_are_a_bifurcation() {
     let twin = |factor: &str, apart: &str| {

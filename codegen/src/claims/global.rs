@@ -38,7 +38,7 @@ pub enum Global {
 const PROBES: usize = 12;
 /// Fraction of the integral of the absolute value below which a sum over these points counts as small.
 const SMALL: f64 = 5e-2;
-/// Rounding error allowed in addition, an absolute bound for loops along which all terms vanish.
+/// Additional rounding error that is allowed, an absolute bound for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
 /// Reason why a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";

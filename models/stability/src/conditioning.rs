@@ -21,7 +21,7 @@ static NEARLY_DEPENDENT: Text = Text::new(
     }",
 );
 
-/// The rank drops where y = 0.
+/// Constraints whose rank drops where y = 0.
 static RANK_DROPS: Text = Text::new(
     "RankDrops {
         coordinates { x; y; z; }

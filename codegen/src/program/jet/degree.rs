@@ -15,7 +15,7 @@ pub enum Degree {
 }
 
 impl Degree {
-    /// A degree, or endless if it is too long to be of use.
+    /// A degree; endless if it is too high to be of use.
     fn limited(degree: u32) -> Self {
         match degree {
             0..=LONGEST => Self::AtMost(degree),
