@@ -59,7 +59,7 @@ const CONTACT: Policies = Policies {
     split: dalembert::policy::Split::First,
 };
 
-/// Keeps the events at which surfaces begin or cease to hold the motion.
+/// Records the events at which surfaces begin or cease to hold the motion.
 struct Holds<S>(Vec<Hold<S>>);
 
 impl<M: System> Observer<M> for Holds<M::State> {

@@ -139,7 +139,7 @@ fn state<S: Driven>(system: &S, q: &[f64], qdot: &[f64]) -> S::State {
     system.state(0.0, &position, &velocity).expect("a state")
 }
 
-/// Keeps the surfaces of all events.
+/// Records the surfaces of all events.
 struct Surfaces(Vec<usize>);
 
 impl<Sys: System> Observer<Sys> for Surfaces {

@@ -78,7 +78,7 @@ fn a_search_for_an_orbit_allocates_nothing() {
     assert_eq!((dimension, count), (Some(3), 0));
 }
 
-/// Stack in bytes: about half a byte for each step of the run.
+/// Size of the stack in bytes, which is about half a byte for each step of the run.
 const STACK: usize = 512 << 10;
 
 #[test]

@@ -82,7 +82,7 @@ fn group(bytes: &mut impl Iterator<Item = u8>, depth: usize) -> TokenStream {
     while let Some(byte) = bytes.next() {
         let token = match byte {
             0..8 if depth > 0 => break,
-            // Deeper than the language allows, so that its limit is met.
+            // NOTE: deeper than the language allows, so that its limit is reached.
             8..24 if depth < 300 => {
                 let inner = group(bytes, depth + 1);
                 Group::new(DELIMITERS[usize::from(byte) % DELIMITERS.len()], inner).into()
@@ -162,7 +162,7 @@ fn number(text: &str) -> TokenTree {
 mod tests {
     use super::*;
 
-    /// Bytes that repeat nothing for long.
+    /// Pseudorandom bytes.
     fn noise(seed: u64, length: usize) -> Vec<u8> {
         let mut state = seed;
         let step = |_| {

@@ -16,7 +16,7 @@ use crate::record::Observer;
 use crate::run::Run;
 use crate::simulation::{Course, Next, Progress, STEP_BUDGET, Simulation, check_start};
 
-/// Largest number of motions that make their steps one by one. A vector step pays for more motions.
+/// Largest number of motions that make their steps one by one. With more motions, vector steps are faster.
 const FEW: usize = 2;
 
 /// Largest storage, in bytes, for the series of all lanes. They lie on the stack, and data that exceeds every cache

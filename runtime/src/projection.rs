@@ -1,4 +1,4 @@
-//! Projection: returns a state that has drifted off the constraints during integration to them.
+//! Projection: brings a state that has drifted off the constraints during integration back to them.
 //!
 //! It acts after a step if a constraint is violated by more than rounding. First it corrects positions by Newton's
 //! iteration `q -= correction(f(q) - f(q_0))`, which returns the integrals `f` of integrable constraints to their
@@ -153,11 +153,11 @@ fn violated<Sys: Constrained>(now: &Moment<'_, Sys>) -> Result<Option<usize>, Fa
 /// The first constraint whose residual is too large after the projection of the state `before`, so that the projection
 /// has failed. The bound is a thousand thresholds, one twentieth of the bound for admissible initial states.
 ///
-/// The terms of a constraint provide no scale where all of them vanish: where only terms are left whose velocities the
-/// constraint forces to 0, such as `y ydot` for a hanging pendulum, or where the system rests. There the terms are
-/// rounding errors, and the residual is as large as they are, however small. As projection leaves the rounding error of
-/// the velocity that it was given, the scale is computed from the largest velocities that the kinetic energy of `before`
-/// allows.
+/// The terms of a constraint provide no scale where all of them vanish. They vanish where the system rests, and where
+/// the constraint forces the velocity in each remaining term to 0, such as `ydot` in `y ydot` for a hanging pendulum.
+/// The terms are then rounding errors, and the residual is as large as they are. Projection leaves the rounding error
+/// of the velocity that it was given. The scale is therefore computed from the largest velocities that the kinetic
+/// energy of `before` allows.
 fn far<Sys: Constrained>(
     now: &Moment<'_, Sys>,
     before: &Sys::State,

@@ -208,7 +208,7 @@ fn listed_densities_satisfy_the_criterion_in_symbols() {
                 system["name"]
             );
         }
-        // The square of a nonconstant density is not a density.
+        // The square of a nonconstant invariant density is not invariant.
         if !pool.is_syntactic_zero(density) {
             let twice = pool.scale(&Rational::from(2), density);
             let residuals = geometry.residuals(pool, &dependent, twice);

@@ -1,5 +1,5 @@
-//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. Finite differences show that the
-//! motion keeps them away from `l = 0`.
+//! Volumes `f mu_C` with densities `f = (det m)^k |l|^s` that depend on velocities. Finite differences at states away
+//! from `l = 0` show that the motion keeps these volumes.
 
 use dalembert::Described;
 use dalembert_codegen::claims::{MomentumDensity, Problem, find_momentum_density};

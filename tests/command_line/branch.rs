@@ -352,7 +352,7 @@ fn the_driven_oscillator_folds_and_grazes_where_formulas_say() {
     }
 }
 
-/// A ball on a floor that adds `w` to its speed after each impact. The orbit has the speed `2 w` and the period `4 w`.
+/// A ball on a floor. An impact halves its speed and then adds `w`. The orbit has the speed `2 w` and the period `4 w`.
 const KICKED: &str = "
     Kicked {
         coordinates { x; v; }
@@ -382,7 +382,7 @@ fn periods_may_change_by_any_factor_in_both_directions() {
     }
 }
 
-/// Two equal maps side by side, whose multipliers pass the unit circle in pairs, and two that are nearly equal.
+/// Two equal maps side by side, whose multipliers cross the unit circle in pairs, and two that are nearly equal.
 #[test]
 fn multipliers_that_pass_the_circle_together_are_a_bifurcation() {
     let twin = |factor: &str, apart: &str| {

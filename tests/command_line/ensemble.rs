@@ -478,7 +478,7 @@ fn counts_do_not_depend_on_threads_and_tell_of_what_is_outside() {
 
 #[test]
 fn fractions_of_a_density_have_the_states_that_their_names_tell() {
-    // All states are within the ranges. 20 states of each member have a quarter, but no eighth.
+    // All states are within the ranges. The 20 states of each member can be divided by 4, but not by 8.
     let line = format!(
         "{BALLS} --density x_dot=-20..20,x=0..20:7 --discard 0.001 --every 0.29995 --json -"
     );

@@ -42,7 +42,8 @@ fn commands() -> Vec<String> {
         .collect()
 }
 
-/// `--json FILE` writes what `--format json` prints, beside the text; `--json -` prints it in place of the text.
+/// `--json FILE` writes what `--format json` prints, in addition to the text; `--json -` prints it in place of the
+/// text.
 #[test]
 fn documents_go_to_files_and_to_the_standard_output() {
     let path = std::env::temp_dir().join(format!("dalembert-json-{}", std::process::id()));

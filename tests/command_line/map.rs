@@ -274,7 +274,7 @@ fn a_picture_has_a_pixel_for_each_cell() {
     let svg = folder.read("map.svg");
     let (size, pixels) = image(&svg);
     assert_eq!(size, (5, 3));
-    // Rows run from above. The columns are the basins of -1, 0 and 1; at x = 2 the first two rows fail.
+    // Rows are listed from top to bottom. The columns are the basins of -1, 0 and 1; at x = 2 the first two rows fail.
     let (left, middle, right) = (pixels[0], pixels[2], pixels[3]);
     assert!(left != middle && middle != right && left != right);
     for row in 0..3 {

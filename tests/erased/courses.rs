@@ -20,7 +20,7 @@ const UNTIL: f64 = 2.0;
 /// Tolerance of all integrators. At a smaller one, integrators of low order with a fixed step need too many steps.
 const TOLERANCE: f64 = 1e-7;
 
-/// Keeps the events as text, since NaN does not equal itself.
+/// Records the events as text, since NaN does not equal itself.
 #[derive(Default)]
 struct Log(Vec<String>);
 

@@ -84,7 +84,7 @@ fn a_scene_takes_the_instantaneous_constraints_of_its_surfaces() {
     assert_near("focused", qdot.as_ref(), &[0.8, 0.0, 1.6], 1e-15);
 }
 
-/// Keeps the surfaces that begin to hold.
+/// Records the surfaces that begin to hold.
 struct Began(Vec<usize>);
 
 impl<M: System> Observer<M> for Began {

@@ -76,7 +76,7 @@ fn a_walkers_cycle_exists_and_attracts() {
     }
 }
 
-/// The first return of every motion from the box lies beside the box, so that the box contains no orbit of one return.
+/// The first return of every motion from the box lies outside the box, so that the box contains no orbit of one return.
 #[test]
 fn no_orbit_is_proved_in_a_box_without_one() {
     const RADIUS: f64 = 1e-4;

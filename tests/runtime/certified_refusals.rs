@@ -167,7 +167,7 @@ fn two_walls_at_one_time_are_refused() {
             "{surfaces:?}, {ended:?}"
         );
     }
-    // A wider box may meet either first.
+    // From a wider box, either wall may be met first.
     let start = [
         Interval::new(-1e-3, 2e-3),
         Interval::point(0.0),
@@ -218,8 +218,8 @@ fn a_condition_that_is_not_certain_is_refused() {
 
 #[test]
 fn motion_behind_a_surface_that_begins_to_count_is_refused() {
-    // The ball starts lower than the ledge, beyond its end, and moves towards it. At the time 1 the ledge begins to count,
-    // and the ball is at y = -3/4. It would reach the floor at the time 1.28.
+    // The ball starts lower than the ledge, beyond its end, and moves towards it. At the time 1 the ledge begins to
+    // count, and the ball is at y = -3/4. It would reach the floor at the time 1.28.
     let start = points([2.0, -0.5, -1.0, 0.25]);
     let (surfaces, ended) = run(&LEDGE.model(), &start, 5.0);
     let lost = lost(ended);

@@ -27,7 +27,7 @@ pub fn dalembert(arguments: &[&str], input: &str) -> Finished {
     run(models(), arguments, input)
 }
 
-/// Runs `dalembert` over these models with the arguments of a line, parted by white space.
+/// Runs `dalembert` over these models with the arguments of a line, separated by white space.
 pub fn line(models: Vec<Entry>, line: &str, input: &str) -> Finished {
     run(models, &Vec::from_iter(line.split_whitespace()), input)
 }

@@ -2,8 +2,8 @@
 //! D, and brackets, by finite differences.
 //!
 //! For an orthonormal frame `w_a` of the complement, `theta(X) = sum_a g(nabla_{w_a} w_a, X) + 1/2 X(ln det m)` for X
-//! in D. All derivatives are five-point stencils in double precision. The only shared values are the entries of metric
-//! and forms.
+//! in D. All derivatives are five-point stencils in double precision. The only values shared with the program are the
+//! entries of the metric and of the forms.
 
 use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;

@@ -264,7 +264,7 @@ pub const CEILING: Gap = gap!(c | x, y | c(1.0) - x, [-1.0, 0.0]);
 /// A floor at `x = 1`, whose gap has rounding errors.
 pub const RAISED_FLOOR: Gap = gap!(c | x, y | x - c(1.0), [1.0, 0.0]);
 
-/// The last impacts of a run.
+/// The first impacts of a run.
 pub type Log = EventLog<State, 256>;
 
 /// A state.

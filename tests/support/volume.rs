@@ -32,7 +32,7 @@ const STENCIL: [(f64, f64); 4] = [
     (3.0, 4.0 / 105.0),
     (4.0, -1.0 / 280.0),
 ];
-/// Step that balances the truncation error, its eighth power, against the rounding error, which is divided by it.
+/// Step `h` that balances the truncation error, of size `h^8`, against the rounding error, of size `1e-16/h`.
 const STEP: f64 = 4e-3;
 
 impl WithVolume {

@@ -49,7 +49,7 @@ pub(super) fn uses(function: &Function, wanted: impl Fn(Input) -> bool) -> bool 
         .any(|op| matches!(op, Op::Input(input) if wanted(*input)))
 }
 
-/// Writes a function down. Inputs must be bound to the locals of `names` before the statements.
+/// Emits a function. Inputs must be bound to the locals of `names` before the statements.
 pub(super) fn emit_body(function: &Function, names: &Names) -> Body {
     let mut writer = Writer::new(function, names);
     for index in 0..function.ops.len() {

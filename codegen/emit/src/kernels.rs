@@ -1,8 +1,8 @@
 //! `Kernels`: every function of a program, emitted once over `L: Numbers`.
 //!
 //! The functions of a form are the methods of a unit struct. Functions that are equal in the base are inherited: the
-//! base of the global form is that of its model or scene, the base of a scene is the model. A function that equals one
-//! emitted before in another place calls it.
+//! base of the global form is that of its model or scene, the base of a scene is the model. A function that equals an
+//! earlier function in another place calls that function.
 
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
@@ -34,7 +34,7 @@ struct Key {
     ops: Vec<Op>,
     outputs: Vec<Value>,
     reads: [usize; 3],
-    /// The function that computes velocities for it.
+    /// The function that computes the velocities that this function needs.
     velocity: Option<Rc<Key>>,
 }
 
@@ -125,8 +125,8 @@ fn differing(
 ) -> BTreeMap<Ident, Method> {
     let keys = kernels.iter();
     let keys: HashMap<Kernel, &Rc<Key>> = keys.map(|added| (added.kernel, &added.key)).collect();
-    // NOTE: a function that the base has for a surface, and this form does not have, must not be inherited: it belongs
-    // to another surface of this index. An empty method replaces it.
+    // NOTE: a function that the base has for a surface, and this form does not have, must not be inherited: in the base
+    // it belongs to another surface with the same index. An empty method replaces it.
     let missing = inherited.keys().filter(|kernel| {
         let (_, surface) = name(**kernel);
         surface.is_some_and(|surface| surface < surfaces) && !keys.contains_key(kernel)

@@ -96,7 +96,8 @@ impl Interval {
             }
             None => {
                 let power = |x: f64| libm::pow(x, exponent.to_f64());
-                // NOTE: the exponent is rounded too. For doubles `x`, `x^(e u)` differs from 1 by less than `746 u e`.
+                // NOTE: the exponent `e` is rounded too, with a relative error `u`. For doubles `x`, the factor `x^(e
+                // u)` differs from 1 by less than `746 u e`.
                 let (lo, hi) = (power(self.lo), power(self.hi));
                 let slack = 2e-13 * (1.0 + exponent.to_f64());
                 Some(Self::new(

@@ -1,9 +1,9 @@
 //! Random points modulo a prime at which many roots and logarithms are defined.
 //!
 //! Modulo a prime a root or a logarithm is defined where its argument is a square, which holds for half of the
-//! residues. Of `2^k` random points, one is suitable for `k` independent arguments. Symbols are therefore drawn in
-//! steps. The first step draws the symbols of the argument with the fewest symbols, until this argument and all others
-//! in the same symbols are squares. The later steps proceed in the same way with the remaining symbols.
+//! residues. For `k` independent arguments, one of `2^k` random points is suitable on average. Symbols are therefore
+//! drawn in steps. The first step draws the symbols of the argument with the fewest symbols, until this argument and
+//! all others in the same symbols are squares. The later steps proceed in the same way with the remaining symbols.
 
 use crate::field::mix;
 use crate::function::Function;

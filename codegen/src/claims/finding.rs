@@ -53,7 +53,7 @@ pub struct Certificate {
     pub points: usize,
     /// The primes of these points.
     pub primes: Vec<u64>,
-    /// Upper bound of the probability that it is wrong; 0 for a proof without chance.
+    /// Upper bound of the probability that it is wrong; 0 for a proof without random points.
     pub error: f64,
     /// The seed of the points.
     pub seed: u64,

@@ -151,8 +151,9 @@ const PIVOT: f64 = 1e-9;
 
 /// Greedy choice of columns with an invertible minor, from the last column to the first.
 ///
-/// NOTE: any choice is right. This one is documented as the order of the volume. Coordinates that place a body are
-/// mostly declared first, and coordinates of its shape last; an angle of a wheel often has no constant coefficient.
+/// NOTE: every choice with an invertible minor is valid. This one is documented as the order of the volume. Coordinates
+/// that place a body are mostly declared first, and coordinates of its shape last; an angle of a wheel often has no
+/// constant coefficient.
 pub(super) fn choose_dependent<A: Arithmetic>(
     jets: &Jets<'_, A>,
     forms: &Matrix<A>,
@@ -304,7 +305,8 @@ pub(super) fn column<T: Clone>(rows: &[Vec<T>], j: usize) -> Vec<T> {
     rows.iter().map(|row| row[j].clone()).collect()
 }
 
-/// `K = g^{-1} - W^a m_ab W^b`, given the dual fields and the inverse of the constraint mass matrix; `None` if the metric is singular.
+/// `K = g^{-1} - W^a m_ab W^b`, given the dual fields and the inverse of the constraint mass matrix; `None` if the
+/// metric is singular.
 fn projected<A: Arithmetic>(
     jets: &Jets<'_, A>,
     metric: &Matrix<A>,

@@ -38,16 +38,16 @@ pub enum Global {
 const PROBES: usize = 12;
 /// Fraction of the integral of the absolute value below which a sum over these points counts as small.
 const SMALL: f64 = 5e-2;
-/// Rounding error allowed in addition, an absolute bound for loops along which all terms vanish.
+/// Additional rounding error that is allowed, an absolute bound for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
 /// Reason why a period was not found.
 const OPEN: &str = "a circle leaves the domain where the constraints are regular, or G varies too fast on it for its period to converge";
 /// Reason why a period that is not 0 in double precision leaves the question open.
-const GROWS: &str = "G seems to grow along a circle, but so little beside its variation that no enclosure of the period excludes 0";
+const GROWS: &str = "G seems to grow along a circle, but so little compared with its variation that no enclosure of the period excludes 0";
 /// Seed of the points at which symmetries are tested.
 const PERIODS: u64 = 7;
 /// Reason why a period that seems to be 0 leaves the question open.
-const NUMERIC: &str = "G was found in no closed form, and that its periods on the circles are 0 to rounding proves nothing: declare the angles of these circles as lines, or as intervals";
+const NUMERIC: &str = "no closed form of G was found, and periods that are 0 to rounding prove nothing: declare the angles of these circles as lines, or as intervals";
 /// Smallest period that counts as different from 0, relative to the integral of the absolute value.
 const PERIOD: f64 = 1e-12;
 /// Samples at which periods are computed: the declared defaults, which may hide the effect of a parameter, and another
@@ -127,7 +127,7 @@ pub(super) fn from_angles(
         return Global::Undecided(reason);
     }
     Global::Undecided(
-        "the density found is not single-valued, and another one, which differs by a function that D does not see, may be",
+        "the density found is not single-valued; another density, which differs from it by a function that is constant along D, may be single-valued",
     )
 }
 
@@ -163,7 +163,7 @@ fn angles(model: &Model, problem: &Problem) -> Vec<usize> {
 }
 
 /// Combinations of turns of up to six circles, those with few turns first, the first turn positive. Each circle has up
-/// to 4 turns for two circles, 2 for three, 1 for more.
+/// to 4 turns for one or two circles, 2 for three, 1 for more.
 fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
     let most = match angles.len() {
         0..=2 => 4,
@@ -191,7 +191,7 @@ fn loops(angles: &[usize]) -> Vec<Vec<(usize, i64)>> {
     all
 }
 
-/// The hull of D at a random point, for tests of whether loops lie in its leaves.
+/// The involutive hull of D at a random point. It decides which loops lie in leaves of the hull.
 struct Leaves {
     field: Modulus,
     space: JetSpace,

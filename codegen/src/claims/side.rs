@@ -14,7 +14,7 @@ use crate::model::{Model, Statement};
 pub(super) struct Side {
     /// `g`
     pub(super) metric: Vec<Vec<ExprId>>,
-    /// `eta^a` and `eta^a_0` at the end.
+    /// `eta^a` by rows, each with `eta^a_0` as its last entry.
     pub(super) forms: Vec<Vec<ExprId>>,
     /// The rates of a first-order system.
     pub(super) rates: Option<Vec<ExprId>>,
@@ -55,7 +55,7 @@ impl Side {
         }
     }
 
-    /// The expressions, in one order.
+    /// All expressions, in a fixed order.
     fn expressions(&self) -> Vec<ExprId> {
         let rows = self.metric.iter().chain(&self.forms).flatten();
         let rates = self.rates.iter().flatten();
@@ -66,7 +66,7 @@ impl Side {
             .collect()
     }
 
-    /// The same side with other expressions in this order.
+    /// The same side with other expressions, in the order of [`Side::expressions`].
     fn with(&self, expressions: Vec<ExprId>) -> Self {
         let mut expressions = expressions.into_iter();
         let mut take = |row: &Vec<ExprId>| expressions.by_ref().take(row.len()).collect::<Vec<_>>();
@@ -235,7 +235,8 @@ pub(super) fn imported(
     model.pool.import(&entered.pool, expressions, &replacements)
 }
 
-/// Expressions of a model for the symbols of a mode, which is at the state with these positions and velocities.
+/// The symbols of a mode with the expressions of this model that replace them. The mode is at the state with these
+/// positions and velocities.
 fn replacements(
     model: &mut Model,
     entered: &Model,

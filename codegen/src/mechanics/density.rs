@@ -6,8 +6,8 @@
 //!           + tr(dF/dqdot . pi_D g^{-1})
 //! ```
 //!
-//! The second form of theta uses `d_k W^a = g^{-1}(d_k eta^a - (d_k g) W^a)`, so no inverse is differentiated.
-//! W. Clark, thesis, Definition V.23; the divergence has no factor n (docs/conventions.md).
+//! The expression of theta in brackets uses `d_k W^a = g^{-1}(d_k eta^a - (d_k g) W^a)`, so that no inverse is
+//! differentiated. W. Clark, thesis, Definition V.23; the divergence has no factor n (docs/conventions.md).
 
 use super::{Coordinates, Entry, MetricDerivatives, gradient};
 use crate::model::Model;

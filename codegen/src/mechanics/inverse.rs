@@ -1,4 +1,5 @@
-//! Inverses and determinants as explicit expressions, for small matrices: by minors, products of sums multiplied out.
+//! Inverses and determinants of small matrices as explicit expressions. They are computed by minors, and products of
+//! sums are multiplied out.
 
 use dalembert_expr::{ExprId, Pool, Verdict};
 
@@ -164,7 +165,7 @@ pub(crate) enum NoMinor {
     Undecided,
 }
 
-/// As many independent rows as there are, and columns in which their determinant is not identically 0. Columns with a
+/// A largest set of independent rows, and columns in which their determinant is not identically 0. Columns with a
 /// determinant that is 0 nowhere are preferred.
 ///
 /// # Errors

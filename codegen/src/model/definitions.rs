@@ -22,7 +22,7 @@ pub(super) enum Definition<'s> {
     },
     /// The members that were defined so far.
     Family(BTreeMap<i64, Value>),
-    /// An error was recorded; uses of it are not errors of their own.
+    /// An error was recorded for the definition. Its uses are not reported as further errors.
     Faulty,
 }
 
@@ -45,7 +45,7 @@ impl<'s> Resolver<'s> {
         true
     }
 
-    /// All `const`.
+    /// Resolves all `const` declarations.
     pub(super) fn constants(&mut self) {
         for constant in &self.spec.constants {
             let help = "a `const` is a size or an index; write a number as `let` or as a parameter";
@@ -55,7 +55,7 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// All `let`, in order.
+    /// Resolves all `let` declarations, in order.
     pub(super) fn all_definitions(&mut self) {
         let spec = self.spec;
         let faulty = self.declare_definitions(spec);

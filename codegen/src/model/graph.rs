@@ -34,7 +34,7 @@ pub struct ModeGraph {
 /// A mode.
 #[derive(Debug)]
 pub struct Mode {
-    /// Names of the mode, in the form of those of a scene.
+    /// Names and documentation of the mode, stored as for a scene.
     pub scene: Scene,
     /// The mode as a model.
     pub model: Model,

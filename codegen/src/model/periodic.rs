@@ -11,7 +11,7 @@ use super::resolve::{Resolver, Scope};
 use crate::spec::{Scalar, ScalarKind};
 
 impl Resolver<'_> {
-    /// Refuses a declaration that is not periodic in an angle. `expr`: the declared quantity. `written`: its source
+    /// Refuses a declaration that is not periodic in an angle. `expr` is the declared quantity, `written` its source
     /// text.
     pub(super) fn check_periodic(&mut self, written: &[&Scalar], scope: &Scope, expr: ExprId) {
         self.check_turns(written, scope, expr, is_periodic);
@@ -116,7 +116,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The power or product that `part` is a direct part of.
+/// The power or product of which `part` is an operand.
 fn parent_of<'a>(whole: &'a Scalar, part: &Scalar) -> Option<&'a Scalar> {
     let parts: Vec<&Scalar> = match &whole.kind {
         ScalarKind::Negative(inner) | ScalarKind::SumOver(_, inner) => vec![inner],

@@ -8,7 +8,7 @@ use super::latex::{latex, latex_velocity};
 use super::{Coordinate, DerivedSymbols, Name, Parameter};
 use crate::diagnostics::Location;
 
-/// Meaning of a name. A family names its members, which are consecutive.
+/// Meaning of a name. The name of a family stands for all its members, which are consecutive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// `const N = 8;`
@@ -57,7 +57,7 @@ pub(super) struct Symbols {
 }
 
 impl Symbols {
-    /// Time and energy, and nothing declared yet.
+    /// The symbols of a model without declarations: time and energy.
     pub(super) fn new(pool: &mut Pool) -> Self {
         let derived = DerivedSymbols {
             energy: pool.symbol("energy", "E", Known::None),

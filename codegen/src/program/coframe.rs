@@ -30,7 +30,7 @@ impl Asked<'_> {
 
 impl<'a> Kernel<'a> {
     /// The velocities `x` with `alpha^i(x)` and `eta^a(x)` as given. Velocities that are not asked for are 0, unless a
-    /// requested one follows from them.
+    /// requested velocity depends on them.
     pub(super) fn solve_frame(
         &mut self,
         asked: &Asked<'_>,
@@ -87,7 +87,7 @@ impl<'a> Kernel<'a> {
         needed
     }
 
-    /// A right-hand side without the columns known so far; unknown columns count as 0.
+    /// A right-hand side minus the terms of the velocities known so far; unknown velocities count as 0.
     fn without_known(&mut self, row: Row, wanted: Value, known: &[Value]) -> Value {
         let form = self.coframe_row(row);
         let mut rest = wanted;
@@ -164,7 +164,7 @@ impl<'a> Kernel<'a> {
             .collect()
     }
 
-    /// A value over an axis' factor and the square of its entries.
+    /// A value divided by the factor of an axis and by the sum of the squares of its entries.
     fn over_axis(&mut self, value: Value, axis: &Axis, row: Row) -> Value {
         let factor = self.axis_factor(axis, row);
         let square = self.value(axis.squared);

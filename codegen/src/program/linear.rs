@@ -7,8 +7,8 @@
 //! so that `m^{ab} = <C_a, C_b>`. Modified Gram-Schmidt without square roots gives `C = Q U` with unit upper triangular
 //! `U` and `<Q_a, Q_b> = n_a delta_ab`. Hence `m = U^T diag(n) U`, although `m` is never formed. Forming it would
 //! square the condition number, and lose all digits for nearly dependent forms. The right-hand side is orthogonalised
-//! as a further column, which makes the solution backward stable (Bjorck, BIT 7 (1967)). Many constraints that each
-//! meet few others are an exception: see [`super::mass`].
+//! as a further column, which makes the solution backward stable (Bjorck, BIT 7 (1967)). Many constraints, each coupled
+//! with few others, are an exception: see [`super::mass`].
 
 use super::builder::Builder;
 use super::{Guard, Value};

@@ -116,8 +116,8 @@ pub enum Guard {
         /// Squared norm before projection; `None` if independence is proved.
         reference: Option<Value>,
     },
-    /// `pivot > least * diagonal`; the fault is `SingularConstraint`. For a pivot of the constraint mass matrix and its
-    /// diagonal entry.
+    /// `pivot > least * diagonal`; the fault is `SingularConstraint`. The two values are a pivot of the constraint mass
+    /// matrix and its diagonal entry.
     Mass {
         /// Index of the constraint.
         constraint: usize,

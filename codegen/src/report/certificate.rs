@@ -45,7 +45,7 @@ impl Tree {
     }
 }
 
-/// The certificate of a model, a scene or a mode: with the verdicts on `claims`, in order.
+/// The certificate of a model, a scene or a mode, with the verdicts on `claims` in order.
 pub(super) fn certificate(model: &Model, claims: &[Claim], findings: &[Finding]) -> Tree {
     let writer = Writer { model };
     Tree::Record(vec![

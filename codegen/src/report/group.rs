@@ -12,8 +12,9 @@ use crate::claims::{Dynamics, Verdict, check_symmetry, keeps_lagrangian};
 use crate::mechanics::reduction::{NoReduction, Reduction, derive_reduction};
 use crate::model::Statement;
 
-/// The reduction of a model. `source`: the declaration. `part`: name of a scene or mode; `None` for the model. `fields`
-/// are written as in claims, separated by commas: `partial(x), partial(phi) - y*partial(x) + x*partial(y)`.
+/// The reduction of a model. `source` is the declaration. `part` is the name of a scene or mode, or `None` for the
+/// model. `fields` are written as in claims and separated by commas: `partial(x), partial(phi) - y*partial(x) +
+/// x*partial(y)`.
 ///
 /// # Errors
 /// [`ReportError`]: a field that is no symmetry, with the reason, or fields that span no group.
@@ -88,7 +89,7 @@ fn refuse_others(
         let reason = match verdict {
             Verdict::Proved(_) if keeps_lagrangian(&mut asked.model, field, 0) => continue,
             Verdict::Proved(_) => {
-                "it changes the Lagrangian by a total time derivative, and the connection belongs to what keeps it"
+                "it changes the Lagrangian by a total time derivative, and the connection needs fields that preserve it"
                     .to_owned()
             }
             Verdict::Refuted(witness) => witness.to_string(),
@@ -116,14 +117,14 @@ fn refusal(reason: &NoReduction, written: &[String]) -> ReportError {
         ),
         NoReduction::Undecided(a, b) => Asked::refusal(
             format!(
-                "[{}, {}] is not known to be a combination of the fields with constant factors, nor to be none",
+                "[{}, {}] may or may not be a combination of the fields with constant factors: this is undecided",
                 written[*a], written[*b]
             ),
-            "write the fields without functions that have kinks or cancel",
+            "write the fields without functions that have kinks and without terms that cancel",
         ),
         NoReduction::UndecidedRank => Asked::refusal(
             "the fields, or the constraints on them, are not known to be independent, nor to depend on each other",
-            "write them without functions that have kinks or cancel",
+            "write them without functions that have kinks and without terms that cancel",
         ),
         NoReduction::TooLarge => Asked::refusal(
             "the inertia of the group couples more than four fields: it is not written out",
@@ -258,7 +259,8 @@ impl Group<'_> {
                 }
             }
             None => items.push(Item::Words(
-                "affine constraints, or what depends on time: rates are not written out".to_owned(),
+                "the rates are not written out with affine constraints or a dependence on time"
+                    .to_owned(),
             )),
         }
         Section {

@@ -2,7 +2,7 @@
 
 use super::{Item, Report};
 
-/// Index of the two forms of every formula.
+/// Indices of the two notations of a formula.
 const TEXT: usize = 0;
 const LATEX: usize = 1;
 

@@ -96,7 +96,7 @@ impl<'a> Cursor<'a> {
         self.last
     }
 
-    /// The next token, or the last one at the end.
+    /// The place of the next token, or of the last one at the end.
     pub(super) fn here(&self) -> Location {
         self.peek().map_or(self.last, Location::of)
     }
@@ -227,7 +227,7 @@ impl<'a> Cursor<'a> {
         Ok(Word { text, at })
     }
 
-    /// Records an error at the next token, or behind the last one if there is none.
+    /// Records an error at the next token, or at the last one if the next is `;` or missing.
     pub(super) fn unexpected(&mut self, expected: &str, help: &str) -> Refused {
         match self.peek() {
             Some(token) if !self.is_operator(";") => {

@@ -103,7 +103,7 @@ pub fn text_of(documentation: &[String]) -> String {
     lines.join("\n")
 }
 
-/// True for the values that were declared.
+/// For each value, true if it was declared.
 fn marks(values: &[Option<ExprId>]) -> Held<[bool]> {
     table(values.iter().map(Option::is_some))
 }

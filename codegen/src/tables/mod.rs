@@ -33,7 +33,7 @@ pub struct FormOf<'a> {
     pub model: &'a Model,
     /// The scenes of the whole model.
     pub scenes: &'a [Scene],
-    /// The frame, of a model that has one.
+    /// The frame, if the model has one.
     pub frame: Option<&'a Frame>,
     /// The functions.
     pub program: &'a Program,
@@ -70,7 +70,7 @@ impl<'a> FormOf<'a> {
         self.model.coordinates.len()
     }
 
-    /// Number of components of the state beside the positions.
+    /// Number of components of the state besides the positions.
     pub fn motion_dimension(&self) -> usize {
         match self.program.form {
             Form::Global => self.dimension(),

@@ -1,5 +1,5 @@
-//! Names, of which the program keeps one copy each. They are not freed, and take no more than the distinct names of all
-//! models that were read: a model that is read again, or with other numbers, adds none.
+//! Names, of which the program keeps one copy each. The copies are never freed. They take the memory of the distinct
+//! names of all loaded models: a model that is loaded again, or with other numbers, adds none.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};

@@ -1,6 +1,7 @@
-//! `density: exact`, `density: locally_exact`, `density: none` and `density = e`, of the motion.
+//! Verdicts on the claims `density: exact`, `density: locally_exact`, `density: none` and `density = e` about the
+//! motion.
 //!
-//! Near misses: a slope, an arm, a force or an exponent that differ by 1e-9.
+//! Near misses have a slope, an arm, a force or an exponent that differs by 1e-9.
 
 use crate::Expected::{self, Barred, False, Shown, True};
 use crate::check;
@@ -78,7 +79,7 @@ fn with_density() -> Vec<String> {
     declared.into_iter().chain(built).collect()
 }
 
-/// Systems without a density of the position, and what the message shows.
+/// Systems without a density of the position, and the contents of the message.
 fn without_density() -> Vec<(String, Expected)> {
     // With g(f) = f/(1 + f^2) and f = x + y = -0.17 at the state: delta = -g'' = 2 f (3 - f^2)/(1 + f^2)^3.
     let f: f64 = -0.17;
@@ -93,7 +94,7 @@ fn without_density() -> Vec<(String, Expected)> {
         (slope("y + 1e-9*x"), False("delta")),
         (sleigh("1/3"), False("delta")),
         (sleigh("1e-9"), False("delta")),
-        // The divergence is -c at rest and in motion: dG(0) = c.
+        // The divergence is -c also at rest, where the rate of `G` is 0.
         (pulled("-c*dot(x)"), Shown("delta", 1.0 / 3.0)),
         (pulled("-1e-9*dot(x)"), Shown("delta", 1e-9)),
         // -3 dot(x)^2 with dot(x) = 1/2.
@@ -101,7 +102,7 @@ fn without_density() -> Vec<(String, Expected)> {
     ]
 }
 
-/// Systems whose density grows on a turn, and by how much.
+/// Systems whose density grows on a turn, with the growth of `G`.
 fn with_growth() -> Vec<(String, f64)> {
     let turn = 2.0 * std::f64::consts::PI;
     vec![
@@ -169,7 +170,7 @@ fn stated_densities_that_the_motion_keeps_are_proved() {
     }
 }
 
-/// At x = 0.36, y = -0.53 with dot(x) = 0.5, dot(y) = -0.75.
+/// The state of the witness is x = 0.36, y = -0.53, dot(x) = 0.5, dot(y) = -0.75.
 #[test]
 fn stated_densities_that_the_motion_changes_are_refuted_at_a_point() {
     let (y, dy) = (-0.53, -0.75);

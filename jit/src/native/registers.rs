@@ -26,7 +26,7 @@ pub(super) enum Operand {
     Number(u64),
 }
 
-/// An operation with registers; the target comes first.
+/// An operation with registers. The register that it sets, if any, comes first.
 #[derive(Debug, Clone)]
 pub(super) enum Instruction {
     Move(Register, Operand),

@@ -1,9 +1,9 @@
 //! Series as two pieces of straight-line code: the code before the loop over the orders, and the body of the loop.
 //!
-//! Consecutive orders of the kept coefficients have a constant distance in the room. Unless the expansion is large, a
-//! row holds one order of all series: first the coefficients that are read one at a time, then the factors of sums,
-//! which are combined in SIMD lanes before the rest of the order. In a large expansion each series is contiguous, and
-//! sums are function calls.
+//! Consecutive orders of the kept coefficients have a constant distance in memory. Unless the expansion is large, a row
+//! holds one order of all series: first the coefficients that are read one at a time, then the factors of sums, which
+//! are combined in SIMD lanes before the rest of the order. In a large expansion each series is contiguous, and sums
+//! are function calls.
 
 use std::collections::BTreeMap;
 
@@ -90,7 +90,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Keeps the unit, the reciprocals and order 0, and writes order 1 of the components.
+    /// Stores the unit of time, the reciprocals and the coefficients of order 0, and writes order 1 of the components.
     fn begin(&mut self) {
         let unit = self.straight.push(Operation::Argument);
         self.straight.store(unit, frame(UNIT));

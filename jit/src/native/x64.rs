@@ -74,7 +74,7 @@ impl Products {
     }
 }
 
-/// The bases of a function that calls nothing, and of one that does.
+/// Base registers of a function without calls, and of a function with calls.
 const OF_LEAF: [u8; 4] = [RDI, RSI, RDX, RCX];
 const OF_CALLER: [u8; 4] = [RBX, R12, R13, R14];
 
@@ -287,7 +287,7 @@ impl Assembly {
     /// Adds the products of the first factors of one row and the second factors of another.
     fn add_products(&mut self, products: &Products, [a, b]: [u8; 2]) {
         for sum in 0..products.vectors {
-            // NOTE: few registers in turn, so that products of one pass do not wait for each other.
+            // NOTE: a few registers are used in turn, so that products of one pass do not wait for each other.
             let factor = FACTORS + sum % (HALVES - FACTORS);
             let [x, y] = [0, 1].map(|which| products.place(which, sum));
             dynasm!(self.ops ; .arch x64 ; vmovupd Ry(factor), YWORD [Rq(a) + x]);

@@ -136,7 +136,8 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// Begins the object of a command that runs a model, and writes the name, the scene and the parameters of the model.
+    /// Begins the object of a command that runs a model, and writes the name, the scene and the parameters of the
+    /// model.
     ///
     /// # Errors
     /// An I/O error of the stream.

@@ -1,4 +1,5 @@
-//! Symbols for the names of quantities, as pictures and pages show them: `theta_dot` is θ with a dot, `x1` has an index.
+//! Symbols for the names of quantities, as pictures and pages show them: `theta_dot` is θ with a dot, `x1` has an
+//! index.
 
 use dalembert_codegen::model::greek_letter;
 

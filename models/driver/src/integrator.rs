@@ -12,7 +12,8 @@ pub enum Integrator {
     Dop853,
     /// Dormand and Prince of order 5(4), dense output of order 4.
     Dopri5,
-    /// Taylor series, with an order that depends on the tolerance (12 at 1e-9, 19 at 1e-15).
+    /// Taylor series, with an order that depends on the tolerance and on the model (often 12 or more at 1e-9, 19 or
+    /// more at 1e-15).
     Taylor,
     /// Fixed step: the classical Runge-Kutta method of order 4.
     Rk4,
@@ -55,7 +56,7 @@ impl Integrator {
         }
     }
 
-    /// The order of the solution at the ends of steps; `None` if it depends on the tolerance.
+    /// The order of the solution at the ends of steps; `None` if it depends on the tolerance and on the model.
     pub const fn order(self) -> Option<usize> {
         match self {
             Self::Dop853 => Some(Dop853Scheme::ORDER),

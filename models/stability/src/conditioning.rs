@@ -1,5 +1,5 @@
-//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of widely different
-//! magnitude.
+//! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of widely
+//! different magnitude.
 
 use dalembert::{StateError, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -21,7 +21,7 @@ static NEARLY_DEPENDENT: Text = Text::new(
     }",
 );
 
-/// The rank drops where y = 0.
+/// Constraints whose rank drops where y = 0.
 static RANK_DROPS: Text = Text::new(
     "RankDrops {
         coordinates { x; y; z; }

@@ -131,7 +131,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn right_angle(setting: Setting, report: &mut Report) {
-    // The surfaces are `y >= 0` and `x - cos(pi/2) y >= 0`, up to rounding the corner `x >= 0`, `y >= 0`.
+    // The surfaces are `y >= 0` and `x - cos(pi/2) y >= 0`. Up to rounding this is the corner `x >= 0`, `y >= 0`.
     let system = CORNER.with([("angle", core::f64::consts::FRAC_PI_2)]);
     let end = Course::new(&system, &[1.0, 1.0], &[-1.0, -1.0], 2.0).run(setting);
     report.class(&end.outcome, "done");
@@ -157,8 +157,8 @@ fn right_angle_missed(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Runs a point for 2 units of time, from distance 1 to the vertex of a corner, in the direction at the fraction `at`
-/// of the angle.
+/// Runs a point for 2 units of time towards the vertex of a corner. It starts at the distance 1 from the vertex, at the
+/// fraction `at` of the angle.
 fn sent(system: &Model, angle: f64, at: f64, setting: Setting) -> End {
     let (sin, cos) = (at * angle).sin_cos();
     Course::new(system, &[cos, sin], &[-cos, -sin], 2.0).run(setting)

@@ -19,7 +19,8 @@ pub static RECTANGLE: Text = Text::new(
     }",
 );
 
-// NOTE: the only compiled model, because loaded models have no kernels over numbers of more than double precision.
+// NOTE: this is the only compiled model, because loaded models have no kernels over numbers of more than double
+// precision.
 dalembert::model! {
     /// A free point in the square of side 2 with a disk of radius 1/2 in its middle.
     pub Sinai {

@@ -77,7 +77,7 @@ pub trait Numbers:
     fn of(number: f64) -> Self;
 
     /// The sum of `parts` as a constant. Each part must be the double nearest to the sum of itself and all later parts.
-    /// Kinds of double precision use the first part only.
+    /// Number types of double precision use the first part only.
     #[inline(always)]
     fn constant(parts: [f64; 4]) -> Self {
         Self::of(parts[0])
@@ -203,8 +203,8 @@ macro_rules! functions_of_one_number {
 }
 
 /// The functions of [`Numbers`] applied lane by lane, for numbers whose lanes are doubles.
-// NOTE: these are no defaults of the trait. A kind of number without one of them would silently compute it in double
-// precision.
+// NOTE: these are not defaults of the trait. With defaults, a number type that lacks one of them would silently compute
+// it in double precision.
 macro_rules! functions_of_lanes {
     () => {
         #[inline(always)]
@@ -241,7 +241,7 @@ macro_rules! functions_of_lanes {
 }
 pub(crate) use functions_of_lanes;
 
-/// Functions of [`Numbers`] for kinds whose constants are intervals. `steady(interval)` makes a constant.
+/// Functions of [`Numbers`] for number types whose constants are intervals. `steady(interval)` makes a constant.
 macro_rules! constants_of_intervals {
     () => {
         #[inline(always)]

@@ -1,8 +1,9 @@
 //! Search for the first fraction of a step at which a predicate holds. Stretches on which an enclosure excludes the
 //! predicate are skipped; others are halved.
 
-/// Numbers of halvings after which the end of a stretch decides: `2^-40` of the step at first, then coarser stretches
-/// if too many cannot be excluded, for example where rounding decides the predicate.
+/// Depths of halving. At the deepest level, the predicate at the end of a stretch decides. The first search halves to
+/// `2^-40` of the step; the next ones use coarser stretches. They are made if too many stretches cannot be excluded,
+/// for example where rounding decides the predicate.
 const DEPTHS: [u32; 3] = [40, 20, 10];
 
 /// Maximum number of stretches examined at each depth.
@@ -40,7 +41,7 @@ pub(crate) enum Walk<T> {
     Found(T),
     /// All stretches are excluded.
     Passed,
-    /// The maximum number of stretches is examined; the search came up to here.
+    /// The maximum number of stretches was examined; the search stopped here.
     Stopped(f64),
 }
 

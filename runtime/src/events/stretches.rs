@@ -4,7 +4,8 @@
 const BEFORE: f64 = 0.875;
 const BEHIND: f64 = 1.125;
 
-/// Fraction of the searched part below which an expected fall gets no cuts: halving reaches it.
+/// An expected fall closer to the start than this fraction of the searched part gets no cuts, because halving reaches
+/// it.
 const NEAR: f64 = 1.0 / (1_u64 << 36) as f64;
 
 /// Number of halvings from a region to the next smaller ones.
@@ -22,8 +23,9 @@ pub(super) struct Region {
 #[derive(Debug)]
 pub(super) struct Stretches {
     cuts: [f64; 4],
-    /// Index of the stretch between cuts, and index of its present part.
+    /// Index of the stretch between cuts.
     chosen: usize,
+    /// Index of the present part of this stretch.
     index: u64,
     depth: u32,
 }

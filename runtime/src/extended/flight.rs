@@ -25,8 +25,8 @@ const DEFECT: f64 = 4096.0;
 /// Allowed size of the last two terms of a series, in rounding errors of the first ones.
 const LAST: f64 = 0.25;
 
-/// Maximum number of chord steps to the root of a gap with a slope known in double precision: each adds the digits of
-/// a double.
+/// Maximum number of chord steps to the root of a gap with a slope known in double precision. Each step adds the digits
+/// of a double.
 const CHORDS: u32 = 32;
 
 /// State of a flight.
@@ -41,7 +41,7 @@ pub(super) struct Flight<'a, Sys: Variational, const PARTS: usize> {
     pub(super) next_unit: f64,
     /// Length of the last step in this unit.
     pub(super) theta: f64,
-    /// Cut of the motion, in this unit; `None` if it is not cut.
+    /// Place at which an event cuts the last step, in this unit; `None` if no event does.
     pub(super) cut: Option<f64>,
     /// Ends of the last step.
     pub(super) ends: [At<Sys, PARTS>; 2],
@@ -261,7 +261,7 @@ impl<'a, Sys: Variational, const PARTS: usize> Flight<'a, Sys, PARTS> {
         })
     }
 
-    /// The root of a gap near an event. `rate`: the gap rate there.
+    /// The root of a gap near an event. `rate` is the gap rate there.
     fn met(&mut self, event: &Event<Sys::State>, rate: f64) -> Result<At<Sys, PARTS>, Undefined> {
         let (t, surface) = (event.t, event.surface);
         if !self.is_expanded {

@@ -1,9 +1,10 @@
 //! Accumulations of impacts in which the energy grows, and the extrapolation of their time.
 //!
-//! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add
-//! a fraction of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
-//! The model that better predicts a flight in between from the first and the last one is used. The remaining flights
-//! take `f r/(1 - r)` in total, or `sqrt(c f)` with `1/sqrt(c)` the mean growth of `1/sqrt(f_n)`.
+//! Flights `f_n` between impacts on one surface shrink geometrically, `f_n ~ r^n`, for example between walls that add a
+//! fraction of the speed, or algebraically, `f_n ~ c/(n + a)^2`, for example between walls that approach each other.
+//! The law used is the one that better predicts an intermediate flight from the first and the last. After the last
+//! flight `f`, the remaining flights take `f r/(1 - r)` in total, or `sqrt(c f)`, where `1/sqrt(c)` is the mean growth
+//! of `1/sqrt(f_n)`.
 
 use crate::math;
 use crate::per_surface::PerSurface;
@@ -39,7 +40,7 @@ struct Series {
     count: u64,
     /// The flight of number [`FIRST`], with the energy after it if there is one.
     first: Option<(Flight, Option<f64>)>,
-    /// The last flight whose number is a power of two, and the one before it.
+    /// The last two flights whose numbers are powers of two, the later one first.
     marks: [Option<Flight>; 2],
 }
 
@@ -133,7 +134,7 @@ impl Series {
 
     /// Total time of all further flights.
     fn rest(&self, first: Flight, before: f64, last: Flight) -> f64 {
-        // The mark nearer to the middle: the last power of two exceeds half of the count.
+        // The second mark is nearer to the middle, because the last power of two exceeds half of the count.
         if let Some(middle) = self.marks[1]
             && middle.number > FIRST
             && algebraic_fits(first, middle, last)
@@ -179,7 +180,7 @@ fn algebraic_fits(first: Flight, middle: Flight, last: Flight) -> bool {
 mod tests {
     use super::*;
 
-    /// Time at which flights of lengths `length(n)` end.
+    /// Extrapolated time of accumulation of flights of lengths `length(n)`.
     fn end(length: impl Fn(u32) -> f64) -> Option<f64> {
         let mut growth = Growth::none(&nalgebra::SVector::<f64, 1>::zeros());
         let (mut t, mut before) = (0.0, None);

@@ -37,8 +37,9 @@ pub(super) const STILL: f64 = 1.0 / (1_u64 << 36) as f64;
 /// matters, where a law leaves the state approaching, and where the motion presses into a surface. By default the run
 /// ends there; after an impact, it ends with the state after the impact.
 ///
-/// A surface with instantaneous constraints first brings the state to them ([`Impacting::focus`]). If the state still
-/// approaches, the law acts within them; they hold while the motion goes on along the surface.
+/// At a surface with instantaneous constraints, the state is first projected onto them ([`Impacting::focus`]). If the
+/// state still approaches the surface, the law acts within the constraints. They also hold while the motion goes on
+/// along the surface.
 ///
 /// A surface with the law [`Law::Reset`] has no forbidden side. It acts whenever its gap falls through 0 from above;
 /// if the reset leaves the gap falling, the motion crosses the surface. At the first instant of a run, and after a
@@ -99,7 +100,7 @@ struct Strike {
     rate: f64,
     /// True if other surfaces are hit at the same moment.
     simultaneous: bool,
-    /// Threshold: gap rates above its negative count as not approaching.
+    /// Threshold: a gap rate above `-still` counts as not approaching.
     still: f64,
     /// True if the surface was struck at this moment before.
     again: bool,
@@ -318,7 +319,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// The impulse of the law in force.
+    /// The impulse of the law in force, before any correction of its rounding error.
     fn blow(
         &self,
         system: &Sys,

@@ -160,8 +160,8 @@ impl<G: StateVector> GapSeries<G> {
         self.polynomials.at(surface, part) > self.doubt(surface, false)
     }
 
-    /// Error bound of the polynomial of a surface. For a surface `at_hand`, whose root at the start is divided out, it
-    /// excludes the constant term.
+    /// Error bound of the polynomial of a surface. If the surface is `at_hand`, its root at the start of the step is
+    /// divided out, and the error of the constant term does not count.
     #[inline(always)]
     pub(super) fn doubt(&self, surface: usize, at_hand: bool) -> f64 {
         let doubt = self.polynomials.doubts[0].as_slice()[surface];

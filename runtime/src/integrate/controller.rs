@@ -53,7 +53,7 @@ impl Memory {
         if control.beta != 0.0 {
             predicted *= power(self.last_error, control.beta);
         }
-        // The step does not grow right after a rejection, or it would be rejected again.
+        // The step does not grow right after a rejection, because it would often be rejected again.
         let grow = if self.rejected { 1.0 } else { control.grow };
         *self = Self {
             last_error: error.max(LEAST_ERROR),
@@ -154,7 +154,7 @@ pub(crate) fn landing(start: Instant, h: f64, t_end: f64) -> (f64, Instant) {
     (t - start.t, Instant { t, ..start })
 }
 
-/// Factor by which a step may exceed the largest allowed one: rounding of its ends.
+/// Factor by which a step may exceed the largest allowed one, because its ends are rounded.
 const ROUNDED: f64 = 1.0 + 1e-9;
 
 /// Same as [`landing`], but in two steps if the step that reaches `t_end` is longer than `max_step`.

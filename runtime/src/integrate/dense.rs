@@ -8,8 +8,9 @@ use crate::state::StateVector;
 /// `y(theta) = base + theta (c_0 + theta (c_1 + s (c_2 + s (c_3 + theta (c_4 + s (c_5 + ..))))))`.
 ///
 /// This is the form of Hairer's codes, with the first two terms in powers of `theta`. It keeps its relative accuracy
-/// for `theta` near 0, where roots just after an impact lie, even if only a small part of the step is used. The ends of
-/// such a step differ by far more than the change of the motion.
+/// for `theta` near 0, where roots just after an impact lie, even if only a small part of the step is used. A form with
+/// the difference between the ends would not, because the state changes far more over the whole step than over the used
+/// part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<S, const K: usize> {
     /// The state at `theta = 0`.
@@ -58,7 +59,7 @@ impl<S: StateVector, const K: usize> Polynomial<S, K> {
     }
 
     /// Change of `h` times the rate of component `i` between the start and the stage at `node`, minus the change of the
-    /// cubic. `gained`: the former change.
+    /// cubic. `gained` is the former change.
     ///
     /// The weights of the higher coefficients annihilate the rates of a cubic up to the weights' rounding errors.
     /// These are the same in every step and would add up over a run, so the cubic's part is subtracted first.

@@ -1,4 +1,5 @@
-//! Discrete Lagrange and d'Alembert principle at the midpoint, orders 2 and 4: implicit, fixed step, on D exactly.
+//! Discrete Lagrange-d'Alembert principle at the midpoint, of orders 2 and 4. The methods are implicit, have a fixed
+//! step, and stay on D to rounding.
 //!
 //! ```text
 //! v = (q1 - q0)/h,  qm = (q0 + q1)/2,  tm = t0 + h/2,   f = dL/dq + F
@@ -7,12 +8,12 @@
 //! dL/dqdot(tm, qm, v) + h/2 f(tm, qm, v) = p1 - mu_a eta^a(t1, q1)        with   (q1, p1) on D at t1
 //! ```
 //!
-//! The first line, N + M equations, gives `v` and `lambda`; the second gives
-//! `p1 = p0 + h f + lambda_a eta^a(t0, q0) + mu_a eta^a(t1, q1)`. Exchanging the ends with `h` for `-h` exchanges the
-//! lines: the step is self-adjoint, a map of D to itself. In two successive steps `mu + lambda'` at the common point
-//! is the multiplier of the discrete Lagrange-d'Alembert equations of the midpoint Lagrangian with the midpoint
-//! constraint, so that the `q` are those of Cortes and Martinez. Compositions of the step are maps of D, and
-//! self-adjoint where they are symmetric.
+//! The first line, N + M equations, gives `v` and `lambda`; the second gives `p1 = p0 + h f + lambda_a eta^a(t0, q0) +
+//! mu_a eta^a(t1, q1)`. If the ends are exchanged and `h` becomes `-h`, the two lines are exchanged, so that the step
+//! is self-adjoint. It maps D to itself. In two successive steps `mu + lambda'` at the common point is the multiplier
+//! of the discrete Lagrange-d'Alembert equations of the midpoint Lagrangian with the midpoint constraint, so that the
+//! `q` are those of Cortes and Martinez. Compositions of the step are maps of D, and self-adjoint where they are
+//! symmetric.
 //!
 //! The iteration that solves the first line for `v` takes the velocity that the constraints at the midpoint allow:
 //! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`. At the solution `nu`
@@ -31,10 +32,10 @@ use crate::state::{StateVector, scaled};
 /// The discrete Lagrange-d'Alembert midpoint rule: order 2 with dense output of order 2.
 ///
 /// - Constraints, including affine and time-dependent ones, hold to rounding at the ends of all steps without
-///   projection. The first step brings a start off the constraints to them.
-/// - Symmetric: reversible systems retrace their path to rounding. If their motion is regular, the energy error
-///   of size `h^2` does not grow. The method is not symplectic, since there is no symplectic structure to preserve: if
-///   the motion is chaotic and not reversible, the energy performs a random walk and grows like `t^(1/2)`.
+///   projection. If the start violates the constraints, the end of the first step satisfies them.
+/// - The method is symmetric: reversible systems retrace their path to rounding. If their motion is regular, the energy
+///   error of size `h^2` does not grow. The method is not symplectic, since there is no symplectic structure to
+///   preserve: if the motion is chaotic and not reversible, the energy performs a random walk and grows like `t^(1/2)`.
 /// - Without constraints and forces it is the variational midpoint rule, symplectic in `(q, p)`, with the
 ///   consequences listed in [`Gauss4`](super::Gauss4).
 /// - Holonomic constraints (`d(f) = 0`) hold on velocities. Their levels `f` are kept to order 2, to rounding where
@@ -55,9 +56,9 @@ use crate::state::{StateVector, scaled};
 /// systems with constraints, where the shape of the motion matters more than the digits of one orbit.
 ///
 /// # References
-/// J. Cortes, S. Martinez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter, *Integrators
-/// for nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006); S. Ferraro, D. Iglesias, D. Martin de Diego,
-/// *Momentum and energy preserving integrators for nonholonomic dynamics*, Nonlinearity 21 (2008).
+/// J. Cortes, S. Martinez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter,
+/// *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006); S. Ferraro, D. Iglesias, D. Martin
+/// de Diego, *Momentum and energy preserving integrators for nonholonomic dynamics*, Nonlinearity 21 (2008).
 pub type Dla2<S> = FixedStep<S, MidpointPrinciple>;
 
 /// Five steps of [`Dla2`] composed to order 4 (Suzuki): dense output of order 4.
@@ -125,8 +126,8 @@ principle!(
 /// A point on the path, with the predictions for the next step.
 struct Point<F: Lagrangian> {
     t: f64,
-    /// NOTE: compensated, because unwrapped angles grow. If their increments were rounded alike in every step, the
-    /// midpoint would always lie on the same side of the middle, and the energy would drift.
+    /// NOTE: the sum is compensated, because unwrapped angles grow. If their increments were rounded alike in every
+    /// step, the computed midpoint would always lie on the same side of the exact one, and the energy would drift.
     q: Precise<F::Vector>,
     p: F::Vector,
     qdot: F::Vector,

@@ -8,7 +8,7 @@ const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 const BIAS: u64 = 1023;
 const PLACE: u32 = 52;
 
-/// The largest power of two not above a positive number.
+/// The largest power of two not above a positive number, which must not be subnormal.
 pub(crate) fn power_of_two(x: f64) -> f64 {
     f64::from_bits(normal(x).to_bits() & EXPONENT)
 }

@@ -13,7 +13,7 @@ use crate::numbers::{Interval, Numbers, Row};
 /// Parameters and a time.
 type Arguments<'a, L> = (&'a [L], L);
 
-/// A state over numbers.
+/// A state in one kind of number.
 type RowOf<S, L> = <S as TaylorField>::Row<L>;
 
 /// The kernels of a part over any kind of number.

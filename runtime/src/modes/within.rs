@@ -9,7 +9,8 @@ use crate::record::Observer;
 
 /// An effect that sees a model with modes as its present mode. It begins anew whenever a mode is entered.
 ///
-/// Only [`Effect::begin`] and [`Effect::settle`] are carried over: event location belongs to the model as a whole.
+/// Only [`Effect::begin`] and [`Effect::settle`] are forwarded to the effect: event location belongs to the model as a
+/// whole.
 #[derive(Debug, Clone)]
 pub struct InMode<E> {
     effect: E,

@@ -35,7 +35,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         }
     }
 
-    /// The motion itself in place of every neighbour.
+    /// Neighbours that all equal the motion.
     fn still(&self) -> Self {
         let mut still = *self;
         still.t = Dual::of(self.t.value);
@@ -77,7 +77,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         Ok(pairs.all(|(sum, size): (f64, f64)| sum.abs() <= ROUNDING * size))
     }
 
-    /// True if all neighbours lie on a surface if the motion does.
+    /// True if all neighbours lie on a surface on which the motion lies, to first order.
     pub(super) fn share_gap(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         self.share(|dual| {
             let gaps = system.clearances(&dual.parameters, dual.t, &dual.state)?;
@@ -92,7 +92,7 @@ impl<Sys: Variational> Neighbours<Sys> {
         })
     }
 
-    /// True if all neighbours satisfy the instantaneous constraints of a surface if the motion does.
+    /// True if all neighbours satisfy the instantaneous constraints of a surface, which the motion satisfies.
     fn are_focused(&self, system: &Sys, surface: usize) -> Result<bool, Fault> {
         let Some(focused) = system.focus(&self.parameters, surface, self.t, &self.state)? else {
             return Ok(true);

@@ -1,5 +1,5 @@
-//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives with respect to the state and to
-//! the parameter.
+//! Families of periodic orbits over a parameter: the Poincare map at a point, with its derivatives with respect to the
+//! state and to the parameter.
 
 use super::OrbitError;
 use super::chart::{Fixed, columns};
@@ -13,7 +13,7 @@ use crate::describe::Instance;
 use crate::effects::Effect;
 use crate::integrate::Stepper;
 
-/// A fixed section, shared by all members of a family. Values of conserved quantities of the constraints are the same
+/// A fixed section, shared by all members of a family. The values of the constraints' conserved quantities are the same
 /// for all members.
 pub struct Anchor<Sys: Variational>(Fixed<Sys>);
 
@@ -36,7 +36,7 @@ pub struct Image<Sys: Variational> {
     pub miss: Sys::State,
     /// Distance between the point and its image, in units of the components.
     pub residual: f64,
-    /// True if that distance is 0 up to rounding.
+    /// True if the residual is 0 up to rounding.
     pub is_closed: bool,
     /// Derivative of the map along the directions: a `dimension` by `dimension` matrix, by columns.
     pub derivative: Sys::Columns,
@@ -66,9 +66,9 @@ where
         Ok(Anchor(Fixed::of(self.system, self.surface, 0.0, point)?))
     }
 
-    /// Maps the point of the section next to `point`, and computes the derivatives of the map with respect to the state and to the
-    /// parameter with index `parameter`. The derivatives are those of [`Variations`](super::Variations), exact to
-    /// rounding.
+    /// Maps the point of the section next to `point`, and computes the derivatives of the map with respect to the state
+    /// and to the parameter with index `parameter`. The derivatives are those of [`Variations`](super::Variations),
+    /// exact to rounding.
     ///
     /// # Errors
     /// [`OrbitError::Section`] if the point has no image or the map has no derivative there,

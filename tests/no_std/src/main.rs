@@ -35,7 +35,7 @@ fn bounces() -> Option<u64> {
     (run.outcome == Outcome::Done).then_some(run.counters.impacts)
 }
 
-/// Entry point of the C runtime.
+/// The entry point, which the C runtime calls.
 #[unsafe(no_mangle)]
 pub extern "C" fn main() -> i32 {
     // The impacts are at the times 1, 3, 5, 7, 9.

@@ -1,7 +1,7 @@
 //! Storage of coefficients over the orders, and the sums over their products that are computed side by side.
 //!
-//! A sum over `a_j b_(k-j)` with `0 < j < k` needs no coefficient of order `k`: all such sums of an order can be computed
-//! at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the storage holds
+//! A sum over `a_j b_(k-j)` with `0 < j < k` needs no coefficient of order `k`: all such sums of an order can be
+//! computed at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the storage holds
 //! coefficient `k` of all factors; the coefficients of neighbouring sums are adjacent.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,7 +12,7 @@ use quote::quote;
 use dalembert_codegen::program::Value;
 use dalembert_codegen::program::jet::History;
 
-/// Sums computed side by side: they fill one, two or four vector registers.
+/// Number of sums that are computed side by side. They fill one, two or four vector registers.
 const SIDE_BY_SIDE: usize = 8;
 
 /// The sum over `a_j b_(k-j)` with `0 < j < k`, for the coefficients of two series.
@@ -31,7 +31,7 @@ pub(super) struct Layout {
     alone: BTreeMap<History, usize>,
     /// Values that grow steadily and multiply others. Their only coefficient above order 0 is a local.
     steady: BTreeSet<Value>,
-    /// Values that these multiply. Their coefficient of the previous order is a local.
+    /// Values that the steady values multiply. Their coefficient of the previous order is a local.
     multiplied: BTreeSet<Value>,
     halves: Vec<Value>,
     middles: Vec<(History, History)>,

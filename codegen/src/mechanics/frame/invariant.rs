@@ -43,13 +43,14 @@ const COORDINATES: usize = 8;
 /// Largest number of distinct subexpressions of a tested expression.
 const PARTS: usize = 4000;
 
-/// A value at a real point is not 0 above this multiple of its magnitude before cancellation.
+/// A value at a real point counts as different from 0 if it exceeds this multiple of its magnitude before cancellation.
 const CLEAR: f64 = 1e-9;
 
 /// Number of points at which an expression is evaluated before its zero test.
 const SAMPLES: u32 = 3;
 
-/// Seeks expressions that do not depend on the configuration. `None` if the frame is not solved by formulas.
+/// Seeks expressions that do not depend on the configuration. `None` if the frame is not solved by formulas, or if
+/// there are too many coordinates.
 pub(super) fn invariant(
     model: &mut Model,
     coordinates: &Coordinates,
@@ -310,7 +311,8 @@ impl<'a> Search<'a> {
         vanishes.then_some(fixed)
     }
 
-    /// True if the expression is nearly 0 at some sample points. This cheap test excludes most other expressions.
+    /// True if the expression is nearly 0 at all sample points. This cheap test excludes most expressions that do not
+    /// vanish.
     fn may_vanish(&self, expression: ExprId) -> bool {
         (0..SAMPLES).all(|sample| {
             let (value, size) = self.at(expression, |symbol| self.sample(symbol, sample));
@@ -318,7 +320,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// True if the expression is nearly unchanged at some sample points when one coordinate has another value.
+    /// True if the expression is nearly unchanged at all sample points when one coordinate has another value.
     fn may_be_idle(&self, expression: ExprId, coordinate: SymbolId) -> bool {
         (0..SAMPLES).all(|sample| {
             let moved = |symbol| match symbol == coordinate {

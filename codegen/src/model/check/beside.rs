@@ -74,8 +74,7 @@ pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<String
     notes
 }
 
-/// Margin whose sign decides which of two surfaces counts, in words; `None` unless their strict conditions are
-/// opposite.
+/// Margin whose sign decides which of two surfaces counts, as text; `None` unless their strict conditions are opposite.
 fn left_out(pool: &mut Pool, first: &Surface, second: &Surface) -> Option<String> {
     let ([one], [other]) = (&*first.conditions, &*second.conditions) else {
         return None;

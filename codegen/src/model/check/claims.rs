@@ -7,7 +7,7 @@ use super::super::{Claim, Coordinate, Name, Scene, StatedFunction, Statement, Su
 use crate::diagnostics::listed;
 use crate::spec;
 
-/// All claims.
+/// Resolves all claims, and refuses those that are stated twice.
 pub(super) fn resolve(
     resolver: &mut Resolver<'_>,
     surfaces: &[Surface],

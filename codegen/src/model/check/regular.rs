@@ -1,10 +1,11 @@
 //! Regular surfaces: `dh` does not vanish where `h` does, so that a gap changes its sign at its surface.
 //!
-//! There are three errors. `h` is a power of at least 2. The structure of `h` shows that it is never negative or never
-//! positive: then 0 is an extremum, where the gradient vanishes if it exists. `h` is a polynomial of position with a
-//! repeated factor. Straight lines show the last one: the restriction of `h` to a general line has a multiple root at
-//! every zero of the factor. Points and directions are rational, so that each line is decided exactly. Repeated factors
-//! on all lines by accident are practically impossible.
+//! Besides gaps without zeros, three kinds of gaps are refused: powers with an exponent of at least 2; gaps whose
+//! structure shows that they are never negative or never positive, so that 0 is an extremum, where the gradient
+//! vanishes if it exists; and polynomials of positions with a repeated factor. Straight lines reveal a repeated factor:
+//! the restriction of `h` to a general line has a multiple root at every zero of the factor. Points and directions are
+//! rational, so that each line is decided exactly. Repeated factors on all lines by accident are practically
+//! impossible.
 
 use dalembert_expr::{ExprId, Node, Pool, Rational, Sign, SymbolId};
 
@@ -225,7 +226,7 @@ fn exact_value(
         };
         let value = match pool.node(*id) {
             Node::Number(value) => value.clone(),
-            // An identity of polynomials in pi holds for any number in its place.
+            // An identity of polynomials in pi holds for any number in place of pi.
             Node::Pi => Rational::new(245_850_922, 78_256_779),
             Node::Symbol(symbol) => point(*symbol),
             Node::Sum { constant, terms } => {

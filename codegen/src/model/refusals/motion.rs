@@ -75,7 +75,8 @@ fn a_model_has_one_lagrangian_and_a_coordinate() {
     }));
 }
 
-/// Functions of half an angle that a turn does not change, in other words than multiples of the angle.
+/// Functions of half an angle that a full turn does not change, although they are not written in multiples of the
+/// angle.
 #[test]
 fn a_turn_may_leave_functions_of_half_an_angle_unchanged() {
     for term in [

@@ -5,7 +5,7 @@ use super::super::{Function, Input, Op};
 /// Longest series that is distinguished from an endless one.
 const LONGEST: u32 = 4;
 
-/// The order after which all coefficients vanish, for all values of the numbers.
+/// The order after which all coefficients vanish, for all states and parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Degree {
     /// All coefficients above this order vanish.
@@ -15,7 +15,7 @@ pub enum Degree {
 }
 
 impl Degree {
-    /// A degree, or endless if it is too long to be of use.
+    /// A degree; endless if it is too high to be of use.
     fn limited(degree: u32) -> Self {
         match degree {
             0..=LONGEST => Self::AtMost(degree),

@@ -1,4 +1,5 @@
-//! Composition of each emitted function. One recipe per function; shared quantities come from the kernel.
+//! Composition of each emitted function. There is one recipe per function. Quantities that functions share come from
+//! the kernel.
 
 pub mod blow;
 pub mod constrained;

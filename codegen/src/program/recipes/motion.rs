@@ -49,7 +49,8 @@ pub(super) fn momentum_rate(kernel: &mut Kernel<'_>) -> Vec<Value> {
     rate
 }
 
-/// `(t, q) -> 1, .., g_ii`, or the units of positions and quasi-velocities in reduced form.
+/// `(t, q) -> 1, .., g_ii`, or the units of positions and quasi-velocities in reduced form, or ones in first-order
+/// form.
 pub fn scale(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
     let n = kernel.dimension();
@@ -99,11 +100,12 @@ pub fn force(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// Number of operations up to which a function computes the velocities itself instead of calling their function.
+/// Number of operations below which the energy may be computed from the momenta, without a call of the function of the
+/// velocities.
 const REPEATED: usize = 100;
 
 /// `(t, q, p) -> 1/2 (p - A).qdot + V`, or `(t, q, u) -> 1/2 g(qdot, qdot) + V`, by the formula with the fewest
-/// operations. Often `G_D` depends on less than the velocities do.
+/// operations. Often `G_D` depends on fewer coordinates than the velocities do.
 pub fn energy(model: &Model, derivation: &Derivation, form: Form) -> Function {
     let mut kernel = Kernel::new(model, derivation, form.state_with_velocity());
     let energy = energy_value(&mut kernel);
@@ -147,7 +149,7 @@ fn from_momenta(kernel: &mut Kernel<'_>) -> Option<Value> {
     Some(kernel.with_ldlt(|builder, ldlt| ldlt.weighted_square(builder, &y)))
 }
 
-/// `u^T G_D u`, where no constraint has an affine part.
+/// `u^T G_D u`; `None` if a constraint has an affine part.
 fn on_d(kernel: &mut Kernel<'_>) -> Option<Value> {
     if kernel.has_affine_constraints() {
         return None;

@@ -1,8 +1,8 @@
 //! `modes { rough { .. } smooth { .. } }` and `transitions { enter: smooth -> rough when x >= 0; }`
 //!
 //! A mode is read as a model of its own: the declarations outside of `modes`, then those in its braces, then the
-//! transitions that leave it, as surfaces. Shared declarations are read once for each mode. Families are written out
-//! before, as tokens.
+//! transitions that leave it, as surfaces. Shared declarations are read once for each mode. Families of modes and of
+//! transitions are expanded before that, as tokens.
 
 use proc_macro2::{Delimiter, Group, TokenTree};
 
@@ -66,7 +66,7 @@ pub(super) fn refuse_nested(word: &Word, cursor: &mut Cursor<'_>) -> Refused {
     cursor.refuse(word.at, text, &help)
 }
 
-/// Reads a model with modes; `header` is the model of which only the name is known.
+/// Reads a model with modes; `header` is the model with only its name, its visibility and its documentation.
 ///
 /// # Errors
 /// Every mistake of syntax, each at its token.

@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use super::super::cursor::tokens_of;
 
-/// The tokens without invisible groups. A visibility passed through `macro_rules` is in one.
+/// The tokens without invisible groups. A visibility that `macro_rules` passes on arrives in such a group.
 pub(super) fn flatten_header(tokens: TokenStream) -> Vec<TokenTree> {
     let mut flat = Vec::new();
     for token in tokens {
@@ -45,7 +45,7 @@ pub(super) fn text(documentation: &[String], visibility: &str, name: &str, body:
 }
 
 /// The text of the braces and everything between them. Inside of a `macro_rules`, a span covers the macro instead of
-/// the model; the text therefore counts only if it has the same tokens.
+/// the model; the text is therefore used only if it has the same tokens.
 fn body_text(body: &Group) -> String {
     let tokens = visible(TokenTree::from(body.clone()).into()).to_string();
     let written = body.span().source_text().map(|text| dedent(&text));

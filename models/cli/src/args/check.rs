@@ -11,7 +11,7 @@ use super::{FeedbackArgs, Format};
 pub struct CheckArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// Laws of inputs.
+    /// Feedback laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
     /// Output format.
@@ -23,9 +23,9 @@ pub struct CheckArgs {
     /// Write the claims with the grounds of their proofs as JSON, for the checker `python/check_certificate.py`.
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,
-    /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems by interval arithmetic instead.
-    /// For a cycle of modes with one degree of freedom each, the inequalities of their energies are evaluated. Exit
-    /// status 0 if all hypotheses are shown.
+    /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems by interval arithmetic
+    /// instead. For a cycle of modes with one degree of freedom each, the inequalities of their energies are evaluated.
+    /// Exit status 0 if all hypotheses are shown.
     #[arg(long, conflicts_with = "certificate")]
     pub bendixson: bool,
     /// Set a parameter, for --bendixson. May be repeated.

@@ -13,7 +13,8 @@ pub struct SearchArgs {
         default_value = "0"
     )]
     pub impacts: String,
-    /// Number of directions that are scanned, for two unknowns or more. Default: 96 for two, 240 for three, 480 for more.
+    /// Number of directions that are scanned, for two unknowns or more. Default: 96 for two, 240 for three, 480 for
+    /// more.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
     pub starts: Option<u32>,
     /// Seed of these directions.

@@ -45,8 +45,8 @@ pub fn draw(models: &[Entry], args: &AccuracyArgs) -> Result<Drawn, CliError> {
 /// Carries out `accuracy`.
 ///
 /// # Errors
-/// Invalid flags, a state that is refused, a file that cannot be written. A wanted error that no integrator reaches is
-/// not an error but an [`Exit`], and so is a reference that is not confirmed.
+/// Invalid flags, a state that is refused, a file that cannot be written. If no integrator reaches the wanted error, or
+/// if the reference is not confirmed, the result is an [`Exit`] and not an error.
 pub fn run(
     models: &[Entry],
     args: &AccuracyArgs,

@@ -18,7 +18,7 @@ use crate::sink::{Sink, is_stdout};
 use crate::state_input::{build_model, initial_state};
 use crate::{Streams, names, run_request};
 
-/// Longest time of an orbit, unless the model's own `until` is longer.
+/// Longest time of an orbit, without `--until` and unless the model's `until` is longer.
 const HORIZON: f64 = 3600.0;
 
 /// A finished search: the request and its result. `T` is an orbit or a branch of orbits.

@@ -2,8 +2,8 @@
 
 use super::request::Components;
 
-/// Factor on the tolerance of one run for returns of one orbit in several cells. It is large because a run approaches
-/// its orbit slowly if a multiplier is near 1.
+/// Factor between the tolerance for returns of different cells to one orbit and the tolerance for returns of one run.
+/// It is large because a run approaches its orbit slowly if a multiplier is near 1.
 const APART: f64 = 1000.0;
 
 /// Largest number of orbits that are distinguished.

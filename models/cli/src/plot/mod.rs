@@ -1,5 +1,5 @@
-//! Pictures of runs as SVG: the declared view as a path in its plane, all coordinates against time, or chosen quantities
-//! against time or each other.
+//! Pictures of runs as SVG: the declared view as a path in its plane, all coordinates against time, or chosen
+//! quantities against time or each other.
 
 mod bar;
 pub mod branch;

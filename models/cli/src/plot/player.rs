@@ -18,7 +18,8 @@ const FPS: f64 = 30.0;
 /// Number of points of a path beyond which points between impacts are left out.
 const MANY: usize = 4000;
 
-/// Width of the plot within the canvas, and the height of what surrounds it, in pixels; those of the script.
+/// Width of the plot within the canvas, and height of the canvas around the plot, in pixels, as in the script of the
+/// page.
 const WIDTH: f64 = 572.0;
 const AROUND: f64 = 62.0;
 
@@ -109,8 +110,8 @@ fn shown(picture: &Picture<'_>) -> ([String; 2], Vec<Curve>) {
     }
 }
 
-/// Curves against an abscissa. `labels` has that of the abscissa and one for each ordinate; the first ordinate is the entry
-/// `first` of a mark.
+/// Curves against an abscissa. `labels` are the label of the abscissa, then one for each ordinate. The first ordinate
+/// is the entry `first` of a mark.
 fn against(labels: Vec<String>, first: usize, abscissa: Component) -> ([String; 2], Vec<Curve>) {
     let mut labels = labels.into_iter();
     let x = labels.next().unwrap_or_default();
@@ -138,8 +139,8 @@ fn path_window(picture: &Picture<'_>, curves: &[Curve]) -> Window {
     }
 }
 
-/// The shown part of the plane, and the walls behind the path: once if they are at rest, for each frame if they depend on
-/// time alone, not at all if they depend on other coordinates.
+/// The part of the plane that is shown, and the walls behind the path. The walls are given once if they are at rest,
+/// for each frame if they depend on time alone, and left out if they depend on other coordinates.
 fn behind(picture: &Picture<'_>, times: &[f64], path: Window) -> (Window, Vec<Value>) {
     let (first, last) = (picture.first, picture.last);
     if let Some(region) = Region::of(picture.model, first, last, path) {
@@ -215,7 +216,7 @@ fn curve_data(picture: &Picture<'_>, (label, components): &Curve, times: &[f64])
     })
 }
 
-/// The values between the marks around a time, along their chord.
+/// The values at a time, interpolated linearly between the neighbouring marks.
 fn values_at(marks: &[Mark], t: f64) -> Vec<f64> {
     let next = marks.partition_point(|mark| mark.t <= t);
     let (Some(left), right) = (marks.get(next.saturating_sub(1)), marks.get(next)) else {
@@ -235,12 +236,12 @@ fn point(values: [f64; 2]) -> Value {
     json!(values.map(rounded))
 }
 
-/// Six digits, which are those of a screen.
+/// The value rounded to six digits, which suffice for a screen.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
-/// Four to ten round numbers within a range.
+/// Two to six round numbers within a range.
 fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
     let size = 10_f64.powf(((high - low) / 4.0).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * size);

@@ -189,7 +189,8 @@ impl Trace {
             .enumerate()
             .filter(|(index, _)| self.source.is_smooth(*index))
             .all(|(_, (((left, right), middle), [low, high]))| {
-                // A comparison with NaN is false, so an undefined value counts as flat. Subdivision would not define it.
+                // A comparison with NaN is false, so an undefined value counts as flat. Subdivision would not define
+                // it.
                 let deviation = (middle - 0.5 * (left + right)).abs();
                 let bent = deviation > FLATNESS * (high - low);
                 !bent

@@ -16,7 +16,7 @@ use crate::typed::Model;
 /// Largest number of impacts that are kept for comparison; later impacts are only counted.
 const KEPT: usize = 1 << 20;
 
-/// Keeps positions at equally spaced times, and the sequence of impacts.
+/// Records positions at equally spaced times, and the sequence of impacts.
 pub struct Probe<'a, M> {
     model: &'a M,
     times: Grid,
@@ -142,7 +142,7 @@ enum Difference {
         number: usize,
         met: [Option<Met>; 2],
     },
-    /// The kinds of their ends.
+    /// The ways in which they end.
     End,
 }
 

@@ -1,4 +1,4 @@
-//! The search for roots: starts whose motion ends as given.
+//! Search for roots, which are starts whose motion ends as given.
 //!
 //! With one unknown, both rays of starts are scanned, and every stretch with one sequence of impacts is searched by
 //! brackets ([`line`](super::line)). With more unknowns, rays in many directions are scanned. Newton's method continues
@@ -19,7 +19,8 @@ use crate::linear::norm;
 /// [`Speeds::first`] in multiples of the speed that the problem suggests.
 const FIRST: f64 = 4.0;
 
-/// Largest speed of a scan in multiples of the first: with surfaces, which faster starts may meet, and without.
+/// Largest speed of a scan in multiples of the first, with and without surfaces. It is larger with surfaces, because
+/// faster starts may meet them.
 const MOST: [f64; 2] = [65_536.0, 4.0];
 
 /// Largest miss of a root, in multiples of the size of the coordinates.
@@ -59,7 +60,7 @@ pub(crate) struct Plan {
 pub(crate) struct Root {
     /// The unknowns.
     pub w: Vec<f64>,
-    /// The unknowns in units.
+    /// The unknowns, each divided by its unit.
     y: Vec<f64>,
 }
 
@@ -307,7 +308,7 @@ impl<'a> Search<'a> {
         relies_on_guesses && self.aim.steps() - begun > SPENT
     }
 
-    /// Adds the starts that another method finds.
+    /// Adds the starts that the problem itself guesses.
     fn guess(&mut self, candidates: &mut Vec<Candidate>) {
         let count = self.aim.guesses();
         for index in 0..count {

@@ -17,8 +17,8 @@ use crate::linear::{add, determinant, norm};
 /// Displacement of finite differences, in the units of the state and in the ranges of the parameters.
 const APART: f64 = 1e-5;
 
-/// Imaginary part below which a pair of multipliers is about to meet. It decreases like the square root of the
-/// distance.
+/// Imaginary part below which a pair of multipliers is about to meet. It decreases like the square root of the distance
+/// from the resonance.
 const MEETING: f64 = 1e-3;
 
 /// The plane of two parameters.
@@ -70,7 +70,7 @@ struct Bifurcations<'f, 'a, S: Variational> {
     plane: Plane,
     bifurcation: Bifurcation,
     precision: Precision,
-    /// Factor of the test function: its derivative at the first bifurcation has the length 1.
+    /// Factor of the test function, with which its gradient at the first bifurcation has length 1.
     unit: f64,
 }
 

@@ -111,9 +111,9 @@ pub struct Member {
 pub enum Stability {
     /// All multipliers lie inside the unit circle.
     Stable,
-    /// None lies outside, some on it.
+    /// No multiplier lies outside the unit circle, and some lie on it.
     Neutral,
-    /// Some multiplier lies outside.
+    /// Some multiplier lies outside the unit circle.
     Unstable,
 }
 
@@ -133,11 +133,11 @@ impl Stability {
 pub enum Bifurcation {
     /// The branch turns back in the parameter; a multiplier is 1.
     Fold,
-    /// A multiplier passes -1: an orbit of twice the period branches off.
+    /// A multiplier passes through -1: an orbit of twice the period branches off.
     Flip,
-    /// A pair of complex multipliers passes the unit circle: an invariant circle branches off.
+    /// A pair of complex multipliers crosses the unit circle: an invariant circle branches off.
     NeimarkSacker,
-    /// A multiplier passes 1 without a fold: another branch of orbits crosses this one.
+    /// A multiplier passes through 1 without a fold: another branch of orbits crosses this one.
     BranchPoint,
 }
 

@@ -31,8 +31,8 @@ const STEPS: [u64; 2] = [4000, 50];
 /// The same for three unknowns or more without surfaces, where many motions of a scan diverge.
 const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 
-/// Numbers of stretches of the second-order test, tried in order. Short stretches resolve conjugate points. Long
-/// stretches control states on which an input acts through others.
+/// Numbers of stretches of the second-order test, tried in order. Short stretches resolve conjugate points. Over long
+/// stretches, an input also controls states on which it acts only through other states.
 const STRETCHES: [usize; 4] = [64, 32, 16, 8];
 
 /// Positions of the outputs of a model of extremals: inputs, `H*`, terminal cost, its gradient, its second derivative,
@@ -161,8 +161,8 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         self.behind(t, state).is_none() && values.is_ok_and(|values| self.layout.is_best(&values))
     }
 
-    /// Determines the sizes of state and costate, and the limit of the steps of a motion. A costate of its size moves
-    /// the end by about the size of the state.
+    /// Determines the sizes of state and costate, and the limit of the steps of a motion. A component of the costate at
+    /// the start that changes by its size moves the end by about the size of the state.
     fn measure(&mut self) {
         let n = self.layout.states;
         let still = vec![0.0; n];

@@ -1,5 +1,5 @@
-//! Dynamic programming on a grid: the least cost of a model with a state of two components, held inputs and impacts
-//! (thesis, sections 9.2 and 9.3).
+//! Dynamic programming on a grid: the least cost of a model with a state of two components, held inputs and impacts (W.
+//! Clark, thesis, sections 9.2 and 9.3).
 //!
 //! ```text
 //! J_N(x) = g(x),   J_k(x) = min_u [ integral of l from t_k to t_{k+1} + J_{k+1}(x') ]

@@ -111,8 +111,8 @@ fn quotient(numerator: &BigInt, denominator: &BigUint) -> f64 {
     if sign == Sign::NoSign {
         return 0.0;
     }
-    // The whole part of the quotient in units of 2^exponent has 63 or 64 bits, or fewer if it is below 2^-1012. Two bits
-    // at least are rounded off.
+    // The whole part of the quotient in units of 2^exponent has 63 or 64 bits, or fewer if it is below 2^-1012. Two
+    // bits at least are rounded off.
     let lowest = -i64::from(UNIT);
     let exponent = (size.bits() as i64 - denominator.bits() as i64 - 63).max(lowest - 2);
     let shift = exponent.unsigned_abs();

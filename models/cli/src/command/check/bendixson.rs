@@ -1,4 +1,5 @@
-//! `check --bendixson`: decides the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems where it can.
+//! `check --bendixson`: decides the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems where it
+//! can.
 
 use std::io::{self, Write};
 
