@@ -55,8 +55,8 @@ fn pair(value: &Value) -> [f64; 2] {
     [0, 1].map(|place| value[place].as_f64().unwrap())
 }
 
-/// A ball from height 2 with g = 1: `x = 2 - t^2/2` until the impact at t = 2 at the speed 2. After it `x = 2 s - s^2/2`
-/// with `s = t - 2`.
+/// A ball from height 2 with g = 1: `x = 2 - t^2/2` until the impact at t = 2 at the speed 2.
+/// After it `x = 2 s - s^2/2` with `s = t - 2`.
 #[test]
 fn heads_follow_the_motion() {
     let folder = Folder::new("ball");
