@@ -209,10 +209,10 @@ fn methods_of_fixed_step_meet_the_impacts_by_their_order() {
 
 /// On the circular table the nonholonomic plastic disk tends to a motion along the rim. The gap rate at an impact is
 /// 0.37 times that at the impact before, down to 1e-8. If the gap has the error `eta`, every method finds the time of a
-/// crossing with the error `2 eta / |gap rate|`, and no crossing less deep than `eta`. Here `eta` is 1e-13, the error
-/// of a second of integration at tolerance 1e-13. The gap would fall 4e-13 below zero at the 14th impact, 6e-14 at the
-/// 15th, 8e-15 at the 16th (the square of the gap rate over twice its rate of change, 8 per second). Impacts after the
-/// 14th are left out, since rounding errors decide if the disk meets the rim.
+/// crossing with the error `2 eta / |gap rate|`, and may miss crossings less deep than `eta`. Here `eta` is 1e-13, the
+/// error of a second of integration at tolerance 1e-13. The gap would fall 4e-13 below zero at the 14th impact, 6e-14
+/// at the 15th, 8e-15 at the 16th. This depth is the square of the gap rate over twice the rate at which the gap rate
+/// changes, 8 per second. Impacts after the 14th are left out, since rounding errors decide if the disk meets the rim.
 fn assert_grazing_times(label: &str, impacts: &Impacts, case: &Value) {
     let rate = |k: usize| number(&case["impacts"][k]["dh_minus"]).abs();
     assert_times(label, impacts, case, 10, billionth);

@@ -144,7 +144,7 @@ pub fn energy<const N: usize, S: Chain<N>>(chain: &S, state: &State<S>) -> f64 {
     energy_of(chain.rods(), theta, p)
 }
 
-/// The energy over any kind of numbers.
+/// The energy in any number type.
 #[inline(always)]
 pub fn energy_of<T: Number, const N: usize>(rods: Rods<T>, theta: [T; N], p: [T; N]) -> T {
     let (sin, cos) = directions(&theta);
@@ -175,7 +175,7 @@ fn link_by_link<const N: usize>(
     cos: &[f64; N],
     p: &[f64; N],
 ) -> ([f64; N], [[f64; 2]; N]) {
-    // With the inertia B = m + A_{i+1} of link i and all below it: B t, 1/(t.B t), p/l - t.b.
+    // These are B t, 1/(t.B t) and p/l - t.b, where B = m + A_{i+1} is the inertia of link i and all below it.
     let (mut carried, mut inverse, mut excess) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
     let (mut matrices, mut offsets) = ([[0.0; 3]; N], [[0.0; 2]; N]);
     let (mut a, mut b) = ([0.0; 3], [0.0; 2]);

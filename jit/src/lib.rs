@@ -7,7 +7,7 @@
 //! | file | job |
 //! |---|---|
 //! | `source.rs` | models of a text, and mistakes in it with their lines |
-//! | `feedback.rs` | texts whose inputs follow laws |
+//! | `feedback.rs` | texts whose inputs follow feedback laws |
 //! | `form.rs` | forms: tables, and functions that execute programs |
 //! | `machine.rs` | a machine with registers: executes a function over any kind of number |
 //! | `series.rs` | power series over any kind of number |
@@ -69,10 +69,10 @@ pub struct Loaded {
     pub scenes: Vec<(String, Arc<Form>)>,
 }
 
-/// The models of a text, in its order. `name` is that of the file, for messages.
+/// The models of a text, in the order of the text. `name` is the name of the file, for messages.
 ///
 /// # Errors
-/// Every mistake of the first stage that found any, in any of the models.
+/// For each model, all mistakes that the first stage with a mistake finds.
 pub fn load(name: &str, text: &str) -> Result<Vec<Loaded>, Refused> {
     load_by(name, text, build)
 }
@@ -92,7 +92,7 @@ pub fn load_without_claims(name: &str, text: &str) -> Result<Vec<Loaded>, Refuse
 /// names a scene of the model; `None` is the model itself.
 ///
 /// # Errors
-/// Every mistake of the first stage that found any, in the model or in its extremals.
+/// All mistakes that the first stage with a mistake finds, in the model or in its extremals.
 pub fn load_control(name: &str, text: &str, scene: Option<&str>) -> Result<Vec<Loaded>, Refused> {
     load_by(name, text, |declaration| match declaration {
         Declaration::Model(spec) => {

@@ -196,7 +196,7 @@ impl Code {
     }
 }
 
-/// Free registers, and the number of registers in use so far.
+/// Free registers, and the number of registers created so far.
 #[derive(Default)]
 struct Registers {
     free: Vec<usize>,

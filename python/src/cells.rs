@@ -14,7 +14,8 @@ const DEEPEST: u32 = 40;
 /// Cells of a step beyond which the signs at the ends of a cell decide.
 const CELLS: u32 = 400;
 
-/// Fraction of the largest value so far below which a value counts as 0: a state on a surface has rounding errors.
+/// Fraction of the largest value so far below which a value counts as 0, because a state on a surface has rounding
+/// errors.
 const NOISE: f64 = 1e-13;
 
 /// A sign change.
@@ -41,7 +42,7 @@ enum Judgement {
 }
 
 impl Sign {
-    /// Forgets the sign: the motion jumps.
+    /// Forgets the sign, because the motion jumps.
     pub(crate) fn jump(&mut self) {
         self.last = 0.0;
     }

@@ -92,7 +92,7 @@ impl Events {
         self.events[event].2
     }
 
-    /// Forgets the signs: the motion jumps.
+    /// Forgets the signs, because the motion jumps.
     pub(crate) fn jump(&mut self) {
         self.signs.iter_mut().for_each(Sign::jump);
     }

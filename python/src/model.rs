@@ -65,7 +65,7 @@ pub fn load(py: Python<'_>, text: &str, shown: &str, claims: bool) -> PyResult<V
         .collect()
 }
 
-/// The text with inputs of its model replaced by laws. `shown` is its name in messages.
+/// The text with inputs of its model replaced by feedback laws. `shown` is its name in messages.
 #[pyfunction]
 pub fn close(
     py: Python<'_>,

@@ -104,8 +104,8 @@ impl<Sys: System, F: Forces<Sys>> VectorField for Driven<'_, Sys, F> {
     }
 }
 
-/// Adapter from an integrator of a system under forces to the interface of an integrator of the system alone. It
-/// integrates its own field and ignores the field passed to it.
+/// Presents an integrator of a system under forces as an integrator of the system alone. It integrates its own field
+/// and ignores the field passed to it.
 pub(crate) struct Along<'a, F, Step> {
     pub(crate) field: &'a F,
     pub(crate) stepper: Step,

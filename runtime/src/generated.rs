@@ -332,9 +332,9 @@ pub mod certain {
         all(conditions.map(|condition| condition.map(|holds| !holds)))
     }
 
-    /// Decision for the last of several transitions: true if its own conditions hold, false if they fail and no other
-    /// transition counts. Otherwise undecided: if no transition is taken, the motion ends there and nothing is
-    /// certified.
+    /// Decision for the last of several transitions, where `no_other` is true if none of the others counts: true if its
+    /// own conditions hold, false if they fail and another transition counts. Otherwise undecided: if no transition is
+    /// taken, the motion ends there and nothing is certified.
     #[inline]
     pub fn last(holds: Option<bool>, no_other: Option<bool>) -> Option<bool> {
         match (holds, no_other) {

@@ -17,7 +17,7 @@ use crate::record::{Observer, Segment};
 use crate::run::Run;
 use crate::state::StateVector;
 
-/// Default limit of the number of steps of a run, more than a day of computation for most systems.
+/// Default limit of the number of steps of a run. Most systems take more than a day to reach it.
 pub const STEP_BUDGET: u64 = 1_000_000_000;
 
 /// Longest step after an impact, as a multiple of the last flight: shrinking hops get steps of their own size.

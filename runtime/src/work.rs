@@ -9,8 +9,8 @@ use crate::record::{Observer, Segment};
 use crate::state::StateVector;
 
 /// Observes a run and adds up the work of every cause in [`Powered::POWERS`]. Between impacts, and without surfaces in
-/// contact, the energy changes by the sum of all work, up to the error of the integrator. Impacts change the energy in
-/// addition.
+/// contact, the energy changes by the sum of all work, up to the error of the integrator. Impacts change the energy as
+/// well.
 ///
 /// Powers are integrated over each part of the run by the Gauss-Legendre rule of 16 points on the dense output, which
 /// every step then computes. To use another observer as well, pass the pair of them to the run.

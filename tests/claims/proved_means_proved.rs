@@ -93,7 +93,7 @@ fn a_default_that_is_an_exception_is_no_proof() {
     );
 }
 
-/// At a zero of `f` the leaf of `x' = f(x)` is a circle in `y`, around which the return map keeps no volume.
+/// At a simple zero of `f` the leaf of `dx = f(x) dy` is a circle in `y`. The return map around it keeps no volume.
 #[test]
 fn densities_that_are_singular_far_out_are_not_proved() {
     for f in [
@@ -350,7 +350,8 @@ fn loops_around_what_is_left_out_are_not_forgotten() {
         not_proved(&declared, "density: exact");
         not_refuted(&declared, "density: locally_exact");
     }
-    // The odd step function without absolute values, 0 between its steps. A reflection maps one part of Q to another.
+    // The slope is an odd step function, written without absolute values. It is 0 between its steps. A reflection maps
+    // one part of Q to another.
     let steps = "coordinates { x; z; th: angle; s; }
         lagrangian = (dot(x)^2 + dot(z)^2 + dot(th)^2 + dot(s)^2)/2;
         let step(u) = atan(u) + atan(1/u);

@@ -201,9 +201,9 @@ fn elastic_impacts_off_d_keep_energy_and_constraint_momenta() {
     }
 }
 
-/// An impact multiplies the flux of `omega^n` through the surface by the ratio of the gap rates and the determinant of
-/// the map of momenta. The map is linear, so that differences are exact. The factor is `(2 dh.pi_D - dh)/dh` in closed
-/// form.
+/// An impact multiplies the flux of `omega^n` through the surface by the ratio of the gap rates times the determinant
+/// of the map of momenta. The map is linear, so that differences are exact. The closed form of the factor is
+/// `(2 dh.pi_D - dh)/dh`.
 #[test]
 fn elastic_impacts_off_d_change_the_liouville_volume_as_listed() {
     for entry in entries("global_elastic_impacts") {

@@ -78,7 +78,7 @@ fn quick_cases_are_run_and_those_that_fail_are_said_again() {
     assert!(done.output.contains("one: 1.00e0 of 2.00e0"));
     assert!(done.output.contains("pending  nothing to rest on"));
     assert!(done.output.contains("3 cases: 1 pass, 1 fail, 1 pending"));
-    assert!(done.output.ends_with("failed: A02 count: 4 for 3\n"));
+    assert!(done.output.ends_with("failed: A02 count: 4 instead of 3\n"));
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Compares first impacts of random free flights with exact geometry, for gaps that are written in many ways. No
 //! integrator misses or invents an impact at any of the tolerances.
 //!
-//! The exact impact comes from conservative advancement along the exact flight: every step of time is the distance
-//! divided by a bound on its rate and so never passes a surface. The gap of the model is a function of that distance:
-//! scaled, flattened, bounded or steep.
+//! The exact impact comes from conservative advancement along the exact flight: every step in time is the distance from
+//! a surface divided by a bound on its rate, so that no step passes the surface. The gap of the model is a function of
+//! this distance: scaled, flattened, bounded or steep.
 //!
 //! | family | surfaces |
 //! |---|---|

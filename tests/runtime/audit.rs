@@ -202,8 +202,8 @@ fn surfaces_that_do_not_count_and_resets_are_audited_as_what_they_are() {
         let (t, met) = run.first.unwrap_or_else(|| panic!("{run:?}"));
         assert!((t - 2.0).abs() < 1e-3 && met == 1, "{run:?}");
     }
-    // Beyond the edge of the ledge the point falls below its height at the time 1.77. The ground is lower than the whole
-    // flight. The audit finds the reset alone.
+    // The point starts beyond the edge of the ledge and falls below the height of the ledge at the time 1.77. The whole
+    // flight is above the ground. The audit finds the reset alone.
     let beyond = Start {
         q: &[2.0, 0.5],
         v: &[1.0, 0.0],

@@ -66,7 +66,7 @@ fn near_graze(eps: f64, mut check: impl FnMut(f64, &Log, &str)) {
 #[test]
 fn a05_near_grazes_are_found_in_whatever_step() {
     for eps in [1e-2, 1e-4, 1e-8, 1e-12] {
-        // The start contains the rounded 1 - eps, from which eps differs by a rounding error.
+        // The gap at the start is the rounded 1 - eps, which equals 1 - held.
         let held: f64 = 1.0 - (1.0 - eps);
         let root = held.sqrt();
         near_graze(eps, |end, log, case| {

@@ -49,8 +49,8 @@ fn difference<V: StateVector>(a: &[V; 2], b: &[V; 2]) -> f64 {
         / size
 }
 
-/// Errors with steps that are halved again and again; NaN for runs that end early or do not count. An error if the
-/// method does not apply to the system.
+/// Errors at successively halved steps; NaN for runs that end early or do not count. An error if the method does not
+/// apply to the system.
 fn errors(error: impl Fn(f64) -> Result<f64, Outcome>) -> Result<Vec<f64>, Outcome> {
     let errors = (0..12).map(|k| match error(TIME / f64::from(1 << k)) {
         Err(Outcome::NonlinearConstraints) => Err(Outcome::NonlinearConstraints),
@@ -104,7 +104,8 @@ impl Orders {
             return;
         };
         self.measured += 1;
-        // Errors of methods of high order reach rounding errors before their leading term dominates, and fall faster.
+        // The errors of high-order methods may fall faster: they reach the rounding errors before their leading term
+        // dominates.
         let ceiling = if is_exact {
             order as f64 + 0.3
         } else {

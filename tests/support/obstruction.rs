@@ -1,5 +1,5 @@
-//! Brackets of the frame of D with their demands on the derivative of `G`, the logarithm of the density. Metric and
-//! forms are those that a model reports; every derivative is a central difference in double precision.
+//! Brackets of the frame of D. Each has a demand: the derivative along it that an invariant density requires of its
+//! logarithm `G`. A model reports its metric and forms; every derivative is a central difference in double precision.
 //!
 //! ```text
 //! X_i = e_i - A_dep^{-1} A e_i          theta_k = m_ab (W^{a,j} d_j eta_bk + eta_bj d_k W^{a,j})
@@ -54,7 +54,8 @@ impl<'c> Criterion<'c> {
             .find(|criterion| criterion.frame(q).is_some())
     }
 
-    /// The derivative of G in each coordinate; `None` unless the frame and the brackets of its pairs span everything.
+    /// The derivative of G by each coordinate; `None` unless the first N fields among the frame and the brackets of its
+    /// pairs are independent.
     pub fn differential(&self, q: &[f64]) -> Option<Vec<f64>> {
         let free = q.len() - self.dependent.len();
         let fields = (1..=free).map(|i| format!("X{i}"));

@@ -143,7 +143,7 @@ dalembert::model! {
 }
 
 dalembert::model! {
-    /// Same as [`CurvedDual`], with a pole of `h`.
+    /// Same as [`CurvedDual`] without `phi`, with a pole of `h`.
     pub OnePole {
         coordinates { x; y; z; }
         let slip = dot(z) - (y + z*(1/x + 1/(1 + x^4)))*dot(x);

@@ -34,7 +34,7 @@ fn read(input: TokenStream, folder: &Path) -> Result<File, Diagnostics> {
     );
     let Ok(name) = syn::parse2::<syn::LitStr>(input) else {
         diagnostics
-            .error(at, "expected the path of a file, as a text in quotes")
+            .error(at, "expected the path of a file, as a string in quotes")
             .help(
                 "write `model_file!(\"src/disk.dal\")`; the path begins at the folder of the crate",
             );

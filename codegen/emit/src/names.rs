@@ -15,13 +15,14 @@ use super::function::number;
 /// Identifiers of a model's quantities inside generated functions.
 #[derive(Clone)]
 pub(super) struct Names {
-    /// The type that functions are made for: the model's or a scene's, or that of its global form.
+    /// The type whose functions are emitted: that of the model, of a scene, or of a global form.
     pub type_name: TokenStream,
     /// The type of the model or the scene itself.
     pub model_type: TokenStream,
     /// The type of the global form of the model or the scene.
     pub global: TokenStream,
-    /// The type that has the parameters, if it is another: a scene holds it, a global form holds a model or a scene.
+    /// The type of the value that `type_name` wraps: a scene wraps its model, a global form wraps a model or a scene.
+    /// `None` for the type of a model, which has the parameters itself.
     pub held: Option<TokenStream>,
     /// Locals that hold coordinates.
     pub coordinates: Vec<Ident>,

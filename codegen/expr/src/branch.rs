@@ -33,7 +33,7 @@ const MOST_VISITS: usize = 1 << 15;
 pub struct Branches {
     /// Arguments of absolute values.
     arguments: Vec<ExprId>,
-    /// Independent relations between radicands.
+    /// Number of independent relations between radicands.
     hidden: usize,
 }
 
@@ -194,7 +194,7 @@ impl SamplePoints {
 #[derive(Default)]
 struct Seen {
     counts: BTreeMap<u64, usize>,
-    /// Differences from the first pattern.
+    /// Differences between patterns.
     differences: Echelon,
     visits: usize,
     /// Visits since the space of patterns grew.

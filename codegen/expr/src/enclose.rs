@@ -23,7 +23,7 @@ pub type Domain = Vec<(SymbolId, Interval)>;
 pub enum Zeros {
     /// No zero.
     None,
-    /// A zero between two points at which the signs differ, or at a point.
+    /// A zero between two points: the value is positive at the first and negative at the second.
     Between(Vec<(SymbolId, f64)>, Vec<(SymbolId, f64)>),
     /// Undecided: a part of the box in which neither was proved.
     Open(Domain),

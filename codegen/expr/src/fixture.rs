@@ -1,4 +1,4 @@
-//! Fixture of tests: reads expressions from text, by the ordinary grammar.
+//! Fixture of tests: reads expressions from text in the usual notation of arithmetic.
 
 use crate::{Assumption, ExprId, Function, Pool, Rational, SymbolId};
 

@@ -1,10 +1,10 @@
 //! Conditions on parameters under which a density exists although none exists for indeterminate parameters.
 //!
-//! Within the declared assumptions, the scan tries: one parameter 0; two equal; two 0; one a small fraction, where the
-//! obstruction has a root or a pole; one 0 and two others equal; polynomials of degree 3 in three parameters. Every
-//! trial is the rank test of [`super::exactness`] with the parameters fixed. The scan leaves out conditions at which
-//! the model is degenerate, and conditions that imply a simpler one already found. Other conditions may exist: the
-//! answer holds for the conditions scanned.
+//! Within the declared assumptions, the scan tries these conditions: one parameter is 0; two are equal; two are 0; one
+//! is a small fraction at which the obstruction has a root or a pole; one is 0 and two others are equal; a polynomial
+//! of degree up to 3 in up to three parameters is 0. Every trial is the rank test of [`super::exactness`] with the
+//! parameters fixed. The scan leaves out conditions at which the model is degenerate, and conditions that imply a
+//! simpler one already found. Other conditions may exist: the answer holds for the conditions scanned.
 
 use dalembert_expr::{ExprId, Rational, SamplePoints, SymbolId, Verdict as Zero};
 
@@ -42,7 +42,7 @@ pub enum Equation {
 pub struct Scan {
     /// Conditions under which a density exists, simple ones first.
     pub found: Vec<Condition>,
-    /// Rank tests and values of obstructions that were computed.
+    /// Number of rank tests that were made and of values of obstructions that were computed.
     pub trials: usize,
     /// True if all conditions were tried; else the scan was cut off.
     pub is_complete: bool,
@@ -50,7 +50,7 @@ pub struct Scan {
 
 /// Smallest and largest number of trials of a scan.
 const TRIALS: (usize, usize) = (16, 400);
-/// Number of products of coefficients that a scan may take: a second without optimisation.
+/// Number of products of coefficients that a scan may compute. A build without optimisation takes about a second.
 const WORK: f64 = 1.5e8;
 /// Number of trials of a scan for a density on all of Q. Each of them looks for the density.
 const GLOBAL_TRIALS: usize = 48;
@@ -58,8 +58,10 @@ const GLOBAL_TRIALS: usize = 48;
 /// have no value at half of the points.
 const ATTEMPTS: (usize, usize) = (4, 128);
 
-/// Conditions under which a density exists, for a model without one: locally, or on all of Q if one exists locally.
-/// `exactness`: the decision for indeterminate parameters. `seed` determines the random points.
+/// Conditions on parameters for a density that does not exist for indeterminate parameters. For a model without a local
+/// density, these are conditions under which a local one exists. For a model with a local density, they are conditions
+/// under which it exists on all of Q. `exactness` is the decision for indeterminate parameters. `seed` determines the
+/// random points.
 ///
 /// # Errors
 /// [`Undecided`], if there are no sample points.
@@ -259,8 +261,8 @@ impl Scanner<'_> {
         Some(())
     }
 
-    /// Adds the condition that a polynomial vanishes. The density exists at random zeros of the polynomial. If the
-    /// polynomial can be solved for a parameter and the density then fails, the condition is left out.
+    /// Adds the condition that a polynomial vanishes, for a polynomial at whose random zeros the density exists. If the
+    /// polynomial can be solved for a parameter and no density exists then, the condition is left out.
     fn try_polynomial(&self, model: &mut Model, polynomial: ExprId, found: &mut Vec<Condition>) {
         let equations = vec![Equation::Zero(polynomial)];
         let is_global = match self.solved(model, polynomial) {

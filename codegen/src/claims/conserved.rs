@@ -66,8 +66,8 @@ pub(super) fn check_conserved(
     }
 }
 
-/// The verdict that a quantity changes for indeterminate parameters, after a look at the declared defaults. A quantity that
-/// is conserved there is not shown to change, and a refutation says so.
+/// Adjusts `generic`, the verdict that a quantity changes for indeterminate parameters, to the declared defaults. If
+/// the quantity is conserved at the defaults, its change is not proved, and a refutation mentions the defaults.
 fn change_at_defaults(
     model: &mut Model,
     parts: &[Dynamics],

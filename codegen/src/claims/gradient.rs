@@ -1,5 +1,6 @@
-//! Gradient of the logarithm of a density without closed form: `beta` with `beta(Z) = c` for spanning elements `(Z, c)`
-//! of the hull, as steps. Its line integrals are the logarithm of the density.
+//! Gradient of the logarithm of a density without closed form, as a list of arithmetic steps: the covector `beta` with
+//! `beta(Z) = c` for elements `(Z, c)` of the hull whose vectors span. Its line integrals are the logarithm of the
+//! density.
 
 use std::cell::RefCell;
 
@@ -17,7 +18,7 @@ use crate::model::Model;
 pub struct Gradient {
     /// Computation of its entries from the position.
     pub trace: Trace,
-    /// N vectors that span, N components each.
+    /// N vectors that span the tangent space, N components each.
     pub vectors: Vec<Vec<Step>>,
     /// The product of the gradient with each vector.
     pub demands: Vec<Step>,

@@ -1,9 +1,9 @@
 //! Growth of `G` along a loop: as a sum over points, for the search, and as an enclosure, for the proof.
 //!
 //! The tangent of a loop in a leaf of the hull of D is a combination of the hull's elements. `dG` of the tangent is the
-//! same combination of their demands. The enclosure divides the loop into cells, on which the coordinates are
-//! intervals, and bisects cells until the sum over them excludes 0. The elements belong to a frame of D, which may have
-//! poles on the loop. Another frame replaces it there.
+//! same combination of the values of `dG` that the elements demand. The enclosure divides the loop into cells, on which
+//! the coordinates are intervals, and bisects cells until the sum over them excludes 0. The elements belong to a frame
+//! of D, which may have poles on the loop. Another frame replaces it there.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +27,7 @@ const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
 /// Fraction of that integral below which doubles lose some of the printed digits.
 const CANCELLED: f64 = 1e-2;
-/// Rounding error allowed in addition, an absolute bound for loops along which all terms vanish.
+/// Further allowed change of the growth, an absolute one, for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
 /// Offset of the points, as a fraction of the step.
 const SHIFT: f64 = 0.382;
@@ -104,7 +104,8 @@ impl<'l> Loop<'l> {
     /// Growth with all printed digits, certified to differ from 0. The certificate holds if every symbol of the sample
     /// has a value next to its own, or a value in its given range.
     ///
-    /// # Errors If the growth is not certified.
+    /// # Errors
+    /// [`Uncertain`] if the growth is not certified.
     pub(super) fn certified(&mut self, sample: &Sample, ranges: &Domain) -> Result<f64, Uncertain> {
         let (growth, size, points) = self.converged_by(sample).ok_or(Uncertain::Small)?;
         let mut domain = sample.ranges();

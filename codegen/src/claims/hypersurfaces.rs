@@ -193,7 +193,7 @@ impl Search<'_> {
     }
 }
 
-/// The prime of all points, by its position.
+/// Index of the prime of all points.
 pub(super) const PRIME: usize = 1;
 /// Turns the seed of a point into that of another configuration: the fractional digits of the square root of 5.
 const OTHER: u64 = 0x3c6e_f372_fe94_f82b;

@@ -10,7 +10,7 @@ use super::problem::Problem;
 use super::regularity::{determinant, is_never_zero};
 use crate::model::Model;
 
-/// Reason for which a declaration that is not smooth leaves the question open.
+/// Reason why it stays open for a declaration that is not smooth if `G` is single-valued.
 pub(super) const HOLES: &str = "G was found in no closed form, and G may grow along loops around configurations where the declaration is singular";
 
 /// Number of points of each branch.
@@ -149,7 +149,7 @@ fn choices(columns: usize, count: usize) -> Option<Vec<Vec<usize>>> {
             longer.extend((first..columns).map(|column| [choice.as_slice(), &[column]].concat()));
         }
         choices = longer;
-        // Not every partial choice can be completed, so the limit on them is larger by the number of columns.
+        // Not every partial choice can be completed. Their limit is therefore larger by the factor `columns`.
         if choices.len() > MOST_MINORS * columns {
             return None;
         }

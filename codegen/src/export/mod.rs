@@ -145,7 +145,7 @@ fn routine(form: &FormOf<'_>, kernel: Kernel, function: &Function) -> Option<Rou
         Kernel::Energy => ("energy".into(), "the energy".into(), Takes::State),
         Kernel::Motion => ("motion".into(), motion(form), Takes::Velocities),
         Kernel::Initial => {
-            let about = format!("the declared initial {velocities}, 0 where none are");
+            let about = format!("the declared initial {velocities}, 0 where none is declared");
             ("initial".into(), about, Takes::State)
         }
         Kernel::Multipliers => (

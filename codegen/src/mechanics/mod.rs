@@ -113,7 +113,7 @@ pub fn derive(model: &mut Model) -> Derivation {
     }
 }
 
-/// The symbols of all derivatives.
+/// The symbols by which expressions are differentiated.
 #[derive(Debug, Clone)]
 pub struct Coordinates {
     /// Coordinates, in order.

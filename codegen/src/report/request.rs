@@ -1,4 +1,4 @@
-//! Derivations requested in the form of claims, about the functions or fields that these name.
+//! Requests for derivations about functions or fields. A request has the form of claims, which name them.
 
 use dalembert_expr::ExprId;
 use proc_macro2::{Span, TokenStream};
@@ -137,7 +137,7 @@ impl Asked {
     }
 }
 
-/// All modes of a model, each with the requested fields. A model without modes is its own only mode.
+/// All modes of a model, each with the requested fields. A model without modes has one entry.
 pub(super) struct Whole {
     pub(super) modes: Vec<Fielded>,
 }

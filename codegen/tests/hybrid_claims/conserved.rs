@@ -64,7 +64,7 @@ fn quantities_along_the_motion() {
             "dot(x)",
             False("d/dt(dot(x)) = -0.131306892764"),
         ),
-        // -sin(phi) dot(phi).
+        // The rate is -sin(phi) dot(phi).
         (
             disk.as_str(),
             "cos(phi)",
@@ -96,7 +96,7 @@ fn quantities_along_the_motion() {
 /// A conserved quantity has no counterexample. The message shows a state at which the parts of its rate cancel.
 #[test]
 fn parts_that_cancel_are_shown() {
-    // g dot(y) and -g dot(y) with g = 2; then a rotation, and an impact.
+    // The parts are g dot(y) and -g dot(y) with g = 2. A rotation and an impact follow.
     let sum = "\nfor example part by y = -1.5, part by dot(y) = 1.5 at y = -0.53, g = 2, dot(x) = 0.5, dot(y) = -0.75";
     check(FALL, "not conserved: energy", Barred(sum));
     let turned = "pub Turned { coordinates { x; y; } field { dot(x) = -y; dot(y) = x; } CLAIM }";
@@ -111,7 +111,7 @@ fn quantities_under_impulses_and_resets() {
     let damped = ball("restitution(c)");
     let kept = [
         (WALLS, "wall", "energy"),
-        // Along (2, -1).
+        // The velocity along the wall, in the direction (2, -1).
         (WALLS, "wall", "2*dot(x) - dot(y)"),
         (WALLS, "wall", "(dot(x) + 2*dot(y))^2"),
         (WALLS, "wall", "x*y"),
@@ -130,7 +130,7 @@ fn quantities_under_impulses_and_resets() {
         check(system, &negated, Barred("is the same before and after"));
     }
     let changed = [
-        // dot(x) + 2 dot(y) = -1: 2/5 (1, 2) is added.
+        // The impact at dot(x) + 2 dot(y) = -1 adds 2/5 (1, 2) to the velocity.
         (WALLS, "wall", "dot(x)", Shown("dot(x) after", 0.9)),
         (WALLS, "wall", "dot(y)", Shown("dot(y) after", 0.05)),
         (
@@ -146,7 +146,7 @@ fn quantities_under_impulses_and_resets() {
             Shown("dot(x)*dot(y) after", 0.9375),
         ),
         (WALLS, "left", "y", Shown("y after", 0.26)),
-        // (15/16)^2/2 + 1/2 of (-3/4, 5/4).
+        // The velocity (-3/4, 5/4) becomes (15/16, 1), with the energy (15/16)^2/2 + 1/2.
         (
             WALLS,
             "left",
@@ -217,7 +217,7 @@ fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
         &format!("not conserved under wall: {}", along("1")),
         True,
     );
-    // A wall for the direction alone keeps the momentum.
+    // A wall that bounds `phi` alone keeps the momentum.
     let stop = disk("stop: 1/2 - cos(phi) >= 0;");
     check(
         &stop,
@@ -252,12 +252,12 @@ fn symmetries_of_lagrangians_are_proved_and_others_refuted() {
     all(
         "symmetry",
         &[
-            // -g y gains -g x.
+            // The rotation changes -g y at the rate -g x.
             (FALL, TURN, Shown(of_x, 2.0)),
             (FALL, "x*partial(x)", Shown(second, 2.0)),
             (FALL, "y*partial(x)", Shown(mixed, 1.0)),
             (FALL, "t^2*partial(x)", Shown(of_x, 2.0)),
-            // d/dx (4 x (x^2 + y^2)).
+            // The value is d/dx (4 x (x^2 + y^2)).
             (ROUND, "partial(x)", Shown(of_x, 2.6788)),
             (CHARGED, "x*partial(y)", Shown(mixed, 1.0)),
             (CHARGED, "t*partial(x)", Shown(of_y, 3.0)),

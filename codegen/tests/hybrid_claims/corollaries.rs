@@ -77,7 +77,7 @@ fn energy_that_changes_excludes_the_argument() {
         KEPT,
         [true, false],
     );
-    // A force that keeps volumes and no energy.
+    // The force keeps volumes, but not the energy.
     let driven = particle("wall: 1 - x^2 - y^2 >= 0;")
         .replace("impacts", "forces { pull: -y*d(x) + x*d(y); } impacts");
     check(&driven, KEPT, [true, false]);

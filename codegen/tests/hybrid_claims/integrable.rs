@@ -51,7 +51,7 @@ fn integrable_systems_are_proved() {
         True,
     );
     check(&ball("elastic"), "integrable: energy", True);
-    // A rolling disk: two degrees of freedom.
+    // A rolling disk has two degrees of freedom.
     check(
         &disk(""),
         "integrable: momentum(theta), momentum(phi)",
@@ -171,7 +171,7 @@ fn near_misses_are_refuted() {
         SPIN,
         False("changes in an impact at `wall`"),
     );
-    // The differentials are independent, if only just.
+    // The differentials are independent, but nearly dependent.
     check(
         &particle(""),
         "integrable: momentum(x), momentum(x) + 1e-9*momentum(y)",

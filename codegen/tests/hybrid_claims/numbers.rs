@@ -1,4 +1,4 @@
-//! Numbers of the sources, checked by differences of motions through impacts, with claims that prove them at all
+//! Numbers printed in the sources. Differences of motions through impacts check them, and claims prove them at all
 //! states.
 
 use dalembert_texts::TEXTS;
@@ -35,7 +35,7 @@ fn step(z: &[f64]) -> State {
     ]
 }
 
-/// The return of `(xi, eta)` after a step to those after the next one, and the integral of the divergence.
+/// Maps `(xi, eta)` after a step to `(xi, eta)` after the next one. The third entry is the integral of the divergence.
 fn walked(xi: f64, eta: f64) -> [f64; 3] {
     let hold = |z: &[f64]| vec![0.0; z.len()];
     let stride = Hybrid {

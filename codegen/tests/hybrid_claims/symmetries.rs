@@ -140,7 +140,7 @@ fn resets_are_kept_with_positions_and_velocities() {
         "partial(x)",
         &["mismatch in dot(y) behind it = 1"],
     );
-    // Doubling the velocity commutes with rotations; doubling one component does not.
+    // Multiplying both components by -2 commutes with rotations; multiplying them by -2 and -3 does not.
     let round = |map: &str| {
         let lagrangian = "lagrangian = (dot(x)^2 + dot(y)^2)/2;";
         particle(&format!(

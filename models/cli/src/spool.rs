@@ -1,5 +1,5 @@
-//! Buffer for the rows of a JSON array, because a document states the end of a run before its events. It keeps some
-//! rows in memory, and more of them in a temporary file.
+//! Buffer for the rows of a JSON array, because a document states the end of a run before its events. The last rows are
+//! in memory. Earlier rows are in a temporary file if there are many.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, Write};

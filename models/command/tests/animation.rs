@@ -1,4 +1,4 @@
-//! Pages that play a run: their data against the run, and the index of a gallery.
+//! Pages that play a run. Their data are compared with the run. The index of a gallery lists them.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -55,7 +55,8 @@ fn pair(value: &Value) -> [f64; 2] {
     [0, 1].map(|place| value[place].as_f64().unwrap())
 }
 
-/// A ball from height 2 with g = 1: `x = 2 - t^2/2` until the impact at t = 2 at the speed 2, and `2 s - s^2/2` behind it.
+/// A ball from height 2 with g = 1: `x = 2 - t^2/2` until the impact at t = 2 at the speed 2.
+/// After it `x = 2 s - s^2/2` with `s = t - 2`.
 #[test]
 fn heads_follow_the_motion() {
     let folder = Folder::new("ball");
@@ -87,7 +88,7 @@ fn heads_follow_the_motion() {
     assert!(left < 0.0 && right > 4.0 && low < 0.0 && high > 2.0);
 }
 
-/// The table of the rolling disk is at rest, that of the disk between moving walls has a border for each frame.
+/// The table of the rolling disk is at rest. A region with a moving wall has a border for each frame.
 #[test]
 fn walls_are_drawn_where_they_are() {
     let folder = Folder::new("walls");

@@ -141,8 +141,8 @@ fn a_ball_takes_the_impacts_that_are_cheapest() {
     let nodes = document["nodes"].as_array().unwrap();
     assert_eq!(nodes.len(), 61 * 61);
     let at = |x: usize, y: usize| nodes[x * 61 + y].as_array().unwrap().clone();
-    // The node x = 2, y = 0 has the cost and the impacts of the second path. From a high ball that rises fast every
-    // motion leaves the grid.
+    // The node x = 2, y = 0 has the cost and the impacts of the second path. A ball that starts high and rises fast
+    // leaves the grid with every input.
     assert!((number(&at(40, 30)[2]) - 0.0363).abs() < 3e-3);
     assert!((number(&at(40, 30)[4]) - 1.0).abs() < 0.1);
     assert!(at(59, 59)[2].is_null() && at(59, 59)[3].is_null());

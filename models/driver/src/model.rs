@@ -126,7 +126,7 @@ pub trait AnyModel: Runs {
     fn set_parameter(&mut self, index: usize, value: f64);
     /// Sets the mode, by number, of states that are created after this call.
     fn set_mode(&mut self, mode: usize);
-    /// The name of the mode in which states are made; `None` where [`mode_alone`](Self::mode_alone) is.
+    /// The name of the mode in which states are made; `None` if [`mode_alone`](Self::mode_alone) returns `None`.
     fn present_mode(&self) -> Option<&'static str>;
     /// The mode in which states are made, as a model of its own with the same values of parameters; its runs end at transitions.
     /// `None` for a model without modes, and for one that is known by its type alone.

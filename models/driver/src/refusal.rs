@@ -22,7 +22,7 @@ pub enum Uncertified {
     #[error("certified motion needs `variations`; add it to the declaration of the scene")]
     WithoutVariations,
     /// The operating system does not provide a thread with the required stack.
-    #[error("certified motion needs 16 MiB of stack, which the system does not give")]
+    #[error("certified motion needs 16 MiB of stack, which the system does not provide")]
     NoThread,
 }
 

@@ -89,7 +89,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "D09",
         title: "a bead on a circle, by an integrable constraint, 1000 turns",
-        right: "the radius stays",
+        right: "the radius stays the same",
         bound: "1e-12; without projection at most 1e-8",
         run: Run::Integrators(bead),
         ..Case::QUICK

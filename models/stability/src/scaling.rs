@@ -51,7 +51,7 @@ static DISK_RENAMED: Text = Text::new(
 pub const CASES: &[Case] = &[
     Case {
         id: "E01",
-        title: "lengths times 2^k, times times 2^j, k and j from -40 to 40",
+        title: "lengths scaled by 2^k and times by 2^j, k and j from -40 to 40",
         right: "the same run in other units",
         bound: "bit for bit",
         run: Run::Integrators(|setting, report| scaled(setting, report, 2.0, 0.0)),
@@ -59,7 +59,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "E02",
-        title: "lengths and times times 10^12 and 10^-12",
+        title: "lengths and times scaled by 10^12 and 10^-12",
         right: "the same run in other units",
         bound: "1e-11; the same number of impacts",
         run: Run::Integrators(|setting, report| scaled(setting, report, 10.0, 1e-11)),
@@ -84,7 +84,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "E05",
         title: "states and parameters of 1e-310",
-        right: "the same class of outcome as 2^200 times larger",
+        right: "the same class of outcome as at 2^200 times the size",
         bound: "the same outcome and number of impacts",
         run: Run::Integrators(denormal),
         ..Case::QUICK
@@ -108,7 +108,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "E09",
         title: "a circle of radius 1e8 with a gap of one unit in the last place",
-        right: "an impact as soon as the gap can be told",
+        right: "an impact as soon as the gap differs from its rounding error",
         bound: "P-LOC with the terms R^2 of its gap",
         run: Run::Steps(large_circle),
         ..Case::QUICK
@@ -229,7 +229,7 @@ fn overflow(setting: Setting, report: &mut Report) {
 }
 
 fn late_start(setting: Setting, report: &mut Report) {
-    // On a level incline `s` moves at rate 1, so its value is the time.
+    // On a level incline `s` moves at rate 1, so that its value is the time since the start.
     let system = INCLINE.with([("g", 1.0), ("slope", 0.0), ("e", 1.0)]);
     let end = Course::new(&system, &[0.0, 0.0], &[1.0, 5e-4], 1e9 + 0.1005)
         .at(1e9)

@@ -43,7 +43,7 @@ pub const CASES: &[Case] = &[
         id: "F16",
         title: "energy of regular motion over 2e4 steps of Gauss's methods",
         right: "bounded, without drift",
-        bound: "what 1e6 steps were measured to reach",
+        bound: "the error that was measured over 1e6 steps",
         run: Run::Once(|report| symplectic(report, QUICK)),
         ..Case::QUICK
     },
@@ -59,7 +59,7 @@ pub const CASES: &[Case] = &[
         id: "F17",
         title: "energy of regular reversible motion over 2e4 steps of the discrete principle",
         right: "bounded, without drift",
-        bound: "what 1e6 steps were measured to reach",
+        bound: "the error that was measured over 1e6 steps",
         run: Run::Once(|report| nonholonomic(report, QUICK)),
         ..Case::QUICK
     },
@@ -73,7 +73,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "F18b",
-        title: "energy over 1e6 steps where nothing holds it",
+        title: "energy over 1e6 steps where no invariant bounds it",
         right: "it grows: chaotic motion in a magnetic field; Gauss's method in global form, which leaves D",
         bound: "exponents above 0.2 and 1.5; bounded in the form reduced to D",
         run: Run::Once(growing),
@@ -176,8 +176,8 @@ fn symplectic(report: &mut Report, steps: u64) {
     let start: [&[f64]; 2] = [&[0.4, 0.3], &[0.0, 0.0]];
     let series = energy!(long, Gauss4, 0.02, pendulum, start);
     long.bounded(&series, 4e-8, 4e-12);
-    // The drift is all rounding error: over eight starts 1.4e-14 root mean square, of either sign. The bound is four
-    // times as large.
+    // The drift is rounding error only: over eight starts it has either sign and a root mean square of 1.4e-14. The
+    // bound is four times as large.
     let series = energy!(long, Gauss6, 0.02, pendulum, start);
     long.bounded(&series, 2e-11, 6e-14);
     // At a quarter of the step, the error of the method equals the rounding error.
@@ -218,8 +218,8 @@ fn growing(report: &mut Report) {
         steps: LONG,
     };
     let start: [&[f64]; 2] = [&[1.0, 0.2, 0.3], &[0.5, 0.0, 0.7]];
-    // Coupled to the position and in a magnetic field, the motion is chaotic and not reversible: the energy performs a
-    // random walk.
+    // The coupling to the position and the magnetic field make the motion chaotic and not reversible. The energy
+    // performs a random walk.
     let wild = STEERED_EDGE.with([("c", 0.5), ("b", 0.8)]);
     let second = energy!(long, Dla2, 0.05, wild, start);
     long.grows(&second, 0.3);

@@ -104,7 +104,7 @@ pub const CASES: &[Case] = &[
         id: "C19",
         title: "an impact exactly where a mode changes",
         right: "the same in either order where both modes have the floor",
-        bound: "the same under 1e-15; `ambiguous` where only one has it",
+        bound: "the same after a shift of 1e-15; `ambiguous` where only one has it",
         run: Run::Steps(corner),
         ..Case::QUICK
     },

@@ -17,7 +17,7 @@ pub(super) struct Departure<'f, 'a, Sys: Variational + Impacting> {
     /// Enclosure of the time of the impact.
     pub(super) times: Interval,
     pub(super) unit: Interval,
-    /// Enclosure of the length of time from it, in units.
+    /// Enclosure of the time from the impact to the end of this motion, in units.
     pub(super) rest: Interval,
 }
 
@@ -51,7 +51,8 @@ impl<Sys: Variational + Impacting> Departure<'_, '_, Sys> {
         Ok(Departed { tube, rates, sides })
     }
 
-    /// Derivatives of the state at the time after all impacts, from the derivatives at the surface.
+    /// Derivatives of the state at the end of this motion, from its derivatives after the impact, `along`, and the
+    /// derivative of the time of the impact, `delay`.
     pub(super) fn carried(
         &self,
         departed: &Departed<Sys>,
@@ -88,7 +89,7 @@ pub(super) fn carried<Sys: Variational>(
     changes.is_finite().then_some(changes)
 }
 
-/// The reason why a surface is not certainly passed at the impact on another.
+/// The reason for a refusal if the motion may meet another surface near this impact.
 pub(super) fn together(surface: usize, other: usize, reason: Reason) -> Reason {
     match reason {
         Reason::UnsureCondition { .. } => reason,

@@ -17,7 +17,8 @@ use crate::numbers::{Interval, Row};
 use crate::per_surface::PerSurface;
 use crate::variations::transition::Strike;
 
-/// Distances before a surface at which a crossing begins, relative to the part of the step up to it. Tried in order.
+/// Distances before a surface at which a crossing begins, relative to the part of the step up to it. They are tried in
+/// order.
 const MARGINS: [f64; 4] = [
     1.0 / (1_u64 << 40) as f64,
     1.0 / (1_u64 << 32) as f64,
@@ -62,7 +63,7 @@ impl<Sys: Variational> CertifiedImpact<Sys> {
 /// use dalembert::numbers::Interval;
 ///
 /// model! {
-///     /// A ball over a floor that takes half of its speed.
+///     /// A ball over a floor that halves its speed.
 ///     pub Ball {
 ///         coordinates { x; }
 ///         lagrangian = dot(x)^2/2 - x;
@@ -282,7 +283,8 @@ impl<'a, Sys: Variational + Impacting> CertifiedRun<'a, Sys> {
         self.progress.flow.field = *field;
     }
 
-    /// Sets the initial sides: above a surface if no gap is negative, below it if no gap is positive, else unknown.
+    /// Sets the initial sides: above a surface if its gap is nowhere negative on the box, below it if the gap is
+    /// nowhere positive, else unknown.
     fn begin(&mut self) -> Result<(), Lost> {
         if self.is_begun {
             return Ok(());

@@ -19,8 +19,8 @@ pub(super) const fn of<S: Emitted>() -> Option<&'static Form> {
     }
 }
 
-/// The form of a mode's type, with the kernels of transitions. With `NARROW`, rates of some mode may be narrow, and the
-/// form includes rates over intervals.
+/// The form of a mode's type, with the kernels of transitions. With `NARROW`, the rates of some mode may have narrow
+/// features, and the form includes rates over intervals.
 pub const fn of_mode<S: Emitted, const NARROW: bool>() -> &'static Form {
     OfMode::<S, NARROW>::FORM
 }

@@ -42,7 +42,7 @@ pub enum Global {
     /// The form is the global one.
     Itself,
     /// The form of a type.
-    // NOTE: a function, as the constant of a type cannot refer to itself.
+    // NOTE: this is a function, because the constant of a type cannot refer to itself.
     OfType(fn() -> Option<&'static Form>),
     /// A separate form.
     Another(Shared<Form>),

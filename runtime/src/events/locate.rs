@@ -412,8 +412,8 @@ impl Line<'_> {
             },
         };
         let narrowed = narrow(drop, value);
-        // A pole differs from a root by gaps that grow towards it: compared with the ends of the bracket or, if that
-        // was narrow already, with the values elsewhere in the step.
+        // Towards a pole the gap grows. It is compared with its values at the ends of the first bracket or, if that
+        // bracket was narrow already, with its values elsewhere in the step.
         let size = |drop: &Drop| {
             let gap = |i: usize| {
                 if slope.is_some() {

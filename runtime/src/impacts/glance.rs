@@ -105,7 +105,8 @@ impl<G: StateVector> Glance<G> {
     }
 }
 
-/// Returns the gaps if all are finite. The error gives the first other gap the index `state_len + surface`.
+/// Returns the gaps if all are finite. Otherwise the error has the index `state_len + surface` of the first gap that is
+/// not.
 #[inline(always)]
 pub(super) fn finite<Sys: Impacting>(system: &Sys, gaps: Sys::Gaps) -> Result<Sys::Gaps, Outcome> {
     match gaps.as_slice().iter().position(|gap| !gap.is_finite()) {

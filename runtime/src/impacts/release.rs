@@ -68,7 +68,7 @@ fn first_fall<Sys: Impacting, Step: Stepper<Sys>>(
         .fold(0.0_f64, |most, size| most.max(size.abs()));
     let above = whole[0] >= -ROUNDING * largest;
     if !above && whole.iter().all(|&size| size < 0.0) {
-        // The gap presses and the force pulls, both by more than rounding errors.
+        // The surface holds the motion, but throughout the step its force would have to pull.
         return Err(Outcome::Contact { surface });
     }
     let fault = Cell::new(None);

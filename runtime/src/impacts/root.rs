@@ -37,7 +37,7 @@ pub(super) struct Polynomial<'a, G: StateVector> {
 }
 
 impl<'a, G: StateVector> Polynomial<'a, G> {
-    /// The polynomial of this surface. `at_hand` is true if the surface is at hand at the start of the step.
+    /// The polynomial of this surface. `at_hand` is true if the gap is 0 at the start of the step.
     pub(super) fn new(series: &'a GapSeries<G>, surface: usize, at_hand: bool) -> Self {
         let first = usize::from(at_hand);
         let known = &series.polynomials;
@@ -52,7 +52,8 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
         }
     }
 
-    /// A fraction of the step up to which the polynomial provably has one fall and no other root, if one is found.
+    /// A fraction of the step up to which the polynomial provably has one fall and no other root; `None` if no such
+    /// fraction is found.
     pub(super) fn first_fall(&self) -> Option<f64> {
         let end = (BEHIND * self.guess([0.0, 1.0])).min(1.0);
         let signs = self.series.signs_by_more(self.surface, self.at_hand, end);
@@ -78,7 +79,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
                 after = near.part;
             }
             let root = near.root(near.value);
-            // Written so that NaN fails the comparison.
+            // In this form NaN fails the comparison.
             let is_inside = root >= before && root <= after;
             if is_inside && (root - near.part).abs() <= SETTLED * root {
                 break root;
@@ -91,7 +92,7 @@ impl<'a, G: StateVector> Polynomial<'a, G> {
             root = near.root(near.value);
         }
         let size = self.series.sizes.as_slice()[self.surface];
-        // Distance that neighbouring numbers and rounding cannot resolve.
+        // Distance from the root within which rounding decides the sign of the gap.
         let margin = 8.0 * f64::EPSILON * (root + size / self.slope(&near, root).abs());
         let is_only = self.falls_through(near.slope + 2.0 * near.bend * (root - near.part));
         let root = self.corrected(&near, root, margin, gap)?;
@@ -361,7 +362,7 @@ mod tests {
 
     #[test]
     fn doubtful_falls_are_left_to_the_gap_itself() {
-        // Three failures: the gap differs from the polynomial; it touches; it rises.
+        // The three failures: the gap differs from the polynomial, the polynomial touches 0, the polynomial rises.
         let falling = series(&[0.5, -1.0], 1e-12);
         assert_eq!(fall(&falling, false, [0.0, 1.0], |_| 1e-11), None);
         let touching = series(&[0.25, -1.0, 1.0], 1e-12);

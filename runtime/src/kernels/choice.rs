@@ -42,7 +42,7 @@ impl<A: Given, B: Chosen> Chosen for Choice<A, B> {
     }
 }
 
-// NOTE: as `GIVEN` of a form, the list selects no kernels. Those of its modes are selected by index.
+// NOTE: `GIVEN`, which a form with modes has, selects no kernels. The kernels of a mode are selected by index.
 impl<A: Given, B: Chosen> Given for Choice<A, B> {
     const GIVEN: Self = Self {
         place: usize::MAX,

@@ -149,7 +149,7 @@ impl<'s, S: Declared> Part<'s, S> {
         [dimensions.coordinates, dimensions.motion]
     }
 
-    /// Index in the part of a surface of the model; `None` if the part does not have it.
+    /// Index that a surface of the model has in the part; `None` if the part does not have the surface.
     #[inline(always)]
     pub(crate) fn surface(&self, surface: usize) -> Option<usize> {
         match self.mode() {
@@ -158,22 +158,22 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Index in the part of a surface of the model. Fails if the part does not have it.
+    /// Index that a surface of the model has in the part. Fails if the part does not have the surface.
     #[inline(always)]
     pub(crate) fn known(&self, surface: usize) -> Result<usize, Fault> {
         self.surface(surface)
             .ok_or(Fault::SingularSurface { surface })
     }
 
-    /// Index in the part of a surface of the model, and its transition; `None` if the surface does not lead to another
-    /// mode.
+    /// Index that a surface of the model has in the part, and its transition; `None` if the surface does not lead to
+    /// another mode.
     pub(crate) fn transition(&self, surface: usize) -> Option<(usize, Transition)> {
         let local = self.surface(surface)?;
         let transition = self.mode()?.transitions.get(local).copied().flatten()?;
         Some((local, transition))
     }
 
-    /// Index in the model of a coordinate of the part.
+    /// Index that a coordinate of the part has in the model.
     #[inline(always)]
     pub(crate) fn coordinate(&self, local: usize) -> usize {
         self.mode().map_or(local, |mode| mode.coordinates[local])
@@ -292,7 +292,7 @@ impl<'s, S: Declared> Part<'s, S> {
         }
     }
 
-    /// Index in the model of a constraint of the part.
+    /// Index that a constraint of the part has in the model.
     fn constraint(&self, local: usize) -> usize {
         let places = self.mode().map_or(&[][..], |mode| &mode.constraints);
         places.get(local).copied().unwrap_or(local)
@@ -460,7 +460,8 @@ impl<S: Declared> Part<'_, S> {
         Ok(state)
     }
 
-    /// Concatenates positions and momenta or quasi-velocities, at the beginning of vectors, to a state of the mode.
+    /// A state of the mode from positions and from momenta or quasi-velocities, which are the first entries of `q` and
+    /// `motion`.
     #[inline(always)]
     pub(super) fn joined(&self, q: &[f64], motion: &[f64]) -> S::State {
         let [n, k] = self.lengths();

@@ -1,6 +1,6 @@
 //! Power series of a model with modes, from those of its modes.
 //!
-//! Motions in neighbouring lanes may be in different modes. Each mode of any lane expands the lanes in it. The other
+//! Motions in neighbouring lanes may be in different modes. Each mode that occurs expands the lanes in it. The other
 //! lanes repeat the numbers of one of these lanes, and their results are discarded.
 
 use crate::error::Fault;
@@ -83,8 +83,8 @@ fn is_in<L: Numbers>(mode: usize, number: &L, lane: usize) -> bool {
     (number.lane(lane) + 0.5) as usize == mode
 }
 
-/// Calls [`TaylorField::begin`](crate::TaylorField::begin) for the lanes in this mode. `expand` computes the `known`
-/// quantities at order 0 of its series.
+/// Calls [`TaylorField::begin`](crate::TaylorField::begin) for the lanes in this mode. `expand` computes the quantities
+/// at order 0 of the mode's series. Their number is `known`.
 ///
 /// # Errors
 /// The [`Fault`] of the mode.
@@ -206,7 +206,7 @@ pub(crate) fn advance<
     }
 }
 
-/// The first numbers of a row, in the lanes of a mode.
+/// Copies values into a row of a mode. The lanes outside the mode repeat its first lane.
 #[inline(always)]
 fn row<L: Numbers, R: Row<L>>(values: &[L], lanes: &Lanes, modes: &L) -> R {
     let mut row = R::zeros(values.len());

@@ -14,7 +14,7 @@ use crate::numbers::{Numbers, Row};
 use crate::record::Segment;
 use crate::state::StateVector;
 
-/// Allowed size of the last two terms of a series relative to the first ones, below the rounding of the sum.
+/// Allowed size of the last two terms of a series relative to the first ones. It is below the rounding of the sum.
 const LAST: f64 = 0.25 * f64::EPSILON;
 
 /// Power series of the motion and of its derivatives.
@@ -93,8 +93,8 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(())
     }
 
-    /// Expands the motion from a state. Returns the length of the step that the series allow, at most `length`, in
-    /// units of time.
+    /// Expands the motion from a state. Returns the step that the series allow, at most `length`, in units of
+    /// `self.unit`.
     fn step(
         &mut self,
         system: &Sys,

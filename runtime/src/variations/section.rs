@@ -34,7 +34,7 @@ use crate::simulation::Simulation;
 ///     }
 /// }
 ///
-/// // From a height of 1/2 the ball is back on the floor after 2.
+/// // From the height 1/2 the ball reaches the floor at the time 1, and again 2 units of time later.
 /// let ball = Ball::default();
 /// let start = ball.state(0.0, &[0.5].into(), &[0.0].into())?;
 /// let integrator = Taylor::new(Tolerance::new(1e-13)?);
@@ -200,7 +200,7 @@ where
             last: None,
             itinerary: Itinerary::new(),
         };
-        // NOTE: a pointer, so that the driver is compiled once for every such observer.
+        // NOTE: the observer is a trait object, so that the driver is compiled once for all observers.
         let mut observer: &mut dyn Observer<Sys> = &mut passage;
         let run = self
             .simulation

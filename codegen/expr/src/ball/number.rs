@@ -9,7 +9,8 @@ use super::bound;
 use super::wide::{BITS, Wide};
 use crate::rational::Rational;
 
-/// Numbers above `2^LARGEST` become the whole real line, those below `2^-LARGEST` a ball around 0.
+/// A ball with a middle above `2^LARGEST` becomes the whole real line, one with a middle below `2^-LARGEST` a ball
+/// around 0.
 const LARGEST: i32 = 1100;
 /// Newton steps from the 50 bits of doubles to 256.
 pub(super) const NEWTON_STEPS: usize = 3;

@@ -110,7 +110,8 @@ impl<'s, A: Arithmetic> Jets<'s, A> {
         if sum.len() < b.len() {
             sum.resize(b.len(), self.field.integer(0));
         }
-        // NOTE: indices, not iterators: the generator of a user's build is not optimised.
+        // NOTE: this loop uses an index, because the generator is compiled without optimisation in a user's build,
+        // where iterators are slow.
         let mut i = 0;
         while i < b.len() {
             sum[i] = combine(sum[i], b[i]);

@@ -1,4 +1,4 @@
-//! Extremals as a first-order model with resets, for the ordinary stages.
+//! Extremals as a first-order model with resets. It passes through the same stages as a declared model.
 
 use dalembert_expr::{Assumption as Known, ExprId, SymbolId};
 
@@ -60,7 +60,7 @@ pub(super) struct Parts {
     pub components: Vec<Entry>,
     /// Their rates.
     pub rates: Vec<ExprId>,
-    /// One for each surface: the components after an impact, `None` for those that stay.
+    /// For each surface, the components after an impact; `None` for those that stay.
     pub resets: Vec<Vec<Option<ExprId>>>,
     /// The outputs.
     pub outputs: Vec<Output>,

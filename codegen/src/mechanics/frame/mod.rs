@@ -1,7 +1,7 @@
 //! The motion reduced to D: quasi-velocities, and the solve for velocities from them.
 //!
-//! One-forms `alpha^i` that complete the constraint forms to a coframe give quasi-velocities `u^i = alpha^i(qdot)`,
-//! N - M of them, and with `X_i` dual to both
+//! N - M one-forms `alpha^i` that complete the constraint forms to a coframe give quasi-velocities
+//! `u^i = alpha^i(qdot)`. The fields `X_i` are dual to the coframe:
 //!
 //! ```text
 //! qdot = X_0 + X_i u^i        alpha^j(X_i) = delta, eta(X_i) = 0;  alpha(X_0) = 0, eta(X_0) = -eta_0
@@ -61,7 +61,7 @@ pub struct QuasiVelocity {
 pub enum Unreduced {
     /// There are no constraints and no frame was declared.
     Free,
-    /// No choice of dependent velocities is regular at every configuration; the constraints that stand in the way.
+    /// The constraints for which no choice of dependent velocities is regular at every configuration.
     NoRegularFrame(Vec<usize>),
     /// Constraints that are not linear in the velocities.
     Nonlinear(Vec<usize>),

@@ -1,4 +1,4 @@
-//! The names of a section: each declared once, and families without gaps, so that their members are found by index.
+//! Checks of the names of a section: each is declared once, and families have no gaps, so that an index finds a member.
 
 use super::super::Name;
 use super::super::resolve::{Resolver, Scope};
@@ -24,7 +24,7 @@ impl Names {
         }
     }
 
-    /// Makes a name known, unless it is taken.
+    /// Adds a name. Reports an error if the name is taken.
     pub(super) fn add(&mut self, resolver: &mut Resolver<'_>, name: &Name, written: &Word) {
         let first = self.met.iter().find(|(first, _)| {
             let both_alone_and_family = first.member.is_some() != name.member.is_some();
@@ -86,7 +86,7 @@ impl Resolver<'_> {
         self.members_within(declared, &Scope::default())
     }
 
-    /// The same inside of another declaration, whose index is known.
+    /// Same as [`Resolver::members`], inside a declaration whose index has its value in `outer`.
     pub(super) fn members_within(
         &mut self,
         declared: &Declared,

@@ -79,13 +79,13 @@ pub struct ExportArgs {
     /// Scene: which forces and surfaces are used, as `list --format json` prints them.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
-    /// Laws of inputs.
+    /// Feedback laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
     /// Claims.
     #[command(flatten)]
     pub claims: ClaimsArgs,
-    /// Write a header of C. `-` is the standard output.
+    /// Write a C header. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub c: PathBuf,
 }

@@ -40,7 +40,7 @@ pub fn run(
     let model = build_model(models, &args.model)?;
     let boundary = boundary(model.as_ref(), args)?;
     quantity::check("--axes", args.axes.as_deref(), model.description())?;
-    // Opened before the search, so that a path that cannot be written is reported at once.
+    // The files are opened before the search, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let plot = Sink::open_given("--plot", args.plot.as_deref())?;
@@ -159,7 +159,7 @@ fn refused(description: &Description, unjoined: &Unjoined) -> CliError {
     }
 }
 
-/// The request of the flags.
+/// The boundary value problem that the flags state.
 fn boundary(model: &dyn AnyModel, args: &ConnectArgs) -> Result<Boundary, CliError> {
     let description = model.description();
     if !description.modes.is_empty() {

@@ -50,7 +50,7 @@ impl Finished<'_> {
         outputs.iter().copied().take(twice / 2)
     }
 
-    /// The settings that repeat a run.
+    /// The settings with which a run of the search is repeated.
     fn settings(&self) -> Settings {
         let form = Form::choose(self.description(), None, false);
         Settings {
@@ -89,7 +89,7 @@ pub fn run(
     let model = model_of_extremals(models, args)?;
     let task = task(model.as_ref(), args)?;
     quantity::check("--axes", args.axes.as_deref(), model.description())?;
-    // Opened before the search, so that a path that cannot be written is reported at once.
+    // The files are opened before the search, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let inputs = Sink::open_given("--inputs", args.inputs.as_deref())?;
@@ -239,7 +239,7 @@ fn cheapest(
     })
 }
 
-/// The request of the flags.
+/// The optimal control problem that the flags state.
 fn task(model: &dyn AnyModel, args: &ControlArgs) -> Result<Task, CliError> {
     let description = model.description();
     let count = (description.coordinates.len() - 1) / 2;

@@ -12,7 +12,7 @@ use std::thread;
 /// Number of blocks per thread that may be handed out ahead of the first missing result.
 const AHEAD: u64 = 8;
 
-/// Smallest number of items in a block, if every thread gets as many: runs abreast fill SIMD lanes.
+/// Smallest number of items in a block if there are so many for every thread. Runs side by side fill SIMD lanes.
 const TOGETHER: u64 = 8;
 
 /// Division of the work.
@@ -48,7 +48,8 @@ pub fn in_order<W, T: Send, E>(
 ) -> Result<(), E> {
     let gate = Gate::new(items.clone(), division);
     thread::scope(|scope| {
-        // Dropped at the end, also after an error, so that no thread keeps waiting for results to be taken.
+        // This guard is dropped at the end, also after an error, so that no thread keeps waiting for results to be
+        // taken.
         let _closing = Closing(&gate);
         let (sender, receiver) = mpsc::channel();
         for _ in 0..division.threads {

@@ -1,4 +1,5 @@
-//! Mean, standard deviation and extremes over all members, from exact sums. They do not depend on how members are divided.
+//! Mean, standard deviation and extremes over all members, from exact sums. They do not depend on the division of the
+//! members among threads and shards.
 
 use dalembert_driver::ensemble::exact::ExactSum;
 use dalembert_driver::ensemble::row::{Columns, Field, OUTPUT, Row};
@@ -11,7 +12,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// No members, with rows of these columns.
+    /// Statistics without members, for rows with these columns.
     pub fn new(columns: &Columns) -> Self {
         let named = columns.iter().enumerate();
         let is_summed = |name: &str| name == "energy" || name.starts_with(OUTPUT);

@@ -7,7 +7,8 @@ use super::plane::Plane;
 use super::region::{COARSE, FINE, Region};
 use crate::symbols;
 
-/// Half the side of the first square in the search for the boundary of the region, and the largest number of doublings.
+/// The search for the boundary of the region starts with a square of half this side, and tries this number of squares,
+/// each twice as large as the one before.
 const LEAST: f64 = 1e-6;
 const DOUBLINGS: i32 = 60;
 
@@ -23,7 +24,7 @@ pub struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// The names of its axes.
+    /// The names of the view's axes.
     pub fn labels(&self) -> [String; 2] {
         let view = &self.model.description().view;
         view.as_ref().map_or_else(Default::default, |view| {

@@ -61,7 +61,7 @@ impl Report {
         let same = found == right;
         let words = match same {
             true => format!("{found:?}"),
-            false => format!("{found:?} for {right:?}"),
+            false => format!("{found:?} instead of {right:?}"),
         };
         self.push(what, words, if same { 0.0 } else { f64::INFINITY });
     }
@@ -78,7 +78,7 @@ impl Report {
         let same = right.contains(&kind);
         let words = match same {
             true => kind.to_owned(),
-            false => format!("{kind} for {}", right.join(" or ")),
+            false => format!("{kind} instead of {}", right.join(" or ")),
         };
         self.push("outcome", words, if same { 0.0 } else { f64::INFINITY });
     }
@@ -102,7 +102,7 @@ impl Report {
 
     /// The check closest to failing, or the worst failure.
     pub(super) fn worst(&self) -> Option<&Check> {
-        // The first of equal checks is taken, because a failure begins there.
+        // Of equally bad checks the first is returned, because the later ones may fail as a consequence.
         let checks = self.checks.iter().rev();
         checks.max_by(|a, b| a.share.total_cmp(&b.share))
     }

@@ -4,7 +4,7 @@ use dalembert_cli::gallery::{Density, Figure, Panel, Picture};
 
 use super::chapters;
 
-/// As in the paper: a million positions, one per unit of time, after a thousand discarded ones.
+// The paper discards a thousand positions and then takes a million, one per unit of time.
 const EVERY: f64 = 1.0;
 const POSITIONS: u64 = 1_000_000;
 const DISCARDED: u64 = 1000;

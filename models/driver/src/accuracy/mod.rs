@@ -124,7 +124,7 @@ pub struct Study {
     pub until: f64,
     /// Difference between the two reference runs: errors below it cannot be distinguished from 0.
     pub floor: f64,
-    /// The reason, in words, for which the impacts of the reference are not confirmed. `samples` is then empty.
+    /// The reason, in words, why the impacts of the reference are not confirmed. `samples` is then empty.
     pub doubt: Option<String>,
     /// The outcome of the reference.
     pub outcome: Outcome,
@@ -136,7 +136,7 @@ pub struct Study {
     pub absent: Vec<(Integrator, String)>,
 }
 
-/// Reasons for which no case can be chosen.
+/// Reasons why no case can be chosen.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoChoice {
@@ -148,7 +148,7 @@ pub enum NoChoice {
     Unconfirmed(String),
     /// No measured case is accurate enough.
     #[error(
-        "no run has an error below {wanted:e}: the least error is {least:e}, the accuracy of the reference {floor:e}"
+        "no run has an error below {wanted:e}: the least error is {least:e}, and the accuracy of the reference is {floor:e}"
     )]
     OutOfReach {
         /// The wanted error.
@@ -404,7 +404,7 @@ impl Case {
 struct Reference {
     track: Track,
     floor: f64,
-    /// The reason for which its impacts are not confirmed.
+    /// The reason why its impacts are not confirmed.
     doubt: Option<String>,
 }
 

@@ -198,7 +198,7 @@ pub enum Unjoined {
         unknowns: usize,
     },
     /// A configuration lies behind a surface.
-    #[error("the gap of surface {surface} is {gap:e} there, which is behind it")]
+    #[error("a configuration lies behind surface {surface}: its gap is {gap:e}")]
     Behind {
         /// True for the configuration at the end.
         is_end: bool,

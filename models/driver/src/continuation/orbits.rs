@@ -66,7 +66,7 @@ impl<S: Instance + Scene + Variational> Orbits<'_, S> {
         self.system.set_parameter(parameter, value);
     }
 
-    /// Limits the time of a return by this period.
+    /// Limits the time of a return to a multiple of this period.
     fn expect(&mut self, period: f64) {
         self.horizon = f64::min(self.search.horizon, PATIENCE * period);
     }

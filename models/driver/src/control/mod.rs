@@ -122,7 +122,7 @@ pub enum Unsought {
     )]
     Input,
     /// A state lies behind a surface.
-    #[error("the gap of surface {surface} is {gap:e} there, which is behind it")]
+    #[error("a state lies behind surface {surface}: its gap is {gap:e}")]
     Behind {
         /// True for the state at the end.
         is_end: bool,

@@ -19,7 +19,7 @@ use path::Path;
 use problem::Problem;
 use solution::Solution;
 
-/// Finished dynamic programming.
+/// A solved problem with its paths.
 struct Finished {
     problem: Problem,
     solution: Solution,
@@ -38,7 +38,7 @@ pub fn run(
 ) -> Result<Exit, CliError> {
     let problem = Problem::of(models, args)?;
     picture::check(&problem, args)?;
-    // Opened before the work, so that a path that cannot be written is reported at once.
+    // The files are opened before the work, so that a path that cannot be written is reported at once.
     let csv = Sink::open_given("--csv", args.csv.as_deref())?;
     let json = Sink::open_given("--json", args.json.as_deref())?;
     let inputs = Sink::open_given("--inputs", args.inputs.as_deref())?;
