@@ -283,10 +283,15 @@ impl<'a> Writer<'a> {
             Op::Number(number) => atom(rational(number)),
             Op::Pi => atom(pi()),
             Op::Neg(a) => {
+                let binding = self.pieces[a.index()].binding;
                 let (tokens, size) = self.operand(*a, Binding::Product);
                 Piece {
                     tokens: joined([quote!(-), tokens]),
-                    binding: Binding::Unary,
+                    // A negated product stands without parentheses, and is a product then.
+                    binding: match binding {
+                        Binding::Product => Binding::Product,
+                        _ => Binding::Unary,
+                    },
                     size: size + 1,
                 }
             }
@@ -388,4 +393,56 @@ pub(super) fn number(value: f64) -> TokenStream {
         };
     }
     literal(value).tokens
+}
+
+#[cfg(test)]
+mod tests {
+    use dalembert_codegen::program::Input;
+    use dalembert_codegen::program::builder::Builder;
+
+    use super::*;
+
+    /// The expression of the only result of a function of x, y and z.
+    fn emitted(build: impl FnOnce(&mut Builder, [Value; 3]) -> Value) -> String {
+        let ident = |name: &str| Ident::new(name, Span::call_site());
+        let names = Names {
+            type_name: quote!(Sample),
+            model_type: quote!(Sample),
+            global: quote!(Sample),
+            held: None,
+            coordinates: ["x", "y", "z"].map(ident).to_vec(),
+            momenta: Vec::new(),
+            velocities: Vec::new(),
+            quasi: Vec::new(),
+            parameters: Vec::new(),
+        };
+        let mut builder = Builder::new();
+        let inputs = [0, 1, 2].map(|k| builder.input(Input::Coordinate(k)));
+        let output = build(&mut builder, inputs);
+        let body = emit_body(&builder.finish(vec![output]), &names);
+        assert!(body.statements.is_empty(), "{}", body.statements);
+        body.outputs[0].to_string().replace(' ', "")
+    }
+
+    #[test]
+    fn negated_products_keep_their_place() {
+        let quotient = emitted(|builder, [x, y, z]| {
+            let product = builder.mul(y, z);
+            let negative = builder.neg(product);
+            builder.div(x, negative)
+        });
+        assert_eq!(quotient, "x/(-y*z)");
+        let quotient = emitted(|builder, [x, y, z]| {
+            let product = builder.mul(y, z);
+            let negative = builder.neg(product);
+            builder.div(negative, x)
+        });
+        assert_eq!(quotient, "-(y*z/x)".replace(['(', ')'], ""));
+        let difference = emitted(|builder, [x, y, z]| {
+            let sum = builder.add(y, z);
+            let negative = builder.neg(sum);
+            builder.div(x, negative)
+        });
+        assert_eq!(difference, "x/-(y+z)");
+    }
 }

@@ -84,7 +84,8 @@ impl Resolver<'_> {
         let is_flat = diagonal
             .iter()
             .any(|sign| matches!(sign, Sign::Zero | Sign::NonPositive));
-        let text = match (diagonal.contains(&Sign::Negative), is_flat) {
+        let is_concave = diagonal.contains(&Sign::Negative) || self.has_negative_minor(&rows);
+        let text = match (is_concave, is_flat) {
             (true, _) => format!("the running cost is not convex in {names}"),
             (false, false) if rank.rank == rows.len() || !rank.decided => {
                 return Some(());
@@ -95,6 +96,19 @@ impl Resolver<'_> {
         };
         let help = "add a positive multiple of the square of each input, such as `u^2/2`";
         self.refuse(written.at, text, help)
+    }
+
+    /// True if the second derivatives by two of the inputs are known to have a negative determinant. Whether larger
+    /// determinants are positive, and whether those of unknown sign are, is checked where a control begins.
+    fn has_negative_minor(&mut self, rows: &[Vec<ExprId>]) -> bool {
+        let pairs = (0..rows.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        let pool = &mut self.pool;
+        pairs.into_iter().any(|(i, j)| {
+            let product = pool.mul(rows[i][i], rows[j][j]);
+            let mixed = pool.mul(rows[i][j], rows[j][i]);
+            let minor = pool.sub(product, mixed);
+            pool.sign(minor) == Sign::Negative
+        })
     }
 }
 
