@@ -78,7 +78,7 @@ fn quick_cases_are_run_and_those_that_fail_are_said_again() {
     assert!(done.output.contains("one: 1.00e0 of 2.00e0"));
     assert!(done.output.contains("pending  nothing to rest on"));
     assert!(done.output.contains("3 cases: 1 pass, 1 fail, 1 pending"));
-    assert!(done.output.ends_with("failed: A02 count: 4 for 3\n"));
+    assert!(done.output.ends_with("failed: A02 count: 4 instead of 3\n"));
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn cases_are_chosen_by_number_section_and_length() {
             .output
             .contains("2 cases: 1 pass")
     );
-    // A case that is named runs, however long it takes.
+    // A case that is named is run, however long it takes.
     assert!(stability("--case B02").output.contains("1 case: 1 pass"));
 }
 

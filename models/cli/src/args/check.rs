@@ -11,7 +11,7 @@ use super::{FeedbackArgs, Format};
 pub struct CheckArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// Laws of inputs.
+    /// Feedback laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
     /// Output format.

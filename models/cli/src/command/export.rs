@@ -1,4 +1,4 @@
-//! `export`: the functions of a model as a header of C.
+//! `export`: the functions of a model as a C header.
 
 use dalembert_codegen::export;
 

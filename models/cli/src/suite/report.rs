@@ -61,7 +61,7 @@ impl Report {
         let same = found == right;
         let words = match same {
             true => format!("{found:?}"),
-            false => format!("{found:?} for {right:?}"),
+            false => format!("{found:?} instead of {right:?}"),
         };
         self.push(what, words, if same { 0.0 } else { f64::INFINITY });
     }
@@ -78,7 +78,7 @@ impl Report {
         let same = right.contains(&kind);
         let words = match same {
             true => kind.to_owned(),
-            false => format!("{kind} for {}", right.join(" or ")),
+            false => format!("{kind} instead of {}", right.join(" or ")),
         };
         self.push("outcome", words, if same { 0.0 } else { f64::INFINITY });
     }
