@@ -15,7 +15,7 @@ use crate::numbers::Row;
 use crate::state::StateVector;
 use dalembert_numbers::Extended;
 
-/// Largest growth of the step after one that was limited from outside.
+/// Largest factor by which the step grows after a step that was limited from outside.
 const GROW: f64 = 8.0;
 
 /// The steps of a flight, rounded to doubles.

@@ -149,7 +149,7 @@ pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
                 (_, false) => Err(format!("`{}` has conditions", surface.name.display)),
                 (None, _) => Err(format!("`{}` is no reset", surface.name.display)),
                 (Some(map), true) => passage(node, surface.gap, map)
-                    .ok_or_else(|| format!("`{}` does not lead from one place to one place with a multiple of the velocity", surface.name.display)),
+                    .ok_or_else(|| format!("`{}` does not lead from one position to one position with a multiple of the velocity", surface.name.display)),
             };
             let slope = match (&map, surface.law) {
                 (Some(map), _) => slope(node, surface.gap, map),
@@ -340,7 +340,7 @@ pub(super) fn injective(edges: &[Edge]) -> Reasoned {
         match &edge.slope {
             Slope::Within(range) if range.excludes_zero() => {}
             Slope::Within(range) if range.lo == 0.0 && range.hi == 0.0 => {
-                let text = format!("`{}` maps all velocities to one", edge.name);
+                let text = format!("`{}` maps all velocities to the same one", edge.name);
                 return (Decided::Fails, text);
             }
             Slope::Within(_) => {

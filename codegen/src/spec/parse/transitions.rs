@@ -20,7 +20,7 @@ pub(super) struct Transitions<'a> {
 /// `enter: smooth -> rough when x >= 0`
 struct Entry<'a> {
     tokens: Vec<TokenTree>,
-    /// The braces it stands in.
+    /// The braces that contain it.
     group: &'a Group,
     /// True if a `;` follows.
     is_ended: bool,

@@ -113,7 +113,7 @@ enum Kind {
 }
 
 impl Components {
-    /// The components of a model, without those of `--ignore` in comparisons.
+    /// The components of a model. Comparisons ignore those of `--ignore`.
     ///
     /// # Errors
     /// A name in `--ignore` that the model does not have.
