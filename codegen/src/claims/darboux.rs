@@ -1,7 +1,7 @@
 //! Density factors that depend on velocities: Darboux polynomials of the motion, linear in the velocities on D.
 //!
-//! `f mu_C` is invariant iff `X(ln f) = c` on D. Here `c = c_0 + c_i u^i` is minus the divergence, as given by the
-//! demands of [`super::frame`]. For `f = (det m)^k |l|^s` the condition is
+//! `f mu_C` is invariant iff `X(ln f) = c` on D. Here `c = c_0 + c_i u^i` is minus the divergence, given by the
+//! right-hand sides `c_i` of [`super::frame`] (`demands`). For `f = (det m)^k |l|^s` the condition is
 //!
 //! ```text
 //! s X(l) = (c - k X(ln det m)) l        on D

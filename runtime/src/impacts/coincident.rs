@@ -2,7 +2,8 @@
 //!
 //! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner with an open exit have
 //! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of widely different
-//! masses. Impacts that lose speed accumulate where their speeds have decayed, impacts that gain speed at once.
+//! masses. Impacts that lose speed count as accumulated once their speeds have decayed. Impacts that gain speed count
+//! as accumulated at once.
 
 use super::accumulation::Bounce;
 use super::repeats::Repeats;
