@@ -108,8 +108,8 @@ struct Circle<'c> {
 }
 
 impl Circle<'_> {
-    /// True if `beta` along the circle, summed over its images under `turns`, changes its sign under a map that moves
-    /// the angle by one of `moves`, and every other coordinate by one of its own moves.
+    /// True if the sum of `beta` along the circle over its images under `turns` changes its sign under some map. A map
+    /// moves the angle by one of `moves`, and every other coordinate by one of its own moves.
     fn cancels(&self, turns: &[Move], moves: &[Move], count: usize) -> bool {
         let (model, problem) = (self.model, self.problem);
         let mut points = self.points.clone();

@@ -172,7 +172,7 @@ fn densities_that_are_negative_are_compared_by_their_size() {
         &claim("volume: kept"),
         False("difference = 5.3"),
     );
-    // A negative factor is refuted, whatever the densities are.
+    // A negative factor is refuted for all densities.
     check(&to("-1"), &factor("y/abs(y)"), False("is negative"));
     // With one field on both sides the motion crosses, in whichever direction it leads.
     let same = crossing(["-y - x^2", "0"], ["-y - x^2", "0"], "-y").replace("density = -y;", "");

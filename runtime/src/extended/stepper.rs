@@ -182,8 +182,8 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         Ok(())
     }
 
-    /// NOTE: does nothing. A projection corrects the rounded state; the flight satisfies the constraints to all its
-    /// digits and continues from its own state.
+    /// NOTE: this function does nothing. A projection corrects the rounded state; the flight satisfies the constraints
+    /// to all its digits and continues from its own state.
     fn replace_end(
         &mut self,
         _: &Sys,

@@ -113,7 +113,7 @@ enum Kind {
 }
 
 impl Components {
-    /// The components of a model. Comparisons ignore those of `--ignore`.
+    /// The components of a model. Comparisons ignore the components of `--ignore`.
     ///
     /// # Errors
     /// A name in `--ignore` that the model does not have.
