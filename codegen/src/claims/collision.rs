@@ -35,7 +35,7 @@ pub(super) trait AtImpact {
         true
     }
 
-    /// True if a state, given in ranges, certainly belongs to the question.
+    /// True if every state in the given ranges belongs to the question.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         let _ = (model, point);
         true

@@ -286,7 +286,8 @@ impl Search<'_> {
         }
         primes.sort_unstable();
         primes.dedup();
-        // The degree is bounded as for a density of the configuration. The motion adds as much as the demand.
+        // The degree is bounded as for a density of the configuration. The motion adds as much to the degree as `c`
+        // does.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
         let error = covered.error(&branches, degree / 2f64.powi(60));

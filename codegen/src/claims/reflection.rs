@@ -147,7 +147,7 @@ impl Circle<'_> {
     }
 }
 
-/// Turns of a circle by parts that residues represent, and their reflections.
+/// Turns of a circle by angles that residues can represent, and their reflections.
 fn turns(denominator: i64) -> Vec<Move> {
     let step = denominator.clamp(1, CIRCLE);
     let turns = (0..CIRCLE).step_by(step as usize);

@@ -2,8 +2,8 @@
 //!
 //! A constraint `phi(t, q, qdot) = 0` that is nonlinear in the velocities has the form `eta = dphi/dqdot` (Chetaev's
 //! rule). Virtual displacements are the changes of velocity that leave `phi` unchanged to first order, and the
-//! constraint force is `lambda eta`. Its time derivative is `eta(qddot) + curvature` as for the other constraints. The
-//! curvature is the derivative of `phi` along the motion at constant velocity.
+//! constraint force is `lambda eta`. The time derivative of `phi` is `eta(qddot) + curvature`, as for the other
+//! constraints. The curvature is the derivative of `phi` along the motion at constant velocity.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 

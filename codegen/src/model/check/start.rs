@@ -66,7 +66,7 @@ impl<'a, 'b> Start<'a, 'b> {
         }
     }
 
-    /// Walls whose gap names a declared position, and is negative.
+    /// Walls whose gap depends on a declared position and is negative.
     fn behind_walls(&self, surfaces: &[Surface]) -> Vec<Refused> {
         let walls = surfaces
             .iter()

@@ -27,7 +27,7 @@ struct Entry<'a> {
 }
 
 impl<'a> Transitions<'a> {
-    /// Writes families out.
+    /// Reads the transitions and writes out their families.
     pub(super) fn of(
         groups: &'a [Group],
         constants: &Constants,
