@@ -49,7 +49,7 @@ impl<'c, S: Described> Kernels<'c, S> {
         }
     }
 
-    /// Times a function. The system is hidden from the optimiser, so that every call reads the parameters and forms
+    /// Times a function. The system is hidden from the optimiser, so that every call reads the parameters and computes
     /// their quotients.
     fn time<R>(mut self, form: &str, function: impl Fn(&S, &State<S>) -> R) -> Self {
         let mut k = 0;

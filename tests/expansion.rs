@@ -187,8 +187,8 @@ fn a_train_of_five_is_decided_or_says_how_far_it_was_followed() {
     assert!(time < milliseconds(1000, 7000), "{time:?}");
 }
 
-/// Bounds the time of claims of existence, which includes conditions on parameters, on bodies with five coordinates and
-/// on a train of five.
+/// Bounds the time that claims of existence take, conditions on parameters included, for bodies with five coordinates
+/// and a train of five.
 #[test]
 fn claims_of_bodies_and_trains_are_examined_in_time() {
     let triaxial = "A*b1^2 + B*b2^2 + C*b3^2";

@@ -398,7 +398,7 @@ fn inputs_act_in_forces_and_rates_alone() {
     assert!(text.contains("`u` may depend on the state"), "{text}");
     let push = "forces { push: u*d(x); }";
     let text = refused(&format!("{natural} {push} scenes {{ a: push, volume; }}"));
-    assert!(text.contains("no volume is known beside inputs"), "{text}");
+    assert!(text.contains("no volume is known with inputs"), "{text}");
 }
 
 dalembert::model! {

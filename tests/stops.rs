@@ -6,7 +6,7 @@ use dalembert_cli::suite::Setting;
 use dalembert_stability::course::{Course, End};
 use dalembert_stability::text::{Model, Text};
 
-/// A particle under gravity between a floor that ends its motion, a ceiling and a wall.
+/// A particle under gravity between a floor and a ceiling, which end its motion, and a wall.
 static THROWN: Text = Text::new(
     "Thrown {
         coordinates { x; y; }

@@ -41,7 +41,10 @@ pub fn assert_states_agree<S: Described>(
         }
         let size = largest(expected.as_slice(), units.as_slice());
         let error = largest(difference.as_slice(), units.as_slice()) / size;
-        assert!(error < ROUNDING, "{actual:?} for {expected:?}: {error:.1e}");
+        assert!(
+            error < ROUNDING,
+            "{actual:?} instead of {expected:?}: {error:.1e}"
+        );
     }
 }
 
@@ -54,6 +57,9 @@ pub fn assert_numbers_agree<S: Described>(
     for state in states(system) {
         let (expected, actual) = (expected(system, &state), actual(system, &state));
         let error = (actual - expected).abs() / expected.abs();
-        assert!(error < ROUNDING, "{actual} for {expected}: {error:.1e}");
+        assert!(
+            error < ROUNDING,
+            "{actual} instead of {expected}: {error:.1e}"
+        );
     }
 }

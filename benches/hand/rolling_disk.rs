@@ -35,7 +35,8 @@ pub fn rate<T: Number>(
     ]
 }
 
-/// Same as [`rate`], with the multipliers in closed form: the constraint forces turn the velocity and leave the spins.
+/// Same as [`rate`], with the multipliers in closed form: the constraint forces turn the velocity and leave the angular
+/// velocities unchanged.
 #[inline(always)]
 pub fn rate_in_closed_form<T: Number>(
     disk: &RollingDisk,

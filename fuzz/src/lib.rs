@@ -43,7 +43,7 @@ pub fn states(bytes: &[u8]) {
 
 /// Text as the flags of `simulate`, one a line. No file is written, and no run is longer than half a unit of time.
 pub fn arguments(bytes: &[u8]) {
-    const OURS: [&str; 5] = ["--csv", "--json", "--plot", "--until", "--impacts"];
+    const OURS: [&str; 6] = ["--csv", "--html", "--json", "--plot", "--until", "--impacts"];
     let text = String::from_utf8_lossy(bytes);
     let is_ours = |flag: &str| OURS.iter().any(|known| flag.starts_with(known));
     let flags = text.lines().filter(|flag| !is_ours(flag)).take(12);

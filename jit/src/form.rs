@@ -29,8 +29,8 @@ pub(crate) fn of_model(compiled: &codegen::Compiled, scenes: &[Scene]) -> Arc<Fo
     forms(&FormOf::all(compiled, scenes), may_be_narrow).remove(0)
 }
 
-/// The forms of a model, a scene or a mode: its own, which refers to the global one, then the global one if it is
-/// another.
+/// The forms of a model, a scene or a mode. The first is the form in which the model runs. A different global form
+/// follows it, to which the first refers.
 fn forms(known: &[FormOf<'_>], may_be_narrow: bool) -> Vec<Arc<Form>> {
     let (first, others) = known.split_first().expect("a model has a form");
     let others: Vec<Arc<Form>> = others

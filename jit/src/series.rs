@@ -27,7 +27,7 @@ pub(crate) struct Series {
     /// The values of the results.
     pub(crate) outputs: Vec<Value>,
     pub(crate) components: usize,
-    /// The kept coefficients.
+    /// Indices of the coefficients that are kept.
     pub(crate) histories: BTreeMap<History, usize>,
     pub(crate) is_large: bool,
     /// Number of values that are known at order 0.

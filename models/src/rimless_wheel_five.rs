@@ -1,4 +1,4 @@
-//! A rimless wheel with five spokes of different lengths rolls down a slope. There is one mode for each standing spoke.
+//! A rimless wheel with five spokes of different lengths rolls down a slope. There is one mode for each stance spoke.
 //!
 //! Facts: on one spoke the wheel is an inverted pendulum, and it loses speed when the next spoke lands. The square of
 //! the angular rate changes from turn to turn by an affine map. There is therefore one limit cycle, and every motion

@@ -1,4 +1,4 @@
-"""Models for other programs: a header of C, functions of CasADi."""
+"""Models for other programs: a C header, functions of CasADi."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SIGNS = {
 
 
 def to_c(model: Model, path: str | os.PathLike[str] | None) -> str:
-    """The model as a header of C: see :meth:`Model.to_c`."""
+    """The model as a C header: see :meth:`Model.to_c`."""
     text = _native.to_c(model.source, _scene(model, None))
     if path is not None:
         Path(path).write_text(text, encoding="utf-8")

@@ -553,7 +553,7 @@ class Model(Swept):
         return Symbolic.of(declaration)
 
     def to_c(self, path: str | os.PathLike[str] | None = None) -> str:
-        """The model as a header of C99, which allocates nothing and needs ``math.h`` alone.
+        """The model as a C99 header, which allocates nothing and needs ``math.h`` alone.
 
         Parameters
         ----------

@@ -65,7 +65,7 @@ def _region_values(run: Run, t: float, plane: Sequence[int], count: int) -> tupl
 def border(run: Run, t: float, count: int = GRID) -> np.ndarray:
     """The border of the region at a time, as segments: an array with a start and an end in each."""
     x, y, values = _region_values(run, t, run.model.view[1], count)
-    # Each square of the grid in two triangles, in each of which the border is one segment.
+    # Each square of the grid is cut into two triangles, in each of which the border is one segment.
     index = np.arange(count * count).reshape(count, count)
     corners = [index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]]
     triangles = np.concatenate([np.stack([corners[k] for k in item], -1).reshape(-1, 3) for item in [(0, 1, 2), (0, 2, 3)]])
@@ -104,7 +104,7 @@ def with_corners(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
     tables = [samples, impacts.before, impacts.after]
     values = [table.view if name == "view" else _column(run.model, table, name) for table in tables]
     times = np.concatenate([table.t for table in tables])
-    # A sample at the time of an impact shows the state after it: before, after, sample.
+    # At equal times the order is before, after, sample: a sample at an impact shows the state after it.
     rank = np.concatenate([np.full(len(table.t), place) for table, place in zip(tables, (2, 0, 1))])
     count = len(impacts.before.t)
     number = np.concatenate([np.full(len(samples.t), count), np.arange(count), np.arange(count)])

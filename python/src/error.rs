@@ -1,4 +1,4 @@
-//! Exceptions. Their classes are Python's own, in `dalembert/_errors.py`.
+//! Exceptions. Their classes are defined in Python, in `dalembert/_errors.py`.
 
 use std::fmt::Display;
 

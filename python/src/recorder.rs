@@ -77,7 +77,7 @@ pub(crate) struct Record {
     pub stop: Option<Stop>,
 }
 
-/// The end of a run that the user asked for.
+/// An end of a run that the user requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Stop {
     /// A terminal event.

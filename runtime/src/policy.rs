@@ -15,7 +15,7 @@
 pub struct Policies {
     /// Policy for a surface that the motion presses into.
     pub rest: Rest,
-    /// Policy for a law that leaves the state approaching.
+    /// Policy for a law after which the state still approaches the surface.
     pub penetration: Penetration,
     /// Policy for several surfaces hit at one time.
     pub corner: Corner,
@@ -46,7 +46,7 @@ pub enum Rest {
     Contact,
 }
 
-/// Policy for a law that leaves the state approaching.
+/// Policy for a law after which the state still approaches the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Penetration {
     /// End with [`Outcome::StillPenetrating`](crate::Outcome::StillPenetrating).

@@ -62,7 +62,7 @@ pub trait StateVector: Copy + Debug + PartialEq + Send + Sync + 'static {
     fn as_mut_slice(&mut self) -> &mut [f64];
 
     /// All components within the capacity: those in use, then zeros. Their number is known at compile time, which makes
-    /// linear combinations faster; these keep the zeros.
+    /// linear combinations faster. Linear combinations keep the zeros.
     #[inline(always)]
     fn padded(&self) -> &[f64] {
         self.as_slice()

@@ -58,7 +58,8 @@ fn a_line_inside_and_outside_of_the_sine() {
     }
 }
 
-/// Expressions that are identically 0. A verdict that took one for another number would deny the density.
+/// Expressions that are identically 0. A verdict that took one of them for a number other than 0 would deny the
+/// density.
 #[test]
 fn related_atoms_are_not_taken_for_independent_ones() {
     let relations = [

@@ -105,7 +105,7 @@ fn what_each_law_does_to_the_volume_is_said() {
             ),
         ]
     );
-    let rates = "G the gap rate before and after";
+    let rates = "where G- and G+ are the gap rates before and after";
     assert_eq!(
         remarks::<WalledTable>(),
         [

@@ -260,7 +260,7 @@ fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
         folder.path("rows.csv")
     ));
     assert!(
-        done.output.contains("(126 members were there)"),
+        done.output.contains("(126 members taken over)"),
         "{}",
         done.output
     );

@@ -30,7 +30,8 @@ fn every_command_takes_a_file() {
     let simulated = run(&format!("simulate {ball} --json -")).json();
     assert_eq!(simulated["model"], "ball");
     assert_eq!(simulated["outcome"]["kind"], "done");
-    // The ball falls for sqrt(2/g). As 2 e = 1, the next flight takes the same time, and the one after it half.
+    // The ball falls for sqrt(2/g). As 2 e = 1, the next flight takes the same time, and the flight after that takes
+    // half of it.
     assert_eq!(simulated["counters"]["impacts"], 2);
     let time = simulated["events"][0]["t"].as_f64().unwrap();
     assert!((time - (2.0_f64 / 9.81).sqrt()).abs() < 1e-14, "{time}");

@@ -193,7 +193,7 @@ fn a_map_that_was_cut_off_goes_on_to_the_same_files() {
     }
     let done = map(&format!("{line} --resume"));
     assert!(
-        done.output.contains("(143 cells were there)"),
+        done.output.contains("(143 cells taken over)"),
         "{}",
         done.output
     );

@@ -95,7 +95,7 @@ fn cases_are_chosen_by_number_section_and_length() {
             .output
             .contains("2 cases: 1 pass")
     );
-    // A case that is named runs, however long it takes.
+    // A case that is named is run, however long it takes.
     assert!(stability("--case B02").output.contains("1 case: 1 pass"));
 }
 

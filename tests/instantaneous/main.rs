@@ -403,7 +403,7 @@ fn claims_about_such_impacts_are_decided() {
         "{volume}"
     );
     assert!(
-        volume.contains("w maps it to 0, as its instantaneous constraints do"),
+        volume.contains("w maps it to 0, because of its instantaneous constraints"),
         "{volume}"
     );
 }

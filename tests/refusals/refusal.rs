@@ -1,5 +1,5 @@
-//! Errors of refused models in the words and lines of `rustc`, without a compiler: the text of a Rust file in, the
-//! errors of every `model!` in it out.
+//! Prints the errors of refused models as `rustc` does, without a compiler: takes the text of a Rust file and returns
+//! the errors of every `model!` in it.
 
 use dalembert_codegen::diagnostics::{Diagnostic, Location};
 use proc_macro2::{TokenStream, TokenTree};
@@ -74,8 +74,8 @@ fn underlined(path: &str, text: &str, at: Location) -> Result<String, String> {
     ))
 }
 
-/// Errors that `rustc` printed, with source lines at full length. Of a long line it prints the part around the
-/// underline between dots: the line of `text` replaces that part, and the underline moves along.
+/// Errors that `rustc` printed, with source lines at full length. `rustc` shortens a long line to the part around the
+/// underline, between dots. The line of `text` replaces that part, and the underline moves with it.
 pub fn with_whole_lines(errors: &str, text: &str) -> String {
     let mut lines = String::new();
     let mut shift = 0;

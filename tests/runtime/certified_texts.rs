@@ -115,7 +115,7 @@ where
         };
     }
     compare!(32);
-    if form.capacity() <= Some(8) {
+    if form.capacity().is_some_and(|capacity| capacity <= 8) {
         compare!(8);
     }
 }

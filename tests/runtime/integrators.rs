@@ -47,10 +47,10 @@ fn assert_orders<Step: Stepper<Line>>(
     let observed = [0, 1].map(|i| (coarse[i] / fine[i]).log2());
     let inside = order.min(dense_order + 1);
     for (observed, nominal) in observed.into_iter().zip([order, inside]) {
-        println!("{name}: {observed:.3} for {nominal}");
+        println!("{name}: order {observed:.3}, nominal {nominal}");
         assert!(
             (observed - nominal as f64).abs() <= 0.1 * nominal as f64,
-            "{name}: {observed} for {nominal}"
+            "{name}: order {observed} instead of {nominal}"
         );
     }
 }

@@ -262,7 +262,7 @@ fn assert_gains(text: &Text, blow: f64) {
         let gained = run.state.as_ref()[2];
         assert!(
             (gained - blow).abs() < 1e-7,
-            "{integrator:?}: {gained} for {blow}"
+            "{integrator:?}: {gained} instead of {blow}"
         );
     }
 }
@@ -272,7 +272,7 @@ fn bump(n: u32) -> f64 {
     (1..=n / 2).fold(PI, |product, k| product * (1.0 - 0.5 / f64::from(k)))
 }
 
-/// A high power of a cosine is a narrow bump: a long step evaluates the force only beside it.
+/// A high power of a cosine is a narrow bump: a long step evaluates the force only outside of it.
 #[test]
 fn a_blow_by_a_high_power_is_felt() {
     for (n, text) in &STRIKERS {

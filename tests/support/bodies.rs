@@ -21,7 +21,7 @@ pub fn top(parameters: &str, kinetic: &str, constraint: &str) -> String {
 }
 
 /// A ball of radius 1 that rolls on a plane. `offset` has the body coordinates of its centre of mass, measured from the
-/// centre and parted by commas; `more` has further constraints.
+/// centre and separated by commas; `more` has further constraints.
 pub fn ball(offset: &str, inertia: &str, more: &str) -> String {
     format!(
         "Ball {{

@@ -76,7 +76,7 @@ pub fn check_differences<M: Varied>(
         for (found, expected) in found.iter().zip(expected) {
             assert!(
                 (found - expected).abs() <= DIFFERENCE * size,
-                "{name}: {column:?} along {direction:?}: {found} for {expected}",
+                "{name}: {column:?} along {direction:?}: {found} instead of {expected}",
             );
         }
     }

@@ -101,7 +101,7 @@ impl<'d> Flow<'d> {
         .expect("a regular point")
     }
 
-    /// The rate of `G` along the motion that the equations `X_i(G) = c_i` demand.
+    /// The rate of `G` along the motion, as the equations `X_i(G) = c_i` demand it.
     pub fn demand(&self, state: &State) -> f64 {
         let demands = self.geometry(state).demands;
         let drifts = demands.len() - state.v.len();

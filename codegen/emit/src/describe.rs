@@ -90,7 +90,7 @@ fn emit_documentation(context: &Context<'_>, base: Option<&Context<'_>>) -> Toke
     }
 }
 
-/// A reference to a self-description whose parameters are those of the tables.
+/// Tokens of a reference to a self-description that takes its parameters from the tables instead of repeating them.
 pub(super) fn with_shared_parameters(documentation: &Documentation) -> TokenStream {
     let tables = emitted(&quote!(Self), "TABLES");
     let description = &documentation.description;
@@ -100,7 +100,7 @@ pub(super) fn with_shared_parameters(documentation: &Documentation) -> TokenStre
     quote!(&#documentation)
 }
 
-/// A constant of `Emitted` of a type.
+/// Path of a constant that a type has by the trait `Emitted`.
 pub(super) fn emitted(type_name: &TokenStream, constant: &str) -> TokenStream {
     let constant = Ident::new(constant, Span::call_site());
     quote!(<#type_name as ::dalembert::declaration::Emitted>::#constant)

@@ -33,7 +33,7 @@ fn emit_type(model: &Model, scene: &Scene, context: &Context<'_>) -> TokenStream
     let global = parameters::emit_global(context, &scene.type_name, "scene", &quote!(pub));
     let indices = (!context.form.model.surfaces.is_empty()).then(|| {
         let surfaces = indices::emit_surfaces(&context.form.model.surfaces);
-        let title = format!(" Indices of what the scene `{}` uses.", scene.name);
+        let title = format!(" Indices of the surfaces of the scene `{}`.", scene.name);
         quote! {
             #[doc = #title]
             pub mod #module { #surfaces }

@@ -1,4 +1,5 @@
-//! Expressions without the parts that only restrict their domain: `0*x`, and `x` for `x^2*x^-1`.
+//! Simplification that drops parts which only restrict the domain: the term `0*x` is left out, and `x^2*x^-1` becomes
+//! `x`.
 //!
 //! The result equals the expression wherever that has a value, and may have a value elsewhere. It serves printed
 //! formulas, valid at almost all states. Emitted code never uses it.

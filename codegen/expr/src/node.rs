@@ -19,7 +19,8 @@ macro_rules! id {
                 self.0 as usize
             }
 
-            /// NOTE: the only place where a pool of more than 2^32 items would fail; memory ends long before.
+            /// NOTE: this is the only place where a pool of more than 2^32 items would fail; memory runs out long
+            /// before.
             pub(crate) fn from_index(index: usize) -> Self {
                 Self(index as u32)
             }

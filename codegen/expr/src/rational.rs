@@ -42,7 +42,7 @@ impl Rational {
     pub fn new(numer: i64, denom: i64) -> Self {
         assert!(
             denom != 0,
-            "the denominator of a rational number is not zero"
+            "the denominator of a rational number must not be zero"
         );
         Self::from_i128(i128::from(numer), i128::from(denom))
     }

@@ -10,7 +10,7 @@ use crate::rational::Rational;
 /// take memory of order `n^2`.
 const SPLICE_LIMIT: usize = 256;
 
-/// A sum in the making; terms in any order, repeated or not.
+/// A sum under construction. Its terms are in any order and may be repeated.
 struct Linear {
     constant: Rational,
     terms: Vec<(Rational, ExprId)>,

@@ -91,7 +91,7 @@ impl<'c> Carried<'c> {
         (wall, entered): (&'c Wall, Option<&Model>),
     ) -> Result<Self, String> {
         let behind = Behind::of(model, around, stated, wall, entered)
-            .ok_or("the form is not known behind it")?;
+            .ok_or("the form is not known after it")?;
         let positions = positions_behind(model, wall);
         let mut expansions = Expansions::of(model);
         let mut before: Vec<ExprId> = form.expressions().collect();

@@ -35,7 +35,7 @@ pub(super) trait AtImpact {
         true
     }
 
-    /// True if a state, given in ranges, certainly belongs to the question.
+    /// True if every state in the given ranges belongs to the question.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         let _ = (model, point);
         true
@@ -179,7 +179,7 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     fn balance(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
-        // The difference of equal values is their rounding.
+        // The difference of equal values is rounding error alone.
         let mut shown = self.question.shown(terms, terms.iter().sum());
         shown.retain(|(name, _)| name != DIFFERENCE);
         shown

@@ -1,10 +1,10 @@
 //! Jumps of a quantity whose rate is 0 wherever it exists: `abs(x)/x` at `x = 0`, `atan2(sin(x), cos(x))` at `x = pi`.
 //!
 //! Along a motion, which is analytic, a quantity made of sums, products, quotients, sines, cosines and exponentials is
-//! meromorphic, so that a rate of 0 makes it constant. Roots, absolute values, logarithms and inverse functions choose a
-//! branch; without poles they are continuous, so that a rate of 0 still makes them constant. Together with a pole, or in
-//! the cut of `atan2`, a branch may change. No jump occurs where the motion itself has no equations, or where the
-//! argument that would vanish is constant or has one sign.
+//! meromorphic, so that a rate of 0 makes it constant. Roots, absolute values, logarithms and inverse functions choose
+//! a branch; without poles they are continuous, so that a rate of 0 still makes them constant. Together with a pole, or
+//! in the cut of `atan2`, a branch may change. No jump occurs where the equations of motion do not exist. None occurs
+//! if the argument that would have to vanish is constant or has one sign.
 
 use dalembert_expr::{ExprId, Function, Node, Pool};
 

@@ -1,7 +1,7 @@
 //! Density factors that depend on velocities: Darboux polynomials of the motion, linear in the velocities on D.
 //!
-//! `f mu_C` is invariant iff `X(ln f) = c` on D. Here `c = c_0 + c_i u^i` is minus the divergence, as given by the
-//! demands of [`super::frame`]. For `f = (det m)^k |l|^s` the condition is
+//! `f mu_C` is invariant iff `X(ln f) = c` on D. Here `c = c_0 + c_i u^i` is minus the divergence, given by the
+//! right-hand sides `c_i` of [`super::frame`] (`demands`). For `f = (det m)^k |l|^s` the condition is
 //!
 //! ```text
 //! s X(l) = (c - k X(ln det m)) l        on D
@@ -286,7 +286,8 @@ impl Search<'_> {
         }
         primes.sort_unstable();
         primes.dedup();
-        // The degree is bounded as for a density of the configuration. The motion adds as much as the demand.
+        // The degree is bounded as for a density of the configuration. The motion adds as much to the degree as `c`
+        // does.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
         let error = covered.error(&branches, degree / 2f64.powi(60));

@@ -174,7 +174,8 @@ fn is_never_positive_gain(
     })
 }
 
-/// The constant and the second derivatives of a function that is a constant and a sum of multiples of squares.
+/// The constant and the second derivatives of a function that is a constant plus multiples of squares of velocities;
+/// `None` for other functions.
 fn diagonal(pool: &mut Pool, gain: ExprId, velocities: &[SymbolId]) -> Option<Vec<ExprId>> {
     let zero = pool.zero();
     let at_rest: Vec<_> = velocities

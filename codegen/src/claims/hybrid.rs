@@ -62,7 +62,7 @@ impl Effect {
     }
 }
 
-/// Facts beside a model that questions about impacts and volumes need.
+/// Data that questions about impacts and volumes need besides the model.
 pub(super) struct Surroundings<'s> {
     pub(super) derivation: &'s Derivation,
     pub(super) dynamics: &'s Dynamics,
@@ -109,7 +109,7 @@ fn effect(
         (Verdict::Refuted(witness), true) => changed(witness),
         (Verdict::Refuted(_), false) => factor(model, surface, &wall),
         (Verdict::Undecided(_), false) => {
-            format!("{}, if that is not 1", factor(model, surface, &wall))
+            format!("{}, unless that factor is 1", factor(model, surface, &wall))
         }
         (Verdict::Undecided(reason), true) => format!("may change it: {reason}"),
     };
@@ -122,7 +122,7 @@ fn effect(
 
 /// Reason for which the change of a volume is not computed.
 pub(super) enum Unknown {
-    /// The volume is mapped to 0: instantaneous constraints map all states on a line to one.
+    /// The volume is mapped to 0: instantaneous constraints map all states of a line to the same state.
     Vanishes,
     /// The dimensions before and after differ: no volume is kept.
     Dimensions(usize, usize),
@@ -142,7 +142,7 @@ impl Unknown {
         };
         match self {
             Self::Vanishes => {
-                let text = "maps it to 0, as its instantaneous constraints do";
+                let text = "maps it to 0, because of its instantaneous constraints";
                 (refuted(String::new()), text.to_owned())
             }
             Self::Dimensions(before, after) => {
@@ -227,7 +227,7 @@ fn has_plain_densities(
         && entered.is_some_and(|mode| keeps_mu_c(mode, around.seed))
 }
 
-/// True if a mode states a density, or keeps `mu_C` itself.
+/// True if a mode is of first order, states a density, or keeps `mu_C` itself.
 fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
     let mut mode = mode.clone();
     if mode.is_first_order() || stated_density(&mut mode).is_some() {
@@ -246,7 +246,7 @@ fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
 /// The effect of a law on `mu_C`, in words.
 pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
     const RHO: &str = "rho = dh(pi_D grad h)/dh(grad h)";
-    const RATES: &str = "G the gap rate before and after";
+    const RATES: &str = "where G- and G+ are the gap rates before and after";
     let is_affine = model
         .constraints
         .iter()
@@ -273,7 +273,7 @@ pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
             let slides = passage.is_some_and(Passage::may_slide);
             match passage.and_then(|passage| closed_form(model, passage)) {
                 Some(factor) if slides && model.pool.sign(factor).is_nonpositive() => {
-                    "holds the motion, which comes to it from both sides, and maps it to 0"
+                    "holds the motion, which reaches the surface from both sides, and maps the volume to 0"
                         .to_owned()
                 }
                 Some(factor) if slides => {
@@ -351,7 +351,8 @@ impl AtImpact for Change<'_> {
             .collect()
     }
 
-    /// `(f+ J)^2 - (E f-)^2` with the claimed factor E. Squares compare absolute values without their branches.
+    /// `(f+ J)^2 - (E f-)^2` with the claimed factor E. The squares are compared, because the absolute value has
+    /// branches.
     fn terms<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -374,7 +375,8 @@ impl AtImpact for Change<'_> {
     }
 
     /// True if the motion crosses the surface: sliding motion is examined in [`super::sliding`]. Where the motion may
-    /// slide, the Jacobian must be positive, or of unknown sign beside a claimed volume that is not 0.
+    /// slide, the answer is certain if the Jacobian is positive, or if its sign is unknown but the volume before is not
+    /// 0.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         if !may_slide(self.wall) {
             return true;
@@ -410,7 +412,7 @@ impl AtImpact for Change<'_> {
             (None, factor) => [
                 "Jacobian".to_owned(),
                 factor
-                    .unwrap_or("Jacobian where volumes are kept")
+                    .unwrap_or("Jacobian of a map that keeps the volume")
                     .to_owned(),
             ],
         };

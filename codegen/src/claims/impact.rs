@@ -41,7 +41,7 @@ pub(super) fn check_conserved_under(
     let is_seen = changes.is_seen();
     match changes.together(holds).verdict(holds, wording, around.seed) {
         Verdict::Undecided(_) if !is_seen => Verdict::Undecided(format!(
-            "parts of `{name}` may be missed: its gap is in no coordinate a polynomial of degree 1 or 2 whose \
+            "parts of `{name}` may be missed: in no coordinate is its gap a polynomial of degree 1 or 2 whose \
              leading coefficient is never 0"
         )),
         verdict => verdict,
@@ -71,7 +71,8 @@ impl Changes {
         self.is_solved || !self.found.is_real
     }
 
-    /// Evidence on all changes. A change by a reflection at a state proves nothing: the reflection may not occur there.
+    /// Evidence on all changes. A change by a reflection at a state refutes nothing, because the reflection may not
+    /// occur there.
     pub(super) fn together(self, holds: bool) -> Evidence {
         match self.reflected {
             Some(reflected) if holds => {
@@ -113,7 +114,7 @@ pub(super) fn changes_at(
     let after = match &wall.passage {
         Some(passage) => {
             let after = passage.quantity_after(model, entered, quantity);
-            after.ok_or_else(|| format!("`{written}` is not known behind `{name}`"))?
+            after.ok_or_else(|| format!("`{written}` is not known after `{name}`"))?
         }
         None if enters.is_some() => {
             return Err(format!("the mode that `{name}` leads to is not available"));

@@ -1,4 +1,5 @@
-//! Determinants without division. They exist for singular matrices, and for matrices of intervals that contain 0.
+//! Determinants without division. The method also works for singular matrices, and for matrices of intervals that
+//! contain 0.
 
 use dalembert_expr::Arithmetic;
 

@@ -169,8 +169,8 @@ impl Problem {
         }
     }
 
-    /// A state on a line of equidistant velocities where the divergence of the forces is not linear in the velocities,
-    /// with the values found.
+    /// A state at which the divergence of the forces, at equidistant velocities on a line, is not linear in the
+    /// velocities, with the values found.
     pub(super) fn curved(&self) -> Option<(&Sample, &[(String, f64)])> {
         match &self.friction.as_ref()?.dependence {
             Dependence::Curved(sample, values) => Some((sample, values)),

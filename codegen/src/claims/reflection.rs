@@ -1,9 +1,9 @@
 //! Periods that are 0 by symmetry. The proof is exact; a converged sum would only be small.
 //!
-//! Let `beta` be the closed form with `beta(X_i) = c_i`, and the circle of an angle a loop. The growth of `G` along it
-//! does not depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by a part
-//! of a circle, takes the loop to another one with the same growth up to sign. If `beta` along the loop and its images
-//! under some maps add up to 0, the growth is 0. The sum is tested modulo primes.
+//! Let `beta` be the closed form with `beta(X_i) = c_i`, and let a loop be the circle of an angle. The growth of `G`
+//! along it does not depend on the values of the other coordinates. A map that reflects coordinates, or turns angles by
+//! a part of a circle, takes the loop to another one with the same growth up to sign. If the sum of `beta` along the
+//! loop and along its images under some maps is 0, the growth is 0. The sum is tested modulo primes.
 //!
 //! Without roots the images are those of all turns by `pi/12` and their reflections: this covers all trigonometric
 //! polynomials of degree below 24. Roots have values at few images only, so one image is taken.
@@ -74,7 +74,8 @@ pub(super) fn has_no_period(
     let Ok(points) = sample_points(&model.pool, &roots, &profile, seed) else {
         return false;
     };
-    // Signs inside absolute values may differ between a point and its image. Signs of hidden squares occur at random.
+    // Signs inside absolute values may differ between a point and its image. Roots of squares have random signs at the
+    // points.
     let branches = branches_of(&model.pool, &roots, &profile, &points);
     if !branches.is_some_and(|branches| branches.is_single()) {
         return false;
@@ -107,8 +108,8 @@ struct Circle<'c> {
 }
 
 impl Circle<'_> {
-    /// True if `beta` along the circle, summed over its images under turns, changes its sign under a map of the angle
-    /// by one of some moves and of each of the other coordinates.
+    /// True if the sum of `beta` along the circle over its images under `turns` changes its sign under some map. A map
+    /// moves the angle by one of `moves`, and every other coordinate by one of its own moves.
     fn cancels(&self, turns: &[Move], moves: &[Move], count: usize) -> bool {
         let (model, problem) = (self.model, self.problem);
         let mut points = self.points.clone();
@@ -146,7 +147,7 @@ impl Circle<'_> {
     }
 }
 
-/// Turns of a circle by parts that residues represent, and their reflections.
+/// Turns of a circle by angles that residues can represent, and their reflections.
 fn turns(denominator: i64) -> Vec<Move> {
     let step = denominator.clamp(1, CIRCLE);
     let turns = (0..CIRCLE).step_by(step as usize);

@@ -171,7 +171,7 @@ fn proved_together(
     Ok(whole.unwrap_or_else(|| Certificate::without_chance(KEPT.to_owned(), seed)))
 }
 
-/// Joins two certificates. Both statements were tested at the smaller number of points.
+/// Joins two certificates. Both statements were tested at no fewer points than the smaller number.
 fn joined(first: Option<Certificate>, second: Certificate) -> Certificate {
     let Some(mut whole) = first else {
         return second;
@@ -299,7 +299,7 @@ impl Change<'_> {
                 corrected,
             ),
             Subject::Constraints => (
-                "its flow takes allowed velocities to others",
+                "its flow maps allowed velocities to velocities that are not allowed",
                 "leave it out, or add the motion of the coordinates that the constraints lack",
             ),
             Subject::Forces => ("its flow changes the forces", corrected),

@@ -53,7 +53,7 @@ impl fmt::Display for Undecided {
             ),
             Self::Denominators => write!(
                 f,
-                "the coefficients inside of sin, cos and exp have no common denominator in reach"
+                "the coefficients inside sin, cos and exp have no small common denominator"
             ),
             Self::Branches => write!(
                 f,

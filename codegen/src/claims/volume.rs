@@ -32,8 +32,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Volume found by the decision `exactness` about the model, in closed form or as an integral; `None` if none
-    /// exists, or if no gradient determines it. `seed` determines the random points.
+    /// The invariant volume that `exactness` established, in closed form or as an integral; `None` if none exists, or
+    /// if its gradient cannot be solved for. `seed` determines the random points.
     pub fn found(
         model: &Model,
         derivation: &Derivation,
@@ -47,7 +47,7 @@ impl Volume {
         let (potential, integral) = match &exactness.density {
             Some((potential, _)) => (potential.clone(), None),
             None => {
-                // If a frame is nowhere singular, its brackets are not either.
+                // The brackets of a frame that is nowhere singular are nowhere singular.
                 let local = decide_local_in(&model.pool, problem, &dependent, seed).ok()?;
                 let integral = Integral::of(model, problem, &local, seed)?;
                 (Potential::default(), Some(integral))
@@ -95,8 +95,8 @@ impl Volume {
     }
 }
 
-/// Dependent velocities that are determined by the others at every state; `None` if the forms show none. Otherwise the
-/// coordinates of the volume are singular at some states: for a wheel, where it points along an axis.
+/// Dependent velocities that are determined by the others at every state; `None` if the forms show none; the
+/// coordinates of the volume are then singular at some states, for a wheel where it points along an axis.
 fn nowhere_singular(model: &Model, derivation: &Derivation) -> Option<Vec<usize>> {
     let pairs = regular_minor(&model.pool, &derivation.constraints)?;
     let mut dependent: Vec<usize> = pairs.into_iter().map(|(_, column)| column).collect();

@@ -1,9 +1,9 @@
 //! Constraint forms, and the terms of `d/dt (eta(qdot) + eta_0)` that do not contain accelerations.
 //!
 //! A constraint `phi(t, q, qdot) = 0` that is nonlinear in the velocities has the form `eta = dphi/dqdot` (Chetaev's
-//! rule): virtual displacements are the changes of velocity that leave `phi` unchanged to first order, and the
-//! constraint force is `lambda eta`. Its time derivative is `eta(qddot) + curvature` as for the other constraints. The
-//! curvature is the derivative of `phi` along the motion at constant velocity.
+//! rule). Virtual displacements are the changes of velocity that leave `phi` unchanged to first order, and the
+//! constraint force is `lambda eta`. The time derivative of `phi` is `eta(qddot) + curvature`, as for the other
+//! constraints. The curvature is the derivative of `phi` along the motion at constant velocity.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 

@@ -112,7 +112,9 @@ fn too_long() -> String {
 }
 
 fn too_deep() -> String {
-    format!("nested more than {RESOLVED_DEPTH} deep with definitions written out")
+    format!(
+        "the expression is nested more than {RESOLVED_DEPTH} deep once its definitions are expanded"
+    )
 }
 
 impl<'s> Resolver<'s> {
@@ -142,9 +144,10 @@ impl<'s> Resolver<'s> {
     pub(super) fn resolve(&mut self, scalar: &Scalar, scope: &mut Scope) -> Option<Value> {
         self.parts += 1;
         if self.parts > RESOLVED_PARTS {
-            let text =
-                format!("more than {RESOLVED_PARTS} parts with sums and definitions written out");
-            return self.refuse(scalar.at, text, "name what is repeated with `let`");
+            let text = format!(
+                "the model has more than {RESOLVED_PARTS} parts once its sums and definitions are expanded"
+            );
+            return self.refuse(scalar.at, text, "use `let` to name a part that is repeated");
         }
         if self.depth >= RESOLVED_DEPTH {
             return self.refuse(scalar.at, too_deep(), FEWER_LEVELS);
@@ -222,7 +225,7 @@ impl<'s> Resolver<'s> {
         })
     }
 
-    /// True if the budget of the algebra is not exceeded. Otherwise the first such place is stored.
+    /// True if the budget of the algebra is not exceeded. Otherwise stores the first place at which it was exceeded.
     pub(super) fn within_budget(&mut self, at: Location) -> bool {
         if self.pool.is_exhausted() && self.exhausted.is_none() {
             self.exhausted = Some(at);
@@ -273,7 +276,7 @@ impl<'s> Resolver<'s> {
             total = self.add(&[total, part]);
             self.short_numbers(at, total.expr)?;
         }
-        // The level is computed from all terms at once. A leading 0 would count as a term without level.
+        // The level is computed from all terms at once, as in [`Resolver::add`].
         let level = self.sum_level(values);
         Some(Value { level, ..total })
     }

@@ -37,7 +37,7 @@ pub struct Extras {
     pub projection: bool,
     /// Density form, divergence, and the invariant volume that a claim proves.
     pub volume: bool,
-    /// States, gaps and transitions over numbers, for first variations.
+    /// States, gaps and transitions in any number type, for first variations.
     pub variations: bool,
 }
 

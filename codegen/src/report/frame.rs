@@ -33,7 +33,7 @@ impl Writer<'_> {
             Err(Unreduced::Nonlinear(constraints)) => {
                 let names = self.names_of(constraints);
                 items.push(Item::Words(format!(
-                    "solved in global form: {names} not linear in the velocities"
+                    "solved in global form, because of constraints that are not linear in the velocities: {names}"
                 )));
                 return Section::plain("Motion on D", items);
             }

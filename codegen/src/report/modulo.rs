@@ -198,12 +198,12 @@ fn symmetry(
         found.keeps_momentum &= kept.map_err(refuse)?;
         if let Err(name) = add(&mut found, &mut model, &fields[number], parameters) {
             let text = format!(
-                "`{}`: its flow is not affine in the coordinates, as the factor of `partial({name})` is not of degree 1 in them with constant slopes",
+                "`{}`: its flow is not affine in the coordinates, because the factor of `partial({name})` is not affine in them with constant coefficients",
                 found.text
             );
             return Err(Asked::refusal(
                 text,
-                "translations, rotations and sums of them are followed, as `partial(x)` and `x*partial(y) - y*partial(x)`: write the model in coordinates in which it is one",
+                "use translations, rotations and their sums, such as `partial(x)` and `x*partial(y) - y*partial(x)`; write the model in coordinates in which the symmetry is one of these",
             ));
         }
     }

@@ -9,10 +9,10 @@ use super::limits::LITERAL_DIGITS;
 use super::slips::NUMBERS;
 use crate::diagnostics::Location;
 
-/// Rust's types of numbers, which appear as suffixes.
-const TYPES: [&str; 14] = [
-    "f16", "f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64",
-    "usize",
+/// The number types of Rust, which may be suffixes of a literal.
+const TYPES: [&str; 16] = [
+    "f16", "f32", "f64", "f128", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32",
+    "u64", "u128", "usize",
 ];
 
 impl Cursor<'_> {
@@ -37,7 +37,7 @@ impl Cursor<'_> {
 
     fn number(&mut self, text: &str, at: Location) -> Read<Rational> {
         if !text.starts_with(|first: char| first.is_ascii_digit()) {
-            return Err(self.refuse(at, "expected an expression, found a text", NUMBERS));
+            return Err(self.refuse(at, "expected an expression, found a string", NUMBERS));
         }
         if text.starts_with("0x") || text.starts_with("0b") || text.starts_with("0o") {
             return Err(self.refuse(at, "numbers are decimal", "write `12`, `0.5`, `1.25e-7`"));
@@ -53,8 +53,12 @@ impl Cursor<'_> {
         }
         let value = Rational::from_decimal(&number.to_ascii_lowercase());
         value.filter(is_a_double).ok_or_else(|| {
-            let help = "numbers lie between 1e-307 and 1e308 in size";
-            self.refuse(at, format!("`{number}` is not a finite number"), help)
+            let help = "the absolute value of a number is 0 or lies between 2.3e-308 and 1.7e308";
+            self.refuse(
+                at,
+                format!("`{number}` is out of the range of doubles"),
+                help,
+            )
         })
     }
 

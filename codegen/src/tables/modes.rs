@@ -13,7 +13,7 @@ use crate::spec::WHOLE;
 pub struct Whole<'a> {
     /// The declaration.
     pub graph: &'a ModeGraph,
-    /// Forms of each mode: its own first, then the global one if it is another.
+    /// Forms of each mode: first its own, then the global form if that is a different one.
     pub forms: Vec<Vec<FormOf<'a>>>,
 }
 

@@ -261,7 +261,11 @@ fn symmetries_of_lagrangians_are_proved_and_others_refuted() {
             (ROUND, "partial(x)", Shown(of_x, 2.6788)),
             (CHARGED, "x*partial(y)", Shown(mixed, 1.0)),
             (CHARGED, "t*partial(x)", Shown(of_y, 3.0)),
-            (&disk, "partial(phi)", False("allowed velocities to others")),
+            (
+                &disk,
+                "partial(phi)",
+                False("allowed velocities to velocities that are not allowed"),
+            ),
             (FALL, "(1 + 1e-9*x)*partial(x)", Shown(second, 2e-9)),
             (
                 ROUND,

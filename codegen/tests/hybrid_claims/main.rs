@@ -5,7 +5,7 @@
 //! | `systems.rs` | declarations with a place for a claim |
 //! | `volume.rs`, `factor.rs`, `forms.rs`, `symplectic.rs`, `energy.rs`, `quantities.rs` | true claims, false ones and near misses, by kind |
 //! | `densities.rs`, `conserved.rs` | densities of the motion; quantities, under impulses and resets too, and symmetries |
-//! | `instantaneous.rs` | forms and quantities behind instantaneous constraints |
+//! | `instantaneous.rs` | forms and quantities after instantaneous constraints |
 //! | `shipped.rs` | the shipped models |
 //! | `brackets.rs`, `involution.rs`, `integrable.rs` | brackets by differences and as they are printed; claims about functions |
 //! | `reduction.rs` | reduction by groups: equations against the full motion, connections and jumps against their definitions |

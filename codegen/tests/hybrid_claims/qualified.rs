@@ -30,7 +30,7 @@ fn a_density_of_the_motion_alone_is_called_one() {
     let wall = disk("wall: 1 - x >= 0 => elastic, instantaneous { no_turn: d(phi) = 0; };");
     let found = note(&wall, "density: exact");
     assert!(
-        found.contains("wall maps it to 0, as its instantaneous constraints do"),
+        found.contains("wall maps it to 0, because of its instantaneous constraints"),
         "{found}"
     );
 }

@@ -479,7 +479,7 @@ fn groups_are_printed_and_refused_with_the_reason() {
         ),
         (
             "partial(theta) - y*partial(x) + x*partial(y)",
-            "its flow takes allowed velocities to others",
+            "its flow maps allowed velocities to velocities that are not allowed",
         ),
         (
             "partial(x), 2*partial(x)",

@@ -75,7 +75,7 @@ pub(super) fn grooves(left: &str, right: &str) -> String {
     )
 }
 
-/// A wheel that changes its standing spoke: a reset into a mode with another metric.
+/// A wheel that passes from one spoke to the next, by a reset into a mode with another metric.
 pub(super) fn spokes(rate: &str) -> String {
     format!(
         "pub Spokes {{ coordinates {{ x; }} parameters {{ l1 > 0 = 1.7; l2 > 0 = 1.9; h > 0 = 0.65; g > 0 = 1; }}

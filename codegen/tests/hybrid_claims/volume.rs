@@ -125,7 +125,8 @@ fn a_surface_that_is_moved_is_seen() {
     check(&moved, KEPT, False("Jacobian"));
 }
 
-/// Both fields lead to the surface, so the motion slides. Volumes become 0 although both rates have the same size.
+/// Both fields lead to the surface, so the motion slides. Volumes are mapped to 0 although both gap rates have the same
+/// absolute value.
 #[test]
 fn a_motion_that_slides_keeps_no_volume() {
     let slide = crossing(["-1", "1"], ["1", "-1"], "1");
@@ -171,14 +172,15 @@ fn densities_that_are_negative_are_compared_by_their_size() {
         &claim("volume: kept"),
         False("difference = 5.3"),
     );
-    // A negative factor is refuted, whatever the densities are.
+    // A negative factor is refuted for all densities.
     check(&to("-1"), &factor("y/abs(y)"), False("is negative"));
     // With one field on both sides the motion crosses, in whichever direction it leads.
     let same = crossing(["-y - x^2", "0"], ["-y - x^2", "0"], "-y").replace("density = -y;", "");
     check(&same, "density under leftward: factor = 1", True);
 }
 
-/// A density that is found is known up to a factor, on which a transition would have to agree.
+/// A density that the program finds is known up to a constant factor only. The modes of a transition would have to
+/// agree on the factor.
 #[test]
 fn densities_of_modes_that_are_not_plain_are_stated() {
     let slopes = "pub Slopes { coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;

@@ -297,7 +297,7 @@ impl Assembly {
         dynasm!(self.ops ; .arch aarch64 ; subs x11, x11, 1 ; b.ne =>head ; =>end);
     }
 
-    /// Adds the products of order 1 and the newest order. Afterwards the rows are those of these orders.
+    /// Adds the products of order 1 and the newest order. Afterwards the row registers hold the rows of these orders.
     fn add_ends(&mut self, products: &Products) {
         let [a, b] = ROWS;
         self.add(a, 22, products.kept);

@@ -160,7 +160,7 @@ pub enum Command {
         after_help = file::BUILD_EXAMPLES
     )]
     Build(BuildArgs),
-    /// Write the functions of a model as a header of C.
+    /// Write the functions of a model as a C header.
     #[command(
         help_template = help::TEMPLATE,
         before_help = "Example: dalembert export rolling_disk --c disk.h",

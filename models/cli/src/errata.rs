@@ -1,7 +1,7 @@
 //! Errata of the sources of the models, for the command `errata`.
 //!
 //! An [`Erratum`] may have a [`Check`]: a command line whose JSON output contains the right value, and a function that
-//! takes it from there and evaluates the printed formula at the same state.
+//! reads this value and evaluates the printed formula at the same state.
 
 use serde_json::Value;
 

@@ -26,9 +26,9 @@ pub(crate) fn path(given: &str) -> Option<&Path> {
     (file != INPUT).then_some(Path::new(file))
 }
 
-/// The models that flags add to those of the command line: those of the file that the model argument names, with the
-/// inputs of the selected one replaced by their laws. The argument names the selected model afterwards. `None` if the
-/// flags add nothing.
+/// The models that replace those of the command line. With feedback, this is the selected model alone, with its inputs
+/// replaced by the feedback laws. Otherwise these are the models of the file that the model argument names. Afterwards
+/// the argument of a file names the selected model. `None` if the argument names no file and there is no feedback.
 ///
 /// # Errors
 /// The errors of [`read`] and of [`feedback::close`].
@@ -42,7 +42,7 @@ pub(crate) fn selected(
         feedback,
         skips_claims,
     } = selection;
-    // Claims are examined once, of what runs.
+    // Claims are examined once, on the model that runs.
     let read = read(model, skips_claims || !feedback.is_empty(), input)?;
     let of_file = read.map(|(models, name)| {
         *model = name;

@@ -46,7 +46,7 @@ pub fn uses_stdout<const N: usize>(paths: [&Option<PathBuf>; N]) -> bool {
     paths.into_iter().flatten().any(|path| is_stdout(path))
 }
 
-/// The settings of a run with the integrator, the step limits and the end of the flags.
+/// The settings of a run, with the integrator, the step limits and the end that the flags request.
 pub fn course(
     model: &dyn AnyModel,
     run: &RunArgs,

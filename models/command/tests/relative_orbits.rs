@@ -349,8 +349,9 @@ fn chords_of_a_round_table_turn_by_their_angle() {
     );
     let told = run(ROUND, &words);
     assert!(
-        told.output
-            .contains("conserved    the momentum of x*partial(y) - y*partial(x): a multiplier 1"),
+        told.output.contains(
+            "conserved    the momentum of x*partial(y) - y*partial(x), which makes a multiplier 1"
+        ),
         "{}",
         told.output
     );

@@ -12,8 +12,8 @@ pub enum Integrator {
     Dop853,
     /// Dormand and Prince of order 5(4), dense output of order 4.
     Dopri5,
-    /// Taylor series, with an order that depends on the tolerance and on the model (often 12 or more at 1e-9, 19 or
-    /// more at 1e-15).
+    /// Taylor series of an order that depends on the tolerance and the model, often 12 or more at 1e-9 and 19 or more
+    /// at 1e-15.
     Taylor,
     /// Fixed step: the classical Runge-Kutta method of order 4.
     Rk4,

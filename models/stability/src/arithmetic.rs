@@ -119,7 +119,7 @@ fn removable(setting: Setting, report: &mut Report) {
 
 fn constants(report: &mut Report) {
     for (constant, words) in [
-        ("1e400", "not a finite number"),
+        ("1e400", "out of the range of doubles"),
         ("0^-1", "division by zero"),
         ("sqrt(-2)", "not a real number"),
         ("(-8)^(1/3)", "not a real number"),

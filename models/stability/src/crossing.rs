@@ -19,7 +19,7 @@ static FLAT_CROSSING: Text = Text::new(
     }",
 );
 
-/// A free rotor that counts its passages of the vertical.
+/// A free rotor with surfaces where cos(theta) = 0, whose events are counted.
 static ROTOR: Text = Text::new(
     "Rotor {
         coordinates { theta: angle; }
@@ -73,7 +73,7 @@ pub static OSCILLATOR: Text = Text::new(
     }",
 );
 
-/// A point that falls away from one wall and moves towards another.
+/// A point that is thrown at one wall against a force and drifts towards another.
 static TWO_WALLS: Text = Text::new(
     "TwoWalls {
         coordinates { x; y; }

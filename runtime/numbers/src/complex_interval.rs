@@ -22,11 +22,11 @@ use crate::numbers::Numbers;
 /// relative to the sum of their absolute values.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// Ratio of the sum of the coefficients of a series to the bound of the function, on a disk whose radius is
-/// [`ComplexInterval::LEAST_RATIO`] times that on which they are summed.
+/// Ratio of the sum of the coefficients of a series to the bound of the function. The function is bounded on a disk,
+/// the series is summed on a disk whose radius is smaller by the factor [`ComplexInterval::LEAST_RATIO`].
 const SPREAD: f64 = 3.0;
 
-/// Ratio of the sum of the coefficients above the constant one to the bound of the imaginary part, on the same disk.
+/// Ratio of the sum of the coefficients above the constant one to the bound of the imaginary part, on the same disks.
 const SWAY: f64 = 4.0;
 
 /// Outward rounding of a few operations.

@@ -109,7 +109,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Number of numbers.
+    /// Number of entries.
     pub const fn count(self) -> usize {
         match self {
             Self::Scalar => 1,

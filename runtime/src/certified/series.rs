@@ -101,7 +101,7 @@ impl<'a, Sys: Variational> Field<'a, Sys> {
         }
     }
 
-    /// Enclosure of the changes of the rates along changes of the state.
+    /// Enclosure of the directional derivatives of the rates, along directions in the box `along`.
     fn changes(
         &self,
         times: Interval,

@@ -125,8 +125,8 @@ pub trait Variational: TaylorField + System + Sized {
         change: impl FnOnce(&mut [L], &mut [L]),
     ) -> Result<Self::Row<L>, Fault>;
 
-    /// The residuals `eta^a(qdot) + eta^a_0` of the constraints that a state may violate, then the levels `f^k` of
-    /// those that have one; for a model with modes, also the components that no variation changes.
+    /// The residuals `eta^a(qdot) + eta^a_0` of the constraints that a state may violate, then the levels `f^k` of the
+    /// constraints that have one. For a model with modes, the components that no variation changes follow.
     ///
     /// # Errors
     /// A [`Fault`] where the velocities do not exist.

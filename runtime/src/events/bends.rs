@@ -39,12 +39,13 @@ pub(crate) struct Bends<S, G> {
     /// Distances that components, and time, cover in a step.
     ways: S,
     time: f64,
-    /// Bounds along lines with the distances of steps at the time of the measurement.
+    /// The bounds `S` and `B` of every gap, along lines with the distances `w` of the time of the measurement
+    /// (`measured`).
     slopes: G,
     bends: G,
     measured: S,
     measured_time: f64,
-    /// Speed of the last step and its second derivative, in units of those distances.
+    /// The bounds `v` and `a` of the last step, in units of those distances.
     speed: f64,
     turn: f64,
     /// True if that step lies in the box.
@@ -149,7 +150,7 @@ impl<S: StateVector, G: StateVector> Bends<S, G> {
         self.room.keep(taken.get());
     }
 
-    /// True if a gap with these values at the ends of the step has no zero inside.
+    /// True if a gap with these values, of one sign, at the ends of the step has no zero inside.
     #[inline]
     pub(crate) fn tell(&self, surface: usize, [first, last]: [f64; 2]) -> bool {
         let [slope, bend] = [&self.slopes, &self.bends].map(|bound| bound.as_slice()[surface]);

@@ -15,7 +15,7 @@ use crate::numbers::Row;
 use crate::state::StateVector;
 use dalembert_numbers::Extended;
 
-/// Largest growth of the step after one that was limited from outside.
+/// Largest factor by which the step grows after a step that was limited from outside.
 const GROW: f64 = 8.0;
 
 /// The steps of a flight, rounded to doubles.
@@ -182,8 +182,8 @@ impl<Sys: Variational, const PARTS: usize> Stepper<Sys> for Rounded<'_, '_, Sys,
         Ok(())
     }
 
-    /// NOTE: does nothing. A projection corrects the rounded state; the flight satisfies the constraints to all its
-    /// digits and continues from its own state.
+    /// NOTE: this function does nothing. A projection corrects the rounded state; the flight satisfies the constraints
+    /// to all its digits and continues from its own state.
     fn replace_end(
         &mut self,
         _: &Sys,

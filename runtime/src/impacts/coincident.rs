@@ -1,8 +1,9 @@
 //! Impacts at one time: a test for infinitely many impacts.
 //!
-//! Impacts that reverse their gap rates do not accumulate at one time: billiards in a corner with an open exit have
-//! finitely many (Burago, Ferleger and Kononenko), although there may be millions between bodies of widely different
-//! masses. Impacts that lose speed accumulate where their speeds have decayed, impacts that gain speed at once.
+//! Impacts that reverse their gap rates do not accumulate at one time. A billiard in a corner with an open exit has
+//! finitely many impacts (Burago, Ferleger and Kononenko), although there may be millions between bodies of widely
+//! different masses. Impacts that lose speed count as accumulated once their speeds have decayed. Impacts that gain
+//! speed count as accumulated at once.
 
 use super::accumulation::Bounce;
 use super::repeats::Repeats;

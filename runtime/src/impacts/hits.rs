@@ -1,5 +1,5 @@
-//! Surfaces at hand at one time, and the order of their impacts. A surface is at hand if its gap is 0 within rounding;
-//! it is approached if its gap rate is negative beyond a threshold.
+//! Surfaces in contact at one time, and the order of their impacts. A surface is "at hand" if its gap is 0 within
+//! rounding; it is approached if its gap rate is negative beyond a threshold.
 //!
 //! Impacts are carried out in rounds: first on the surfaces approached on arrival, then on those approached after the
 //! impacts of the first round, and so on. A wave of impacts therefore passes through touching bodies as it passes

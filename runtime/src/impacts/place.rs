@@ -11,7 +11,7 @@ pub(super) struct Place<Sys: Impacting> {
     t: f64,
     pub(super) state: Sys::State,
     pub(super) rates: Sys::Gaps,
-    /// Gaps; `None` for a single surface, which is at hand there.
+    /// Gaps; `None` if there is a single surface, whose gap vanishes there.
     pub(super) gaps: Option<Sys::Gaps>,
 }
 
@@ -24,7 +24,7 @@ impl<Sys: Impacting> Place<Sys> {
         state: Sys::State,
         evaluations: &mut u64,
     ) -> Result<Self, Fault> {
-        // NOTE: in sequence, so that the compiler evaluates common quantities once.
+        // NOTE: rates and gaps are evaluated one after the other, so that the compiler computes common quantities once.
         let rates = system.gap_rates(t, &state)?;
         let gaps = (rates.count() > 1).then(|| {
             *evaluations += 1;

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! with the gap rates `r_a`, `r_b` of the two transitions, each in the mode that it leaves. Both are negative. The
-//! sliding mode ends where one of them is 0: the motion continues in that mode.
+//! sliding mode ends where one of them is 0; the motion continues in the mode with that rate.
 //!
 //! Reference: A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (1988), section 4.
 

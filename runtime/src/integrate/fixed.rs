@@ -1,9 +1,9 @@
 //! Steps of fixed size: the common code of the methods without error estimate.
 //!
-//! A run is a grid of steps of the given size, or of the automatic first step of the tolerance. Exceptions: the last
-//! step lands on the end. After an impact, steps grow back from the length that the driver allows. A step in which the
-//! vector field does not exist is shortened until it exists. An implicit step that cannot be solved is divided into 2,
-//! 4, 8, .. equal parts, which keeps the grid and the invariants of the method.
+//! A run is a grid of steps of the given size, or of the size that the tolerance suggests at the start. Exceptions: the
+//! last step lands on the end. After an impact, steps grow back from the length that the driver allows. A step in which
+//! the vector field does not exist is shortened until it exists. An implicit step that cannot be solved is divided into
+//! 2, 4, 8, .. equal parts, which keeps the grid and the invariants of the method.
 
 use super::collision;
 use super::controller::{RETREAT, Weights, first_step, least_step, least_trial, not_finite};
@@ -23,8 +23,8 @@ use crate::state::StateVector;
 /// Largest factor between successive steps while they grow back to the size of the run.
 const GROW: f64 = 4.0;
 
-/// Remainder before the end of a run, as a fraction of a step, that is joined to the last step: it is a rounding error
-/// of the number of steps.
+/// Largest remainder before the end of a run, as a fraction of a step, that is joined to the last step, since it comes
+/// from rounding only.
 const SLIVER: f64 = 1e-6;
 
 /// Maximum number of parts of an implicit step.
@@ -215,8 +215,8 @@ impl<S: StateVector, M: Method> FixedStep<S, M> {
         check_finite(state, &self.rates[1])
     }
 
-    /// The automatic first step, rounded down to a power of two so that the times of the grid are exact. It is long
-    /// enough for about [`AUTOMATIC_STEPS`] steps in the run.
+    /// The automatic first step, rounded down to a power of two so that the times of the grid are exact. It is so long
+    /// that the run has at most about [`AUTOMATIC_STEPS`] steps.
     fn automatic_step<F: VectorField<State = S>>(
         &self,
         field: &mut Counted<'_, F>,

@@ -19,8 +19,9 @@ use crate::math;
 /// Lowest order. The step size depends on the last two coefficients, and neither may be the rate.
 pub(super) const LEAST_ORDER: usize = 3;
 
-/// Binary logarithm of `e^-2.7`, the fraction of the tolerance that is used: `e^-2` makes a step this fraction of the
-/// radius of convergence, and `e^-0.7` is the factor `e^(-0.7 / (p - 1))` by which Jorba and Zou shorten it.
+/// Binary logarithm of `e^-2.7`, by which the tolerance is multiplied before the last coefficients give the step. The
+/// part `e^-2` makes the step `e^-2` of the radius of convergence at the order of Jorba and Zou; the part `e^-0.7`
+/// gives their safety factor `e^(-0.7 / (p - 1))`.
 pub(super) const PART_OF_TOLERANCE: f64 = -3.895_276_610_400_201_5;
 
 /// Work of a step apart from values and sums, in multiplications: step size, end of the step, and effects.
@@ -41,7 +42,7 @@ pub(crate) fn order(tolerance: f64, work: Option<Work>) -> usize {
     // NOTE: the conversion saturates and drops the fraction. `+ 1` rounds up.
     let order = (order as usize + 1).clamp(LEAST_ORDER, LENGTH - 1);
     match work.and_then(|work| work.degree) {
-        // The two coefficients that determine the step then vanish.
+        // At order `degree + 2`, the last two coefficients, which determine the step, vanish.
         Some(degree) => order.min((degree as usize + 2).max(LEAST_ORDER)),
         None => order,
     }

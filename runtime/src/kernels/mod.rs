@@ -403,14 +403,15 @@ pub type Plain<L> = dyn Fn(At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sy
 /// A kernel of surfaces behind a pointer.
 pub type OfSurface<L> = dyn Fn(usize, At<'_, L>, &mut [L]) -> Result<(), Fault> + Send + Sync;
 
-/// Kernels of a form without any, and base of a form that shares none. Every kernel gives [`Fault::NotDerived`].
+/// The kernels of a form that has none, and the base of a form that shares none. Every kernel gives
+/// [`Fault::NotDerived`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoKernels;
 
 kernels! {
-    /// The kernels of one form of a model. Each writes its values to `values`, which has exactly as many entries. A
-    /// slice shorter than a kernel reads or writes is an error of the caller and panics. A kernel that a form does not
-    /// define is the kernel of [`Kernels::BASE`].
+    /// The kernels of one form of a model. Each writes its values to `values`, which must have exactly one entry per
+    /// value. A slice shorter than a kernel reads or writes is an error of the caller and panics. A kernel that a form
+    /// does not define is the kernel of [`Kernels::BASE`].
     plain {
         rate: Rate,
         scale: Scale,

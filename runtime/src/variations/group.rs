@@ -4,8 +4,8 @@
 //! g = exp(a_1 xi_1 + a_2 xi_2 + ..),   P(z) = g z,   multipliers: eigenvalues of d(g^-1 P) modulo the directions xi_k
 //! ```
 //!
-//! `g^-1 P` maps the directions of the group to each other. Its derivative therefore acts on the directions transverse
-//! to them.
+//! The derivative of `g^-1 P` maps the directions of the group to each other, and therefore acts on the state space
+//! modulo these directions.
 
 use super::chart::{Chart, add, columns, least_squares};
 use super::flow::{dual_parameters, dual_state, take_slopes};

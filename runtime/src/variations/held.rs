@@ -7,7 +7,7 @@
 //! f_b + s (f_a - f_b),  s = r_b/(r_a + r_b)            sliding between modes a and b
 //! ```
 //!
-//! with the second rate `h''` along `f` and the gap rates `r` from the first coefficients of the gaps' series.
+//! The gap rates `r` and the second rate `h''` along `f` follow from coefficients 1 and 2 of the gaps' series.
 //!
 //! Where held motion begins, variations jump as at any transition, with the held field as `f+`: neighbouring motions
 //! begin on the surface as well. Where the contact force vanishes, the field is continuous and variations do not jump.

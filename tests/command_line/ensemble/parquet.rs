@@ -67,6 +67,6 @@ fn parquet_is_made_of_what_is_continued() {
     fs::write(folder.0.join("rows.parquet.rows.csv"), torn).unwrap();
     fs::remove_file(folder.0.join("rows.parquet")).unwrap();
     let done = run(&format!("{line} --resume"));
-    assert!(done.output.contains("were there"), "{}", done.output);
+    assert!(done.output.contains("taken over"), "{}", done.output);
     assert_eq!(fs::read(folder.0.join("rows.parquet")).unwrap(), whole);
 }

@@ -34,7 +34,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
     } = Expansion::of(jet, context);
     let documentation = doc::lines(&[
         "The power series of the motion from `coefficients[0]`: coefficient `k + 1` of the state is coefficient `k` of \
-         its rate over `k + 1`, in units of time. Those of the gaps follow from it."
+         its rate, divided by `k + 1`, in units of time. Those of the gaps follow from it."
             .to_string(),
     ]);
     let attributes = super::attributes();

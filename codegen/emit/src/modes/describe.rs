@@ -1,4 +1,4 @@
-//! `Documented` and `Scene` of the whole.
+//! `Documented` and `Scene` of a model with modes, as a whole.
 
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -1,18 +1,18 @@
-//! Balls: a number of 256 bits and a bound of its distance from the exact number. With 76 digits, they enclose results
-//! that doubles lose by cancellation.
+//! Balls: a floating-point number with a mantissa of 256 bits, and a bound of its distance from the exact number. With
+//! 76 digits, they enclose results that doubles lose by cancellation.
 //!
 //! | file | job |
 //! |---|---|
-//! | `wide.rs` | numbers of 256 bits: each operation states a bound of its error |
+//! | `wide.rs` | numbers with mantissas of 256 bits: each operation returns a bound of its error |
 //! | `bound.rs` | bounds in double precision, rounded upwards |
 //! | `number.rs` | balls: sums, products, quotients, roots |
 //! | `functions.rs` | exponentials, logarithms, circular functions |
 //!
-//! Error bounds. A number of 256 bits is an integer below `2^256` times a power of 2. Sums and products cut off the exact
-//! result: the error is below two units in the last place of the larger operand, or of the product. Exponentials and sines
-//! are Taylor polynomials; the first term left out bounds their remainder. Quotients, roots, logarithms and arc tangents
-//! are approximated by Newton's method. Its convergence is not assumed: the residual, computed in balls, bounds the error
-//! of the result. Radii are doubles; each operation rounds them to the next double above.
+//! Error bounds. Such a number is an integer below `2^256` times a power of 2. Sums and products cut off the exact
+//! result: the error is below two units in the last place of the larger operand, or of the product. Exponentials and
+//! sines are Taylor polynomials; the first term left out bounds their remainder. Quotients, roots, logarithms and arc
+//! tangents are approximated by Newton's method. Its convergence is not assumed: the residual, computed in balls,
+//! bounds the error of the result. Radii are doubles; each operation rounds them to the next double above.
 
 mod bound;
 mod functions;

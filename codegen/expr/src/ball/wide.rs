@@ -1,4 +1,4 @@
-//! Numbers of 256 bits. Operations truncate, and return a bound of the error.
+//! Floating-point numbers with a mantissa of 256 bits. Operations truncate, and return a bound of the error.
 
 use std::cmp::Ordering;
 
@@ -69,7 +69,7 @@ impl Wide {
         (normalised(is_negative, mantissa, exponent), error)
     }
 
-    /// The number of these words, the highest first, times `2^exponent`.
+    /// The integer with these words, highest first, times `2^exponent`.
     pub(super) fn of_words(words: [u64; WORDS], exponent: i32) -> Self {
         let [a, b, c, d] = words;
         normalised(false, [d, c, b, a], exponent)
@@ -197,7 +197,8 @@ impl Wide {
             return (Self::ZERO, 0.0);
         }
         let mut words = [0u64; 2 * WORDS];
-        // NOTE: indices, not iterators: the generator of a user's build is not optimised.
+        // NOTE: these loops use indices, because a user's build compiles the generator without optimisation, where
+        // iterators are slow.
         let mut i = 0;
         while i < WORDS {
             let factor = u128::from(self.mantissa[i]);
@@ -255,7 +256,7 @@ impl Wide {
     }
 }
 
-/// The number of a mantissa whose highest bits may be 0, normalised.
+/// The normalised number with this mantissa, whose highest bits may be 0.
 fn normalised(is_negative: bool, mut mantissa: [u64; WORDS], mut exponent: i32) -> Wide {
     if mantissa == [0; WORDS] {
         return Wide::ZERO;

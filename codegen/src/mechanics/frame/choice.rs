@@ -3,8 +3,7 @@
 //! A velocity can be made dependent if it occurs in only one of the constraints still to be solved, with a coefficient
 //! that is never zero. Otherwise a pair of velocities that occur in only one constraint is used, if the sum of the
 //! squares of their coefficients is never zero: a knife edge `-sin(theta) dx + cos(theta) dy` leaves the velocity along
-//! it,
-//! `cos(theta) dx + sin(theta) dy`.
+//! it, `cos(theta) dx + sin(theta) dy`.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -16,7 +15,7 @@ use crate::model::Model;
 enum Dependent {
     /// One velocity follows from the others.
     One(usize),
-    /// Of these two velocities, only the velocity along the constraint stays independent.
+    /// One combination of these two velocities stays independent: the velocity along the constraint.
     Pair(usize, usize),
 }
 

@@ -59,7 +59,7 @@ fn refuse_singular(resolver: &mut Resolver<'_>, rows: &[Vec<ExprId>], what: &str
     };
     let at = resolver.spec.location(parameters[*last].item);
     let text = format!("with {} {what} everywhere", texts.join(" and "));
-    let help = "change the default, or declare the model without what has no effect then";
+    let help = "change the default, or leave out the terms that have no effect then";
     resolver.refuse::<()>(at, text, help);
 }
 

@@ -43,7 +43,8 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
         };
         if let Some(input) = input {
             let because = may_depend(&input);
-            let text = format!("{because}: only conserved quantities are claimed beside inputs");
+            let text =
+                format!("{because}: only claims of conserved quantities are allowed with inputs");
             resolver.refuse::<()>(spec.location(claim.item), text, "write `conserved: ..;`");
         }
     }
@@ -61,7 +62,7 @@ pub(super) fn check_claims(resolver: &mut Resolver<'_>, forces: &[Force], scenes
             part.map_or(declared.name.at, |part| part.name.at)
         });
         if let Some(at) = volume {
-            let text = format!("{}: no volume is known beside inputs", may_depend(&input));
+            let text = format!("{}: no volume is known with inputs", may_depend(&input));
             resolver.refuse::<()>(at, text, "leave it out");
         }
     }

@@ -172,7 +172,8 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// The end of an interval as a rational number: exact if it is one, else the nearest double.
+    /// The end of an interval as a rational number: exact if it is one, else the shortest decimal of the nearest
+    /// double.
     fn bound(&mut self, written: &Scalar) -> Option<Rational> {
         let expr = self.constant_expression(written, "the end of an interval")?;
         if let Some(number) = self.pool.as_number(expr) {

@@ -36,7 +36,7 @@ struct Refused {
     help: &'static str,
 }
 
-/// The declared start, as far as it is known while building.
+/// The declared start, as far as it is known at build time.
 struct Start<'a, 'b> {
     resolver: &'a Resolver<'b>,
     /// Residuals of constraints are computed in a copy of the pool: the check adds nothing to the model.
@@ -66,7 +66,7 @@ impl<'a, 'b> Start<'a, 'b> {
         }
     }
 
-    /// Walls whose gap names a declared position, and is negative.
+    /// Walls whose gap depends on a declared position and is negative.
     fn behind_walls(&self, surfaces: &[Surface]) -> Vec<Refused> {
         let walls = surfaces
             .iter()
@@ -112,7 +112,7 @@ impl<'a, 'b> Start<'a, 'b> {
             Some(Refused {
                 at,
                 text,
-                help: "leave one of them out of `initial`; it is then solved for",
+                help: "leave one of these values out of `initial`; it is then solved for",
             })
         });
         off.collect()

@@ -207,8 +207,7 @@ pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second:
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
     let passes = |surface: &Surface| matches!(surface.law, Law::Reset | Law::Transition);
     let are_resets = passes(first) && passes(second);
-    let gaps = pool.eval(&[first.gap, second.gap], &generic);
-    are_resets && gaps[0] * gaps[1] < 0.0
+    are_resets && product_sign(pool, first.gap, second.gap) < 0.0
 }
 
 /// True if two gaps are the same up to a positive factor.
@@ -217,13 +216,38 @@ pub(super) fn have_same_gap(
     first: &Surface,
     second: &Surface,
 ) -> bool {
-    let gaps = resolver.pool.eval(&[first.gap, second.gap], &generic);
-    gaps[0] * gaps[1] > 0.0 && is_proportional(resolver, first.gap, second.gap)
+    product_sign(&resolver.pool, first.gap, second.gap) > 0.0
+        && is_proportional(resolver, first.gap, second.gap)
 }
 
-/// Coordinates of a generic point, at which no declaration is special.
-fn generic(symbol: SymbolId) -> f64 {
-    0.3 + (symbol.index() as f64 * 0.618_033_988_749_894_9).fract()
+/// Number of points at which proportional gaps are evaluated.
+const POINTS: u32 = 64;
+
+/// The sign of the product of two proportional gaps, at the first of some points where it has one; 0 if it has none.
+fn product_sign(pool: &Pool, first: ExprId, second: ExprId) -> f64 {
+    if first == second {
+        return 1.0;
+    }
+    let products = (0..POINTS).map(|seed| {
+        let gaps = pool.eval(&[first, second], &|symbol| generic(symbol, seed));
+        gaps[0].signum() * gaps[1].signum() * f64::from(gaps[0] != 0.0 && gaps[1] != 0.0)
+    });
+    let mut signs = products.filter(|sign| sign.is_finite() && *sign != 0.0);
+    signs.next().unwrap_or(0.0)
+}
+
+/// Coordinates of a generic point, at which no declaration is special: of size 1 first, of sizes up to 1000 later, and of
+/// both signs.
+fn generic(symbol: SymbolId, seed: u32) -> f64 {
+    let steps = symbol.index() as f64 + 1.618_033_988_749_895 * f64::from(seed);
+    let size = 0.3 + (steps * 0.618_033_988_749_894_9).fract();
+    let scale = [1.0, 10.0, 100.0, 1000.0][(seed / 2 % 4) as usize];
+    let sign = if (symbol.index() as u32 * seed) % 3 == 1 {
+        -1.0
+    } else {
+        1.0
+    };
+    sign * scale * size
 }
 
 /// True if the quotient of two functions is constant: `f d(g) - g d(f) = 0`.

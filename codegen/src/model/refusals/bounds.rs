@@ -35,7 +35,7 @@ fn written_out_definitions_are_bounded() {
             .next()
             .unwrap()
             .message()
-            .contains("parts with sums and definitions written out")
+            .contains("parts once its sums and definitions are expanded")
     );
 }
 

@@ -1,6 +1,6 @@
 //! Surfaces and laws that are refused.
 
-use super::{refused, refused_in};
+use super::{accepted, refused, refused_in};
 
 #[test]
 fn surfaces_are_regular_and_can_be_reached() {
@@ -117,4 +117,15 @@ fn gaps_change_their_sign_where_they_are_zero() {
     let chart =
         "P { coordinates { u in (0, 1); } lagrangian = dot(u)^2; impacts { w: «u^2 >= 4»; } }";
     refused(chart, "surface has no zero set: it is never zero");
+}
+
+/// Gaps that have no value near the origin are compared where they have one.
+#[test]
+fn surfaces_share_a_gap_that_is_defined_far_away_only() {
+    for other in ["sqrt(x - 5) >= 1", "2*sqrt(x - 5) >= 2"] {
+        accepted(&format!(
+            "P {{ coordinates {{ x in (5, 9); y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
+                impacts {{ a: sqrt(x - 5) >= 1 when y > 0; b: {other} otherwise; }} }}"
+        ));
+    }
 }

@@ -108,7 +108,7 @@ fn rates_are_taken_of_variable_quantities() {
 #[test]
 fn starts_are_on_the_constraints() {
     let at_rest = "constraints { c: x^2 + y^2 = 1; } initial { x = 3/5; y = «4/5 + 1/100»; }";
-    let message = "the start is off the constraint `c`: left side minus right side is 0.0161\nhelp: leave one of them out";
+    let message = "the start is off the constraint `c`: left side minus right side is 0.0161\nhelp: leave one of these values out";
     refused_in(at_rest, message);
     for accepted_start in [
         "constraints { c: x^2 + y^2 = 1; } initial { x = 3/5; y = 4/5; }",
@@ -122,7 +122,7 @@ fn starts_are_on_the_constraints() {
     }
     refused_in(
         "constraints { c: dot(x) = y*dot(a); } initial { y = 4/5; dot(a) = 5; dot(x) = «3»; }",
-        "the start is off the constraint `c`: left side minus right side is -1\nhelp: leave one of them out",
+        "the start is off the constraint `c`: left side minus right side is -1\nhelp: leave one of these values out",
     );
     refused_in(
         "constraints { c: dot(x)^2 + dot(y)^2 = 25; } initial { dot(x) = 3; dot(y) = «5»; }",

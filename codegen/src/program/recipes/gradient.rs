@@ -8,8 +8,8 @@ use crate::program::kernel::{Arguments, Kernel};
 use crate::program::linear::{Ldlt, Orthogonal};
 use crate::program::{Function, Guard, Value};
 
-/// `(t, q) -> beta`, N components: `beta(Z_b) = c_b` for vectors that span. They are orthogonalised, as no choice of
-/// pivots is good everywhere.
+/// `(t, q) -> beta`: the covector with `beta(Z_b) = c_b` for vectors `Z_b` that span the tangent space. The vectors are
+/// orthogonalised, as no choice of pivots is good everywhere.
 pub fn gradient(model: &Model, derivation: &Derivation, integral: &Integral) -> Function {
     let system = &integral.gradient;
     let mut kernel = Kernel::new(model, derivation, Arguments::Position);
@@ -27,7 +27,8 @@ pub fn gradient(model: &Model, derivation: &Derivation, integral: &Integral) -> 
         .collect();
     let n = vectors.len();
     let flat = Ldlt::identity(builder, n);
-    // A guard that fails names the first constraint: the vectors are dependent where the forms or their frame are.
+    // A guard that fails names the first constraint, because the vectors become dependent only where the constraint
+    // forms or their frame do.
     let guard = |_, squared, reference| Guard::Constraint {
         constraint: 0,
         squared,

@@ -89,7 +89,7 @@ pub(super) fn cascade(nodes: &[Node], edges: &[Edge]) -> Result<Cascade, String>
             _ => return Err(format!("`{}` may stop the motion", steps[index].surface)),
         };
         if turned != next {
-            let text = "the motion behind it leads away from the next surface";
+            let text = "after it the motion leads away from the next surface";
             return Err(format!("`{}`: {text}", steps[index].surface));
         }
     }
@@ -111,7 +111,7 @@ fn cycle(count: usize, edges: &[Edge]) -> Result<Vec<&Edge>, String> {
         seen.push((mode, edge));
         mode = edge.to;
     }
-    Err("the modes are no cycle".to_owned())
+    Err("the modes do not form a cycle".to_owned())
 }
 
 /// The energies of one mode, and true if the coordinate increases during the motion.
@@ -134,7 +134,7 @@ fn step(
         (true, _) => true,
         (_, true) => false,
         _ => {
-            let text = "is entered where it ends: no way leads through the mode";
+            let text = "is entered where it ends, so that no motion passes through it";
             return Err(format!("the mode before `{}` {text}", edge.name));
         }
     };
@@ -282,7 +282,7 @@ pub(super) fn invariant(cascade: &Result<Cascade, String>) -> Reasoned {
     };
     for step in &cascade.steps {
         let reached = format!(
-            "from the largest R on, the energy behind `{}` is {} where {} is needed",
+            "from the largest R on, the energy after `{}` is {} where {} is needed",
             step.surface,
             shown(step.reached),
             shown(step.next)
@@ -299,7 +299,7 @@ pub(super) fn invariant(cascade: &Result<Cascade, String>) -> Reasoned {
             (Decided::Holds, text.to_owned())
         }
         false => {
-            let text = "the energy is not bounded: impacts take no share of it";
+            let text = "the energy is not bounded: impacts do not reduce it";
             (Decided::Open, text.to_owned())
         }
     }
@@ -309,7 +309,7 @@ pub(super) fn invariant(cascade: &Result<Cascade, String>) -> Reasoned {
 pub(super) fn interval(cascade: &Result<Cascade, String>) -> Reasoned {
     follows(
         cascade,
-        "the set lies between two energies, and its surface is a line of one place",
+        "the set lies between two energies, and its surface is a line at one position",
     )
 }
 
@@ -317,7 +317,7 @@ pub(super) fn interval(cascade: &Result<Cascade, String>) -> Reasoned {
 pub(super) fn transverse(cascade: &Result<Cascade, String>) -> Reasoned {
     follows(
         cascade,
-        "no velocity of the set is 0, and surfaces and images are lines of one place",
+        "no velocity of the set is 0, and surfaces and images are lines at one position each",
     )
 }
 

@@ -149,7 +149,7 @@ pub(super) fn edges(nodes: &mut [Node]) -> Vec<Edge> {
                 (_, false) => Err(format!("`{}` has conditions", surface.name.display)),
                 (None, _) => Err(format!("`{}` is no reset", surface.name.display)),
                 (Some(map), true) => passage(node, surface.gap, map)
-                    .ok_or_else(|| format!("`{}` does not lead from one place to one place with a multiple of the velocity", surface.name.display)),
+                    .ok_or_else(|| format!("`{}` does not lead from one position to one position with a multiple of the velocity", surface.name.display)),
             };
             let slope = match (&map, surface.law) {
                 (Some(map), _) => slope(node, surface.gap, map),
@@ -252,8 +252,8 @@ fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -
     }
 }
 
-/// The derivative for an impulsive law. In a mode with one coordinate, the law multiplies the velocity by a factor, as
-/// it does the gap rate.
+/// The derivative for an impulsive law. In a mode with one coordinate, the law multiplies velocity and gap rate by the
+/// same factor.
 fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
     let within = |range: Option<Interval>| match range {
         Some(range) => Slope::Within(range),
@@ -340,7 +340,7 @@ pub(super) fn injective(edges: &[Edge]) -> Reasoned {
         match &edge.slope {
             Slope::Within(range) if range.excludes_zero() => {}
             Slope::Within(range) if range.lo == 0.0 && range.hi == 0.0 => {
-                let text = format!("`{}` maps all velocities to one", edge.name);
+                let text = format!("`{}` maps all velocities to the same one", edge.name);
                 return (Decided::Fails, text);
             }
             Slope::Within(_) => {

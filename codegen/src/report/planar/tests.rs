@@ -1,4 +1,4 @@
-//! Hypotheses of the Poincare-Bendixson theorem: rimless wheels against closed forms, and systems that lack a
+//! Hypotheses of the Poincare-Bendixson theorem: rimless wheels against closed forms, and systems that violate a
 //! hypothesis.
 
 use std::f64::consts::PI;

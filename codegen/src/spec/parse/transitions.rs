@@ -20,14 +20,14 @@ pub(super) struct Transitions<'a> {
 /// `enter: smooth -> rough when x >= 0`
 struct Entry<'a> {
     tokens: Vec<TokenTree>,
-    /// The braces it stands in.
+    /// The braces that contain it.
     group: &'a Group,
     /// True if a `;` follows.
     is_ended: bool,
 }
 
 impl<'a> Transitions<'a> {
-    /// Writes families out.
+    /// Reads the transitions and writes out their families.
     pub(super) fn of(
         groups: &'a [Group],
         constants: &Constants,

@@ -33,7 +33,7 @@ impl<'a> Bound<'a> {
         }
     }
 
-    /// `[k]`, replacing the brackets with the range.
+    /// `[k]` in place of the brackets with the range.
     pub(super) fn brackets(&self, range: &TokenTree) -> TokenTree {
         let value = self.value(range);
         regrouped(Delimiter::Bracket, range, vec![value])

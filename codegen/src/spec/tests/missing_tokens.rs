@@ -1,4 +1,4 @@
-//! A model with tokens missing is read or refused, and never a panic.
+//! The parser reads or refuses a model with missing tokens, and never panics.
 
 use proc_macro2::{Group, TokenStream, TokenTree};
 
@@ -43,7 +43,7 @@ impl Random {
     }
 }
 
-/// The stream with 30 % of its tokens left out; a group left out leaves its inside.
+/// The stream with 30 % of its tokens left out. Of a group that is left out, the content stays.
 fn thinned(tokens: TokenStream, random: &mut Random) -> TokenStream {
     let mut kept = TokenStream::new();
     for token in tokens {

@@ -9,7 +9,7 @@ fn slips_in_expressions_are_named() {
     refused_expression("«1.5e3m»", "missing `*` between `1.5e3` and `m`");
     refused_expression("«2f64»", "numbers have no type: `f64`\nhelp: write `2`");
     refused_expression("«0x10»", "numbers are decimal");
-    refused_expression("«1e400»", "`1e400` is not a finite number");
+    refused_expression("«1e400»", "`1e400` is out of the range of doubles");
     refused_expression(
         "x «**» 2",
         "no `**` operator\nhelp: a power is written `x^2`",
@@ -41,7 +41,7 @@ fn slips_in_expressions_are_named() {
     refused_expression("«+»x", "there is no unary plus\nhelp: leave the sign out");
     refused_expression("x^«+»2", "there is no unary plus");
     refused_expression("dot«[x]»", "help: write `dot(x)`");
-    refused_expression("«\"text\"»", "expected an expression, found a text");
+    refused_expression("«\"text\"»", "expected an expression, found a string");
     refused_expression("x «+»", "expected an expression");
     refused_expression("«(»)", "expected an expression");
     refused_expression(

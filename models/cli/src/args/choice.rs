@@ -12,7 +12,7 @@ pub fn integrator() -> ValueParser {
             }
             Integrator::Dopri5 => "Dormand and Prince of order 5(4), dense output of order 4",
             Integrator::Taylor => {
-                "Taylor series of an order chosen for the tolerance (12 at 1e-9, 19 at 1e-15)"
+                "Taylor series of an order chosen for the tolerance and the model"
             }
             Integrator::Rk4 => "Fixed step: the classical Runge-Kutta method of order 4",
             Integrator::Gauss4 => {

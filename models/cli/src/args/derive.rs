@@ -22,10 +22,10 @@ pub enum DeriveFormat {
 pub struct DeriveArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
+    /// Scene, a selection of forces and surfaces. `list --format json` prints the scenes.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
-    /// Laws of inputs.
+    /// Feedback laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
     /// Claims.

@@ -76,7 +76,7 @@ pub struct BuildArgs {
 pub struct ExportArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
+    /// Scene, a selection of forces and surfaces. `list --format json` prints the scenes.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
     /// Feedback laws of inputs.

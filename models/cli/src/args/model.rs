@@ -7,13 +7,13 @@ use clap::Args;
 pub struct Selection<'a> {
     /// The argument that names it.
     pub model: &'a mut String,
-    /// Laws of inputs.
+    /// Feedback laws of inputs.
     pub feedback: &'a [String],
     /// True if claims are not examined.
     pub skips_claims: bool,
 }
 
-/// Laws of inputs.
+/// Feedback laws of inputs.
 #[derive(Debug, Default, Args)]
 pub struct FeedbackArgs {
     /// Replace an input by a law: an expression of time, coordinates, velocities, parameters and definitions, such as
@@ -35,13 +35,13 @@ pub struct ClaimsArgs {
 pub struct ModelArgs {
     /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
     pub model: String,
-    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
+    /// Scene, a selection of forces and surfaces. `list --format json` prints the scenes.
     #[arg(long, value_name = "SCENE", default_value = "all")]
     pub scene: String,
     /// Set a parameter. May be repeated.
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
-    /// Laws of inputs.
+    /// Feedback laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
     /// Claims.

@@ -34,7 +34,8 @@ use crate::{Streams, names, plot, run_request};
 /// Largest number of values along an axis.
 const MOST: u64 = 4000;
 
-/// Longest time of one return in the computation of a Lyapunov exponent, unless the model's own `until` is longer.
+/// Longest time of one return in the computation of a Lyapunov exponent, without `--until` and unless the `until` of
+/// the model is longer.
 const HORIZON: f64 = 3600.0;
 
 /// A finished map: its request and its results.
@@ -490,7 +491,7 @@ fn check_states(models: &[Entry], args: &MapArgs, request: &Request) -> Result<(
     }
 }
 
-/// The request of the flags, for files.
+/// The map that the flags ask for, as JSON for the metadata of files.
 fn asked(model: &dyn AnyModel, args: &MapArgs, request: &Request) -> Value {
     let description = model.description();
     let returns = request.returns.as_ref();

@@ -48,7 +48,7 @@ pub fn discard(path: &Path) -> io::Result<()> {
     endings.try_for_each(|ending| remove(&beside(path, ending)))
 }
 
-/// Puts rows, with the files beside them, in the place of others. A link to the old rows stays a link.
+/// Replaces the rows `target`, and the files beside them, by new ones. A link to the old rows stays a link.
 ///
 /// # Errors
 /// An I/O error of the file system.

@@ -117,8 +117,8 @@ impl Journal {
         self.file.write_all(&columns.header())
     }
 
-    /// Continues a file that was begun, the new file if it belongs to the same ensemble: passes the kept rows to `see`,
-    /// and returns their number. `None` if no row can be kept; the caller must then discard rows that `see` has received.
+    /// Continues the new file if it belongs to this ensemble, else the target: passes the kept rows to `see`, and
+    /// returns their number. `None` if no row can be kept; the caller must then discard rows that `see` has received.
     ///
     /// # Errors
     /// A file that cannot be read or written, that belongs to another ensemble, or that was altered.
@@ -222,7 +222,7 @@ impl Journal {
         beside::publish(&self.path, &self.target)
     }
 
-    /// Removes the rows that this run began. Rows of an earlier run stay.
+    /// Removes the file of rows if this run began it. Rows of an earlier run stay.
     pub fn abandon(self) {
         let is_file = self.file.metadata().is_ok_and(|it| it.is_file());
         if self.is_begun && is_file {

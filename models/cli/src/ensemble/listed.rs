@@ -28,7 +28,7 @@ const OTHERS: [&str; 7] = [
 /// Limits on the size of a table, which is kept in memory.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
-    /// Largest size of a row in bytes, with skipped input before it.
+    /// Largest size in bytes of a row together with the input skipped before it.
     row: usize,
     /// Largest number of rows.
     members: usize,

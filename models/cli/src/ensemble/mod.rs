@@ -48,7 +48,7 @@ use output::{Output, Rows, Table};
 use pool::Division;
 use statistics::Statistics;
 
-/// Largest number of members in a block of a thread.
+/// Largest number of members that a thread takes at once.
 const BLOCK: u64 = 64;
 
 /// Largest number of density samples of the members in a block.

@@ -28,7 +28,7 @@ use request::Request;
 pub use sums::{Cells, Sums};
 pub use table::{columns, end, output};
 
-/// Largest number of cells in a block of a thread.
+/// Largest number of cells that a thread takes at once.
 const BLOCK: u64 = 64;
 
 /// Plan of a map.

@@ -1,4 +1,4 @@
-//! The request of a map for every run.
+//! The request that a map makes of every run.
 
 use dalembert::describe::{Description, Topology};
 use dalembert_driver::{Component, Point, Search};
@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::expression::Expression;
 use crate::names;
 
-/// Request of a map for every run.
+/// Request that a map makes of every run.
 pub struct Request {
     /// The requested returns, if any.
     pub returns: Option<Returns>,
@@ -113,7 +113,7 @@ enum Kind {
 }
 
 impl Components {
-    /// The components of a model, without those of `--ignore` in comparisons.
+    /// The components of a model. Comparisons ignore the components of `--ignore`.
     ///
     /// # Errors
     /// A name in `--ignore` that the model does not have.

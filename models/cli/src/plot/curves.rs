@@ -1,4 +1,4 @@
-//! Curves of one quantity over another, and points beside them.
+//! Curves of one quantity over another, and separate points.
 
 use dalembert_driver::padded;
 use plotters::style::RGBColor;

@@ -60,9 +60,9 @@ fn basin() -> Figure {
         title: "Starts from which a walker keeps walking or falls",
         chapter: chapters::WALKERS,
         highlight: Some(0),
-        caption: "The blue starts lead to the gait, whose return is the dot. From the other starts the walker falls \
-                  before its first step. The parameters are $mu = 5/2$, $eps = 1/2$ and $alpha = delta = 0.4$. On the \
-                  line the starts lie in the stable plane of the upright equilibrium, which has the eigenvalues \
+        caption: "The blue starts lead to the gait, which the dot marks. From the other starts the walker falls \
+                  before its first step. The parameters are $mu = 5/2$, $eps = 1/2$ and $alpha = delta = 0.4$. The line \
+                  consists of the starts in the stable plane of the upright equilibrium, which has the eigenvalues \
                   0.688755, -0.478938 and -2.747673. The thesis takes this line for the boundary; it is the boundary \
                   near the equilibrium. With the right sign of the centripetal term no walker falls after its first \
                   step, and the tongues of the thesis do not appear."

@@ -52,7 +52,7 @@ impl Session {
         Ok(())
     }
 
-    /// Runs the `cargo run` commands of a block by the command under test.
+    /// Runs the `cargo run` commands of a block with the command under test.
     pub fn cargo_commands(&mut self, text: &str) -> Result<(), String> {
         let commands = text
             .lines()

@@ -80,9 +80,9 @@ impl<S: Instance + Scene + Variational> Problem<'_, S> {
         }
     }
 
-    /// The largest of three speeds that the problem suggests: the speed of uniform motion from one configuration to the
-    /// other, the speed that the forces at the start give in the time, and the speed that climbs the potential near the
-    /// start.
+    /// The largest of three speeds that the problem suggests: the speed of uniform motion between the configurations,
+    /// the speed that the forces at the start produce in the given time, and the speed needed to climb the potential
+    /// near the start.
     fn speed(&self, units: &[f64], ways: &[f64]) -> f64 {
         let [start, count] = self.motion;
         let size = |state: &S::State| {
@@ -117,8 +117,8 @@ impl<S: Instance + Scene + Variational> Problem<'_, S> {
     }
 }
 
-/// The largest rise of the potential energy above the start along each coordinate, over a whole turn of an angle and
-/// over twice the difference of the configurations in both directions otherwise.
+/// The largest rise of the potential energy above the start along each coordinate: over a whole turn of an angle, and
+/// for other coordinates over twice the difference of the configurations to either side.
 fn climb<S: Instance + Scene + Variational>(system: &S, q: &S::Vector, ways: &[f64]) -> f64 {
     let potential = |q: &S::Vector| {
         let state = system.state_unchecked(0.0, q, &system.zero_vector());

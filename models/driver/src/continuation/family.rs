@@ -38,7 +38,7 @@ pub(crate) enum Failure {
 /// parameter in units of `width`.
 #[derive(Debug, Clone)]
 pub(crate) struct Local {
-    /// The point as a member; it is one if the map is 0 there.
+    /// The point as a member. It belongs to the family if the map is 0 there.
     pub member: Member,
     /// The units of the components of the state.
     pub scale: Vec<f64>,

@@ -112,7 +112,7 @@ impl Tracer<'_, '_> {
     }
 
     /// The member between two others at which several multipliers cross the unit circle at once, as in a system with
-    /// equal parts: an even number of crossings does not change the sign of a test function. `None` if no multiplier is
+    /// equal parts. An even number of crossings does not change the sign of a test function. `None` if no multiplier is
     /// near the circle.
     fn together(
         &mut self,

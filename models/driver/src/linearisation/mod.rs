@@ -102,7 +102,7 @@ impl Linearisation {
             .as_ref()
             .filter(|_| self.unsteady.is_empty())?;
         let margin = NEUTRAL * largest(self.a.iter().flatten());
-        // The number of eigenvalues that count at all states that may be the equilibrium.
+        // The smallest number of such eigenvalues among the states that may be the equilibrium.
         let least = |is_counted: &dyn Fn(f64) -> bool| {
             let count = |spectrum: &Vec<[f64; 2]>| {
                 let real = spectrum.iter().map(|[re, _]| *re);

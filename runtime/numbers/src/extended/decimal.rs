@@ -26,7 +26,7 @@ pub struct NotDecimal;
 
 impl fmt::Display for NotDecimal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected a decimal number, as 0.1 or 1.25e-7")
+        write!(f, "expected a decimal number, such as 0.1 or 1.25e-7")
     }
 }
 

@@ -1,4 +1,4 @@
-//! Sums and products of doubles without error, and their roundings to a number of parts.
+//! Error-free sums and products of doubles, and their rounding to a given number of parts.
 //!
 //! References: D. E. Knuth, *The Art of Computer Programming* 2 (1997), 4.2.2, theorem B; T. J. Dekker, *A
 //! Floating-Point Technique for Extending the Available Precision*, Numerische Mathematik 18 (1971); D. M. Priest,
@@ -66,7 +66,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         Self { levels }
     }
 
-    /// Adds a number that is smaller than the sum by `level` parts.
+    /// Adds a number that is smaller than the sum by about `level` times 53 bits, the length of a part.
     #[inline(always)]
     pub(super) fn add(&mut self, mut number: f64, level: usize) {
         for level in &mut self.levels[level..PARTS] {
@@ -75,7 +75,7 @@ impl<const PARTS: usize> Sum<PARTS> {
         self.levels[PARTS] += number;
     }
 
-    /// Adds the product of two numbers. It is smaller than the sum by `level` parts.
+    /// Adds the product of two numbers. It is smaller than the sum by about `level` times 53 bits.
     #[inline(always)]
     pub(super) fn add_product(&mut self, a: f64, b: f64, level: usize) {
         if level < PARTS {

@@ -124,7 +124,7 @@ fn time(finished: &Finished<'_>) -> String {
     }
     if finished.kept > 0 {
         text += &format!(
-            " ({} were there)",
+            " ({} taken over)",
             counted(finished.kept as usize, "member")
         );
     }

@@ -120,7 +120,7 @@ fn time(finished: &Finished<'_>) -> String {
         counted(finished.sums.returns as usize, "return")
     );
     if finished.kept > 0 {
-        text += &format!(" ({} were there)", counted(finished.kept as usize, "cell"));
+        text += &format!(" ({} taken over)", counted(finished.kept as usize, "cell"));
     }
     text
 }

@@ -21,7 +21,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
     };
     writeln!(
         output,
-        "  outcome      found in {}, closes up to {:.1e}",
+        "  outcome      found in {}, residual {:.1e}",
         counted(found.iterations as usize, "step"),
         found.residual
     )?;
@@ -50,7 +50,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
     momenta(output, finished)
 }
 
-/// Names the multipliers 1 that conserved momenta of the symmetries cause.
+/// Names the conserved momenta of the symmetries, each of which makes a multiplier equal to 1.
 fn momenta(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result<()> {
     let symmetries = finished.search.modulo.iter();
     let mut kept = symmetries
@@ -60,7 +60,7 @@ fn momenta(output: &mut dyn Write, finished: &Finished<'_, Found>) -> io::Result
         let name = &field.name;
         writeln!(
             output,
-            "  conserved    the momentum of {name}: a multiplier 1"
+            "  conserved    the momentum of {name}, which makes a multiplier 1"
         )
     })
 }

@@ -4,7 +4,8 @@
 use super::counts::CLASSES;
 use super::{Counts, Density};
 
-/// Largest relative difference between the size of a part in whole states or members and the fraction that names it.
+/// Largest accepted relative difference between the size of a part, rounded up to whole states or members, and its
+/// nominal fraction.
 const ROUNDING: f64 = 0.05;
 
 /// Distances between two halves of a fraction of all states.
@@ -51,8 +52,8 @@ pub fn convergence(counts: &Counts, density: &Density, members: u64) -> Vec<Chec
         .collect()
 }
 
-/// True if the fraction `1/2^class` of this many states or members is a whole number of them, nearly. The fraction is
-/// rounded up.
+/// True if the fraction `1/2^class` of this many states or members is nearly a whole number. The fraction is rounded
+/// up.
 fn divides(class: usize, count: u64) -> bool {
     let part = 1_u64 << class;
     let rounded = count.div_ceil(part) * part;
@@ -64,7 +65,8 @@ struct Halves {
     distance: f64,
 }
 
-/// Compares a class, the later half of its fraction of the states, with all following classes, the earlier half.
+/// Compares the counts of a class, the later half of its fraction of the states, with those of all following classes,
+/// the earlier half.
 fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     let later = of(class);
     let mut earlier = vec![0; later.len()];
@@ -143,7 +145,7 @@ mod tests {
             let (got, right) = (mean_difference(mean), direct(mean));
             assert!(
                 (got / right - 1.0).abs() < 2e-6,
-                "{mean}: {got} for {right}"
+                "{mean}: {got} instead of {right}"
             );
         }
     }
