@@ -1,4 +1,4 @@
-//! Numbers on the command line: decimals and multiples of pi.
+//! Numbers on the command line: decimals and multiples of pi, and numbers of summaries.
 //!
 //! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Factors are evaluated from left
 //! to right in `f64`. A single decimal gives the nearest `f64`.
@@ -54,6 +54,16 @@ fn factor(text: &str) -> Option<f64> {
 fn decimal(text: &str) -> Option<f64> {
     let starts_as_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
     starts_as_number.then(|| text.parse().ok()).flatten()
+}
+
+/// A number with nine significant digits, and with an exponent if it is very large or very small.
+pub fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
+    match rounded.abs() {
+        0.0 => "0".to_owned(),
+        size if !(1e-4..1e9).contains(&size) => format!("{rounded:e}"),
+        _ => rounded.to_string(),
+    }
 }
 
 /// Parses a positive number.

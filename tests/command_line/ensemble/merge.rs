@@ -116,6 +116,34 @@ fn a_shard_that_is_not_finished_is_named() {
     }
 }
 
+#[test]
+fn statistics_are_those_of_the_rows() {
+    let energies = numbers_of(&rows(BALLS), "energy");
+    let finite: Vec<f64> = energies.into_iter().filter(|it| it.is_finite()).collect();
+    let document = run(&format!("{BALLS} --json -")).json();
+    let told = &document["statistics"]["energy"];
+    let number = |key: &str| told[key].as_f64().unwrap();
+    let count = finite.len() as f64;
+    assert_eq!(number("count"), count);
+    let mean = finite.iter().sum::<f64>() / count;
+    let squares: f64 = finite.iter().map(|it| (it - mean).powi(2)).sum();
+    let deviation = (squares / (count - 1.0)).sqrt();
+    for (key, value) in [("mean", mean), ("std", deviation)] {
+        assert!((number(key) / value - 1.0).abs() < 1e-13, "{key}: {told}");
+    }
+    let extremes = [f64::min, f64::max].map(|of| finite.iter().copied().reduce(of));
+    assert_eq!([Some(number("least")), Some(number("greatest"))], extremes);
+
+    let text = run(BALLS).output;
+    let row = text
+        .lines()
+        .find(|line| line.starts_with("  energy   ") && line.ends_with(" 126"));
+    let shown = row.unwrap_or_else(|| panic!("{text}")).split_whitespace();
+    let shown: Vec<f64> = shown.skip(1).map(|word| word.parse().unwrap()).collect();
+    assert!((shown[0] / mean - 1.0).abs() < 1e-8, "{text}");
+    assert!((shown[1] / deviation - 1.0).abs() < 1e-8, "{text}");
+}
+
 /// The files of a finished ensemble, with their content.
 fn files(folder: &Folder, name: &str) -> Vec<(String, Option<Vec<u8>>)> {
     let endings = ["", ".meta.json", ".sums", ".counts"].iter();

@@ -19,6 +19,7 @@ use crate::ensemble::common::Flags;
 use crate::ensemble::members::{self, Shard};
 use crate::ensemble::metadata::metadata;
 use crate::ensemble::output::Table;
+use crate::ensemble::statistics::Statistics;
 use crate::ensemble::{self, Plan, Summary, density, listed, merge};
 use crate::entry::Entry;
 use crate::error::CliError;
@@ -34,6 +35,7 @@ struct Finished<'a> {
     settings: &'a Settings,
     metadata: &'a Map<String, Value>,
     tally: Tally,
+    statistics: Statistics,
     /// The density, its counts, and their convergence.
     density: Option<(&'a Density, Counts, Vec<Checkpoint>)>,
     /// Number of members taken over from an earlier run.
@@ -103,6 +105,7 @@ pub fn run(
     let begun = Instant::now();
     let Summary {
         tally,
+        statistics,
         counts,
         kept,
     } = args.rows.write(&plan.table, streams.output, |rows| {
@@ -114,6 +117,7 @@ pub fn run(
         settings: &settings,
         metadata: &metadata,
         tally,
+        statistics,
         density: density.as_ref().zip(counts).map(|(density, counts)| {
             let checkpoints = convergence(&counts, density, members);
             (density, counts, checkpoints)

@@ -11,6 +11,7 @@
 //! | `difference` | flags that a file was made with, where they differ from those of a request |
 //! | `parquet` | the rows as Parquet |
 //! | `merge` | rows and counts from the files of shards |
+//! | `statistics` | mean, spread and extremes over all members |
 //! | `metadata` | metadata that identify an ensemble |
 //!
 //! The types of members, rows and sums are in [`dalembert_driver::ensemble`].
@@ -30,12 +31,13 @@ pub mod output;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod pool;
+pub mod statistics;
 pub mod vary;
 
 use std::ops::Range;
 
 use dalembert_driver::ensemble::density::{Counts, Density};
-use dalembert_driver::ensemble::row::csv_line;
+use dalembert_driver::ensemble::row::{Row, csv_line};
 use dalembert_driver::ensemble::runner::{Done, Runner, Shared};
 use dalembert_driver::ensemble::{Tally, is_reached};
 
@@ -44,6 +46,7 @@ use crate::progress::Count;
 use merge::Part;
 use output::{Output, Rows, Table};
 use pool::Division;
+use statistics::Statistics;
 
 /// Largest number of members in a block of a thread.
 const BLOCK: u64 = 64;
@@ -72,10 +75,20 @@ pub struct Plan<'a> {
 pub struct Summary {
     /// Sums over the rows.
     pub tally: Tally,
+    /// Statistics of the energy and the outputs.
+    pub statistics: Statistics,
     /// Counts of the density.
     pub counts: Option<Counts>,
     /// Number of members taken over from an earlier run.
     pub kept: u64,
+}
+
+impl Summary {
+    /// Adds a row. `reached` is true for outcomes that are the requested end.
+    fn add(&mut self, row: &Row, reached: impl Fn(&str) -> bool) {
+        self.tally.add(row, reached);
+        self.statistics.add(row);
+    }
 }
 
 /// Runs the members.
@@ -111,7 +124,7 @@ pub fn execute(plan: &Plan<'_>, rows: Rows<'_>, terminal: bool) -> Result<Summar
             let mut members = first - range.start;
             for done in block {
                 let Done { row, visits } = done?;
-                summary.tally.add(&row, reached);
+                summary.add(&row, reached);
                 if let (Some(counts), Some(visits)) = (&mut summary.counts, &visits) {
                     counts.add(range.start + members, visits);
                 }
@@ -132,6 +145,7 @@ fn merge(plan: &Plan<'_>, summary: &mut Summary, output: &mut Output<'_>) -> Res
     let (shared, members) = (&plan.shared, plan.range.end);
     let Summary {
         tally,
+        statistics,
         counts,
         kept,
     } = summary;
@@ -143,6 +157,7 @@ fn merge(plan: &Plan<'_>, summary: &mut Summary, output: &mut Output<'_>) -> Res
         counts.as_mut(),
         &mut |line, row| {
             tally.add(row, |outcome| is_reached(outcome, shared.settings));
+            statistics.add(row);
             *kept += 1;
             lines.extend_from_slice(line);
             if lines.len() < LINES && *kept < members {
@@ -168,12 +183,21 @@ fn begin<'a>(plan: &Plan<'_>, rows: Rows<'a>) -> Result<(Summary, Output<'a>), C
     let shared = &plan.shared;
     let nothing = || Summary {
         tally: Tally::new(plan.table.columns),
+        statistics: Statistics::new(plan.table.columns),
         counts: shared.density.map(Counts::new),
         kept: 0,
     };
     let mut summary = nothing();
-    let Summary { tally, counts, .. } = &mut summary;
-    let mut see = |row: &_| tally.add(row, |outcome| is_reached(outcome, shared.settings));
+    let Summary {
+        tally,
+        statistics,
+        counts,
+        ..
+    } = &mut summary;
+    let mut see = |row: &Row| {
+        tally.add(row, |outcome| is_reached(outcome, shared.settings));
+        statistics.add(row);
+    };
     let (output, kept) = Output::begin(rows, &plan.table, counts.as_mut(), &mut see)?;
     match kept {
         0 => Ok((nothing(), output)),

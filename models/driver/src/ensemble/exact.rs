@@ -3,6 +3,8 @@
 //! A finite `f64` is an integer multiple of `2^-1074`, and its square an integer multiple of `2^-2148`. The sums of
 //! these integers are stored in digits of 32 bits with room for carries.
 
+use num_bigint::{BigInt, BigUint, Sign};
+
 /// Terms of a sum are integer multiples of `2^-UNIT`.
 pub const UNIT: u32 = 1074;
 
@@ -82,6 +84,61 @@ impl ExactSum {
     /// The sum of the squares in units of `2^-2148`, in the same format.
     pub fn squares(&self) -> Vec<u8> {
         bytes(self.squares)
+    }
+
+    /// The mean, correctly rounded; NaN without terms.
+    pub fn mean(&self) -> f64 {
+        let sum = BigInt::from_signed_bytes_le(&self.sum());
+        quotient(&sum, &(BigUint::from(self.count) << UNIT))
+    }
+
+    /// The standard deviation, with `count - 1`: the root of the correctly rounded variance. NaN below two terms.
+    pub fn deviation(&self) -> f64 {
+        let sum = BigInt::from_signed_bytes_le(&self.sum());
+        let squares = BigInt::from_signed_bytes_le(&self.squares());
+        let spread = squares * self.count - &sum * &sum;
+        let pairs = u128::from(self.count) * u128::from(self.count.saturating_sub(1));
+        quotient(&spread, &(BigUint::from(pairs) << (2 * UNIT))).sqrt()
+    }
+}
+
+/// The quotient, correctly rounded, ties to even; NaN for a denominator of 0.
+fn quotient(numerator: &BigInt, denominator: &BigUint) -> f64 {
+    let (sign, size) = (numerator.sign(), numerator.magnitude());
+    if *denominator == BigUint::ZERO {
+        return f64::NAN;
+    }
+    if sign == Sign::NoSign {
+        return 0.0;
+    }
+    // The whole part of the quotient in units of 2^exponent has 63 or 64 bits, or fewer if it is below 2^-1012. Two bits
+    // at least are rounded off.
+    let lowest = -i64::from(UNIT);
+    let exponent = (size.bits() as i64 - denominator.bits() as i64 - 63).max(lowest - 2);
+    let shift = exponent.unsigned_abs();
+    let (numerator, denominator) = match exponent > 0 {
+        true => (size.clone(), denominator << shift),
+        false => (size << shift, denominator.clone()),
+    };
+    let whole = &numerator / &denominator;
+    let is_exact = &whole * &denominator == numerator;
+    let whole = u64::try_from(whole).unwrap_or(u64::MAX);
+    let bits = i64::from(u64::BITS - whole.leading_zeros());
+    let dropped = (bits - 53).max(lowest - exponent);
+    let (kept, rest) = (whole >> dropped, whole & ((1 << dropped) - 1));
+    let half = 1 << (dropped - 1);
+    let is_up = rest > half || (rest == half && (!is_exact || kept % 2 == 1));
+    let mantissa = kept + u64::from(is_up);
+    // The mantissa with its leading bit, added to the bits of the exponent, which it raises by one.
+    let field = (exponent + dropped - lowest) as u64;
+    let magnitude = match field + (mantissa >> 52) < 0x7ff {
+        true => f64::from_bits((field << 52) + mantissa),
+        false => f64::INFINITY,
+    };
+    if sign == Sign::Minus {
+        -magnitude
+    } else {
+        magnitude
     }
 }
 
@@ -182,5 +239,54 @@ mod tests {
         assert!(small.1[1..].iter().all(|byte| *byte == 0) && small.1[0] == 2);
         let squares = of(&mut [3.0, -4.0].into_iter()).1;
         assert_eq!(value(&squares, 2 * UNIT as i32), 25.0);
+    }
+
+    /// Division of numbers without rounding errors is rounded once by the processor.
+    #[test]
+    fn quotients_are_rounded_as_the_processor_rounds() {
+        let mut state = 1_u64;
+        let mut next = |bits: u32| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) >> (53 - bits)
+        };
+        for bits in (1..=53).chain(1..=53).chain(1..=53) {
+            let (numerator, denominator) = (next(bits), next(54 - bits).max(1));
+            let [over, under] = [numerator, denominator].map(|it| it as f64);
+            let of = |numerator: u64, unit: u32| {
+                let numerator = -BigInt::from(numerator);
+                quotient(&numerator, &(BigUint::from(denominator) << unit))
+            };
+            assert_eq!(-of(numerator, 0), over / under, "{numerator}/{denominator}");
+            // The numerator as a subnormal number.
+            let smallest = f64::from_bits(numerator);
+            assert_eq!(
+                -of(numerator, UNIT),
+                smallest / under,
+                "{smallest:e}/{denominator}"
+            );
+        }
+        let huge = BigInt::from(1) << 1024;
+        assert_eq!(quotient(&huge, &BigUint::from(1_u8)), f64::INFINITY);
+        assert_eq!(quotient(&(huge - 1), &BigUint::from(2_u8)), 2f64.powi(1023));
+    }
+
+    #[test]
+    fn means_and_deviations_lose_nothing() {
+        let of = |terms: &[f64]| {
+            let mut sum = ExactSum::default();
+            terms.iter().for_each(|term| sum.add(*term));
+            [sum.mean(), sum.deviation()]
+        };
+        assert_eq!(
+            of(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]),
+            [5.0, (32.0f64 / 7.0).sqrt()]
+        );
+        assert_eq!(of(&[1e16, 1.0, -1e16]), [1.0 / 3.0, 1e16]);
+        assert_eq!(of(&[1e16 + 2.0, 1e16 + 4.0]), [1e16 + 3.0, 2f64.sqrt()]);
+        assert_eq!(of(&[0.1])[0], 0.1);
+        assert!(of(&[0.1])[1].is_nan() && of(&[])[0].is_nan());
+        assert_eq!(of(&[f64::MAX, -f64::MAX])[1], f64::INFINITY);
     }
 }

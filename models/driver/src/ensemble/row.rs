@@ -11,6 +11,9 @@ use crate::{names, outcome};
 /// Prefix of the names of columns of varied quantities.
 pub const INPUT: &str = "in.";
 
+/// Prefix of the names of columns of outputs.
+pub const OUTPUT: &str = "out.";
+
 /// Type of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -66,7 +69,10 @@ impl Columns {
             &mut last.chain(["energy", "energy_change"].map(str::to_owned)),
         );
         let outputs = description.outputs.iter();
-        add(Kind::Number, &mut outputs.map(|name| format!("out.{name}")));
+        add(
+            Kind::Number,
+            &mut outputs.map(|name| format!("{OUTPUT}{name}")),
+        );
         let surfaces = names::surfaces(description);
         add(
             Kind::Integer,

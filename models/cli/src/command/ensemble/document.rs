@@ -31,6 +31,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     let impacts = names::surfaces(description).zip(&tally.impacts);
     let impacts = impacts.map(|(surface, &count)| (surface.to_owned(), Value::from(count)));
     document.field("impacts_on", impacts.collect::<Map<_, _>>())?;
+    document.field("statistics", statistics(finished))?;
     document.field("energy_change", number(tally.energy_change))?;
     document.field("energy_change_relative", number(tally.relative_change))?;
     let strayed = tally
@@ -43,6 +44,22 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         write_density(&mut document, density, counts, checkpoints)?;
     }
     document.end()
+}
+
+/// Statistics of the energy and the outputs, by column.
+fn statistics(finished: &Finished<'_>) -> Map<String, Value> {
+    let columns = finished.statistics.iter();
+    let told = columns.map(|(name, sum)| {
+        let statistics = json!({
+            "count": sum.count,
+            "mean": number(sum.mean()),
+            "std": number(sum.deviation()),
+            "least": number(sum.least),
+            "greatest": number(sum.greatest),
+        });
+        (name.to_owned(), statistics)
+    });
+    told.collect()
 }
 
 /// Writes the density. Each row of counts is a row of the grid; the first row has the lowest values of the second

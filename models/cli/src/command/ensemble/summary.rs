@@ -5,7 +5,9 @@ use std::io::{self, Write};
 use super::Finished;
 use crate::error::counted;
 use crate::names;
+use crate::scalar::short;
 use dalembert_driver::ensemble::density::{Axis, Checkpoint, Counts, Density};
+use dalembert_driver::ensemble::exact::ExactSum;
 
 /// Writes the summary.
 ///
@@ -52,6 +54,7 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
         settings.tol
     )?;
     writeln!(output, "  time        {}", time(finished))?;
+    write_statistics(output, finished)?;
     match &finished.density {
         Some((density, counts, checkpoints)) => write_density(output, density, counts, checkpoints),
         None => Ok(()),
@@ -137,6 +140,38 @@ fn range(axis: &Axis) -> String {
         .range
         .map(|end| format!("{end:.5e}").parse().unwrap_or(end));
     format!("{} in [{low}, {high})", axis.name)
+}
+
+/// Writes mean, standard deviation and extremes of the energy and the outputs.
+fn write_statistics(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
+    let told = finished.statistics.iter().filter(|(_, sum)| sum.count > 0);
+    let told: Vec<(&str, &ExactSum)> = told.collect();
+    let Some(width) = told.iter().map(|(name, _)| name.len()).max() else {
+        return Ok(());
+    };
+    let width = width.max("at the end".len());
+    writeln!(
+        output,
+        "  {:width$} {:>16} {:>16} {:>16} {:>16} {:>9}",
+        "at the end", "mean", "deviation", "least", "greatest", "members"
+    )?;
+    for (name, sum) in told {
+        let values = [sum.mean(), sum.deviation(), sum.least, sum.greatest].map(|value| {
+            let shown = if value.is_nan() {
+                "-".to_owned()
+            } else {
+                short(value)
+            };
+            format!("{shown:>16}")
+        });
+        writeln!(
+            output,
+            "  {name:width$} {} {:>9}",
+            values.join(" "),
+            sum.count
+        )?;
+    }
+    Ok(())
 }
 
 fn write_density(

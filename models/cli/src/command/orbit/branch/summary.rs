@@ -8,6 +8,7 @@ use super::super::summary::{complex, head, tell_missed};
 use super::spreadsheet::{components, values};
 use super::{Followed, reason};
 use crate::error::counted;
+use crate::scalar::short;
 
 /// Writes the summary.
 ///
@@ -150,14 +151,4 @@ fn write_table(output: &mut dyn Write, followed: &Followed<'_>, branch: &Branch)
         writeln!(output, "  {}", line.join("  ").trim_end())?;
     }
     Ok(())
-}
-
-/// A number with nine significant digits.
-fn short(number: f64) -> String {
-    let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
-    match rounded.abs() {
-        0.0 => "0".to_owned(),
-        size if !(1e-4..1e9).contains(&size) => format!("{rounded:e}"),
-        _ => rounded.to_string(),
-    }
 }
