@@ -317,4 +317,18 @@ fn claims_are_left_alone_where_that_is_asked_for() {
     assert_eq!(refused.exit, Exit::Refused, "{}", refused.output);
     let done = run(&format!("simulate {file} --no-claims --json -"));
     assert_eq!(done.json()["outcome"]["kind"], "done", "{}", done.errors);
+    for line in [format!("derive {file}"), format!("export {file} --c -")] {
+        assert_eq!(run(&line).exit, Exit::Refused, "{line}");
+        let done = run(&format!("{line} --no-claims"));
+        assert_eq!(done.exit, Exit::Reached, "{line}: {}", done.errors);
+        assert!(done.output.contains("ball"), "{}", done.output);
+    }
+    // The claims are the subject of `check`.
+    let refused = run(&format!("check {file} --no-claims"));
+    assert_eq!(refused.exit, Exit::Refused);
+    assert!(
+        refused.errors.contains("unexpected argument") && !refused.errors.contains("as a value"),
+        "{}",
+        refused.errors
+    );
 }

@@ -25,6 +25,46 @@ fn json_has_the_same_and_the_names() {
     assert_eq!(list[1]["coordinates"][1], "x.2");
 }
 
+/// `--json FILE` writes what `--format json` prints, beside the text; `--json -` prints it in place of the text.
+#[test]
+fn documents_go_to_files_and_to_the_standard_output() {
+    let path = std::env::temp_dir().join(format!("dalembert-json-{}", std::process::id()));
+    for line in [
+        "list",
+        "derive bouncing_ball",
+        "derive bouncing_ball --bracket x,momentum(x)",
+        "check bouncing_ball",
+        "check bouncing_ball --bendixson",
+    ] {
+        let [text, document] =
+            ["text", "json"].map(|format| run(&format!("{line} --format {format}")));
+        let printed = run(&format!("{line} --json -"));
+        assert_eq!(
+            (printed.exit, &printed.output),
+            (document.exit, &document.output),
+            "{line}"
+        );
+        let written = run(&format!("{line} --json {}", path.display()));
+        assert_eq!(
+            (written.exit, &written.output),
+            (text.exit, &text.output),
+            "{line}"
+        );
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            document.output,
+            "{line}"
+        );
+        std::fs::remove_file(&path).unwrap();
+    }
+    let both = run("list --json - --format text");
+    assert!(
+        both.errors.contains("cannot be used with"),
+        "{}",
+        both.errors
+    );
+}
+
 #[test]
 fn every_command_has_help_with_examples() {
     for command in [

@@ -15,6 +15,7 @@ mod gallery;
 mod help;
 mod linearise;
 mod map;
+mod model;
 mod orbit;
 mod rows;
 mod search;
@@ -42,6 +43,7 @@ pub use file::{BuildArgs, ExportArgs, NewArgs, WatchArgs};
 pub use gallery::GalleryArgs;
 pub use linearise::LineariseArgs;
 pub use map::MapArgs;
+pub use model::{ClaimsArgs, FeedbackArgs, ModelArgs, Selection};
 pub use orbit::OrbitArgs;
 pub use rows::RowsArgs;
 pub use search::SearchArgs;
@@ -186,16 +188,17 @@ pub enum Command {
 impl Command {
     /// The flags that select the model of the command, for commands that read one model once.
     pub fn selection(&mut self) -> Option<Selection<'_>> {
-        let (model, feedback) = match self {
-            Self::Derive(args) => (&mut args.model, &args.feedback.feedback),
-            Self::Check(args) => (&mut args.model, &args.feedback.feedback),
-            Self::Export(args) => (&mut args.model, &args.feedback.feedback),
+        let (model, feedback, skips_claims) = match self {
+            Self::Derive(args) => (&mut args.model, &args.feedback, args.claims.no_claims),
+            // Claims are the subject of the command.
+            Self::Check(args) => (&mut args.model, &args.feedback, false),
+            Self::Export(args) => (&mut args.model, &args.feedback, args.claims.no_claims),
             _ => return self.model_to_run().map(ModelArgs::selection),
         };
         Some(Selection {
             model,
-            feedback,
-            skips_claims: false,
+            feedback: &feedback.feedback,
+            skips_claims,
         })
     }
 
@@ -231,66 +234,17 @@ pub struct ListArgs {
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
-}
-
-/// The flags that select a model.
-#[derive(Debug)]
-pub struct Selection<'a> {
-    /// The argument that names it.
-    pub model: &'a mut String,
-    /// Laws of inputs.
-    pub feedback: &'a [String],
-    /// True if claims are not examined.
-    pub skips_claims: bool,
-}
-
-/// Laws of inputs.
-#[derive(Debug, Default, Args)]
-pub struct FeedbackArgs {
-    /// Replace an input by a law: an expression of time, coordinates, velocities, parameters and definitions, such as
-    /// `u=-4*x-dot(x)`. The closed loop is a model like any other, with derivatives, series and enclosures. May be repeated.
-    #[arg(long, value_name = "INPUT=LAW", allow_hyphen_values = true)]
-    pub feedback: Vec<String>,
-}
-
-/// The model, its scene and its parameters.
-#[derive(Debug, Args)]
-pub struct ModelArgs {
-    /// Name of the model, as `list` prints it, or a file with its declaration: `disk.dal`, `systems.dal:disk`, `-`.
-    pub model: String,
-    /// Scene: which forces and surfaces are used, as `list --format json` prints them.
-    #[arg(long, value_name = "SCENE", default_value = "all")]
-    pub scene: String,
-    /// Set a parameter. May be repeated.
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
-    pub set: Vec<String>,
-    /// Laws of inputs.
-    #[command(flatten)]
-    pub feedback: FeedbackArgs,
-    /// Do not examine the claims of a model of a file.
-    #[arg(long)]
-    pub no_claims: bool,
-    /// First mode of the run, for a model with modes. Default: the mode declared first.
-    #[arg(long, value_name = "MODE")]
-    pub mode: Option<String>,
-}
-
-impl ModelArgs {
-    /// The flags that select the model.
-    pub fn selection(&mut self) -> Selection<'_> {
-        Selection {
-            model: &mut self.model,
-            feedback: &self.feedback.feedback,
-            skips_claims: self.no_claims,
-        }
-    }
+    /// Write the list as one JSON document. `-` is the standard output.
+    #[arg(long, value_name = "FILE", conflicts_with = "format")]
+    pub json: Option<PathBuf>,
 }
 
 /// The state to start from.
 #[derive(Debug, Args)]
 pub struct StateArgs {
-    /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`. Values that are not
-    /// given here or by the model follow from the constraints.
+    /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`. The names of the
+    /// language do as well: `theta[3]`, `dot(x)`, `dot(theta[3])`. Values that are not given here or by the model follow
+    /// from the constraints.
     #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true, conflicts_with_all = ["q", "qdot", "p"])]
     pub initial: Vec<String>,
     /// All positions, in the order of the coordinates. Needs --qdot or --p.

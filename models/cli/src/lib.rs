@@ -59,6 +59,7 @@ use std::io::{self, IsTerminal, Read, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::error::{ContextKind, ErrorKind};
 
 use args::{Command, CommandLine};
 pub use catalogue::Catalogue;
@@ -117,7 +118,7 @@ impl Catalogue {
     {
         let mut line = match CommandLine::try_parse_from(args) {
             Ok(line) => line,
-            Err(error) => return explain(&error, streams),
+            Err(error) => return explain(error, streams),
         };
         let done = with_files(&mut line, self, streams)
             .and_then(|exit| Ok(streams.output.flush().map(|()| exit)?));
@@ -154,8 +155,8 @@ fn dispatch(
 ) -> Result<Exit, CliError> {
     let models = catalogue.models();
     match command {
-        Command::List(args) => command::list::run(models, args, streams.output),
-        Command::Derive(args) => command::derive::run(models, args, streams.output),
+        Command::List(args) => command::list::run(models, args, streams),
+        Command::Derive(args) => command::derive::run(models, args, streams),
         Command::Check(args) => command::check::run(models, args, streams),
         Command::Simulate(args) => command::simulate::run(models, args, streams),
         Command::Ensemble(args) => command::ensemble::run(models, args, streams),
@@ -177,7 +178,11 @@ fn dispatch(
 }
 
 /// Writes help to the standard output; any other error of `clap` is a refusal.
-fn explain(error: &clap::Error, streams: &mut Streams<'_>) -> Exit {
+fn explain(mut error: clap::Error, streams: &mut Streams<'_>) -> Exit {
+    if error.kind() == ErrorKind::UnknownArgument {
+        // The tip to pass an unknown flag as a value: no argument takes one.
+        error.remove(ContextKind::Suggested);
+    }
     let text = error.to_string();
     // If a standard stream fails here, no stream is left for a report.
     if error.use_stderr() {

@@ -169,6 +169,23 @@ impl Sink {
     }
 }
 
+/// Writes the document of `--json`, if it was requested. True if it went to the standard output, in place of the text.
+///
+/// # Errors
+/// An I/O error of the file or stream.
+pub fn write_document(
+    sink: Option<Sink>,
+    streams: &mut Streams<'_>,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<bool, CliError> {
+    let Some(sink) = sink else {
+        return Ok(false);
+    };
+    let takes_the_place = matches!(sink, Sink::Stdout);
+    sink.write(streams, content)?;
+    Ok(takes_the_place)
+}
+
 /// A file or the standard output, open for writing.
 pub struct Stream<'a> {
     output: Box<dyn Write + 'a>,

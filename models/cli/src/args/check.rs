@@ -17,6 +17,9 @@ pub struct CheckArgs {
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Write the findings as one JSON document. `-` is the standard output.
+    #[arg(long, value_name = "FILE", conflicts_with = "format")]
+    pub json: Option<PathBuf>,
     /// Write the claims with the grounds of their proofs as JSON, for the checker `python/check_certificate.py`.
     #[arg(long, value_name = "FILE")]
     pub certificate: Option<PathBuf>,

@@ -1,8 +1,10 @@
 //! The flags of `derive`.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 
-use super::FeedbackArgs;
+use super::{ClaimsArgs, FeedbackArgs};
 
 /// Format of a derivation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -26,6 +28,9 @@ pub struct DeriveArgs {
     /// Laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
+    /// Claims.
+    #[command(flatten)]
+    pub claims: ClaimsArgs,
     /// Print the bracket of two functions of positions, velocities and momenta, such as `x,momentum(x)`, instead.
     #[arg(
         long,
@@ -48,4 +53,7 @@ pub struct DeriveArgs {
     /// Output format.
     #[arg(long, value_enum, default_value_t = DeriveFormat::Text)]
     pub format: DeriveFormat,
+    /// Write the derivation as one JSON document. `-` is the standard output.
+    #[arg(long, value_name = "FILE", conflicts_with = "format")]
+    pub json: Option<PathBuf>,
 }

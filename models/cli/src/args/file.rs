@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{FeedbackArgs, SimulateArgs};
+use super::{ClaimsArgs, FeedbackArgs, SimulateArgs};
 
 pub const NEW_EXAMPLES: &str = "The command writes pendulum.dal. With --crate it writes the crate pendulum/, with the declaration in
 src/pendulum.dal.
@@ -82,6 +82,9 @@ pub struct ExportArgs {
     /// Laws of inputs.
     #[command(flatten)]
     pub feedback: FeedbackArgs,
+    /// Claims.
+    #[command(flatten)]
+    pub claims: ClaimsArgs,
     /// Write a header of C. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub c: PathBuf,

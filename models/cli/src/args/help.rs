@@ -5,7 +5,7 @@ pub const TEMPLATE: &str =
     "{about-with-newline}\n{before-help}{usage-heading} {usage}\n\n{all-args}{after-help}";
 
 pub const LIST: &str = "More examples:
-  dalembert list --format json";
+  dalembert list --json models.json";
 
 pub const DERIVE: &str = "More examples:
   dalembert derive rolling_disk --format latex > rolling_disk.tex
@@ -16,7 +16,7 @@ pub const DERIVE: &str = "More examples:
   dalembert derive chaplygin_sleigh --group 'partial(x),partial(y),partial(theta) - y*partial(x) + x*partial(y)'";
 
 pub const CHECK: &str = "More examples:
-  dalembert check rolling_disk --format json
+  dalembert check rolling_disk --json findings.json
   dalembert check rolling_disk --certificate proofs.json
   dalembert check rimless_wheel_five --bendixson
   python3 python/check_certificate.py proofs.json";

@@ -3,7 +3,7 @@
 mod bendixson;
 mod certificate;
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use dalembert::describe::{Description, Report, Topology};
 use dalembert::{Outcome, Policies};
@@ -21,7 +21,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::json::{Document, number};
 use crate::names;
-use crate::sink::Sink;
+use crate::sink::{self, Sink};
 use crate::state_input::{declared_state, find_model};
 
 /// A test of the model: its name, and the defect that it found.
@@ -47,10 +47,11 @@ pub fn run(
     args: &CheckArgs,
     streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
-    let sink = Sink::open_given("--certificate", args.certificate.as_deref())?;
+    let certificate = Sink::open_given("--certificate", args.certificate.as_deref())?;
+    let json = Sink::open_given("--json", args.json.as_deref())?;
     let model = find_model(models, &args.model)?.with_defaults(0);
     if args.bendixson {
-        return bendixson::run(model, args, streams.output);
+        return bendixson::run(model, args, json, streams);
     }
     let model = model.as_ref();
     let mut checks = checks(model);
@@ -64,12 +65,11 @@ pub fn run(
         });
     }
     let derived = derived.ok().flatten();
-    if let Some(sink) = sink {
+    if let Some(sink) = certificate {
         sink.write(streams, |output| {
             certificate::write(output, derived.as_ref())
         })?;
     }
-    let output = &mut *streams.output;
     let examined = Examined {
         checks,
         notes: notes(model, derived.as_ref()),
@@ -77,9 +77,12 @@ pub fn run(
             .map(|derived| findings(model, derived))
             .unwrap_or_default(),
     };
-    match args.format {
-        Format::Text => write_text(output, model, &examined)?,
-        Format::Json => write_json(output, model, &examined)?,
+    let document = |output: &mut dyn Write| write_json(output, model, &examined);
+    if !sink::write_document(json, streams, document)? {
+        match args.format {
+            Format::Text => write_text(streams.output, model, &examined)?,
+            Format::Json => document(streams.output)?,
+        }
     }
     let passed = examined.checks.iter().all(|check| check.failure.is_none());
     Ok(if passed { Exit::Reached } else { Exit::Other })
@@ -333,11 +336,7 @@ fn or_none(text: &str) -> &str {
     if text.is_empty() { "none" } else { text }
 }
 
-fn write_json(
-    output: &mut dyn Write,
-    model: &dyn AnyModel,
-    examined: &Examined,
-) -> Result<(), CliError> {
+fn write_json(output: &mut dyn Write, model: &dyn AnyModel, examined: &Examined) -> io::Result<()> {
     let description = model.description();
     let mut document = Document::begin(output)?;
     document.field("model", description.name)?;
@@ -380,7 +379,7 @@ fn write_json(
             .map(|(scene, claim)| claim_json(scene, claim)),
     )?;
     document.field("notes", examined.notes.clone())?;
-    Ok(document.end()?)
+    document.end()
 }
 
 fn claim_json(scene: &str, finding: &Finding) -> Value {

@@ -13,7 +13,7 @@ use dalembert_driver::{
     AnyModel, Controlled, Extremal, Form, Integrator, Settings, Task, Unsought,
 };
 
-use crate::args::{ControlArgs, FeedbackArgs, ModelArgs};
+use crate::args::{ClaimsArgs, ControlArgs, FeedbackArgs, ModelArgs};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -168,7 +168,7 @@ fn build(
         scene: "all".to_owned(),
         set: args.model.set.iter().cloned().chain(set).collect(),
         feedback: FeedbackArgs::default(),
-        no_claims: false,
+        claims: ClaimsArgs::default(),
         mode: None,
     };
     build_model(extremals, &args)

@@ -3,22 +3,29 @@
 use std::io::Write;
 
 use dalembert_codegen::report::{
-    BracketKind, Item, Report, ReportError, bracket, control, group, report,
+    BracketKind, Item, Report, ReportError, bracket, control, group, report, report_without_claims,
 };
 use serde_json::{Value, json};
 
+use crate::Streams;
 use crate::args::{DeriveArgs, DeriveFormat};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::names;
+use crate::sink::{self, Sink};
 use crate::state_input::find_model;
 
 /// Carries out `derive`.
 ///
 /// # Errors
-/// An unknown model, or an error of the generator on its source.
-pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
+/// An unknown model, an error of the generator on its source, or an output that fails.
+pub fn run(
+    models: &[Entry],
+    args: &DeriveArgs,
+    streams: &mut Streams<'_>,
+) -> Result<Exit, CliError> {
+    let sink = Sink::open_given("--json", args.json.as_deref())?;
     let entry = find_model(models, &args.model)?;
     let scenes = entry.description().scenes.iter().copied();
     let scene = names::find("--scene", "scene", &args.scene, scenes)?;
@@ -26,12 +33,16 @@ pub fn run(models: &[Entry], args: &DeriveArgs, output: &mut dyn Write) -> Resul
         let flag = flag(args).map_or(String::new(), |flag| format!("{flag}: "));
         CliError::Derive(format!("{flag}{error}"))
     })?;
+    let document = |output: &mut dyn Write| writeln!(output, "{:#}", json(&report));
+    if sink::write_document(sink, streams, document)? {
+        return Ok(Exit::Reached);
+    }
     let text = match args.format {
         DeriveFormat::Text => report.text(),
         DeriveFormat::Latex => report.latex(),
         DeriveFormat::Json => format!("{:#}", json(&report)),
     };
-    writeln!(output, "{}", text.trim_end())?;
+    writeln!(streams.output, "{}", text.trim_end())?;
     Ok(Exit::Reached)
 }
 
@@ -66,7 +77,10 @@ fn derived(entry: &Entry, args: &DeriveArgs, scene: usize) -> Result<Report, Rep
     if args.control {
         return control(source, part);
     }
-    let mut whole = report(source)?;
+    let mut whole = match args.claims.no_claims {
+        true => report_without_claims(source)?,
+        false => report(source)?,
+    };
     Ok(match scene.checked_sub(1) {
         Some(scene) => whole.scenes.swap_remove(scene),
         None => whole,

@@ -6,20 +6,28 @@ use std::io::Write;
 use dalembert::describe::Description;
 use serde_json::{Value, json};
 
+use crate::Streams;
 use crate::args::{Format, ListArgs};
 use crate::entry::Entry;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::json::write_array;
 use crate::names;
+use crate::sink::{self, Sink};
 
 /// Carries out `list`.
 ///
 /// # Errors
-/// [`CliError::Stream`] if the output fails.
-pub fn run(models: &[Entry], args: &ListArgs, output: &mut dyn Write) -> Result<Exit, CliError> {
+/// An output that fails.
+pub fn run(models: &[Entry], args: &ListArgs, streams: &mut Streams<'_>) -> Result<Exit, CliError> {
+    let array = |output: &mut dyn Write| write_array(output, models.iter().map(entry_json));
+    let json = Sink::open_given("--json", args.json.as_deref())?;
+    if sink::write_document(json, streams, array)? {
+        return Ok(Exit::Reached);
+    }
     match args.format {
-        Format::Text => write_text(models, output)?,
-        Format::Json => crate::json::write_array(output, models.iter().map(entry_json))?,
+        Format::Text => write_text(models, streams.output)?,
+        Format::Json => array(streams.output)?,
     }
     Ok(Exit::Reached)
 }

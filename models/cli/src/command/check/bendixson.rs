@@ -1,15 +1,17 @@
 //! `check --bendixson`: decides the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems where it can.
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use dalembert_codegen::report::planar::{Cascade, Decided, Interval, Planar, planar, shown};
 use dalembert_driver::AnyModel;
 use serde_json::{Value, json};
 
+use crate::Streams;
 use crate::args::{CheckArgs, Format};
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::json::{Document, number};
+use crate::sink::{self, Sink};
 use crate::state_input::set_parameter;
 
 /// Carries out `check --bendixson`.
@@ -19,7 +21,8 @@ use crate::state_input::set_parameter;
 pub fn run(
     mut model: Box<dyn AnyModel>,
     args: &CheckArgs,
-    output: &mut dyn Write,
+    json: Option<Sink>,
+    streams: &mut Streams<'_>,
 ) -> Result<Exit, CliError> {
     for text in &args.set {
         set_parameter(model.as_mut(), text)?;
@@ -40,9 +43,12 @@ pub fn run(
         reason: error.to_string(),
     })?;
     let modes: Vec<&str> = description.modes.iter().map(|mode| mode.name).collect();
-    match args.format {
-        Format::Text => write_text(output, description.name, &modes, &found)?,
-        Format::Json => write_json(output, description.name, &modes, &found)?,
+    let document = |output: &mut dyn Write| write_json(output, description.name, &modes, &found);
+    if !sink::write_document(json, streams, document)? {
+        match args.format {
+            Format::Text => write_text(streams.output, description.name, &modes, &found)?,
+            Format::Json => document(streams.output)?,
+        }
     }
     Ok(match found.concludes() {
         true => Exit::Reached,
@@ -138,7 +144,7 @@ fn write_json(
     name: &str,
     modes: &[&str],
     found: &Planar,
-) -> Result<(), CliError> {
+) -> io::Result<()> {
     let mut document = Document::begin(output)?;
     document.field("model", name)?;
     document.rows(
@@ -175,5 +181,5 @@ fn write_json(
     });
     document.field("cascade", cascade)?;
     document.field("concludes", found.concludes())?;
-    Ok(document.end()?)
+    document.end()
 }

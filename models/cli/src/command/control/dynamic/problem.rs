@@ -4,7 +4,7 @@ use dalembert::Tolerance;
 use dalembert::describe::Description;
 use dalembert_driver::{AnyModel, Axis, Landing, Lattice, Leg, Move, Unlanded};
 
-use crate::args::{ControlArgs, FeedbackArgs, ModelArgs};
+use crate::args::{ClaimsArgs, ControlArgs, FeedbackArgs, ModelArgs};
 use crate::entry::Entry;
 use crate::error::{self, CliError};
 use crate::state_input::{build_model, find_model};
@@ -80,7 +80,7 @@ impl Problem {
                 scene: "all".to_owned(),
                 set: args.model.set.clone(),
                 feedback: FeedbackArgs::default(),
-                no_claims: false,
+                claims: ClaimsArgs::default(),
                 mode: None,
             },
         };
