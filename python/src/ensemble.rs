@@ -340,9 +340,9 @@ fn members(model: &dyn AnyModel, varied: &Varied<'_>) -> PyResult<Members> {
     let description = model.description();
     let mut named = Vec::new();
     for (name, kind, numbers) in &varied.values {
-        let quantity = Quantity::find(name, description);
-        let quantity = quantity.map_err(|unknown| refused(format!("vary: {unknown}")))?;
-        named.push((name.clone(), quantity, values(kind, numbers)?));
+        let found = Quantity::find(name, description);
+        let (name, quantity) = found.map_err(|unknown| refused(format!("vary: {unknown}")))?;
+        named.push((name, quantity, values(kind, numbers)?));
     }
     Ok(match &varied.rows {
         None => Members::product(named, varied.seed, varied.count),

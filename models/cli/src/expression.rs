@@ -77,7 +77,8 @@ impl Expression {
     /// # Errors
     /// An expression that is not such an equation.
     pub fn assigned(mut self) -> Result<(String, Self), CliError> {
-        let is_name = |side: &str| !side.contains(['(', '+', '-', '*', '/', '^', ' ']);
+        let is_name =
+            |side: &str| !names::column(side).contains(['(', '+', '-', '*', '/', '^', ' ']);
         match self.sides.first() {
             Some((_, name)) if self.is_equation() && is_name(name) => {
                 let name = name.clone();

@@ -28,7 +28,7 @@ impl fmt::Display for Unknown {
 
 impl std::error::Error for Unknown {}
 
-/// The position of `given` among `accepted`.
+/// The position of `given` among `accepted`. A name of the language, such as `dot(theta[2])`, stands for its [`column`].
 ///
 /// # Errors
 /// [`Unknown`] if `given` is not among them.
@@ -37,12 +37,14 @@ pub fn find<'a>(
     given: &str,
     accepted: impl Iterator<Item = &'a str> + Clone,
 ) -> Result<usize, Unknown> {
-    let place = accepted.clone().position(|name| name == given);
-    place.ok_or_else(|| Unknown {
-        what,
-        given: given.to_owned(),
-        accepted: accepted.map(str::to_owned).collect(),
-    })
+    let place = |given: &str| accepted.clone().position(|name| name == given);
+    place(given)
+        .or_else(|| place(&column(given)))
+        .ok_or_else(|| Unknown {
+            what,
+            given: given.to_owned(),
+            accepted: accepted.map(str::to_owned).collect(),
+        })
 }
 
 /// The name of a coordinate's velocity: `x_dot`, `theta_dot.3`.
@@ -56,6 +58,33 @@ pub fn velocity(coordinate: &str) -> String {
 /// The name of a coordinate's momentum: `p_x`, `p_theta.3`.
 pub fn momentum(coordinate: &str) -> String {
     format!("p_{coordinate}")
+}
+
+/// The name of a column for a name of the language: `theta_dot.2` for `dot(theta[2])`, `p_x` for `momentum(x)`,
+/// `theta.2` for `theta[2]`. Any other name is itself.
+pub fn column(given: &str) -> String {
+    let given = given.trim();
+    let of = |function: &str| {
+        let rest = given.strip_prefix(function)?.trim_start();
+        let inner = rest.strip_prefix('(')?.strip_suffix(')')?;
+        Some(member(inner.trim()))
+    };
+    if let Some(coordinate) = of("dot") {
+        velocity(&coordinate)
+    } else if let Some(coordinate) = of("momentum") {
+        momentum(&coordinate)
+    } else {
+        member(given)
+    }
+}
+
+/// `theta.2` for the member `theta[2]` of a family.
+fn member(name: &str) -> String {
+    let split = name.strip_suffix(']').and_then(|name| name.split_once('['));
+    match split.map(|(family, index)| (family.trim(), index.trim())) {
+        Some((family, index)) if index.parse::<u64>().is_ok() => format!("{family}.{index}"),
+        _ => name.to_owned(),
+    }
 }
 
 /// The names of the coordinates, in order.
@@ -109,6 +138,32 @@ mod tests {
         assert_eq!(
             text,
             "unknown model `roling_disk`; did you mean `rolling_disk`?\n  accepted: pendulum, rolling_disk"
+        );
+    }
+
+    #[test]
+    fn names_of_the_language_are_found() {
+        let cases = [
+            ("dot(theta)", "theta_dot"),
+            (" dot( theta[12] ) ", "theta_dot.12"),
+            ("theta[ 2 ]", "theta.2"),
+            ("momentum(x[1])", "p_x.1"),
+            ("x_dot.3", "x_dot.3"),
+            ("sin(x)", "sin(x)"),
+            ("x[i]", "x[i]"),
+        ];
+        for (given, expected) in cases {
+            assert_eq!(column(given), expected);
+        }
+        let accepted = ["x.1", "x.2", "x_dot.1", "x_dot.2"];
+        let place = |given| find("velocity", given, accepted.into_iter()).ok();
+        assert_eq!(place("dot(x[2])"), Some(3));
+        assert_eq!(place("x[2]"), Some(1));
+        assert_eq!(place("dot(y[2])"), None);
+        // A name that is accepted as it is comes first.
+        assert_eq!(
+            find("name", "dot(x)", ["x_dot", "dot(x)"].into_iter()),
+            Ok(1)
         );
     }
 

@@ -157,7 +157,7 @@ fn columns(
     let named = header.iter().enumerate();
     let mut columns: Vec<(usize, String, Quantity)> = Vec::new();
     for (index, name) in named.filter_map(|(index, name)| Some((index, ours(name)?))) {
-        let quantity = vary::find(place, &name, description)?;
+        let (name, quantity) = vary::find(place, &name, description)?;
         if columns.iter().any(|(.., other)| *other == quantity) {
             return Err(CliError::value(place, name, "every column once"));
         }

@@ -6,11 +6,15 @@ use dalembert_driver::ensemble::{Quantity, Values};
 use crate::error::CliError;
 use crate::{names, scalar};
 
-/// The quantity of this name.
+/// The quantity of this name, with its name in tables.
 ///
 /// # Errors
 /// [`CliError::Unknown`] if no quantity has this name.
-pub fn find(place: &str, name: &str, description: &Description) -> Result<Quantity, CliError> {
+pub fn find(
+    place: &str,
+    name: &str,
+    description: &Description,
+) -> Result<(String, Quantity), CliError> {
     Quantity::find(name, description).map_err(|unknown| CliError::Unknown {
         place: place.to_owned(),
         unknown,
@@ -38,9 +42,9 @@ pub type Varied = (String, Quantity, Values);
 /// A name that the model does not have, or invalid values.
 pub fn parse(text: &str, description: &Description, asked: Asked) -> Result<Varied, CliError> {
     let (name, values) = names::assignment("--vary", text, EXPECTED)?;
-    let quantity = find("--vary", name, description)?;
-    let values = parse_values(name, values, asked)?;
-    Ok((name.to_owned(), quantity, values))
+    let (name, quantity) = find("--vary", name, description)?;
+    let values = parse_values(&name, values, asked)?;
+    Ok((name, quantity, values))
 }
 
 fn parse_values(name: &str, text: &str, asked: Asked) -> Result<Values, CliError> {

@@ -30,15 +30,15 @@ impl Quantity {
         positions.chain(velocities).chain(parameters).collect()
     }
 
-    /// The quantity of this name.
+    /// The quantity of this name, with its name in tables: `x_dot` for `dot(x)`.
     ///
     /// # Errors
     /// [`Unknown`] if no quantity has this name.
-    pub fn find(name: &str, description: &Description) -> Result<Self, Unknown> {
-        let all = Self::all(description);
+    pub fn find(name: &str, description: &Description) -> Result<(String, Self), Unknown> {
+        let mut all = Self::all(description);
         let accepted = all.iter().map(|(name, _)| name.as_str());
         let index = names::find("coordinate, velocity or parameter", name, accepted)?;
-        Ok(all[index].1)
+        Ok(all.swap_remove(index))
     }
 }
 

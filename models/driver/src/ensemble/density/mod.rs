@@ -73,10 +73,10 @@ impl Axis {
         bins: usize,
         description: &Description,
     ) -> Result<Self, Unknown> {
-        let all = shown(description);
+        let mut all = shown(description);
         let accepted = all.iter().map(|(name, _)| name.as_str());
         let index = names::find("coordinate, velocity or output", name, accepted)?;
-        let shown = all[index].1;
+        let (name, shown) = all.swap_remove(index);
         let topology = match shown {
             Shown::Position(index) => description.coordinates[index].topology,
             _ => Topology::Line,
@@ -87,7 +87,7 @@ impl Axis {
             _ => [f64::NAN; 2],
         };
         Ok(Self {
-            name: name.to_owned(),
+            name,
             shown,
             is_circle: topology == Topology::Circle,
             range: range.unwrap_or(known),

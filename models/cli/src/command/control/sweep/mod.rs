@@ -146,7 +146,7 @@ fn varied(
     };
     let parts = given.iter().flat_map(|text| text.split(','));
     let mut names = parts.filter_map(|text| text.split('=').next());
-    if names.any(|given| given.trim() == name) {
+    if names.any(|given| crate::names::column(given) == *name) {
         return Err(refuse("a quantity that no other flag gives"));
     }
     if members.count() > MOST {

@@ -50,6 +50,7 @@ impl Within {
             ));
         }
         let (name, value) = names::assignment(FLAG, text, "NAME=LO..HI")?;
+        let name = &*names::column(name);
         let coordinates: Vec<&str> = names::coordinates(description).collect();
         let velocities: Vec<String> = coordinates.iter().map(|one| names::velocity(one)).collect();
         let is_reduced = form == Form::Reduced;
