@@ -299,13 +299,14 @@ fn samples_go_across_impacts() {
 
 #[test]
 fn the_summary_names_rows_and_columns() {
-    let done = linearise(CART, "- --trim --every 0.1 --samples 1");
+    let done = linearise(CART, "- --trim --every 0.1");
     for line in [
         ", linearised at t = 0\n",
         "  equilibrium yes\n",
         "    d/dt theta_dot  0  15.328125000 ",
         "  stability   unstable: 1 eigenvalue has a positive real part\n",
-        "  sample at t = 0.0, 0 impacts\n",
+        "  sample from t = 0 to t = 0.1, 0 impacts\n",
+        "    next      x = 0.0, theta = 0.0, x_dot = 0.0, theta_dot = 0.0\n",
         "  Gamma",
     ] {
         assert!(done.output.contains(line), "{line}: {}", done.output);
@@ -318,7 +319,7 @@ fn flags_that_make_no_sense_are_refused() {
         (CART, "- --trim=w", "unknown component or input `w`"),
         (CART, "- --trim --moving u", "unknown component `u`"),
         (CART, "- --moving x", "--trim"),
-        (CART, "- --every 1", "--samples"),
+        (CART, "- --samples 2", "--every"),
         (CART, "- --input w=1", "unknown input `w`"),
         (SWITCHED, "- --mode of", "unknown mode `of`"),
     ] {

@@ -22,11 +22,11 @@ and all inputs, or only the named ones: `--trim=u,theta`. --moving names coordin
 a wheel that rolls steadily.
 An equilibrium is stable if all eigenvalues of A have negative real parts, unstable if one has a positive one.
 
---every and --samples follow the motion from that state with constant inputs, and print for each sample
+--every T follows the motion from that state with constant inputs. It prints the state at t + T as `next`, and the matrices of
 
   y(t + T) = Phi y(t) + Gamma u
 
-across impacts, with the saltation matrix of each. Along a periodic orbit, whose start and period `orbit` prints, these are the
+across impacts, with the saltation matrix of each; --samples N goes on for N such times. Along a periodic orbit, whose start and period `orbit` prints, these are the
 matrices of a periodic linear-quadratic regulator.
 
 Exit status: 0 the equations were linearised, 1 no equilibrium was found or the equations have no derivative there, 2 bad
@@ -65,12 +65,12 @@ pub struct LineariseArgs {
     /// Components whose rates need not vanish at the equilibrium.
     #[arg(long, value_name = "NAME,..", requires = "trim")]
     pub moving: Option<String>,
-    /// Time between the samples of the motion.
-    #[arg(long, value_name = "T", requires = "samples", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
+    /// Follow the motion from the state, and print how deviations of state and inputs change it after each time T.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub every: Option<f64>,
-    /// Number of samples of the motion after the first.
-    #[arg(long, value_name = "N", requires = "every", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub samples: Option<u32>,
+    /// Number of samples of the motion, a time --every each.
+    #[arg(long, value_name = "N", requires = "every", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=100_000), default_value_t = 1)]
+    pub samples: u32,
     /// The sampled motion.
     #[command(flatten)]
     pub series: SeriesArgs,

@@ -116,9 +116,9 @@ fn trim(model: &dyn AnyModel, args: &LineariseArgs) -> Result<Option<Trim>, CliE
 fn sampling(model: &dyn AnyModel, args: &LineariseArgs) -> Result<Option<Sampling>, CliError> {
     let laws = run_request::laws(model, &args.series.law)?;
     let tolerance = args.series.tolerance()?;
-    Ok(args.every.zip(args.samples).map(|(every, count)| Sampling {
+    Ok(args.every.map(|every| Sampling {
         every,
-        count,
+        count: args.samples,
         tolerance,
         laws,
         policies: args.series.policies.policies(),

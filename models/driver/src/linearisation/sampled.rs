@@ -35,6 +35,8 @@ pub struct Sampling {
 pub struct Stride {
     /// The time of the sample.
     pub t: f64,
+    /// Time of the next sample.
+    pub until: f64,
     /// The state at the sample.
     pub state: Vec<f64>,
     /// The state at the next sample.
@@ -124,6 +126,7 @@ fn stride<S: Instance + Scene + Variational>(
     let [phi, gamma] = split(&slopes, state.len());
     Ok(Stride {
         t,
+        until,
         state: state.to_vec(),
         next,
         phi,

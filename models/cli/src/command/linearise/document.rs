@@ -70,6 +70,7 @@ fn write_found(
 fn stride(it: &Stride) -> Value {
     json!({
         "t": number(it.t),
+        "until": number(it.until),
         "state": vector(&it.state),
         "next": vector(&it.next),
         "impacts": it.impacts,

@@ -55,8 +55,10 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Resu
     write_stability(output, found)?;
     for stride in &found.strides {
         let impacts = counted(stride.impacts as usize, "impact");
-        writeln!(output, "  sample at t = {:?}, {impacts}", stride.t)?;
+        let (t, until) = (stride.t, stride.until);
+        writeln!(output, "  sample from t = {t} to t = {until}, {impacts}")?;
         writeln!(output, "    state     {}", assigned(&state, &stride.state))?;
+        writeln!(output, "    next      {}", assigned(&state, &stride.next))?;
         write_matrix(output, "Phi", [&state, &state], &stride.phi)?;
         if !inputs.is_empty() {
             write_matrix(output, "Gamma", [&state, inputs], &stride.gamma)?;
