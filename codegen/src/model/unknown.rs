@@ -141,6 +141,15 @@ impl Resolver<'_> {
                 name.replace('·', "*")
             );
         }
+        let outputs = &self.spec.outputs;
+        if outputs
+            .iter()
+            .any(|output| output.declared.name.text == name)
+        {
+            return format!(
+                "`{name}` is an output, which no expression names; write what it stands for, or declare that with `let`"
+            );
+        }
         let special = self
             .velocity_help(name)
             .or_else(|| self.member_help(name))

@@ -447,7 +447,7 @@ pub struct SimulateArgs {
     #[arg(long, value_enum, requires = "inputs", default_value_t = Between::Cubic)]
     pub between: Between,
     /// Add an output to the model for this run, such as `S = integral(lagrangian)`. The expression has the syntax of
-    /// `outputs` in a model. May be repeated.
+    /// `outputs` in a model; it cannot name an output. May be repeated.
     #[arg(
         long,
         value_name = "NAME = EXPR",

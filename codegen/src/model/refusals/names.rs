@@ -28,6 +28,10 @@ fn unknown_names_come_with_what_was_meant() {
         "outputs { o: «p_x»; }",
         "help: in `outputs`, the momentum of `x` is written `momentum(x)`",
     );
+    refused_in(
+        "outputs { J: x; dJ: «J» - 1; }",
+        "unknown name `J`\nhelp: `J` is an output, which no expression names; write what it stands for, or declare that with `let`",
+    );
     refused_term(
         "«banana»",
         "unknown name `banana`\nhelp: a parameter is declared with `parameters { banana; }`",

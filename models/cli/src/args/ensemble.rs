@@ -53,7 +53,7 @@ pub struct EnsembleArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "members"])]
     pub from: Option<PathBuf>,
     /// Add an output to the model for these runs, such as `S = integral(lagrangian)`. The expression has the syntax of
-    /// `outputs` in a model. May be repeated.
+    /// `outputs` in a model; it cannot name an output. May be repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub output: Vec<String>,
     /// Run only block I of N blocks of members, counted from 1. The rows of all blocks together are those of the whole
