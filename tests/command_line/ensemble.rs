@@ -473,6 +473,7 @@ fn a_ball_has_every_speed_for_the_same_time() {
     for text in [
         "x\u{307}",
         "distance of halves of time",
+        "white: none",
         "crispEdges",
         "</svg>",
     ] {

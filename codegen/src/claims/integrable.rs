@@ -61,7 +61,10 @@ pub(super) fn check_integrable(
     if let Some(refuted) = together.add(independence) {
         return refuted;
     }
-    together.all.shown += " are conserved, in involution and independent at almost all states";
+    together.all.shown += match declared {
+        [_] => " is conserved, and its differential vanishes at almost no state",
+        _ => " are conserved, in involution and independent at almost all states",
+    };
     for surface in model.acting_surfaces() {
         for StatedFunction { value, written } in declared {
             let stated = (*value, written.as_str());
@@ -71,7 +74,8 @@ pub(super) fn check_integrable(
             }
         }
         let name = &model.surfaces[surface].name.display;
-        together.all.shown += &format!("; `{name}` keeps them");
+        let kept = if declared.len() == 1 { "it" } else { "them" };
+        together.all.shown += &format!("; `{name}` keeps {kept}");
     }
     together.verdict()
 }

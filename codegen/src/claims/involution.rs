@@ -32,7 +32,10 @@ pub(super) fn check_involution(
     });
     let on_d: Vec<(FunctionOnD, &str)> = on_d.collect();
     let names: Vec<String> = on_d.iter().map(|(_, name)| format!("`{name}`")).collect();
-    let shown = format!("{} are in involution", names.join(", "));
+    let shown = match &names[..] {
+        [name] => format!("{name} is in involution with itself"),
+        names => format!("{} are in involution", names.join(", ")),
+    };
     let mut together = Together::of(Certificate::without_chance(shown, around.seed));
     for (j, (g, second)) in on_d.iter().enumerate() {
         for (f, first) in &on_d[..j] {

@@ -1,5 +1,7 @@
 //! `integrable: f, g, ..`.
 
+use dalembert_codegen::claims::Verdict;
+
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;
 use crate::systems::{ball, disk, particle};
@@ -175,4 +177,25 @@ fn near_misses_are_refuted() {
         "integrable: momentum(x), momentum(x) + 1e-9*momentum(y)",
         True,
     );
+}
+
+/// One function alone is told in the singular.
+#[test]
+fn one_function_is_told_in_the_singular() {
+    for (claim, told) in [
+        (
+            "integrable: energy",
+            "`energy` is conserved, and its differential vanishes at almost no state; `floor` keeps it",
+        ),
+        (
+            "involution: energy",
+            "`energy` is in involution with itself",
+        ),
+    ] {
+        let source = ball("elastic").replace("CLAIM", &format!("claims {{ {claim}; }}"));
+        let Verdict::Proved(certificate) = &crate::findings(&source)[0].verdict else {
+            panic!("{claim} is proved");
+        };
+        assert_eq!(certificate.shown, told);
+    }
 }

@@ -56,6 +56,15 @@ fn decimal(text: &str) -> Option<f64> {
     starts_as_number.then(|| text.parse().ok()).flatten()
 }
 
+/// A number with all its digits, and with an exponent if it is very large or very small.
+pub fn full(number: f64) -> String {
+    match number.abs() {
+        0.0 => "0".to_owned(),
+        size if !(1e-4..1e16).contains(&size) => format!("{number:e}"),
+        _ => number.to_string(),
+    }
+}
+
 /// A number with nine significant digits, and with an exponent if it is very large or very small.
 pub fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
@@ -116,6 +125,27 @@ fn within(text: &str, accepts: impl Fn(f64) -> bool, expected: &str) -> Result<f
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_and_large_numbers_have_exponents() {
+        for (number, all, nine) in [
+            (0.0, "0", "0"),
+            (
+                4.908_712_883_434_957e-14,
+                "4.908712883434957e-14",
+                "4.90871288e-14",
+            ),
+            (-0.000_1, "-0.0001", "-0.0001"),
+            (
+                -0.520_683_714_448_936_4,
+                "-0.5206837144489364",
+                "-0.520683714",
+            ),
+            (12_345_678_901.25, "12345678901.25", "1.23456789e10"),
+        ] {
+            assert_eq!((&*full(number), &*short(number)), (all, nine));
+        }
+    }
 
     #[test]
     fn decimals_are_the_nearest_numbers() {

@@ -199,6 +199,12 @@ fn a_refused_merge_changes_no_file() {
         folder.path("all.csv")
     ));
     assert_eq!(done.exit, whole.exit, "{}", done.errors);
+    let ran = "members per second";
+    assert!(
+        whole.output.contains(ran) && !done.output.contains(ran),
+        "{}",
+        done.output
+    );
     assert_eq!(files(&folder, "all.csv"), before);
     assert_eq!(names(&folder), listed);
 }

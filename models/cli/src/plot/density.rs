@@ -76,6 +76,8 @@ struct Scale {
     is_clipped: bool,
     /// The density of one count.
     unit: f64,
+    /// True if some cells have no count.
+    has_gaps: bool,
 }
 
 impl Scale {
@@ -97,6 +99,7 @@ impl Scale {
             top: top as f64 * unit,
             is_clipped,
             unit,
+            has_gaps: sorted.len() < counts.len(),
         }
     }
 
@@ -194,6 +197,9 @@ fn bar(area: &Area<'_>, scale: &Scale, [left, height]: [f64; 2]) -> Result<(), S
     }
     if scale.is_clipped {
         write("and more", at(0.0, 1.0 + 8.0 / height))?;
+    }
+    if scale.has_gaps {
+        write("white: none", at(0.0, -28.0 / height))?;
     }
     write("density", at(0.0, -14.0 / height))
 }

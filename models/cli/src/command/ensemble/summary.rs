@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::Finished;
+use crate::command::simulate::summary::relative_change;
 use crate::error::counted;
 use crate::names;
 use crate::scalar::short;
@@ -42,8 +43,9 @@ pub fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> 
     if !finished.model.description().is_first_order {
         writeln!(
             output,
-            "  energy      largest change {:.1e}, relative {:.1e}",
-            tally.energy_change, tally.relative_change
+            "  energy      largest change {:.1e}{}",
+            tally.energy_change,
+            relative_change(tally.relative_change)
         )?;
     }
     writeln!(
@@ -111,12 +113,15 @@ fn impacts(finished: &Finished<'_>) -> String {
 fn time(finished: &Finished<'_>) -> String {
     let seconds = finished.elapsed.as_secs_f64();
     let ran = finished.tally.members - finished.kept;
-    let mut text = format!(
-        "{seconds:.2} s on {}, {:.0} members per second with functions {}",
-        counted(finished.threads as usize, "thread"),
-        ran as f64 / seconds,
-        finished.model.code().name()
-    );
+    let mut text = format!("{seconds:.2} s");
+    if ran > 0 {
+        text += &format!(
+            " on {}, {:.0} members per second with functions {}",
+            counted(finished.threads as usize, "thread"),
+            ran as f64 / seconds,
+            finished.model.code().name()
+        );
+    }
     if finished.kept > 0 {
         text += &format!(
             " ({} were there)",

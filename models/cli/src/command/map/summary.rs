@@ -6,6 +6,7 @@ use super::Finished;
 use crate::error::counted;
 use crate::map::Orbit;
 use crate::names;
+use crate::scalar::full;
 
 /// Largest number of orbits that are listed.
 const TOLD: usize = 8;
@@ -101,7 +102,7 @@ fn point(finished: &Finished<'_>, orbit: &Orbit) -> String {
     let names = finished.request.components.names.iter();
     let values = names.zip(&orbit.point);
     let values: Vec<String> = values
-        .map(|(name, value)| format!("{name} = {value}"))
+        .map(|(name, value)| format!("{name} = {}", full(*value)))
         .collect();
     format!("period {}, back at {}", orbit.period, values.join(", "))
 }
@@ -109,10 +110,16 @@ fn point(finished: &Finished<'_>, orbit: &Orbit) -> String {
 fn time(finished: &Finished<'_>) -> String {
     let seconds = finished.elapsed.as_secs_f64();
     let ran = finished.sums.cells - finished.kept;
-    let mut text = format!(
-        "{seconds:.2} s on {}, {:.0} cells per second, {} in all",
-        counted(finished.threads as usize, "thread"),
-        ran as f64 / seconds,
+    let mut text = format!("{seconds:.2} s");
+    if ran > 0 {
+        text += &format!(
+            " on {}, {:.0} cells per second",
+            counted(finished.threads as usize, "thread"),
+            ran as f64 / seconds
+        );
+    }
+    text += &format!(
+        ", {} in all",
         counted(finished.sums.returns as usize, "return")
     );
     if finished.kept > 0 {

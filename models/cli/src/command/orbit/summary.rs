@@ -8,6 +8,7 @@ use dalembert_driver::{Found, Point, Symmetries};
 
 use super::Finished;
 use crate::error::counted;
+use crate::scalar::full;
 use crate::{names, outcome};
 
 /// Writes the summary.
@@ -43,7 +44,7 @@ pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_, Found>) -> i
     let multipliers: Vec<String> = found
         .multipliers
         .iter()
-        .map(|multiplier| complex(*multiplier, |part| part.to_string()))
+        .map(|multiplier| complex(*multiplier, full))
         .collect();
     writeln!(output, "  multipliers  {}", multipliers.join(", "))?;
     momenta(output, finished)
@@ -137,12 +138,12 @@ fn state(description: &Description, point: &Point) -> String {
     let positions = names::coordinates(description).map(str::to_owned);
     let mut parts: Vec<String> = positions
         .zip(&point.q)
-        .map(|(name, value)| format!("{name} = {value}"))
+        .map(|(name, value)| format!("{name} = {}", full(*value)))
         .collect();
     if !description.is_first_order {
         let velocities = names::coordinates(description).map(names::velocity);
         let values = velocities.zip(&point.qdot);
-        parts.extend(values.map(|(name, value)| format!("{name} = {value}")));
+        parts.extend(values.map(|(name, value)| format!("{name} = {}", full(*value))));
     }
     parts.join(", ")
 }

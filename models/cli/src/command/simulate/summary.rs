@@ -174,12 +174,17 @@ fn integrator(ending: &Ending, settings: &Settings) -> String {
 fn energy(ending: &Ending) -> String {
     let (first, last) = (ending.first.energy, ending.last.energy);
     let change = last - first;
-    let relative = if first == 0.0 {
-        String::new()
-    } else {
-        format!(", relative {:.1e}", change / first.abs())
-    };
+    let relative = relative_change(change / first.abs());
     format!("{first:?} at the start, {last:?} at the end (change {change:.1e}{relative})")
+}
+
+/// A change of the energy relative to its value at the start. Empty if that value is small against the change: it then
+/// depends on the zero of the potential.
+pub(in crate::command) fn relative_change(relative: f64) -> String {
+    match relative.abs() <= 1.0 {
+        true => format!(", relative to the start {relative:.1e}"),
+        false => String::new(),
+    }
 }
 
 fn details(description: &Description, outcome: &Outcome) -> String {
@@ -197,4 +202,17 @@ fn details(description: &Description, outcome: &Outcome) -> String {
 /// Six significant digits, without trailing zeros.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::relative_change;
+
+    #[test]
+    fn changes_are_relative_to_energies_that_are_not_near_zero() {
+        assert_eq!(relative_change(-0.98), ", relative to the start -9.8e-1");
+        for ratio in [5.1e3, f64::NEG_INFINITY, f64::NAN] {
+            assert_eq!(relative_change(ratio), "");
+        }
+    }
 }

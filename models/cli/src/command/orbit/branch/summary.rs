@@ -8,7 +8,7 @@ use super::super::summary::{complex, head, tell_missed};
 use super::spreadsheet::{components, values};
 use super::{Followed, reason};
 use crate::error::counted;
-use crate::scalar::short;
+use crate::scalar::{full, short};
 
 /// Writes the summary.
 ///
@@ -88,7 +88,7 @@ fn located(followed: &Followed<'_>, member: &Member) -> String {
         followed.name(),
         member.parameter,
         member.period,
-        multipliers(member, |part| part.to_string())
+        multipliers(member, full)
     )
 }
 
