@@ -21,7 +21,7 @@ Ball {
 """
 #: Schemas with the command lines whose output they describe.
 OUTPUTS = {
-    "list": [["list", "--format", "json"]],
+    "list": [["list"], ["list", "--format", "json"]],
     "derive": [
         *(["derive", name, "--format", "json"] for name in ("rolling_disk", "tent_map", "dimensionless_walker")),
         ["derive", "rolling_disk", "--bracket", "x,momentum(theta)", "--format", "json"],

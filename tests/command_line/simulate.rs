@@ -519,6 +519,6 @@ fn quantities_have_their_names_in_the_language() {
         assert_eq!(column.exit, Exit::Reached, "{}", column.errors);
         assert_eq!(language.output, column.output, "{}", language.errors);
     }
-    let unknown = run("simulate bouncing_ball --initial dot(y)=1");
+    let unknown = run("simulate bouncing_ball --until 1 --initial dot(y)=1");
     assert!(unknown.errors.contains("`dot(y)`"), "{}", unknown.errors);
 }
