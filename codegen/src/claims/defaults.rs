@@ -10,7 +10,7 @@ use super::contraction::{Dependence, dependence};
 use super::dynamics::Dynamics;
 use super::exactness::{Exactness, decide, sample_points, screen};
 use super::existence::{Decision, check_existence};
-use super::finding::{Verdict, Witness};
+use super::finding::{Certificate, Verdict, Witness};
 use super::fit::certify;
 use super::potential::Potential;
 use super::problem::Problem;
@@ -72,9 +72,10 @@ impl Defaults {
                 help: format!("it is {place}: {remedy} to claim that"),
                 ..witness
             }),
-            Verdict::Proved(_) => Verdict::Undecided(format!(
-                "it changes for almost all values of the parameters, and is {place}; {remedy} to claim that it is conserved"
-            )),
+            Verdict::Proved(certificate) => Verdict::Proved(Certificate {
+                shown: format!("{}; it is {place}", certificate.shown),
+                ..certificate
+            }),
             undecided => undecided,
         }
     }
@@ -246,9 +247,9 @@ mod tests {
 
     /// A bead on a hoop that turns at the rate w: the energy in the frame at rest is conserved if w = 0.
     #[test]
-    fn a_quantity_that_is_conserved_at_the_defaults_is_not_shown_to_change() {
+    fn verdicts_name_defaults_at_which_a_quantity_is_conserved() {
         let bead = |default: &str, claim: &str| {
-            messages(&format!(
+            format!(
                 "pub Bead {{
                     coordinates {{ theta: angle; }}
                     parameters {{ w = {default}; g > 0 = 9.81; }}
@@ -256,22 +257,24 @@ mod tests {
                     let lab = (dot(theta)^2 + w^2*sin(theta)^2)/2 - g*cos(theta);
                     claims {{ {claim}; }}
                 }}"
-            ))
+            )
         };
-        assert_eq!(bead("1/2", "not conserved: lab"), "");
-        let message = bead("0", "not conserved: lab");
+        let kept = "conserved at the declared defaults w = 0";
+        let shown = |default: &str| {
+            let text = bead(default, "not conserved: lab");
+            let compiled = compile(text.parse().expect("tokens")).expect("a model");
+            compiled.findings[0].note()
+        };
+        assert!(shown("0").contains(kept), "{}", shown("0"));
         assert!(
-            message.contains("`not conserved: lab` is undecided"),
-            "{message}"
+            !shown("1/2").contains("declared defaults"),
+            "{}",
+            shown("1/2")
         );
-        assert!(message.contains("declared defaults w = 0"), "{message}");
-        let message = bead("0", "conserved: lab");
+        let message = messages(&bead("0", "conserved: lab"));
         assert!(message.contains("`conserved: lab` is refuted"), "{message}");
-        assert!(
-            message.contains("conserved at the declared defaults w = 0"),
-            "{message}"
-        );
-        let message = bead("1/2", "conserved: lab");
+        assert!(message.contains(kept), "{message}");
+        let message = messages(&bead("1/2", "conserved: lab"));
         assert!(!message.contains("declared defaults"), "{message}");
     }
 

@@ -35,7 +35,7 @@ pub fn check_outputs<const N: usize>(paths: [&Option<PathBuf>; N]) -> Result<(),
     given.sort_unstable();
     match given.windows(2).any(|pair| pair[0] == pair[1]) {
         true => Err(CliError::Usage(
-            "output flags need different files (`-` can be used once)",
+            "--csv, --json, --html and --plot need different files (`-` can be used once)",
         )),
         false => Ok(()),
     }

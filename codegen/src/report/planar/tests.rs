@@ -201,13 +201,13 @@ fn what_is_missing_is_named() {
             format!("{line} impacts {{ floor: x >= 0 => impact_plastic; }}"),
             1,
             Decided::Fails,
-            "to one",
+            "to the same one",
         ),
         (
             format!("{line} impacts {{ floor: x >= 0 => reset {{ x = 1; dot(x) = 0; }}; }}"),
             1,
             Decided::Fails,
-            "to one",
+            "to the same one",
         ),
         (
             format!("{line} impacts {{ floor: x >= 0 => reset {{ x = 1; dot(x) = dot(x)^2; }}; }}"),
