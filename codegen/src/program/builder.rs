@@ -140,6 +140,9 @@ impl Builder {
 
     /// `a - b`
     pub fn sub(&mut self, a: Value, b: Value) -> Value {
+        if a == b {
+            return self.zero();
+        }
         if self.is_zero(b) {
             return a;
         }
