@@ -127,9 +127,9 @@ fn walls_are_drawn_where_they_are() {
         }
         assert!(!points.is_empty(), "{time}");
         seen += 1;
-        for [x, _] in points {
-            assert!((x - place).abs() < 1e-3, "{time}: {x}");
-        }
+        // The ends of the line follow the edge of the picture to the next point of the grid.
+        let near = points.iter().filter(|[x, _]| (x - place).abs() < 1e-3);
+        assert!(near.count() + 4 >= points.len(), "{time}: {points:?}");
     }
     assert!(seen > 20, "{seen}");
 }
