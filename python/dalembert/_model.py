@@ -203,8 +203,8 @@ class Model(Swept):
         >>> from dalembert import Model
         >>> cart = Model.from_text("Cart { coordinates { x; } inputs { u; } lagrangian = dot(x)^2/2; forces { push: u*d(x); } }")
         >>> run = cart.with_feedback(u="-4*x").simulate(state={"x": 1, "x_dot": 0}, until=1)
-        >>> float(run.jacobian(["x"])[0, 0])  # cos(2)
-        -0.416146836547142...
+        >>> round(float(run.jacobian(["x"])[0, 0]), 10)  # cos(2)
+        -0.4161468365
         """
         text = _native.close(self.source, f"{self.name} with feedback", list(laws.items()))
         return _restored(text, self._claims, self._scene, self._values())
