@@ -28,7 +28,7 @@ impl fmt::Display for Unknown {
 
 impl std::error::Error for Unknown {}
 
-/// The position of `given` among `accepted`. A name of the language, such as `dot(theta[2])`, stands for its [`column`].
+/// The position of `given` among `accepted`. A name of the language, such as `dot(theta[2])`, stands for its [`column()`].
 ///
 /// # Errors
 /// [`Unknown`] if `given` is not among them.
