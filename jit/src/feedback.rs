@@ -62,17 +62,17 @@ impl std::error::Error for FeedbackError {}
 /// goes when no input is left.
 ///
 /// ```
-/// use dalembert::erased::Erased;
-/// use dalembert::{System, VectorField};
+/// use dalembert::erased::{Bounded, Erased};
+/// use dalembert::{StateVector, System, VectorField};
 ///
 /// let cart = "Cart { coordinates { x; } inputs { u; } lagrangian = dot(x)^2/2; forces { push: u*d(x); } }";
 /// let closed = dalembert_jit::close("cart", cart, &[("u", "-4*x - dot(x)")])?;
 /// let models = dalembert_jit::load("cart", &closed)?;
 /// let cart = Erased::<4>::of(&models[0].form).expect("room for two numbers");
-/// let state = cart.state(0.0, &[0.5][..].into(), &[1.0][..].into()).expect("a state");
+/// let state = cart.state(0.0, &Bounded::all(1, 0.5), &Bounded::all(1, 1.0)).expect("a state");
 /// let mut rate = cart.zero_state();
 /// cart.rate(0.0, &state, &mut rate).expect("a rate");
-/// assert_eq!(rate.as_ref(), [1.0, -3.0]);
+/// assert_eq!(StateVector::as_slice(&rate), [1.0, -3.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
