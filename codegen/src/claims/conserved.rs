@@ -66,8 +66,8 @@ pub(super) fn check_conserved(
     }
 }
 
-/// Adjusts `generic`, the verdict that a quantity changes for indeterminate parameters, to the declared defaults. If
-/// the quantity is conserved at the defaults, its change is not proved, and a refutation mentions the defaults.
+/// Adds a remark to `generic`, the verdict that a quantity changes for indeterminate parameters, if the quantity is
+/// conserved at the declared defaults.
 fn change_at_defaults(
     model: &mut Model,
     parts: &[Dynamics],

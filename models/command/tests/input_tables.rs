@@ -3,12 +3,14 @@
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/folder.rs"]
+mod folder;
 mod support;
 
 use std::fs;
-use std::path::PathBuf;
 
 use dalembert_cli::Exit;
+use folder::Folder;
 use serde_json::Value;
 use support::{Done, run_on};
 
@@ -22,31 +24,10 @@ const MASS: &str = "
         initial { until = 3; }
     }";
 
-/// A folder of files for one test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = format!("dalembert-inputs-{name}-{}", std::process::id());
-        let folder = std::env::temp_dir().join(folder);
-        fs::create_dir_all(&folder).unwrap();
-        Self(folder)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    fn with(&self, name: &str, text: &str) -> String {
-        fs::write(self.0.join(name), text).unwrap();
-        self.path(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        fs::remove_dir_all(&self.0).unwrap();
-    }
+/// Writes a file of a test, and gives its path.
+fn written(folder: &Folder, name: &str, text: &str) -> String {
+    fs::write(folder.0.join(name), text).unwrap();
+    folder.path(name)
 }
 
 fn simulate(input: &str, line: &str) -> Done {
@@ -69,7 +50,7 @@ fn assert_near(found: f64, expected: f64, bound: f64) {
 /// Motions of the ball from a height of 1/2 with one and with two impacts, and from a height of 2 with one impact.
 #[test]
 fn extremals_that_are_simulated_reach_their_ends() {
-    let folder = Folder::new("extremals");
+    let folder = Folder::new("inputs-extremals");
     let table = folder.path("best.csv");
     for (start, impacts, samples) in [(0.5, 1, 26), (0.5, 2, 101), (2.0, 1, 11)] {
         let line = format!(
@@ -90,8 +71,12 @@ fn extremals_that_are_simulated_reach_their_ends() {
 /// `u` is 0 until the time 1, then 2. The other input has the value of the flag.
 #[test]
 fn jumps_are_where_two_rows_are() {
-    let folder = Folder::new("jumps");
-    let table = folder.with("jump.csv", "t,u,other\n0,0,7\n1,0,7\n1,2,7\n3,2,7\n");
+    let folder = Folder::new("inputs-jumps");
+    let table = written(
+        &folder,
+        "jump.csv",
+        "t,u,other\n0,0,7\n1,0,7\n1,2,7\n3,2,7\n",
+    );
     for between in ["cubic", "linear", "held"] {
         let line = format!("- --inputs {table} --between {between} --input v=0.5");
         let [q, qdot] = end(MASS, &line);
@@ -105,8 +90,8 @@ fn jumps_are_where_two_rows_are() {
 /// the input is constant.
 #[test]
 fn between_rows_inputs_are_as_asked() {
-    let folder = Folder::new("between");
-    let table = folder.with("rows.csv", "t,u\n0.5,1\n1,4\n2,1\n");
+    let folder = Folder::new("inputs-between");
+    let table = written(&folder, "rows.csv", "t,u\n0.5,1\n1,4\n2,1\n");
     let area = |between: &str| end(MASS, &format!("- --inputs {table} --between {between}"))[1][0];
     assert_near(area("linear"), 0.5 + 1.25 + 2.5 + 1.0, 1e-12);
     assert_near(area("held"), 0.5 + 0.5 + 4.0 + 1.0, 1e-12);
@@ -123,12 +108,12 @@ fn between_rows_inputs_are_as_asked() {
 /// the ends. Over the time 3 the integral differs by less than 5e-7.
 #[test]
 fn a_smooth_input_is_met_closely() {
-    let folder = Folder::new("sine");
+    let folder = Folder::new("inputs-sine");
     let rows: Vec<String> = (0..=60)
         .map(|k| f64::from(k) * 0.05)
         .map(|t| format!("{t:?},{:?}", t.sin()))
         .collect();
-    let table = folder.with("sine.csv", &format!("t,u\n{}\n", rows.join("\n")));
+    let table = written(&folder, "sine.csv", &format!("t,u\n{}\n", rows.join("\n")));
     let [q, qdot] = end(MASS, &format!("- --inputs {table}"));
     assert_near(qdot[0], 1.0 - 3.0_f64.cos(), 5e-7);
     assert_near(q[0], 3.0 - 3.0_f64.sin(), 1.5e-6);
@@ -136,7 +121,7 @@ fn a_smooth_input_is_met_closely() {
 
 #[test]
 fn tables_that_make_no_sense_are_refused() {
-    let folder = Folder::new("refused");
+    let folder = Folder::new("inputs-refused");
     for (text, reason) in [
         ("u\n1\n", "there is no column `t`"),
         ("t,w\n0,1\n", "no column is an input of the model: u, v"),
@@ -146,7 +131,7 @@ fn tables_that_make_no_sense_are_refused() {
         ("t,u\n", "there are no rows"),
         ("t,u\n0,inf\n", "line 2: `inf` is no number"),
     ] {
-        let table = folder.with("table.csv", text);
+        let table = written(&folder, "table.csv", text);
         let refused = simulate(MASS, &format!("- --inputs {table}"));
         assert_eq!(refused.exit, Exit::Refused, "{text}");
         assert!(
@@ -155,7 +140,7 @@ fn tables_that_make_no_sense_are_refused() {
             refused.errors
         );
     }
-    let table = folder.with("table.csv", "t,u\n0,1\n");
+    let table = written(&folder, "table.csv", "t,u\n0,1\n");
     for (input, line, reason) in [
         (
             MASS,

@@ -84,8 +84,8 @@ impl Resolver<'_> {
         let is_flat = diagonal
             .iter()
             .any(|sign| matches!(sign, Sign::Zero | Sign::NonPositive));
-        let is_concave = diagonal.contains(&Sign::Negative) || self.has_negative_minor(&rows);
-        let text = match (is_concave, is_flat) {
+        let falls = diagonal.contains(&Sign::Negative) || self.has_negative_minor(&rows);
+        let text = match (falls, is_flat) {
             (true, _) => format!("the running cost is not convex in {names}"),
             (false, false) if rank.rank == rows.len() || !rank.decided => {
                 return Some(());
@@ -98,8 +98,9 @@ impl Resolver<'_> {
         self.refuse(written.at, text, help)
     }
 
-    /// True if the second derivatives by two of the inputs are known to have a negative determinant. Whether larger
-    /// determinants are positive, and whether those of unknown sign are, is checked where a control begins.
+    /// True if the second derivatives with respect to some two inputs have a determinant that is known to be negative:
+    /// the cost then falls along a combination of both. Larger determinants, and signs that depend on parameters, are
+    /// checked when a control begins.
     fn has_negative_minor(&mut self, rows: &[Vec<ExprId>]) -> bool {
         let pairs = (0..rows.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
         let pool = &mut self.pool;
