@@ -84,9 +84,9 @@ def test_a_closed_loop_is_the_model_with_the_law_written_out(cart):
     closed = cart.with_parameters(c=0.25).with_feedback(u="-3*x - c*dot(x)", w="sin(t)")
     assert closed.inputs == () and closed.parameters == {"m": 2, "c": 0.25}
     written = Model.from_text(WRITTEN).with_parameters(c=0.25)
-    start = {"state": {"x": -0.5, "x_dot": 2.5}, "integrator": "taylor", "tol": 1e-12}
+    start = {"state": {"x": -0.5, "x_dot": 4}, "integrator": "taylor", "tol": 1e-12}
     run, other = closed.simulate(**start), written.simulate(**start)
-    assert len(run.events) > 2 and run.last == other.last
+    assert len(run.events) > 1 and run.last == other.last
     names = ["x", "x_dot", "c"]
     np.testing.assert_array_equal(run.jacobian(names), other.jacobian(names))
     # One law alone leaves the other input to the caller.
