@@ -7,7 +7,7 @@ use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Lowered, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
-use dalembert_stability::text::Large;
+use dalembert_stability::text::{Large, Text};
 use dalembert_tests::interpreted::{compare_motion, compare_report, input};
 use dalembert_tests::sampling::{Random, every_system, states};
 
@@ -71,6 +71,47 @@ fn every_function_is_emitted_as_it_is_interpreted() {
 }
 
 /// Asserts that the force `f = dL/dq + F` of the derivation, without the applied force `F`, equals differences of L.
+static BUMPS: Text = Text::new(
+    "Bumps {
+        coordinates { x; }
+        let y = 2 + x;
+        lagrangian = dot(x)^2/2;
+        outputs {
+            of_300: ((1.7 + cos(x))/2.7)^300; of_1000: 10*((1.001 + cos(x))/2.001)^1000; of_root: ((1.7 + cos(x))/2.7)^(601/2);
+            inverse: ((1.7 - cos(x))/0.7)^(-500); two: x*((3 + x)/2.7)^400*((3 - x)/3.3)^350 - 1;
+            shared: ((2 + x)/2.5)^900*y^2 + ((2 + x)/2.5)^900*x*y;
+        }
+    }",
+);
+
+/// The numbers that come out of these powers exceed the range of `f64`, the values do not.
+#[test]
+fn high_powers_of_scaled_sums_keep_their_values() {
+    let system = BUMPS.model();
+    for x in [0.0_f64, 0.1, -0.3, 0.55] {
+        let state = system
+            .state(0.0, &[x].into(), &[0.0].into())
+            .expect("a state");
+        let mut outputs = [f64::NAN; 6];
+        system.outputs(0.0, &state, &mut outputs).expect("outputs");
+        let shared = ((2.0 + x) / 2.5).powi(900);
+        let expected = [
+            ((1.7 + x.cos()) / 2.7).powi(300),
+            10.0 * ((1.001 + x.cos()) / 2.001).powi(1000),
+            ((1.7 + x.cos()) / 2.7).powf(300.5),
+            ((1.7 - x.cos()) / 0.7).powi(-500),
+            x * ((3.0 + x) / 2.7).powi(400) * ((3.0 - x) / 3.3).powi(350) - 1.0,
+            shared * (2.0 + x).powi(2) + shared * x * (2.0 + x),
+        ];
+        for (value, expected) in outputs.into_iter().zip(expected) {
+            assert!(
+                (value - expected).abs() <= 1e-11 * expected.abs(),
+                "{x}: {outputs:?}, {expected:e}"
+            );
+        }
+    }
+}
+
 fn assert_force_is_differenced(system: &Large) {
     let Description { name, source, .. } = system.description();
     let (model, derivation, _) = derive(source);

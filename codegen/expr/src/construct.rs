@@ -122,6 +122,16 @@ mod tests {
         }
     }
 
+    /// The coefficient 1/2001 cannot leave these powers: its own would have more than `MAX_BITS` bits.
+    #[test]
+    fn a_multiple_keeps_a_coefficient_whose_power_is_too_long() {
+        different(&[
+            ("((2*x + y)/2001)^400", "(2*x + y)^400"),
+            ("z*((2*x + y)/2001)^(-400)", "z*(2*x + y)^(-400)"),
+        ]);
+        same(&[("((2*x + y)/2001)^400", "((x + y/2)*2/2001)^400")]);
+    }
+
     #[test]
     fn sums_collect_like_terms() {
         same(&[

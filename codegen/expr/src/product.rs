@@ -168,7 +168,9 @@ impl Pool {
                 }
                 Node::Sum { .. } => {
                     let (coefficient, _) = self.as_multiple(base);
-                    !coefficient.is_one() && !coefficient.is_zero()
+                    !coefficient.is_one()
+                        && !coefficient.is_zero()
+                        && number_power(&coefficient, exponent).1.is_none()
                 }
                 _ => false,
             }

@@ -190,6 +190,14 @@ impl Rational {
         }
     }
 
+    /// The binary logarithm of the absolute value, to within 1; 0 for 0.
+    pub fn log2(&self) -> i64 {
+        match self.is_zero() {
+            true => 0,
+            false => self.numer().bits() as i64 - self.denom().bits() as i64,
+        }
+    }
+
     /// The non-negative generator of the integer combinations of two numbers:
     /// `gcd(a/b, c/d) = gcd(a, c) / lcm(b, d)`; `None` if it does not fit machine words.
     pub(crate) fn small_gcd(&self, other: &Self) -> Option<Self> {
@@ -394,6 +402,14 @@ mod tests {
         assert_eq!(&big * &big.recip().unwrap(), Rational::ONE);
         assert!(Rational::new(1, i64::MAX) < Rational::new(1, i64::MAX - 1));
         assert!(big > Rational::from(i64::MAX));
+    }
+
+    #[test]
+    fn logarithms_are_within_one() {
+        let ratio = Rational::new(3, 7).pow_i(900).expect("a number");
+        assert!((ratio.log2() as f64 - 900.0 * (3.0_f64 / 7.0).log2()).abs() <= 1.0);
+        assert_eq!(Rational::from(-8).log2(), 3);
+        assert_eq!(Rational::ZERO.log2(), 0);
     }
 
     #[test]

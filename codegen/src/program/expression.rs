@@ -123,7 +123,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Factors that several terms share are taken out, the most frequent first.
+    /// Factors that several terms share are taken out, the most frequent first, unless a coefficient is
+    /// [extreme](is_extreme): its term then needs its powers whole.
     fn lower_sum(&self, builder: &mut Builder, mut terms: Vec<Term>) -> Value {
         let mut pending = Vec::new();
         while let Some(shared) = most_frequent_factor(&terms) {
@@ -157,11 +158,12 @@ impl<'a> Expressions<'a> {
     /// A sum whose terms share no factor; a coefficient that all terms share up to sign is applied once.
     fn lower_plain_sum(&self, builder: &mut Builder, terms: Vec<Term>) -> Value {
         let size = terms.first().map(|(coefficient, _)| coefficient.abs());
-        let common =
-            size.filter(|size| terms.len() > 1 && terms.iter().all(|(c, _)| c.abs() == *size));
+        let common = size.filter(|size| {
+            terms.len() > 1 && !is_extreme(size) && terms.iter().all(|(c, _)| c.abs() == *size)
+        });
         let mut total = builder.zero();
         for (coefficient, factors) in terms {
-            let product = self.lower_product(builder, &factors);
+            let (coefficient, product) = self.lower_term(builder, coefficient, &factors);
             let weight = match &common {
                 Some(_) => Rational::from(if coefficient.is_negative() { -1 } else { 1 }),
                 None => coefficient,
@@ -181,6 +183,33 @@ impl<'a> Expressions<'a> {
             }
             None => total,
         }
+    }
+
+    /// Coefficient and product of a term. An [extreme](is_extreme) coefficient `c` of a power is divided among its
+    /// factors: `c*b^n` becomes `(c/2^(k n))*(2^k b)^n`, which is the same number without overflow on the way.
+    fn lower_term(
+        &self,
+        builder: &mut Builder,
+        coefficient: Rational,
+        factors: &[(ExprId, Rational)],
+    ) -> (Rational, Value) {
+        let balanced = Some(&coefficient)
+            .filter(|coefficient| is_extreme(coefficient))
+            .and_then(|coefficient| balance(coefficient, factors));
+        let Some((position, scale, coefficient)) = balanced else {
+            return (coefficient, self.lower_product(builder, factors));
+        };
+        let (base, exponent) = &factors[position];
+        let rest = [&factors[..position], &factors[position + 1..]].concat();
+        let rest = self.lower_product(builder, &rest);
+        let scale = builder.number(scale);
+        let base = builder.mul(scale, self.values[base]);
+        let power = positive_power(builder, base, &exponent.abs());
+        let product = match exponent.is_negative() {
+            true => builder.div(rest, power),
+            false => builder.mul(rest, power),
+        };
+        (coefficient, product)
     }
 
     /// Parameters are multiplied, and divided, first: products then share the factors that depend on parameters alone.
@@ -250,13 +279,39 @@ pub fn positive_power(builder: &mut Builder, base: Value, exponent: &Rational) -
     }
 }
 
+/// True for a number that may exceed the range of `f64`, or bring a product with a high power out of it. Half of the
+/// range is left for the power.
+fn is_extreme(number: &Rational) -> bool {
+    number.log2().abs() > 500
+}
+
+/// The position of the power whose base takes over most of a coefficient, the power of two that multiplies the base, and
+/// the coefficient that is left; `None` without an integer power above the first.
+fn balance(
+    coefficient: &Rational,
+    factors: &[(ExprId, Rational)],
+) -> Option<(usize, Rational, Rational)> {
+    let integers = factors.iter().enumerate().filter_map(|(position, factor)| {
+        let exponent = factor.1.to_i64()?;
+        (exponent.abs() > 1).then_some((position, exponent))
+    });
+    let (position, exponent) = integers.max_by_key(|(_, exponent)| exponent.abs())?;
+    let two = |shift: i64| Rational::from(2).pow_i(i32::try_from(shift).ok()?);
+    let shift = coefficient.log2() / exponent;
+    Some((
+        position,
+        two(shift)?,
+        coefficient * &two(-shift * exponent)?,
+    ))
+}
+
 /// Number of factors of a sum up to which shared factors are sought: the time of the search grows with its square.
 const SEARCHED: usize = 1 << 13;
 
 /// The base that occurs with a positive integer exponent in the most terms, at least two.
 fn most_frequent_factor(terms: &[Term]) -> Option<ExprId> {
     let length: usize = terms.iter().map(|(_, factors)| factors.len()).sum();
-    if terms.len() < 2 || length > SEARCHED {
+    if terms.len() < 2 || length > SEARCHED || terms.iter().any(|(c, _)| is_extreme(c)) {
         return None;
     }
     let shareable = || {
