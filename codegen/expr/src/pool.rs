@@ -220,7 +220,7 @@ impl Pool {
         };
         roots.iter().for_each(|root| mark(&mut marks, *root));
         let mut found = Vec::new();
-        // Operands have smaller ids, so one sweep downwards visits users first.
+        // Operands have smaller ids, so one sweep downwards visits every expression before its operands.
         for block in (0..marks.len()).rev() {
             let mut below = u64::MAX;
             while marks[block] & below != 0 {

@@ -72,8 +72,8 @@ impl Pool {
     }
 }
 
-/// The report of higher rank. Of two reports of equal rank, the one with more dependencies: a coefficient may vanish at
-/// one point.
+/// The report of higher rank. Of two reports of equal rank, the one whose dependencies contain more rows: at one point,
+/// the coefficient of a row may vanish by chance.
 fn better(a: Option<RankReport>, b: Option<RankReport>) -> Option<RankReport> {
     let weight = |report: &RankReport| {
         let named: usize = report.dependencies.iter().map(|(_, rows)| rows.len()).sum();
@@ -152,7 +152,7 @@ fn scale(field: Modulus, row: &mut [u64], factor: u64) {
         .for_each(|entry| *entry = field.mul(*entry, factor));
 }
 
-/// The number of pivots that stand out clearly, by elimination with complete pivoting; 0 if an entry is not finite.
+/// The number of pivots that are clearly not 0, by elimination with complete pivoting; 0 if an entry is not finite.
 fn real_rank(rows: &[Vec<ExprId>], values: Vec<f64>) -> usize {
     if values.iter().any(|value| !value.is_finite()) {
         return 0;

@@ -63,14 +63,15 @@ impl Pool {
         match self.vanishes_modularly(id, &order, &profile) {
             Some(true) if profile.is_exact() => Verdict::Proved,
             Some(false) if profile.is_exact() => Verdict::Refuted,
-            // NOTE: also if all residues are 0, because a final check of real values costs little.
+            // NOTE: real values are checked even if all residues are 0, because this costs little.
             _ if self.is_clearly_nonzero(id) => Verdict::Refuted,
             Some(true) => Verdict::Proved,
             _ => Verdict::Undecided,
         }
     }
 
-    /// True if all sampled residues are 0; `None` if there were too few.
+    /// True if all sampled residues are 0, false if one is not. `None` if there are too few points, or if zeros prove
+    /// nothing.
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
         let mut points = SamplePoints::new(self, order, profile, 0)?;
