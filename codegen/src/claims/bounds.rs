@@ -22,8 +22,8 @@ pub(super) fn is_never_negative(model: &Model, value: ExprId) -> bool {
     is_above || ranges()[value.index()].is_some_and(|range| range.lo >= 0.0)
 }
 
-/// Lower and upper bound of the values; `None` if the expression is no polynomial in parameters with declared ranges, or
-/// if it contains a power above [`LARGEST`].
+/// Lower and upper bound of the values. `None` if the expression is no polynomial in parameters with declared ranges,
+/// or if it contains a power above [`LARGEST`].
 fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
     match model.pool.node(id) {
         Node::Number(value) => Some([value.clone(), value.clone()]),

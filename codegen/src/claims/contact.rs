@@ -29,7 +29,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// The possible motions behind a surface. None if the law reverses the gap rate.
+    /// The possible motions behind a surface; empty if the law reverses the gap rate.
     pub(super) fn all(model: &mut Model, surface: usize, wall: &Wall) -> Vec<Self> {
         if !may_hold(model, surface) {
             return Vec::new();

@@ -29,7 +29,7 @@ pub struct Examined {
     /// The findings, in the order of the claims.
     pub findings: Vec<Finding>,
     /// Invariant volume with a proved density that can be emitted. A stated density takes precedence over one that was
-    /// found. `None` if no claim is about a volume.
+    /// found. `None` if no claim about a volume is proved, or if its density cannot be emitted.
     pub volume: Option<Volume>,
 }
 
@@ -124,7 +124,7 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
         .collect()
 }
 
-/// Same as [`examine()`], for a scene. If the scene asks for a volume and no claim is about one, a density is sought.
+/// Same as [`examine()`], for a scene. If the scene asks for a volume and no claim provides one, a density is sought.
 pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
     let mut examined = examine(model, derivation);
     if model.extras.volume && examined.volume.is_none() {

@@ -27,7 +27,7 @@ use crate::model::{ExteriorForm, Model};
 const STATES: usize = 12;
 const COMPONENTS: usize = 32;
 
-/// The reason for which nothing is known of resets beside such constraints.
+/// Reason for an open verdict on surfaces of a model with nonlinear constraints.
 const AT_NONLINEAR: &str =
     "resets beside constraints that are not linear in the velocities are not examined";
 
@@ -111,7 +111,7 @@ fn too_large(tangents: &Tangents, form: &ExteriorForm) -> Option<Verdict> {
     })
 }
 
-/// The verdict on a form on these vectors.
+/// The verdict on a form, evaluated on the given tangent vectors.
 pub(super) fn check_on(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -129,7 +129,7 @@ pub(super) fn check_on(
     }
 }
 
-/// The verdict on motion and surfaces, of a form that may be 0.
+/// The verdict on the effects of motion and surfaces on a form. The form may be 0 at all states.
 fn check_kept(
     model: &mut Model,
     around: &Surroundings<'_>,
