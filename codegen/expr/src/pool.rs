@@ -173,7 +173,8 @@ impl Pool {
         self.facts[id.index()].sign
     }
 
-    /// True if the structure shows that the expression is finite for all values of its symbols that satisfy their assumptions.
+    /// True if the structure shows that the expression is finite for all values of its symbols that satisfy their
+    /// assumptions.
     pub fn is_finite(&self, id: ExprId) -> bool {
         self.facts[id.index()].finite
     }

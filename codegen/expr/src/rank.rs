@@ -17,16 +17,16 @@ pub struct RankReport {
     pub independent_rows: Vec<usize>,
     /// Every other row, with the earlier independent rows that it is a combination of; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
-    /// Pivot column of each independent row, in the same order: the first in which the row differs from the
-    /// combinations of the rows before it.
+    /// Pivot column of each independent row, in the same order: the first in which the row is not 0 after the earlier
+    /// independent rows were eliminated from it.
     pub pivot_columns: Vec<usize>,
     /// True if the independence is certain. It is not if the entries could not be evaluated, or if they contain functions
     /// whose hidden relations the residues do not show and values in double precision do not confirm the rank.
     pub decided: bool,
 }
 
-/// Numbers of points, without and with roots in the entries. The unknown sign of a root may make rows dependent at a
-/// point.
+/// Numbers of points, without and with roots in the entries. The sign of a root at a point is arbitrary and may make
+/// rows dependent there, so roots need more points.
 const SAMPLES: (usize, usize) = (3, 24);
 const REAL_SAMPLES: u64 = 12;
 

@@ -31,12 +31,13 @@ pub enum Verdict {
 /// Minimum and maximum number of points drawn for one value: each independent root rejects half of them. The maximum
 /// applies to small expressions.
 const DRAWS: (usize, usize) = (64, 1024);
-/// Number of evaluated nodes per value that limits the number of draws between these bounds.
+/// Largest number of nodes that are evaluated for one value. It limits the number of draws between these bounds.
 const DRAW_WORK: usize = 1 << 18;
-/// Number of real points that are tried, number of defined values that suffice, and number of values that must be
-/// clearly different from 0.
+/// Number of real points that are tried.
 const REAL_DRAWS: u64 = 96;
+/// Number of real points with a defined value that suffice.
 const REAL_POINTS: usize = 64;
+/// Number of values that must be clearly different from 0.
 const REAL_WITNESSES: usize = 3;
 /// Scales of the real points, used in turn.
 const SCALES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 8.0, 64.0];

@@ -13,8 +13,9 @@ const ARGUMENTS: usize = 4;
 const LINES: usize = 4;
 /// Largest number of terms of one stage. The work of elimination grows with its cube.
 const TERMS: usize = 120;
-/// Largest degree of monomials of parameters, and largest number of these.
+/// Largest degree of monomials of parameters.
 const DEGREE: usize = 3;
+/// Largest number of monomials of parameters.
 const MONOMIALS: usize = 48;
 
 /// Terms of a factor in stages. Each stage contains the one before it.
@@ -77,7 +78,7 @@ fn products(pool: &mut Pool, functions: &[ExprId], bases: &[ExprId]) -> Vec<Expr
     terms
 }
 
-/// Sines and cosines of arguments that depend on coordinates and occur below `roots`.
+/// Sines and cosines of those arguments of circular functions in `roots` that depend on coordinates.
 fn circular_functions(pool: &mut Pool, roots: &[ExprId], symbols: &[SymbolId]) -> Vec<ExprId> {
     let mut arguments = Vec::new();
     for id in pool.reachable(roots) {

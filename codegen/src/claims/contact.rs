@@ -35,7 +35,7 @@ impl Contact {
             return Vec::new();
         }
         let is_stopped = stops(model, surface);
-        // With instantaneous constraints the held motion would satisfy them too, so it is not examined.
+        // With instantaneous constraints, the held motion also satisfies these constraints. It is not examined.
         let is_alone = model.surfaces[surface].instantaneous.is_empty();
         let held = [false, true].into_iter();
         let held = held.filter(|is_held| !is_held || (is_stopped && is_alone));

@@ -109,7 +109,7 @@ pub(super) struct Evidence {
     pub(super) is_real: bool,
     /// True if doubles are far from 0 at a point where no enclosure excludes 0.
     pub(super) is_suspect: bool,
-    /// Reason for which the question may stay open.
+    /// Reason to give if the question stays open.
     pub(super) open: Undecided,
 }
 

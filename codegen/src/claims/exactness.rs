@@ -44,7 +44,7 @@ pub(super) enum Fixed {
     Same(SymbolId),
 }
 
-/// The hull of the demands with the best result, and the answer that it gives.
+/// Existence of a local density, as the largest hull of the demands among the sampled points decides it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Local {
     /// True if a local density exists near generic points.
@@ -373,7 +373,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         ),
         None => without_closed_form(model, problem, &local, (&candidates, &parameters), seed),
     };
-    // On a leaf where the closed form is singular, a density that grows along a loop differs from it.
+    // A density that grows along a loop of a leaf is not the closed form, which is singular on the leaf.
     let density = singular.filter(|_| !matches!(global, Global::Many { .. }));
     Ok(Exactness {
         global: Some(regularity::restrict(model, problem, global)),

@@ -95,13 +95,13 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
             conserved::check_conserved(model, &parts, (value, written), *holds, seed)
         }
         Statement::Symplectic | Statement::Invariant(_) => {
+            // Other modes are not examined.
             let around = Surroundings {
                 derivation,
                 dynamics: &whole,
                 others: &[],
                 seed,
             };
-            // Other modes are not examined.
             let (symplectic, name) = symplectic::symplectic_form(model);
             let stated = match &claim.statement {
                 Statement::Invariant(form) => {
@@ -318,7 +318,7 @@ impl<'e> Examiner<'e> {
         let generic = existence::check_existence(self.model, problem, &decision, existence, seed);
         let is_generic = matches!(generic, Verdict::Proved(_));
         let verdict = match (&decision, existence) {
-            // NOTE: a local density stays one even if periods vanish at the defaults by accident.
+            // NOTE: `locally_exact` stays proved even if the periods happen to vanish at the defaults.
             (Ok(_), Existence::Local) => generic,
             (Err(_), _) if problem.curved().is_some() => {
                 curvature_at_defaults(self.model, problem, &self.dynamics, generic, seed)

@@ -23,8 +23,9 @@ use super::undecided::Undecided;
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
-/// Number of real states at which the largest components are sought, and number of components examined one by one.
+/// Number of real states at which the largest components are sought.
 const STATES: usize = 12;
+/// Largest number of components that are examined one by one.
 const COMPONENTS: usize = 32;
 
 /// Reason for an open verdict on surfaces of a model with nonlinear constraints.

@@ -5,8 +5,9 @@
 //! J = rho+/rho- det(du+/du) det[dpsi + (qdot+ - d_t psi - dpsi qdot) dh/G],   G = dh(qdot) + d_t h
 //! ```
 //!
-//! J is the determinant of the augmented differential (W. Clark, thesis, chapter VII): it takes tangent vectors of the surface to
-//! their images and the motion before to the motion after. A first-order system has the volume `dq` and `det(du+/du) = 1`.
+//! J is the determinant of the augmented differential (W. Clark, thesis, chapter VII), which takes tangent vectors of
+//! the surface to their images and the motion before to the motion after. A first-order system has the volume `dq` and
+//! `det(du+/du) = 1`.
 //!
 //! A refraction `p+ = p + c dh` without constraints has `J = det(dp+/dp) G+/G- = 1`: the conservation of energy gives
 //! `(1 + dc(dh)) G+ = G-`, and `det(dp+/dp) = 1 + dc(dh)`.

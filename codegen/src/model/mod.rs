@@ -295,7 +295,7 @@ pub enum Beside {
     /// The surface counts by its own conditions.
     #[default]
     Independent,
-    /// `otherwise`: the surface counts where none of these lists holds, the conditions of the other surfaces.
+    /// `otherwise`: the surface counts where none of these lists of conditions of other surfaces holds.
     Otherwise(Vec<Vec<Condition>>),
     /// The last of several transitions with the same gap. A motion that reaches the surface ends there if neither the
     /// conditions of this transition nor one of these lists holds.

@@ -13,7 +13,7 @@ const MAX_DEPTH: usize = 120;
 /// Largest number of parts. Further parts are omitted.
 const MAX_PARTS: usize = 20_000;
 
-/// A layout. Its numbers are not negative.
+/// A layout. Its numbers are not negative; signs are in [`Layout::Sum`] and [`Layout::Negative`].
 pub(super) enum Layout {
     Integer(String),
     Pi,

@@ -9,7 +9,7 @@ use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// A point at which expressions are expanded: the values of symbols, and with them of all expressions.
+/// A point at which expressions are expanded. It gives values to symbols, and thereby to expressions.
 pub trait ExpansionPoint {
     /// The field of the coefficients.
     type Field: Arithmetic;
