@@ -27,8 +27,8 @@ impl Pool {
 
     /// The value of an expression, and its magnitude before cancellation. `symbol` gives the values of symbols.
     ///
-    /// The magnitude of a sum is the sum of the magnitudes of its terms; through functions and quotients, magnitudes are
-    /// propagated to first order. The unit roundoff times the magnitude bounds the error of the value, up to a small
+    /// The magnitude of a sum is the sum of the magnitudes of its terms. Magnitudes are propagated through functions and
+    /// quotients to first order. The unit roundoff times the magnitude bounds the error of the value, up to a small
     /// factor.
     pub fn eval_magnitude(&self, id: ExprId, symbol: &dyn Fn(SymbolId) -> f64) -> (f64, f64) {
         let order = self.reachable(&[id]);

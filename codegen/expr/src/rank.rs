@@ -20,8 +20,8 @@ pub struct RankReport {
     /// Pivot column of each independent row, in the same order: the first in which the row is not 0 after the earlier
     /// independent rows were eliminated from it.
     pub pivot_columns: Vec<usize>,
-    /// True if the independence is certain. It is not if the entries could not be evaluated, or if they contain functions
-    /// whose hidden relations the residues do not show and values in double precision do not confirm the rank.
+    /// True if the independence is certain. It is not certain if the entries could not be evaluated, or if they contain
+    /// functions whose relations are hidden from residues, and values in double precision do not confirm the rank.
     pub decided: bool,
 }
 
