@@ -23,7 +23,7 @@ struct Expansion {
     characters: usize,
 }
 
-/// Median over `rounds` expansions of a declaration, without the time to make tokens of the text.
+/// Median over `rounds` expansions of a declaration, without the time to tokenise the text.
 fn expand(source: &str, rounds: usize) -> Expansion {
     let mut characters = 0;
     let times = (0..rounds).map(|_| {
@@ -105,7 +105,8 @@ fn with_links(source: &str, links: usize) -> String {
     source.replace("16", &links.to_string())
 }
 
-/// Expansions of both declarations of the chain, and the powers of the number N of links that fit.
+/// Expansions of both declarations of the chain, and the exponents of the power laws in the number N of links that fit
+/// the operations and the times.
 fn growth(rounds: usize) -> Table {
     let mut table = Table::new(["chain by", "links", "operations", "ms"]);
     for (name, source) in chains() {

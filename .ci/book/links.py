@@ -1,6 +1,6 @@
-"""Checks a built book: every link, picture and anchor leads to something in it, and every picture has a text in its place.
+"""Checks a built book: every reference leads to a file or an anchor of the book, and every picture has an alternative text.
 
-The book must be readable without a network: references to other hosts are refused, but for links that a reader may follow.
+The book must be readable without a network: references to other hosts are refused, except links that a reader may follow.
 """
 
 import sys
@@ -10,7 +10,7 @@ from urllib.parse import unquote, urlsplit
 
 
 class Page(HTMLParser):
-    """Anchors of a page, and what the page refers to: `(line, attribute, target)`."""
+    """Anchors of a page, its references `(line, attribute, target)`, and its pictures without a text."""
 
     def __init__(self, text):
         super().__init__()
@@ -30,7 +30,7 @@ class Page(HTMLParser):
 
 
 def mistakes(root):
-    """Every mistake of the book, as `page:line: what`."""
+    """Every mistake of the book, as `page:line: mistake`."""
     pages = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(root.rglob("*.html"))}
     for path, page in pages.items():
         name = path.relative_to(root)
@@ -43,11 +43,11 @@ def mistakes(root):
 
 
 def mistake(root, path, pages, kind, target):
-    """The mistake in one reference, or nothing."""
+    """The mistake in one reference; `None` if it is right."""
     parts = urlsplit(target)
     if parts.scheme or parts.netloc:
         return None if kind == "a href" or parts.scheme == "data" else "needs a network"
-    # Pages that mdBook shows for unknown addresses begin at the root of a site.
+    # The links of mdBook's page for unknown addresses are relative to the root of the site.
     if path.name == "404.html":
         return None
     file = (path.parent / unquote(parts.path)).resolve() if parts.path else path.resolve()

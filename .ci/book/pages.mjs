@@ -13,7 +13,7 @@ if (process.argv[2] === "supports") {
 
 const katex = createRequire(process.env.KATEX_FOLDER + "/")("katex");
 
-/** Characters that Markdown would read as its own. */
+/** Characters that have a meaning in Markdown. */
 const MARKDOWN = /[*_[\]|`~\\]/g;
 
 /** A formula on one line, safe inside Markdown. Its source is left out: it would be read as text. */

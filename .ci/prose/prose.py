@@ -11,14 +11,14 @@ from pathlib import Path
 #: Code within a line, formulas, addresses and numbers.
 INLINE = re.compile(r"`[^`]*`|\$[^$]+\$|<[^<>]*>|https?://\S+|\d+")
 
-#: A comment at the end of a line or on a line by itself.
+#: A comment on a line of its own.
 COMMENT = {".rs": re.compile(r"^\s*//[/!]?( .*)?$"), ".py": re.compile(r"^\s*#[: ](.*)$")}
 
 FENCE = re.compile(r"^\s*(```|~~~)")
 
 
 def prose(lines: list[str], ending: str) -> list[str]:
-    """The prose of each line; a full stop for one that has none, so that what stands around code does not seem repeated."""
+    """The prose of each line. A line without prose becomes a full stop, so that no word around it seems to be repeated."""
     codes = itertools.count()
     found, inside = [], False
     for line in lines:

@@ -1,4 +1,5 @@
-//! The rolling ball in Euler angles, on a table at rest or on a rotating one: on D, with the angular velocity in space.
+//! The rolling ball on a table at rest or on a rotating one. A state on the constraint distribution consists of the
+//! position, the Euler angles and the angular velocity in space.
 
 use dalembert_models::{BallOnRotatingTable, RollingBallEuler};
 

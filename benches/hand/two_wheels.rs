@@ -1,4 +1,5 @@
-//! Two wheels joined by a rod: on D, with the rates of the angles.
+//! Two wheels joined by a rod. A state on the constraint distribution consists of the coordinates and the rates of the
+//! angles.
 
 use dalembert_models::TwoWheelsRod;
 

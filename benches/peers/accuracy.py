@@ -1,4 +1,4 @@
-"""Errors of what was computed, against solutions with 34 digits; and the times that go with them."""
+"""Errors of the computed results against solutions with 34 digits, and the costs of these results."""
 
 import json
 from pathlib import Path
@@ -6,12 +6,12 @@ from pathlib import Path
 REFERENCE = json.loads((Path(__file__).resolve().parent / "reference.json").read_text())
 IMPACT = 20
 BOUNCES, GRAVITY, RESTITUTION = 1000, 9.81, 0.9
-# Bounces of the ball that are right, and no later one: to this many seconds.
+# Largest error of the time of a right bounce, in seconds.
 RIGHT = 1e-9
 
 
 def bounces():
-    """Times of the bounces of the ball, and where they accumulate."""
+    """Times of the bounces of the ball, and the time at which they accumulate."""
     first = (2 / GRAVITY) ** 0.5
     times, t, hop = [], first, 2 * first
     for _ in range(BOUNCES):
@@ -37,7 +37,7 @@ def impact_error(line):
 
 
 def error(line):
-    """The error by which a work is compared; None where there is no result or none is needed."""
+    """The error by which a workload is compared; None if there is no result, or if it is not compared by an error."""
     work = line["work"]
     if work in ("W1", "W1r", "W2b"):
         return impact_error(line)
@@ -51,7 +51,7 @@ def error(line):
 
 
 def right_bounces(line):
-    """How many of the first bounces of the ball are at the right time."""
+    """Number of bounces of the ball before the first one at a wrong time."""
     times, _ = bounces()
     count = 0
     for actual, expected in zip(line["tev"], times):
@@ -62,7 +62,7 @@ def right_bounces(line):
 
 
 def cost(line, seconds):
-    """Seconds as what is compared: microseconds for a simulated second, a trajectory or a bounce."""
+    """The cost that is compared: microseconds for a simulated second, a trajectory or a bounce."""
     if line["work"] in ("W5", "W5r"):
         return seconds * 1e6 / line["n"]
     if line["work"] == "W4":
@@ -71,7 +71,7 @@ def cost(line, seconds):
 
 
 def points(results, work):
-    """For each peer the pairs of error and cost; heyoka also without what its callbacks in Python cost."""
+    """For each peer the pairs of error and cost; for heyoka also without the time of its callbacks in Python."""
     found = {}
     for line in results:
         if line["work"] != work:

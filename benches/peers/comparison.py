@@ -1,4 +1,4 @@
-"""Ratios of our times to those of the others at equal measured error, and the limits they are held to."""
+"""Ratios of our times to those of other programs at equal measured error, and the limits for these ratios."""
 
 import itertools
 import math
@@ -11,13 +11,13 @@ OURS = ("dalembert-taylor", "dalembert-abreast", "dalembert-dop853")
 
 @dataclass
 class Limit:
-    """Our work against another's, over decades of the error."""
+    """Limit for the ratio of our time for one workload to the time of the others for another, over decades of the error."""
 
     work: str
     other: str
     decades: range
     most: float
-    only: str = ""  # the one peer that is compared; the fastest of all if empty
+    only: str = ""  # beginning of the names of the peers that are compared; all others if empty
 
 
 LIMITS = (
@@ -35,7 +35,7 @@ ACCUMULATION_ERROR = 1e-9
 
 
 def front(points):
-    """The points that no other beats in both error and cost, from loose to tight."""
+    """The points that no other point beats in both error and cost, the largest error first."""
     kept = []
     for size, cost in sorted(points, key=lambda point: (point[0], point[1])):
         if not kept or cost < kept[-1][1]:
@@ -44,7 +44,7 @@ def front(points):
 
 
 def cost_at(points, size):
-    """The cost of an error: between two tolerances by a power law; None where the error is not reached."""
+    """The cost of an error, interpolated between two tolerances by a power law; None if the error is not reached."""
     kept = front(points)
     if not kept or kept[-1][0] > size:
         return None
@@ -58,14 +58,14 @@ def cost_at(points, size):
 
 
 def fastest(found, size, names):
-    """Name and cost of the cheapest way to an error."""
+    """Cost and name of the cheapest peer that reaches an error; None twice if there is none."""
     costs = [(cost_at(found[name], size), name) for name in names if name in found]
     costs = [pair for pair in costs if pair[0] is not None]
     return min(costs, default=(None, None))
 
 
 def rows(results, limit):
-    """A row for each decade that somebody reaches: error, our cost and way, the other's, the ratio."""
+    """A row for each decade: its exponent, our cost and peer, cost and name of the fastest other, and the ratio."""
     ours, others = accuracy.points(results, limit.work), accuracy.points(results, limit.other)
     names = [name for name in others if name not in OURS and name.startswith(limit.only)]
     for decade in limit.decades:
@@ -99,7 +99,7 @@ def print_limit(results, limit):
 
 
 def print_bounces(results):
-    """W4: nanoseconds of a bounce, with what came out."""
+    """Prints W4: nanoseconds for a bounce, and the results."""
     lines = [line for line in results if line["work"] == "W4"]
     _, accumulation = accuracy.bounces()
     print(
@@ -132,7 +132,7 @@ def ending(line, accumulation):
 
 
 def print_chain(results):
-    """W3b: nanoseconds of a right-hand side."""
+    """Prints W3b: nanoseconds for a right-hand side."""
     table = {}
     for line in results:
         if line["work"] == "W3b":
@@ -150,7 +150,7 @@ def print_chain(results):
 
 
 def print_wrong(results):
-    """Results that cannot be compared, and right-hand sides that are not right."""
+    """Prints wrong right-hand sides, wrong numbers of impacts, and wrong outcomes of our runs."""
     for line in results:
         case = f"{line['peer']} {line['work']} {line.get('tol', line.get('n'))}"
         if "relerr" in line and not line["relerr"] < 1e-11:

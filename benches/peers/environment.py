@@ -1,4 +1,4 @@
-"""What the peers need: a Python environment, the compiled peers, our side. All of it in one folder."""
+"""The folder that the peers need: a Python environment, the compiled peers, and this project, compiled."""
 
 import os
 import platform
@@ -17,7 +17,7 @@ def say(text):
 
 
 class Environment:
-    """Builds once; what exists is kept."""
+    """Builds everything in a folder. Packages that are installed there are kept."""
 
     def __init__(self, folder):
         self.folder = Path(folder).resolve()

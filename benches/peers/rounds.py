@@ -11,12 +11,12 @@ from environment import HERE, say
 WORKS = ("W1", "W1r", "W2", "W2b", "W3", "W3b", "W4", "W5", "W5r")
 TIME_LIMIT = 600
 
-# Repetitions inside a process: short works are repeated until some repetition is undisturbed.
+# Repetitions inside a process: short workloads are repeated so often that some repetition is undisturbed.
 REPETITIONS = {"W1": 30, "W1r": 30, "W2": 50, "W2b": 30, "W3": 10, "W3b": 7, "W4": 50, "W5": 5, "W5r": 5}
 
 
 class Peer:
-    """A program, the works it knows, and how slow it is: repetitions and rounds are divided by that."""
+    """A program, the workloads it knows, and its slowness, by which the repetitions are divided."""
 
     def __init__(self, name, works, command, slowness=1):
         self.name, self.works, self.command, self.slowness = name, works, command, slowness
@@ -29,7 +29,7 @@ class Peer:
 
 
 def peers(environment):
-    """All that can run here."""
+    """The peers that can run here."""
     python = HERE / "python"
     every = [work for work in WORKS if work != "W3b"]
     found = [
@@ -64,7 +64,7 @@ def chain(environment, python):
 
 
 def run(environment, work, count):
-    """All rounds of a work: in each, every peer has its turn."""
+    """Runs all rounds of a workload: in each, every peer has its turn."""
     measured = {}
     for number in range(count):
         for peer in peers(environment):
@@ -77,7 +77,7 @@ def run(environment, work, count):
 
 
 def lines(environment, peer, work):
-    """What one process prints; nothing if it takes too long."""
+    """The results that one process prints; none if it takes too long."""
     command = [str(part) for part in peer.command(work, peer.repetitions(work))]
     cache = Path(environment.folder) / "heyoka"
     variables = dict(os.environ, HEYOKA_CACHE_DIR=str(cache), OMP_NUM_THREADS="1")
@@ -92,7 +92,7 @@ def lines(environment, peer, work):
 
 
 def readable(text):
-    """Lines of JSON; C prints `nan` and `inf` in its own way."""
+    """Lines of JSON. C prints `nan` and `inf`; both become `NaN`."""
     for line in text.splitlines():
         if line.startswith("{"):
             yield line.replace("-nan", "NaN").replace(":nan", ":NaN").replace(",nan", ",NaN").replace("inf", "NaN")

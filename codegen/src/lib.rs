@@ -1,4 +1,4 @@
-//! Generator of dalembert: makes straight-line programs of a declared model. `dalembert-emit` writes them as Rust,
+//! Generator of dalembert: compiles a declared model to straight-line programs. `dalembert-emit` writes them as Rust,
 //! `dalembert-jit` runs them.
 //!
 //! ```text
@@ -7,9 +7,9 @@
 //!     --program::lower--> Program
 //! ```
 //!
-//! Each stage takes the previous type and returns a new one. The first two and the claims can fail, with every mistake
-//! of the stage at once, at the user's tokens. Between the other stages, a model is refused if its algebra or its code
-//! is too large, or if a reset leaves the constraints.
+//! Each stage takes the previous type and returns a new one. The first two and the claims can fail. They report all
+//! mistakes of the stage at once, located at the user's tokens. Between the other stages, a model is refused if its
+//! algebra or its code is too large, or if a reset leaves the constraints.
 
 #![forbid(unsafe_code)]
 

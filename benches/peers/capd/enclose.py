@@ -16,7 +16,7 @@ import subprocess
 import tempfile
 
 HERE = pathlib.Path(__file__).parent
-#: Model, half the width of every coordinate of the start, time of the end.
+#: Model, half width of every component of the start, final time.
 CASES = [
     ("rossler", 0.0, 20),
     ("rossler", 0.0, 100),
@@ -39,7 +39,7 @@ ROUNDS = 5
 
 
 def timed(command):
-    """Output of a command and the processor time that it took; `None` for one that fails."""
+    """Output of a command and the processor time that it took. The output is `None` if the command fails."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     taken = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
@@ -47,7 +47,7 @@ def timed(command):
 
 
 def of_dalembert(program, name, half_width, until):
-    """Ranges of the coordinates at the end, and processor time; `None` where the motion is lost before."""
+    """Ranges of the coordinates at the end, `None` if the enclosure is lost before, and processor time."""
     command = [program, "simulate", f"{HERE / 'enclose.dal'}:{name}", "--certify", "--until", str(until), "--json", "-"]
     if half_width:
         for component, value in STARTS[name].items():
@@ -57,7 +57,7 @@ def of_dalembert(program, name, half_width, until):
 
 
 def of_capd(program, name, half_width, until, order, tolerance):
-    """The same by CAPD; for the double pendulum the first two of angles and momenta."""
+    """The same by CAPD. Its state of the double pendulum consists of angles and momenta; only the angles are returned."""
     output, taken = timed([program, name, repr(half_width), str(until), str(order), repr(tolerance)])
     coordinates = sum(not component.endswith("_dot") for component in STARTS[name])
     return json.loads(output)["end"][:coordinates] if output else None, taken
@@ -68,7 +68,7 @@ def width(ranges):
 
 
 def compared(dalembert, capd, case):
-    """A row of the table: this project, and CAPD with the order and tolerance that give its narrowest end."""
+    """A row of the table: this project, and CAPD with the order and tolerance that give its narrowest enclosure."""
     settings = list(itertools.product(ORDERS, TOLERANCES))
     found = {setting: width(of_capd(capd, *case, *setting)[0]) for setting in settings}
     narrowest = min(found, key=found.get)
@@ -89,7 +89,7 @@ def compared(dalembert, capd, case):
 
 
 def build(folder):
-    """The program over CAPD, compiled with the flags of its library on x86-64 with `CAPD_INTERVAL_TYPE=FILIB`, its default."""
+    """Compiles `enclose.cpp` with the flags of CAPD's library on x86-64 with `CAPD_INTERVAL_TYPE=FILIB`, its default."""
     program = pathlib.Path(tempfile.mkdtemp()) / "enclose"
     flags = ["-O3", "-DNDEBUG", "-frounding-math", "-std=gnu++17", "-D__USE_FILIB__", "-DFILIB_HAVE_SSE"]
     headers = [*sorted(folder.glob("*/include")), folder / "capdExt/filibsrc"]

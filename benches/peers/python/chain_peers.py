@@ -1,4 +1,4 @@
-"""W3b: the right-hand side of the chain of N unit masses on unit rods, by hand and from generators of code.
+"""W3b: the right-hand side of the chain of N unit masses on unit rods, by hand and from code generators.
 
 python chain_peers.py W3b REPETITIONS FOLDER prints one line of JSON for each peer and N. FOLDER keeps what is
 generated and compiled.
@@ -17,7 +17,7 @@ import numpy as np
 SIZES = (2, 4, 8, 16, 32)
 LARGEST_HEYOKA, LARGEST_SYMFORCE = 8, 16
 STATES, BATCH = 64, 4096
-EVALUATIONS = 1 << 17  # in one timing, of one link
+EVALUATIONS = 1 << 17  # number of evaluations in one timing, times the number of links
 GRAVITY = 9.81
 HERE = Path(__file__).resolve().parent
 LOOP = """
@@ -47,7 +47,7 @@ def times(n):
 
 
 def acceleration(y):
-    """By a dense solve."""
+    """Angular accelerations by a dense solve."""
     n = len(y) // 2
     theta, omega = y[:n], y[n:]
     carried = n - np.maximum.outer(np.arange(n), np.arange(n))
@@ -57,7 +57,7 @@ def acceleration(y):
 
 
 def worst(n, evaluate):
-    """The largest error of an angular acceleration, relative to the largest of its state."""
+    """The largest error of an angular acceleration, relative to 1 plus the largest acceleration of its state."""
     errors = []
     for y in states(n):
         expected = acceleration(y)
@@ -79,7 +79,7 @@ def library(compiler, source, extra=()):
 
 
 def from_library(n, loaded, prefix=()):
-    """The evaluation and the timing of a library."""
+    """A function that evaluates the right-hand side of a library, and one that measures its time in nanoseconds."""
     y = states(n)
 
     def evaluate(state):

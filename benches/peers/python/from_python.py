@@ -1,4 +1,4 @@
-"""This project from Python, beside SciPy: time at equal measured error of works W1 (to the 20th impact) and W3 (to 10 s).
+"""This project from Python, beside SciPy: time at equal measured error for W1 (to the 20th impact) and W3 (to 10 s).
 
 python from_python.py [ROUNDS] needs the package, SciPy and numba; rounds are interleaved, and the least time of each case counts.
 """
@@ -47,7 +47,7 @@ def error(work, found):
 
 
 def at(wanted, cases):
-    """The least time of a tolerance whose error is small enough."""
+    """The shortest time among the tolerances that reach the wanted error."""
     return min((seconds for seconds, found in cases if found <= wanted), default=math.nan)
 
 

@@ -1,7 +1,7 @@
 """heyoka: adaptive Taylor series compiled by LLVM, events as roots of the step's polynomial.
 
 python heyoka_peer.py WORK REPETITIONS prints one line of JSON for each tolerance. `time` is the whole run;
-`time_without_callback` leaves out what the impact map costs because it is called through Python.
+`time_without_callback` leaves out the impact map, which is a callback in Python.
 """
 
 import json
@@ -72,7 +72,7 @@ def system(work):
 
 
 def compiled(work, tolerance, log):
-    """The integrator; impacts are carried out and kept in the log."""
+    """The integrator. Its events apply the impact map and record the impacts in the log."""
 
     def on_impact(surface):
         def callback(integrator, _direction):
@@ -94,7 +94,7 @@ def compiled(work, tolerance, log):
 
 
 def run(integrator, log, start, until):
-    """Runs from the start; the seconds it takes."""
+    """Runs from the start, and returns the seconds that the run takes."""
     log.times, log.states, log.callback = [], [], 0.0
     integrator.time = 0.0
     integrator.state[:] = start
@@ -131,7 +131,7 @@ def measure(work, repetitions):
 
 
 def lanes(work, tolerance, width, log):
-    """The integrator of the ensemble, of several trajectories at a time."""
+    """The integrator of the ensemble for `width` trajectories at a time, and their starts."""
     is_reduced = work == "W5r"
     start = problems.start("W1r" if is_reduced else "W1")
     lane = start.copy()
@@ -158,7 +158,7 @@ def lanes(work, tolerance, width, log):
 
 
 def run_part(integrator, starts, rates, is_reduced):
-    """Runs trajectories with these rates of rolling for 10 seconds; the places where they end along x."""
+    """Runs trajectories with these rates of rolling for 10 seconds, and returns their final x."""
     width, ends = starts.shape[1], np.empty_like(rates)
     for k in range(0, len(rates), width):
         some = rates[k : k + width]
@@ -174,7 +174,7 @@ def run_part(integrator, starts, rates, is_reduced):
 
 
 def run_ensemble(integrator, starts, is_reduced, log):
-    """Seconds of every part, with and without callbacks, and the places where trajectories end along x."""
+    """Seconds of every part, with and without callbacks, and the final x of all trajectories."""
     times, ends, log.impacts = [], [], 0
     for rates in problems.rolling_rates().reshape(-1, problems.PART):
         log.callback, begin = 0.0, clock()

@@ -1,4 +1,4 @@
-"""Solutions of the works with 34 digits, printed as JSON: `python reference.py > ../reference.json`, some minutes.
+"""Solutions of the workloads with 34 digits, printed as JSON: `python reference.py > ../reference.json`, some minutes.
 
 W1 and W5: arcs of circles between impacts, roots of the gaps with 60 digits. W2: speed, spin and angle in closed form,
 x and y by quadrature. W2b: the same between impacts, Newton's method on the gaps. W3: Taylor series of heyoka with 160
@@ -87,7 +87,7 @@ def disk_impacts():
 
 
 def disk_end(k, until=mpf(10)):
-    """Where trajectory k of the ensemble is along x after ten seconds."""
+    """The x of trajectory k of the ensemble at the time `until`."""
     disk, now = Disk(10 + mpf(5) / 1000 * (mpf(2 * k) / (TRAJECTORIES - 1) - 1)), mpf(0)
     while True:
         t, side = disk.impact()
@@ -140,7 +140,7 @@ def free_sleigh():
 
 
 def tip_gap(sleigh, t, side):
-    """Gap of a tip and its rate, with the state there."""
+    """Gap of a tip, its rate, the state, and the derivatives of the gap along the blade and by the angle."""
     x, y = sleigh.place(t, pieces_of(mpf(1) / 2))
     theta, v, spin = sleigh.at(t)
     c, s, reach = mp.cos(theta), mp.sin(theta), side * sleigh.reach
@@ -151,7 +151,7 @@ def tip_gap(sleigh, t, side):
 
 
 def scanned_tip(sleigh, step=1e-4, until=40.0):
-    """First time at which a gap is negative, by sums of the trapezoidal rule, and the tip."""
+    """First time at which a gap is negative, and its tip. The position is found by the trapezoidal rule."""
     t = np.arange(0, until, step)
     top, rate, most, late, start = map(float, (sleigh.top, sleigh.rate, sleigh.most, sleigh.late, sleigh.theta))
 

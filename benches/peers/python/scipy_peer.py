@@ -1,4 +1,4 @@
-"""SciPy: solve_ivp with DOP853, right-hand sides and events compiled by numba, begun anew after every impact.
+"""SciPy: solve_ivp with DOP853, right-hand sides and events compiled by numba, restarted after every impact.
 
 python scipy_peer.py WORK REPETITIONS prints one line of JSON for each tolerance.
 """
@@ -58,7 +58,7 @@ def ball(_t, y):
 
 
 def ellipse(angle, reach, a, b):
-    """The gap of a point that lies in the direction of an angle of the state."""
+    """The gap of the point at the distance `reach` from (x, y), in the direction of the state's component `angle`."""
 
     @njit
     def gap(_t, y):

@@ -8,7 +8,7 @@ use dalembert_codegen::model::{Assumption, Model, Parameter};
 use dalembert_codegen::program::Form;
 use dalembert_codegen::tables::default_value;
 
-/// Emits the struct, and `Default` if every parameter has a default.
+/// Emits the struct, `Default` if every parameter has a default, and the type of the global form of a reduced model.
 pub(super) fn emit_parameters(context: &Context<'_>) -> TokenStream {
     let model = context.form.model;
     let type_name = &context.names.model_type;

@@ -1,4 +1,4 @@
-//! Simpler forms of constants: angles whose sines are square roots, and square roots of `a + b sqrt(r)`.
+//! Simpler forms of constants: angles whose sines or tangents are square roots, and square roots of `a + b sqrt(r)`.
 
 use crate::function::Function;
 use crate::node::{ExprId, Node};
@@ -16,8 +16,8 @@ const SINES: [((i64, i64), i64); 5] = [
 const TANGENTS: [((i64, i64), i64); 4] = [((0, 1), 0), ((1, 3), 2), ((1, 1), 3), ((3, 1), 4)];
 
 impl Pool {
-    /// The angle `function(argument)` if it is a multiple of `pi/12` in the tables. `function` is `asin`, `acos` or
-    /// `atan`.
+    /// The angle `function(argument)` as a multiple of `pi`, if the tables contain it. `function` is `asin`, `acos` or
+    /// `atan`; for others `None`.
     pub(crate) fn exact_angle(&mut self, function: Function, argument: ExprId) -> Option<ExprId> {
         let table: &[_] = match function {
             Function::Asin | Function::Acos => &SINES,
@@ -35,7 +35,7 @@ impl Pool {
         Some(self.scale(&Rational::new(twelfths, 12), self.pi()))
     }
 
-    /// The square of an expression that is a number or a root of one. True if the expression itself is negative.
+    /// The square of an expression that is a number or a root of one, and true if the expression is negative.
     fn signed_square(&self, id: ExprId) -> Option<(Rational, bool)> {
         if let Some(number) = self.as_number(id) {
             return Some((number * number, number.is_negative()));

@@ -30,7 +30,7 @@
 //! - `x^0 -> 1` if `x` is known finite, else `1 + 0 x`.
 //!
 //! **Functions** (`call.rs`: [`Pool::call`], [`Pool::atan2`])
-//! - `f(-x) -> -f(x)` for sin, tan, asin, atan, sinh, tanh; `f(-x) -> f(x)` for cos, cosh, abs;
+//! - `f(-x) -> -f(x)` for sin, tan, asin, atan, sinh, tanh, asinh; `f(-x) -> f(x)` for cos, cosh, abs;
 //! - sin and cos of `x + k pi/2` become sin and cos of `x`, with a sign; sin and cos of rational multiples of `pi` if
 //!   the values are rational, tan if its value is 0 or +-1;
 //! - values at 0 of exp, cosh, abs and of all odd functions, and ln at 1;

@@ -25,10 +25,11 @@ impl Pool {
         values
     }
 
-    /// The value of an expression, and the sum of the absolute values of its terms. `symbol` gives the values of symbols.
+    /// The value of an expression, and its magnitude before cancellation. `symbol` gives the values of symbols.
     ///
-    /// The second number is the magnitude before cancellation. Its product with the unit roundoff bounds the error of
-    /// the value, up to a small factor. Through functions and quotients it is propagated to first order.
+    /// The magnitude of a sum is the sum of the magnitudes of its terms. Magnitudes are propagated through functions and
+    /// quotients to first order. The unit roundoff times the magnitude bounds the error of the value, up to a small
+    /// factor.
     pub fn eval_magnitude(&self, id: ExprId, symbol: &dyn Fn(SymbolId) -> f64) -> (f64, f64) {
         let order = self.reachable(&[id]);
         let mut values = vec![0.0; id.index() + 1];
@@ -90,7 +91,8 @@ fn scaled(coefficient: &Rational, value: f64) -> f64 {
     coefficient.to_f64() * value
 }
 
-/// `|base|^exponent`, times `magnitude/|base|` to the power `max(|exponent|, 1)`.
+/// Magnitude of a power: `|base|^exponent`, times `magnitude/|base|` to the power `max(|exponent|, 1)`. For the base 0,
+/// `magnitude^exponent`.
 fn power_magnitude(base: f64, magnitude: f64, exponent: &Rational) -> f64 {
     if base == 0.0 {
         return power(magnitude, exponent);

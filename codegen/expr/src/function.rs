@@ -199,7 +199,8 @@ impl Function {
         }
     }
 
-    /// True if the value is one of several solutions of the same equation, as an angle is for its sine.
+    /// True if the value is one of several real or complex solutions of an equation, such as the angles with a given
+    /// sine.
     pub fn chooses_branch(self) -> bool {
         !self.residue().has_base()
     }

@@ -1,8 +1,8 @@
 //! Exact expressions for mechanics: hash-consed nodes, derivatives, zero tests, printing.
 //!
 //! Every expression is stored in a [`Pool`] and identified by an [`ExprId`]. Equal expressions have equal ids. Ids are
-//! assigned in order of creation, so operands have smaller ids than their users. Passes iterate over ids in increasing
-//! order instead of recursing, and every result is the same in every run.
+//! assigned in order of creation, so operands have smaller ids than the nodes that use them. Passes iterate over ids in
+//! increasing order instead of recursing, and every result is the same in every run.
 //!
 //! | file | job |
 //! |---|---|

@@ -173,7 +173,8 @@ impl Pool {
         self.facts[id.index()].sign
     }
 
-    /// True if the structure shows that the expression is finite for all values of its symbols that satisfy their assumptions.
+    /// True if the structure shows that the expression is finite for all values of its symbols that satisfy their
+    /// assumptions.
     pub fn is_finite(&self, id: ExprId) -> bool {
         self.facts[id.index()].finite
     }
@@ -220,7 +221,7 @@ impl Pool {
         };
         roots.iter().for_each(|root| mark(&mut marks, *root));
         let mut found = Vec::new();
-        // Operands have smaller ids, so one sweep downwards visits users first.
+        // Operands have smaller ids, so one sweep downwards visits every expression before its operands.
         for block in (0..marks.len()).rev() {
             let mut below = u64::MAX;
             while marks[block] & below != 0 {

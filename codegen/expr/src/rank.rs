@@ -17,16 +17,16 @@ pub struct RankReport {
     pub independent_rows: Vec<usize>,
     /// Every other row, with the earlier independent rows that it is a combination of; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
-    /// Pivot column of each independent row, in the same order: the first in which the row differs from the
-    /// combinations of the rows before it.
+    /// Pivot column of each independent row, in the same order: the first in which the row is not 0 after the earlier
+    /// independent rows were eliminated from it.
     pub pivot_columns: Vec<usize>,
-    /// True if the independence is certain. It is not if the entries could not be evaluated, or if they contain functions
-    /// whose hidden relations the residues do not show and values in double precision do not confirm the rank.
+    /// True if the independence is certain. It is not certain if the entries could not be evaluated, or if they contain
+    /// functions whose relations are hidden from residues, and values in double precision do not confirm the rank.
     pub decided: bool,
 }
 
-/// Numbers of points, without and with roots in the entries. The unknown sign of a root may make rows dependent at a
-/// point.
+/// Numbers of points, without and with roots in the entries. The sign of a root at a point is arbitrary and may make
+/// rows dependent there, so roots need more points.
 const SAMPLES: (usize, usize) = (3, 24);
 const REAL_SAMPLES: u64 = 12;
 
@@ -72,8 +72,8 @@ impl Pool {
     }
 }
 
-/// The report of higher rank. Of two reports of equal rank, the one with more dependencies: a coefficient may vanish at
-/// one point.
+/// The report of higher rank. Of two reports of equal rank, the one whose dependencies contain more rows: at one point,
+/// the coefficient of a row may vanish by chance.
 fn better(a: Option<RankReport>, b: Option<RankReport>) -> Option<RankReport> {
     let weight = |report: &RankReport| {
         let named: usize = report.dependencies.iter().map(|(_, rows)| rows.len()).sum();
@@ -152,7 +152,7 @@ fn scale(field: Modulus, row: &mut [u64], factor: u64) {
         .for_each(|entry| *entry = field.mul(*entry, factor));
 }
 
-/// The number of pivots that stand out clearly, by elimination with complete pivoting; 0 if an entry is not finite.
+/// The number of pivots that are clearly not 0, by elimination with complete pivoting; 0 if an entry is not finite.
 fn real_rank(rows: &[Vec<ExprId>], values: Vec<f64>) -> usize {
     if values.iter().any(|value| !value.is_finite()) {
         return 0;

@@ -159,7 +159,8 @@ impl Pool {
         }
     }
 
-    /// True if the function has a value wherever its argument has one; `None` if the structure does not show it.
+    /// True if the function has a value wherever its argument has one, false if it has a value nowhere. `None` if the
+    /// structure shows neither.
     fn has_value(&self, function: Function, argument: ExprId) -> Option<bool> {
         match function.arguments() {
             Arguments::All => Some(true),

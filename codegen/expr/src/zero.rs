@@ -31,12 +31,13 @@ pub enum Verdict {
 /// Minimum and maximum number of points drawn for one value: each independent root rejects half of them. The maximum
 /// applies to small expressions.
 const DRAWS: (usize, usize) = (64, 1024);
-/// Number of evaluated nodes per value that limits the number of draws between these bounds.
+/// Largest number of nodes that are evaluated for one value. It limits the number of draws between these bounds.
 const DRAW_WORK: usize = 1 << 18;
-/// Number of real points that are tried, number of defined values that suffice, and number of values that must be
-/// clearly different from 0.
+/// Number of real points that are tried.
 const REAL_DRAWS: u64 = 96;
+/// Number of real points with a defined value that suffice.
 const REAL_POINTS: usize = 64;
+/// Number of values that must be clearly different from 0.
 const REAL_WITNESSES: usize = 3;
 /// Scales of the real points, used in turn.
 const SCALES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 8.0, 64.0];
@@ -63,14 +64,15 @@ impl Pool {
         match self.vanishes_modularly(id, &order, &profile) {
             Some(true) if profile.is_exact() => Verdict::Proved,
             Some(false) if profile.is_exact() => Verdict::Refuted,
-            // NOTE: also if all residues are 0, because a final check of real values costs little.
+            // NOTE: real values are checked even if all residues are 0, because this costs little.
             _ if self.is_clearly_nonzero(id) => Verdict::Refuted,
             Some(true) => Verdict::Proved,
             _ => Verdict::Undecided,
         }
     }
 
-    /// True if all sampled residues are 0; `None` if there were too few.
+    /// True if all sampled residues are 0, false if one is not. `None` if there are too few points, or if zeros prove
+    /// nothing.
     fn vanishes_modularly(&self, id: ExprId, order: &[ExprId], profile: &Profile) -> Option<bool> {
         let wanted = sample_count(profile);
         let mut points = SamplePoints::new(self, order, profile, 0)?;

@@ -1,4 +1,4 @@
-//! Random expressions: a built expression has the value of the written expression, and is undefined where that one is.
+//! Random expressions: a built expression has the value of the written one, and is undefined where the written one is.
 
 #![allow(clippy::unwrap_used)] // a test may stop at the first surprise
 

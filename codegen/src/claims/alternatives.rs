@@ -59,8 +59,9 @@ fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
 
 /// Consequence of the absence of a density of `q` for densities of `q` and `qdot`.
 ///
-/// Without potential, other forces and drift, `X(f) = -f div X` has a part linear in the velocities at `qdot = 0`. By
-/// this part `f(q, 0)` would be a density of `q`.
+/// Let `f(q, qdot)` be a density: `X(f) = -f div X`. Without potential, terms of the Lagrangian that are linear in the
+/// velocities, other forces and drift, the part of this equation of first order in `qdot` is the equation of a density
+/// of `q` for `f(q, 0)`. No such density exists.
 fn near_rest(model: &Model, problem: &Problem) -> String {
     let pool = &model.pool;
     let potential = model.lagrangian.potential;

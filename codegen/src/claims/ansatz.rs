@@ -9,12 +9,13 @@ use crate::model::{Model, Topology};
 
 /// Largest number of distinct arguments of the sines and cosines used as functions of the configuration.
 const ARGUMENTS: usize = 4;
-/// Largest number of coordinates whose monomials are used.
+/// Largest number of coordinates, angles excluded, whose monomials are used.
 const LINES: usize = 4;
 /// Largest number of terms of one stage. The work of elimination grows with its cube.
 const TERMS: usize = 120;
-/// Largest degree of monomials of parameters, and largest number of these.
+/// Largest degree of monomials of parameters.
 const DEGREE: usize = 3;
+/// Largest number of monomials of parameters.
 const MONOMIALS: usize = 48;
 
 /// Terms of a factor in stages. Each stage contains the one before it.
@@ -77,7 +78,7 @@ fn products(pool: &mut Pool, functions: &[ExprId], bases: &[ExprId]) -> Vec<Expr
     terms
 }
 
-/// Sines and cosines of arguments that depend on coordinates and occur below `roots`.
+/// Sines and cosines of those arguments of circular functions in `roots` that depend on coordinates.
 fn circular_functions(pool: &mut Pool, roots: &[ExprId], symbols: &[SymbolId]) -> Vec<ExprId> {
     let mut arguments = Vec::new();
     for id in pool.reachable(roots) {
@@ -107,7 +108,7 @@ pub(super) fn parameter_monomials(pool: &mut Pool, parameters: &[SymbolId]) -> V
 pub(super) fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) -> Vec<ExprId> {
     let mut all = vec![pool.one()];
     // The monomials of one degree, each with the index of its last symbol. Only this symbol and later ones are
-    // multiplied on.
+    // multiplied to it, so that no monomial appears twice.
     let mut last = vec![(pool.one(), 0)];
     for _ in 0..degree {
         let mut next = Vec::new();
@@ -130,7 +131,7 @@ pub(super) fn combination(pool: &mut Pool, parts: &[(Rational, ExprId, ExprId)])
     };
     let scaled = |(coefficient, ..): &(Rational, ExprId, ExprId)| coefficient.checked_div(first);
     let coefficients: Vec<Rational> = parts.iter().filter_map(scaled).collect();
-    // Denominators too large for a common multiple stay.
+    // Denominators are kept if their common multiple would be too large.
     let clear = coefficients.iter().fold(1, |common, coefficient| {
         let denominator = coefficient.to_small().map(|(_, d)| d);
         let both = denominator.and_then(|d| least_common_multiple(common, d));

@@ -1,4 +1,4 @@
-//! Certified signs of expressions, from exact bounds of polynomials in parameters with declared ranges, or from
+//! Certified signs of expressions, from rational bounds of polynomials in parameters with declared ranges, or from
 //! enclosures.
 
 use dalembert_expr::{ExprId, Node, Rational, SymbolId};
@@ -6,7 +6,7 @@ use dalembert_expr::{ExprId, Node, Rational, SymbolId};
 use super::regularity::domain;
 use crate::model::{Assumption, Model};
 
-/// Largest exponent of a power whose bounds are multiplied out.
+/// Largest exponent of a power whose bounds are computed.
 const LARGEST: i64 = 16;
 
 /// True if a function is certified to be non-negative at all states: by its form, by bounds, or by an enclosure.
@@ -22,7 +22,8 @@ pub(super) fn is_never_negative(model: &Model, value: ExprId) -> bool {
     is_above || ranges()[value.index()].is_some_and(|range| range.lo >= 0.0)
 }
 
-/// Lower and upper bound of the values; `None` if the expression is no polynomial in parameters with declared ranges.
+/// Lower and upper bound of the values. `None` if the expression is no polynomial in parameters with declared ranges,
+/// or if it contains a power above [`LARGEST`].
 fn bounds(model: &Model, id: ExprId) -> Option<[Rational; 2]> {
     match model.pool.node(id) {
         Node::Number(value) => Some([value.clone(), value.clone()]),

@@ -5,7 +5,7 @@
 //! v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)      w+(v+_1, .., v+_k) = w(v_1, .., v_k)
 //! ```
 //!
-//! `dDelta` is the derivative of the impact map; `X-` and `X+` are the motions before and after. X has time rate 1, the
+//! `dDelta` is the derivative of the impact map; X and X+ are the motions before and after. X has time rate 1, the
 //! vectors have time rate 0. On vectors along the surface the condition is the pullback by the map. With X as one of
 //! the vectors it is the specular condition (W. Clark, thesis, VII.3). At a transition X+ and w+ belong to the entered
 //! mode.
@@ -70,7 +70,7 @@ pub(super) struct Carried<'c> {
     rates: Option<Vec<ExprId>>,
     positions: Vec<ExprId>,
     behind: Behind,
-    /// Motion behind the surface, where the law admits two of them.
+    /// Motion behind the surface, if the law admits two motions.
     contact: Option<Contact>,
     /// Seed of random weights. Present if the question is about leaves behind the surface instead of the form.
     leaves: Option<u64>,
@@ -175,8 +175,8 @@ impl<'c> Carried<'c> {
         Some([positions, velocities])
     }
 
-    /// Motion before the surface: rates of positions, velocities and time. Sets the dependent velocities. If a
-    /// coordinate was replaced by its value on the surface, they are those on the surface.
+    /// Motion before the surface: rates of positions, velocities and time. Sets the dependent velocities of the point;
+    /// they satisfy the constraints on the surface if a coordinate was replaced by its value there.
     fn motion_before<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -343,7 +343,7 @@ impl<'c> Carried<'c> {
         self
     }
 
-    /// True if it is certain that the motion of this question follows on the state.
+    /// True if the motion that this question assumes is certain to follow the impact.
     fn is_followed(&self, signs: impl FnOnce() -> Option<[Option<Ordering>; 2]>) -> bool {
         match &self.contact {
             None => true,

@@ -1,5 +1,6 @@
 //! Closure of the demands under brackets: the rank of the distribution's hull, with and without the demands.
 //!
+//! A demand is a pair `(X, c)`: a density `exp(G)` must satisfy `X(G) = c`. The bracket of two demands is
 //! `[(X, c), (Y, d)] = ([X, Y], X(d) - Y(c))`. A local density exists iff the closed set of pairs has the rank of its
 //! vector parts: the demands are then those of a function on every leaf (Frobenius). Only brackets of generators with
 //! elements that raised the rank of the pairs in the previous step can be new.
@@ -83,7 +84,7 @@ impl Echelon {
 pub(super) enum Until {
     /// No bracket leads out of the hull.
     Closed,
-    /// An obstruction was found. The ranks are then too small, but they differ.
+    /// An obstruction was found. The ranks may then be too small, but they differ.
     Obstructed,
 }
 

@@ -29,13 +29,13 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// The possible motions behind a surface. None if the law reverses the gap rate.
+    /// The possible motions behind a surface; empty if the law reverses the gap rate.
     pub(super) fn all(model: &mut Model, surface: usize, wall: &Wall) -> Vec<Self> {
         if !may_hold(model, surface) {
             return Vec::new();
         }
         let is_stopped = stops(model, surface);
-        // With instantaneous constraints the held motion would satisfy them too, so it is not examined.
+        // With instantaneous constraints, the held motion also satisfies these constraints. It is not examined.
         let is_alone = model.surfaces[surface].instantaneous.is_empty();
         let held = [false, true].into_iter();
         let held = held.filter(|is_held| !is_held || (is_stopped && is_alone));

@@ -16,7 +16,7 @@ use super::frame::frame;
 use super::problem::Problem;
 use crate::model::Model;
 
-/// Relative size of the sum below which rate and divergence look alike in a message.
+/// Relative size of the sum of rate and divergence below which a message also shows the sum.
 const ALIKE: f64 = 1e-9;
 
 /// The verdict on `density = value`; `written` is the value as written.
@@ -58,7 +58,7 @@ fn continuous(
     }
 }
 
-/// The verdict on the rate of a density where it has one.
+/// The verdict on the balance of rate and divergence, at states where the density has a rate.
 pub(super) fn check_balance(
     model: &mut Model,
     problem: &Problem,

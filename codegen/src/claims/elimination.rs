@@ -19,7 +19,7 @@ pub(super) fn independent_columns(field: Modulus, mut rows: Vec<Vec<u64>>) -> Ve
 pub(super) fn first_relation(field: Modulus, mut rows: Vec<Vec<u64>>) -> Option<Vec<u64>> {
     let width = rows.first().map_or(0, Vec::len);
     let mut inverses = Vec::new();
-    // Every column before the dependent one has a pivot; that of column j is in row j.
+    // Every column before the dependent one has a pivot. The pivot of column j is in row j.
     let column = (0..width).find(|column| {
         let inverse = eliminate(field, &mut rows, *column, *column);
         inverses.extend(inverse);

@@ -247,8 +247,8 @@ fn of_passage(
     Ok(changes)
 }
 
-/// Checks that a refraction is preserved. It maps to the momentum `p + c dh` at which the energies differ by
-/// `-c d_t h`, on the side to which the motion continues.
+/// Checks that the flow preserves a refraction. A refraction maps `p` to the momentum `p + c dh` at which the energies
+/// before and after differ by `-c d_t h`, and which leads away from the surface into the entered mode.
 fn check_refraction(
     model: &mut Model,
     entered: &mut Model,

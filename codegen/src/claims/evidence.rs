@@ -14,7 +14,7 @@ use crate::model::Model;
 
 /// Number of random states at which a sum must vanish, and number on each branch if there are several.
 const STATES: (usize, usize) = (12, 3);
-/// Number of real states that are tried.
+/// Number of real states that are tried. More are tried if the sum has a value at none of them.
 const WITNESSES: usize = 48;
 /// Number of states at which a sum is enclosed with more digits, whatever its value in doubles.
 const ENCLOSED: usize = 12;
@@ -25,7 +25,7 @@ const VISIBLE: f64 = 1e-10;
 const SUSPECT: f64 = 1e-6;
 /// A sum below this part of its scale has lost digits that a message shows.
 const VISIBLE_DIGITS: f64 = 1e-3;
-/// Size below which a number has digits outside of the range of doubles.
+/// Size below which a computed double may have lost digits to underflow.
 const LEAST: f64 = 1e-200;
 
 /// A sum of terms at states that may vanish identically.
@@ -67,8 +67,8 @@ pub(super) trait Vanishing {
     /// The terms at a state.
     fn terms<P: ExpansionPoint>(&self, model: &Model, point: &mut P) -> Option<Vec<Number<P>>>;
 
-    /// Size of the terms' ingredients at a real state. Rounding is below `1e-16` times this, with room for the
-    /// conditioning of metric and constraints.
+    /// Size of the terms' ingredients at a real state. Rounding errors are about `1e-16` times this, or larger if the
+    /// metric or the constraints are ill-conditioned.
     fn scale(&self, model: &Model, point: &mut RealPoint) -> Option<f64>;
 
     /// Ranges that contain a state close to a real one, so that printed values are exact. `None` if the existence of
@@ -109,7 +109,7 @@ pub(super) struct Evidence {
     pub(super) is_real: bool,
     /// True if doubles are far from 0 at a point where no enclosure excludes 0.
     pub(super) is_suspect: bool,
-    /// Reason for which the question may stay open.
+    /// Reason to give if the question stays open.
     pub(super) open: Undecided,
 }
 
@@ -307,8 +307,8 @@ struct Real {
 }
 
 /// Bound of the chance of an accidental zero: the degree of a rate over the prime (Schwartz, Zippel). The saddle system
-/// of acceleration and multipliers has N + M rows whose entries have the degree of the profile, over as many
-/// denominators.
+/// of acceleration and multipliers has N + M rows, and the numerators and denominators of its entries have at most the
+/// degree d of the profile. A rate has degree below `64 (2 N + M)^3 d`.
 fn chance_of_accident(model: &Model, degree: f64) -> f64 {
     let sizes = (2 * model.coordinates.len() + model.constraints.len()) as f64;
     let degree = 64.0 * sizes.powi(3) * degree.max(1.0);
@@ -417,7 +417,7 @@ fn is_defined<P: ExpansionPoint>(model: &Model, point: &mut P) -> bool {
     point.values(&model.pool, &order).is_some()
 }
 
-/// True if a function has an argument that depends on one of some symbols.
+/// True if the argument of a function depends on one of the symbols.
 pub(super) fn in_arguments(pool: &Pool, roots: &[ExprId], symbols: &[SymbolId]) -> bool {
     let ties = |id: ExprId| pool.depends_on_any(id, symbols);
     let nodes = pool.reachable(roots).into_iter();
@@ -428,7 +428,7 @@ pub(super) fn in_arguments(pool: &Pool, roots: &[ExprId], symbols: &[SymbolId]) 
     })
 }
 
-/// True if doubles of this size have all their digits.
+/// True if the number is finite and lost no digits to underflow.
 pub(super) fn is_regular(sum: f64) -> bool {
     sum.is_finite() && sum.abs() > LEAST
 }
@@ -439,7 +439,7 @@ mod tests {
 
     use super::*;
 
-    /// A sum of expressions of coordinates, with a size below which doubles would be rounding.
+    /// A sum of expressions of coordinates, and its scale.
     struct Sum {
         terms: Vec<ExprId>,
         size: f64,

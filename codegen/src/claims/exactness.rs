@@ -1,5 +1,5 @@
 //! Existence of a local density: ranks of the hull of the demands (their closure under brackets) at random points
-//! modulo primes.
+//! modulo primes. A demand is an equation `X(G) = c` that a density `exp(G)` must satisfy.
 //!
 //! The rank at a point is at most the generic rank of its branch, so the largest rank of a few samples of each branch
 //! counts. If the hull contains all components, an obstruction at one point is a proof. Every other answer is wrong
@@ -27,7 +27,7 @@ use crate::model::Model;
 
 /// Number of points sampled on each branch, each modulo the next prime.
 const SAMPLES: usize = 3;
-/// Largest number of monomials of a series. No higher order is tried above it.
+/// Largest number of monomials of a series. Orders with more monomials are not tried.
 const MONOMIALS: usize = 20_000;
 /// Order of the first attempt. Most hulls are closed within three brackets.
 const FIRST_ORDER: usize = 3;
@@ -44,7 +44,7 @@ pub(super) enum Fixed {
     Same(SymbolId),
 }
 
-/// The hull of the demands with the best result, and the answer that it gives.
+/// Existence of a local density, as the largest hull of the demands among the sampled points decides it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Local {
     /// True if a local density exists near generic points.
@@ -215,8 +215,8 @@ fn fix(pool: &Pool, point: &mut ModularPoint, conditions: &Conditions) -> Option
     Some(())
 }
 
-/// True if the demands are satisfied by a function at the first regular point under the conditions. `None` if
-/// `attempts` points are singular, or if the hull is not closed within the largest order.
+/// True if a function satisfies the demands near the first regular point under the conditions. `None` if `attempts`
+/// points are singular, or if the hull is not closed within the largest order.
 pub(super) fn screen(
     pool: &Pool,
     problem: &Problem,
@@ -240,7 +240,7 @@ pub(super) fn screen(
         .map(|(hull, _)| hull.rank == hull.extended_rank)
 }
 
-/// True if the demands at a point are satisfied by a function; `None` at a singular point, or if the hull is not closed
+/// True if a function satisfies the demands near a point. `None` at a singular point, or if the hull is not closed
 /// within the largest order.
 pub(super) fn exists_at(pool: &Pool, problem: &Problem, point: &mut ModularPoint) -> Option<bool> {
     let (hull, _) = sample(pool, problem, point, None, Until::Obstructed)?.ok()?;
@@ -373,7 +373,7 @@ pub fn decide(model: &mut Model, problem: &Problem, seed: u64) -> Result<Exactne
         ),
         None => without_closed_form(model, problem, &local, (&candidates, &parameters), seed),
     };
-    // On a leaf where the closed form is singular, a density that grows along a loop differs from it.
+    // A density that grows along a loop of a leaf is not the closed form, which is singular on the leaf.
     let density = singular.filter(|_| !matches!(global, Global::Many { .. }));
     Ok(Exactness {
         global: Some(regularity::restrict(model, problem, global)),

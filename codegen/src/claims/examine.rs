@@ -29,7 +29,7 @@ pub struct Examined {
     /// The findings, in the order of the claims.
     pub findings: Vec<Finding>,
     /// Invariant volume with a proved density that can be emitted. A stated density takes precedence over one that was
-    /// found. `None` if no claim is about a volume.
+    /// found. `None` if no claim about a volume is proved, or if its density cannot be emitted.
     pub volume: Option<Volume>,
 }
 
@@ -95,13 +95,13 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
             conserved::check_conserved(model, &parts, (value, written), *holds, seed)
         }
         Statement::Symplectic | Statement::Invariant(_) => {
+            // Other modes are not examined.
             let around = Surroundings {
                 derivation,
                 dynamics: &whole,
                 others: &[],
                 seed,
             };
-            // Other modes are not examined.
             let (symplectic, name) = symplectic::symplectic_form(model);
             let stated = match &claim.statement {
                 Statement::Invariant(form) => {
@@ -124,7 +124,7 @@ fn examine_nonlinear(model: &mut Model, derivation: &Derivation, claims: &[Claim
         .collect()
 }
 
-/// Same as [`examine()`], for a scene. If the scene asks for a volume and no claim is about one, a density is sought.
+/// Same as [`examine()`], for a scene. If the scene asks for a volume and no claim provides one, a density is sought.
 pub fn examine_scene(model: &mut Model, derivation: &Derivation) -> Examined {
     let mut examined = examine(model, derivation);
     if model.extras.volume && examined.volume.is_none() {
@@ -318,7 +318,7 @@ impl<'e> Examiner<'e> {
         let generic = existence::check_existence(self.model, problem, &decision, existence, seed);
         let is_generic = matches!(generic, Verdict::Proved(_));
         let verdict = match (&decision, existence) {
-            // NOTE: a local density stays one even if periods vanish at the defaults by accident.
+            // NOTE: `locally_exact` stays proved even if the periods happen to vanish at the defaults.
             (Ok(_), Existence::Local) => generic,
             (Err(_), _) if problem.curved().is_some() => {
                 curvature_at_defaults(self.model, problem, &self.dynamics, generic, seed)

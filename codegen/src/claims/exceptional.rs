@@ -92,10 +92,11 @@ impl Column<'_> {
         })
     }
 
-    /// Numerator and denominator of delta, if their degrees are low; `None` if `trials` do not suffice.
+    /// Numerator and denominator of delta; `Some(None)` if their degrees are too high, `None` if `trials` do not
+    /// suffice.
     #[expect(
         clippy::option_option,
-        reason = "no function of low degree is not the end of the trials"
+        reason = "a degree that is too high differs from the end of the trials"
     )]
     pub(super) fn functions(
         &self,

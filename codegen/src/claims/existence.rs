@@ -256,7 +256,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Text of a vector, such as `d_x + 0.41 d_y`.
+    /// Text of a vector, such as `d_x + 0.41*d_y`.
     fn vector(&self, components: &[f64]) -> String {
         let mut text = String::new();
         for (i, value) in components.iter().enumerate() {
@@ -342,7 +342,7 @@ impl Writer<'_> {
     }
 }
 
-/// Up to four function calls whose relations to each other are not visible modulo primes.
+/// Up to four function calls or roots whose relations to each other are not visible modulo primes.
 fn unrelated_atoms(pool: &Pool, problem: &Problem) -> Vec<String> {
     let parts = pool.reachable(&problem.roots());
     let is_atom = |id: &dalembert_expr::ExprId| {

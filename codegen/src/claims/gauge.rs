@@ -1,7 +1,7 @@
 //! Total time derivatives: a flow that changes the Lagrangian by such a derivative keeps the equations of motion.
 //!
-//! `R(q, qdot, t)` is `df/dt` for a function `f(q, t)`, near every configuration, iff its Euler-Lagrange expressions vanish at all positions,
-//! velocities and accelerations:
+//! Near every configuration, `R(q, qdot, t)` is `df/dt` for a function `f(q, t)` iff its Euler-Lagrange expressions
+//! vanish at all positions, velocities and accelerations:
 //!
 //! ```text
 //! d^2R/dqdot^i dqdot^j = 0
@@ -80,7 +80,7 @@ pub(super) fn antiderivative(model: &mut Model, rate: ExprId) -> Option<ExprId> 
     (model.pool.zero_test(error) == Zero::Proved).then_some(found)
 }
 
-/// `qdot` for q, 1 for t.
+/// Rates along a motion: `qdot` for q, 1 for t.
 pub(super) fn motion(model: &mut Model) -> Vec<(SymbolId, ExprId)> {
     let mut motion = Vec::new();
     for coordinate in &model.coordinates {

@@ -25,7 +25,7 @@ impl<A: Arithmetic> Parts<A> {
         jets.add(&dot(jets, &self.slope, velocity), &self.rate)
     }
 
-    /// The velocity on which the law acts.
+    /// The velocity on which the law acts: `velocity`, projected onto the instantaneous constraints.
     pub(super) fn focused(
         &self,
         jets: &Jets<'_, A>,
@@ -132,7 +132,7 @@ impl<A: Arithmetic> Normal<A> {
     }
 }
 
-/// A velocity on D projected onto the constraints of the rows `forms`, which it misses by `lost`.
+/// A velocity, projected onto the constraints of the rows `forms`. `lost` are the residuals of the constraints.
 fn projected<A: Arithmetic>(
     jets: &Jets<'_, A>,
     metric: &Matrix<A>,

@@ -23,11 +23,12 @@ use super::undecided::Undecided;
 use super::wall::Wall;
 use crate::model::{ExteriorForm, Model};
 
-/// Number of real states at which the largest components are sought, and number of components examined one by one.
+/// Number of real states at which the largest components are sought.
 const STATES: usize = 12;
+/// Largest number of components that are examined one by one.
 const COMPONENTS: usize = 32;
 
-/// The reason for which nothing is known of resets beside such constraints.
+/// Reason for an open verdict on surfaces of a model with nonlinear constraints.
 const AT_NONLINEAR: &str =
     "resets beside constraints that are not linear in the velocities are not examined";
 
@@ -111,7 +112,7 @@ fn too_large(tangents: &Tangents, form: &ExteriorForm) -> Option<Verdict> {
     })
 }
 
-/// The verdict on a form on these vectors.
+/// The verdict on a form, evaluated on the given tangent vectors.
 pub(super) fn check_on(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -129,7 +130,7 @@ pub(super) fn check_on(
     }
 }
 
-/// The verdict on motion and surfaces, of a form that may be 0.
+/// The verdict on the effects of motion and surfaces on a form. The form may be 0 at all states.
 fn check_kept(
     model: &mut Model,
     around: &Surroundings<'_>,

@@ -71,8 +71,8 @@ fn exponential(pool: &mut Pool, potential: &Potential) -> Option<ExprId> {
     Some(pool.product(&factors))
 }
 
-/// The verdict on `volume: kept`, with sentences on the effects of surfaces. `flow`: the verdict on the density of the
-/// motion between impacts.
+/// The verdict on `volume: kept`, with remarks: consequences of a proof, or the effects of the other surfaces. `flow`
+/// is the verdict on the density of the motion between impacts.
 pub(super) fn check_kept(
     model: &mut Model,
     around: &Surroundings<'_>,

@@ -19,7 +19,7 @@ use super::regularity::{domain, factors_with_zeros};
 use super::sample::{Sample, sample, uses};
 use crate::model::{Model, Topology};
 
-/// Largest number of bisections of a segment on which a function changes sign, down to the last digit.
+/// Largest number of bisections of a segment on which a function changes sign. It suffices for all digits of a double.
 const BISECTIONS: usize = 200;
 /// Relative size of the neighbourhood of a zero in which the derivative must have constant sign.
 const AROUND: f64 = 1e-7;

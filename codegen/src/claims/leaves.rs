@@ -81,7 +81,7 @@ pub(super) fn curl(pool: &mut Pool, form: &[ExprId], variables: &[SymbolId]) -> 
         .collect()
 }
 
-/// The values of `dw^a` on pairs of annihilated fields, summed with random weights.
+/// The values of `dw^a` on pairs of fields that all `w^a` annihilate, summed with random weights.
 struct Involutive<'i> {
     dynamics: &'i Dynamics,
     curls: &'i [Vec<Vec<ExprId>>],
@@ -185,8 +185,8 @@ impl Entered {
 }
 
 /// The verdict on the vectors behind a surface; `None` if nothing is to be proved. If the constraints of the mode
-/// behind it are integrable, that mode may keep the form on its leaves only. The surface must then map vectors along
-/// leaves to such vectors, or the mode must keep the form on all vectors (`keeps_all`).
+/// behind it are integrable, that mode may preserve the form on vectors along its leaves only. The surface must then
+/// map vectors along leaves to such vectors, or the mode must preserve the form on all vectors (`keeps_all`).
 pub(super) fn check_behind(
     model: &mut Model,
     around: &Surroundings<'_>,

@@ -26,8 +26,8 @@
 //! | `obstruction.rs`, `sample.rs` | points for a check by hand |
 //! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
 //!
-//! Decisions are taken modulo 61-bit primes at random points. Values in double precision find points that may prove a
-//! statement. Such a point counts only if an enclosure confirms it.
+//! Decisions are taken modulo 61-bit primes at random points. A search in double precision finds points that may prove
+//! a statement. Such a point counts only if an enclosure confirms it.
 
 mod alternatives;
 mod ansatz;

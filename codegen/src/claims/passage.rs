@@ -1,15 +1,16 @@
 //! The map of a reset or of a transition, and its effect on volumes.
 //!
 //! ```text
-//! q+ = psi(t, q)   qdot+ = w(t, q, qdot)      mu_C = det g/|det A_dep| dq du, u the independent velocities
+//! q+ = psi(t, q)   qdot+ = w(t, q, qdot)      mu_C = rho dq du, rho = det g/|det A_dep|, u the independent velocities
 //! J = rho+/rho- det(du+/du) det[dpsi + (qdot+ - d_t psi - dpsi qdot) dh/G],   G = dh(qdot) + d_t h
 //! ```
 //!
-//! J is the determinant of the augmented differential (W. Clark, thesis, chapter VII): it takes tangent vectors of the surface to
-//! their images and the motion before to the motion after. A first-order system has the volume `dq` and `det(du+/du) = 1`.
+//! J is the determinant of the augmented differential (W. Clark, thesis, chapter VII), which takes tangent vectors of
+//! the surface to their images and the motion before to the motion after. A first-order system has the volume `dq` and
+//! `det(du+/du) = 1`.
 //!
-//! A refraction without constraints has J = 1: along `p + c dh` the energies agree, `(1 + dc(dh)) G+ = G-`, and the first
-//! factor is `det(dp+/dp)`.
+//! A refraction `p+ = p + c dh` without constraints has `J = det(dp+/dp) G+/G- = 1`: the conservation of energy gives
+//! `(1 + dc(dh)) G+ = G-`, and `det(dp+/dp) = 1 + dc(dh)`.
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, JetSpace, Jets, Node, Pool, Series, SymbolId,

@@ -101,7 +101,7 @@ pub(super) fn value(field: Modulus, a: &[u64], x: u64) -> u64 {
 pub(super) fn roots(field: Modulus, a: &[u64]) -> Vec<u64> {
     let mut roots = Vec::new();
     if a.len() > 1 {
-        // x^p - x is the product of all x - root.
+        // x^p - x is the product of x - r over all elements r of the field.
         let power = power_modulo(field, &[0, 1], field.prime(), a);
         let difference = sub(field, &power, &[0, 1]);
         let split = match difference.is_empty() {

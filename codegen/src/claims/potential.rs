@@ -46,7 +46,7 @@ pub struct Potential {
 pub(super) struct Candidates {
     /// Terms that are single-valued, and finite wherever metric and constraints are regular.
     regular: Vec<Term>,
-    /// Multiples of angles.
+    /// Angles. They are not single-valued on Q.
     angles: Vec<Term>,
     /// Single-valued terms that may be infinite where the model is regular.
     singular: Vec<Term>,
@@ -92,7 +92,8 @@ impl Candidates {
         };
         let calls = chosen(|node| matches!(node, Node::Call(..)));
         let sums = chosen(|node| matches!(node, Node::Sum { .. }));
-        // The logarithm of an exponential is among the plain terms.
+        // Exponentials get no logarithm: `ln exp(f)` is `f`, and the plain terms contain function calls and monomials
+        // of degree at most 2.
         let is_exponential = |id: &ExprId| matches!(pool.node(*id), Node::Call(Function::Exp, _));
         let arguments = calls.iter().filter(|id| !is_exponential(id)).chain(&sums);
         // A sum may cancel. Its logarithm would have no value anywhere, so no point would remain for the other terms.
@@ -174,7 +175,7 @@ fn number_and_rest(pool: &Pool, id: ExprId) -> (Rational, Option<ExprId>) {
     }
 }
 
-/// An expression as a factor: sums in brackets.
+/// An expression as a factor: sums and fractions in parentheses.
 pub(super) fn factor_text(pool: &Pool, id: ExprId) -> String {
     match pool.node(id) {
         Node::Sum { .. } => format!("({})", pool.text(id)),

@@ -53,6 +53,7 @@ pub(super) fn refracted<P: ExpansionPoint>(
     let under = jets.sub(&jets.mul(&b, &b), &twice);
     let root = point.power(jets.value(&under), &Rational::HALF)?;
     let root = jets.root(&under, root)?;
+    // NOTE: this `c` is minus the c of the equations above.
     let c = jets.mul(&jets.add(&root, &b), &jets.inverse(&compliance)?);
     let shifted = |(start, along): (&Series<P::Field>, &Series<P::Field>)| {
         jets.sub(start, &jets.mul(&c, along))

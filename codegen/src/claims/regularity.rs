@@ -30,9 +30,10 @@ pub(super) const LEAVES: &str = "a circle leaves the domain where the constraint
 const POINTS: usize = 64;
 /// Number of golden-section steps. They shrink an interval by the factor `3e-13`.
 const BISECTIONS: usize = 60;
-/// Fraction of the largest determinant below which a value counts as 0, and fraction below which a minimum near a point
-/// is sought. A determinant that vanishes like the square of a sine is below the latter half a step from its zero.
+/// Fraction of the largest determinant on a circle below which a value counts as 0.
 const SMALL: f64 = 1e-9;
+/// Fraction of the largest determinant on a circle below which a minimum near a point is sought. If the determinant
+/// vanishes like the square of a sine, the point next to the zero is below it.
 const LOW: f64 = 0.1;
 
 /// Values of coordinates, time and parameters.

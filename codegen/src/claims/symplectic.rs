@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! motion        L_X (dp_i dq^i) = d(F_i dq^i) + d(lambda_a eta^a)
-//! surfaces      the same on vectors that the motion through h = 0 carries along, see `invariant.rs`
+//! surfaces      the form has the same values on vectors before h = 0 and on their images behind it, see `carried.rs`
 //! ```
 //!
 //! Without constraints the motion preserves the form iff `F_i dq^i` is closed. With constraints it does not preserve
@@ -384,7 +384,7 @@ pub(super) fn symplectic_form(model: &mut Model) -> (ExteriorForm, String) {
     (form, texts.join(" + "))
 }
 
-/// A question: must this be 0 at all states on D?
+/// The claim that a quantity is 0 at all states on D.
 pub(super) struct AtStates<'s> {
     dynamics: &'s Dynamics,
     part: Part<'s>,

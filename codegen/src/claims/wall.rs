@@ -53,7 +53,8 @@ pub(super) struct Wall {
     velocities: Vec<SymbolId>,
     /// Numbers of constraints, M and K.
     constraints: [usize; 2],
-    /// Functions that are positive where the surface counts.
+    /// Margins of the conditions of this surface, then of the surfaces that must not count. A condition holds where its
+    /// margin is positive.
     margins: Vec<ExprId>,
     /// Number of margins of the wall, and numbers of margins of each other surface that must not count.
     lists: (usize, Vec<usize>),

@@ -37,8 +37,8 @@ pub(super) fn without_common_factor(pool: &mut Pool, vector: &[ExprId]) -> (Expr
     (pool.power_product(&common), rest)
 }
 
-/// The entries divided by those common factors of all nonzero entries that are never zero, and by a common number up to
-/// sign.
+/// The entries divided by those of their common factors that are never zero. If the coefficients of all nonzero entries
+/// have the same absolute value, the entries are also divided by the first of these coefficients.
 pub(super) fn without_regular_factor(pool: &mut Pool, vector: &[ExprId]) -> Vec<ExprId> {
     let (common, entries) = without_common_factor(pool, vector);
     let singular = match pool.node(common) {

@@ -81,7 +81,7 @@ fn gradient_and_drift(model: &mut Model, coordinates: &Coordinates) -> (Vec<Expr
         (written.0, expanded.1.clone()),
         expanded,
     ];
-    // Of equal ones the first, as written.
+    // Of pairs of equal size, `min_by_key` returns the first, which is as written.
     let pairs = pairs.into_iter().min_by_key(|(gradient, drift)| {
         let both: Vec<ExprId> = gradient.iter().chain(drift).copied().collect();
         model.pool.reachable(&both).len()

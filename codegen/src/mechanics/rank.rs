@@ -2,8 +2,8 @@
 //!
 //! Each step of the proof leaves fewer forms, which are independent at every state iff the former ones are. A form is
 //! removed if it has columns of its own whose entries never vanish together. A form with an entry that is never zero is
-//! eliminated from the others. For the remaining forms the squares of all minors are added: the forms are independent where the
-//! sum is positive (Cauchy and Binet).
+//! eliminated from the others. For the remaining forms the squares of all minors are added: the forms are independent
+//! where the sum is positive (Cauchy and Binet).
 //!
 //! A form that is the differential of a function may vanish at states that no motion reaches; see [`keeps_off`].
 

@@ -1,4 +1,5 @@
-//! Reduction by a group: fields `xi_a` whose flows keep the Lagrangian and the constraints, with `[xi_a, xi_b] = C_ab^c xi_c`.
+//! Reduction by a group: fields `xi_a` whose flows preserve the Lagrangian and the constraints, with
+//! `[xi_a, xi_b] = C_ab^c xi_c`.
 //!
 //! ```text
 //! I_ab = g(xi_a, xi_b),  J_a = <p, xi_a>              locked inertia, momentum map
@@ -66,7 +67,7 @@ pub struct Reduction {
     pub rates: Option<Vec<ExprId>>,
     /// Forms `A^a`; `None` unless the orbits and D together span all directions.
     pub connection: Option<Matrix>,
-    /// `B^a_kl` in coordinates, an N by N matrix for each `a`.
+    /// `B^a_kl` in coordinates, an N by N matrix for each `a`; empty without a connection.
     pub curvature: Vec<Matrix>,
     /// The reduced equations; `None` unless the frame of the motion is proved to be invariant.
     pub reduced: Option<Reduced>,

@@ -19,7 +19,7 @@ pub(super) struct OneForm {
     pub(super) level: Option<ExprId>,
     /// Function `phi` of a constraint `phi = 0` that is not linear in the velocities. `form` is then `dphi/dqdot`.
     pub(super) nonlinear: Option<ExprId>,
-    /// True if the equation `level = 0` in positions is declared itself.
+    /// True if the declaration is the equation `level = 0` in positions.
     pub(super) is_of_positions: bool,
 }
 

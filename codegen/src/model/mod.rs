@@ -94,7 +94,7 @@ pub struct Model {
     pub claims: Vec<Claim>,
     /// Symbols for derived quantities in outputs and claims.
     pub derived: DerivedSymbols,
-    /// Notes for the author: velocity-linear terms, integrable constraints, unused parameters.
+    /// Notes for the author, for example on velocity-linear terms, integrable constraints or unused parameters.
     pub notes: Vec<String>,
 }
 
@@ -295,10 +295,10 @@ pub enum Beside {
     /// The surface counts by its own conditions.
     #[default]
     Independent,
-    /// `otherwise`: the surface counts where none of these lists holds, the conditions of the other surfaces.
+    /// `otherwise`: the surface counts where none of these lists of conditions of other surfaces holds.
     Otherwise(Vec<Vec<Condition>>),
-    /// The last of several transitions with the same gap. A motion that reaches the surface ends there if neither its
-    /// own conditions nor one of these lists holds.
+    /// The last of several transitions with the same gap. A motion that reaches the surface ends there if neither the
+    /// conditions of this transition nor one of these lists holds.
     Last(Vec<Vec<Condition>>),
 }
 
@@ -429,7 +429,8 @@ pub enum Statement {
         /// True if the quantity is claimed to be conserved.
         holds: bool,
     },
-    /// The flow of this vector field, N components, preserves the Lagrangian and the constraints.
+    /// The flow of this vector field, N components, preserves the constraints, and the Lagrangian up to a total time
+    /// derivative.
     Symmetry(Vec<ExprId>),
     /// The motion and every event at a surface preserve a differential form.
     Invariant(ExteriorForm),

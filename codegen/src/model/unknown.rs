@@ -171,7 +171,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// `q1`, `q_1` and `q_i` for a member of the family `q`.
+    /// Advice on `q1`, `q_1` and `q_i`, written for a member of the family `q`.
     pub(super) fn member_help(&self, name: &str) -> Option<String> {
         let is_family = |meaning: Meaning| {
             matches!(meaning, Meaning::Coordinates(..) | Meaning::Parameters(..))
@@ -232,7 +232,7 @@ impl Resolver<'_> {
             .any(|coordinate| coordinate.name.field == name)
     }
 
-    /// `xdot`, `x_dot` and `ẋ` for `dot(x)`; `dx` for `d(x)`.
+    /// Advice on `xdot`, `x_dot` and `ẋ`, written for `dot(x)`, and on `dx`, written for `d(x)`.
     pub(super) fn velocity_help(&self, name: &str) -> Option<String> {
         if let Some(base) = without_dot(name) {
             let base = self.ascii_name(&base).unwrap_or(base);

@@ -32,7 +32,7 @@ impl Cost {
         cost
     }
 
-    /// Number of multiplications that take about as long.
+    /// Number of multiplications that take about as long as all these operations.
     pub fn multiplications_alike(&self) -> usize {
         self.additions + self.multiplications + 4 * self.divisions + 16 * self.calls
     }

@@ -135,7 +135,8 @@ impl<'a> Expressions<'a> {
                     false => outside.push((coefficient, factors)),
                 }
             }
-            // NOTE: the function recurses for a proper part of the terms only. High powers would overflow the stack.
+            // NOTE: the function recurses for a proper part of the terms only. Otherwise high powers would overflow the
+            // stack.
             if outside.is_empty() {
                 pending.push(Pending::Times(self.values[&shared]));
                 terms = inside;
@@ -229,7 +230,7 @@ impl<'a> Expressions<'a> {
                 steady = above.len();
             }
         }
-        // A quotient that exists spares the division.
+        // If the quotient of a factor by the denominator exists already, no division is needed.
         for factor in &mut above {
             if let Some(quotient) = builder.existing_quotient(*factor, denominator) {
                 (*factor, denominator) = (quotient, builder.integer(1));

@@ -18,7 +18,7 @@ const SAMPLES: usize = 10;
 /// Number of trajectories that are timed together: so few that other programs disturb some repetitions, but not all.
 const PART: usize = 400;
 
-/// Measures W5 and W5r.
+/// Measures W5. There is no W5r: the generator reduces the disk itself.
 pub fn disks(plan: &Plan) {
     for &value in plan.ensemble_tolerances {
         let tolerance = Tolerance::new(value).expect("a tolerance");

@@ -1,5 +1,5 @@
-//! Measurements of this project for the comparison with other programs: tasks with known results, one line of JSON for
-//! each integrator and tolerance. `benches/peers/run.py` runs all programs and compares them.
+//! Measurements of this project for the comparison with other programs: workloads with known results, one line of JSON
+//! for each integrator and tolerance. `benches/peers/run.py` runs all programs and compares them.
 //!
 //! `cargo run --release -- [WORK..] [--repetitions N]`
 
@@ -31,7 +31,7 @@ const PLAN: Plan = Plan {
     repetitions: 5,
 };
 
-/// Names of tasks with their measuring functions.
+/// Names of the workloads with their measuring functions.
 const WORKS: [(&str, fn(&Plan)); 7] = [
     ("W1", works::disk_billiard),
     ("W2", works::sleigh),
@@ -42,7 +42,7 @@ const WORKS: [(&str, fn(&Plan)); 7] = [
     ("W5", ensemble::disks),
 ];
 
-/// The plan, with the number of `--repetitions`, and the names of tasks.
+/// The plan, with the number of `--repetitions`, and the names of the workloads to measure.
 fn arguments() -> (Plan, Vec<String>) {
     let mut plan = PLAN;
     let mut names = Vec::new();

@@ -1,4 +1,4 @@
-//! The systems of the tasks, with Lagrangians, constraints and surfaces, but without claims. The sleigh declares a
+//! The systems of the workloads, with Lagrangians, constraints and surfaces, but without claims. The sleigh declares a
 //! frame, since its constraint determines no coordinate velocity at every angle. The generator finds the frame of the
 //! disk.
 

@@ -19,8 +19,9 @@ pub(super) struct Writer<'a> {
     /// Number of reads of coefficient `k`, by value.
     uses: Vec<usize>,
     pub(super) room: Room,
-    /// Values whose order 0 is read, and values whose reciprocal of order 0 is read.
+    /// Values whose order 0 is read.
     read: BTreeSet<Value>,
+    /// Values whose reciprocal of order 0 is read.
     inverses: BTreeSet<Value>,
 }
 
@@ -77,8 +78,8 @@ impl<'a> Writer<'a> {
         matches!(self.room, Room::Histories(_))
     }
 
-    /// Statements for order `k` of every value that varies; expressions of the results; statements that store
-    /// coefficients for later orders.
+    /// Statements for order `k` of every value that varies; expressions for coefficient `k` of the results; statements
+    /// that store coefficients for later orders.
     pub(super) fn orders(&mut self) -> (TokenStream, Vec<TokenStream>, TokenStream) {
         let varying: Vec<Value> = self.jet.varying().collect();
         let components = self.bind_components(&varying);
@@ -120,7 +121,8 @@ impl<'a> Writer<'a> {
         quote!(let [#(#locals),*] = coefficients[k];)
     }
 
-    /// The values whose order 0 is passed on, the results first, and statements that bind those that are read.
+    /// The values whose order 0 is in the array `firsts`, the results first, and statements that take from it the
+    /// values that are read.
     pub(super) fn read_firsts(&self) -> (Vec<Value>, TokenStream) {
         let mut known = self.jet.function.outputs.clone();
         let mut statements = TokenStream::new();
@@ -152,7 +154,7 @@ impl<'a> Writer<'a> {
         inverses.collect()
     }
 
-    /// Statements that store order 0 of histories for which this is still to be done.
+    /// Statements that store order 0 of the histories that [`Writer::read_firsts`] does not store.
     pub(super) fn begin_histories(&mut self) -> TokenStream {
         let histories: Vec<(History, TokenStream)> = match &self.room {
             Room::Rows(layout) => {
@@ -222,7 +224,7 @@ impl<'a> Writer<'a> {
         self.uses[value.index()] > 1 || self.jet.is_kept(value)
     }
 
-    /// The storage of a coefficient that is passed through memory; `None` if it is a local variable.
+    /// The place of a coefficient in the histories; `None` if it is a local variable.
     fn memory(&self, value: Value, order: &TokenStream) -> Option<TokenStream> {
         let Room::Histories(places) = &self.room else {
             return None;

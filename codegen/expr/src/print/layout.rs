@@ -13,7 +13,7 @@ const MAX_DEPTH: usize = 120;
 /// Largest number of parts. Further parts are omitted.
 const MAX_PARTS: usize = 20_000;
 
-/// A layout. Its numbers are not negative.
+/// A layout. Its numbers are not negative; signs are in [`Layout::Sum`] and [`Layout::Negative`].
 pub(super) enum Layout {
     Integer(String),
     Pi,
@@ -194,7 +194,7 @@ impl Builder<'_> {
     }
 }
 
-/// Multiplies by `base^exponent`, which is merged with a power of the same base and sign.
+/// Multiplies by `base^exponent`. Integer powers of one base are merged if both are positive or both negative.
 fn multiply(bases: &mut Vec<(Base, Rational)>, base: ExprId, exponent: Rational) {
     for (known, power) in bases.iter_mut() {
         let same = matches!(known, Base::Expression(id) if *id == base);
@@ -207,8 +207,8 @@ fn multiply(bases: &mut Vec<(Base, Rational)>, base: ExprId, exponent: Rational)
     bases.push((Base::Expression(base), exponent));
 }
 
-/// Changes the sign of the first sum with an odd power that has a negative summand; with `always` also that of a sum
-/// that is the only factor. Returns true if a sign was changed.
+/// Changes the sign of the first sum with an odd power that has a negative summand. With `always`, it also changes the
+/// sign of a sum that is the only factor. Returns true if a sign was changed.
 fn flip_one_sum(bases: &mut [(Base, Rational)], always: bool) -> bool {
     let alone = always && bases.len() == 1;
     for (base, exponent) in bases {
@@ -262,7 +262,8 @@ fn take_common_factors(terms: &mut [Term]) -> Vec<(ExprId, Rational)> {
     common
 }
 
-/// The common part of two powers of one base: the one of smaller size, if both have the same sign.
+/// The common part of two powers of one base: the exponent of smaller size. `None` unless the exponents have the same
+/// sign and are equal or integers.
 fn shared_power(same_base: bool, a: &Rational, b: &Rational) -> Option<Rational> {
     let alike = same_base && a.is_negative() == b.is_negative();
     let whole = a == b || (a.is_integer() && b.is_integer());

@@ -262,7 +262,7 @@ mod tests {
                 let (Some(range), Some(value)) = (range, apply(function, Ball::double(x))) else {
                     continue;
                 };
-                // The ball of such an angle is too wide: its sine is unknown.
+                // The ball of the value is too wide to compare, such as that of the sine of a large angle.
                 if value.radius() > 0.5 {
                     continue;
                 }

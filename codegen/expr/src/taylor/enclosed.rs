@@ -79,7 +79,8 @@ impl Arithmetic for Enclosures {
         a.inverse()
     }
 
-    /// NOTE: an interval that contains 0 has size 0, because it is no pivot.
+    /// The smallest absolute value in the interval. It is 0 for an interval that contains 0, which therefore is never a
+    /// pivot.
     fn size(self, a: Interval) -> f64 {
         a.mignitude()
     }

@@ -9,7 +9,7 @@ use crate::point::ModularPoint;
 use crate::pool::Pool;
 use crate::rational::Rational;
 
-/// A point at which expressions are expanded: the values of symbols, and with them of all expressions.
+/// A point at which expressions are expanded. It gives values to symbols, and thereby to expressions.
 pub trait ExpansionPoint {
     /// The field of the coefficients.
     type Field: Arithmetic;
@@ -225,7 +225,7 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
             }
             Node::Call(function, argument) => self.call(*function, *argument, value),
             Node::Atan2(y, x) => {
-                // (x^2 + y^2) E(angle) = x E(y) - y E(x)
+                // With the Euler operator E: (x^2 + y^2) E(angle) = x E(y) - y E(x).
                 let (jets, y, x) = (self.jets, self.of(*y), self.of(*x));
                 let radius = jets.inverse(&jets.dot([(x, x), (y, y)]))?;
                 let left = jets.mul(x, &jets.euler(y));
@@ -240,7 +240,7 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
         match whole {
             Some((1, _)) => Some(base.to_vec()),
             Some((2, _)) => Some(self.jets.mul(base, base)),
-            // The recurrence divides by the base. A natural power of a base that vanishes is multiplied out.
+            // The recurrence divides by the base. If the base may vanish, a natural power is multiplied out.
             Some((n @ 3.., _)) if self.jets.field.size(self.jets.value(base)) == 0.0 => {
                 let mut power = base.to_vec();
                 for _ in 1..n {

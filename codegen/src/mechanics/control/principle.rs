@@ -49,7 +49,7 @@ pub(super) fn derive(
     let chosen: Vec<(SymbolId, ExprId)> = chosen.collect();
     let work = dot(pool, &covector, &system.rates);
     let whole = pool.sum(&[work, cost.running]);
-    // The derivative by the inputs is 0 at the optimum: the optimum is substituted after the derivative by the state.
+    // `dH/du` is 0 at the optimum, so the optimum is substituted after the differentiation with respect to the state.
     let costate_rates: Vec<ExprId> = system
         .states
         .iter()

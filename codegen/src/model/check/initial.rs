@@ -61,8 +61,8 @@ fn target_text(entry: &InitialValue) -> String {
 }
 
 impl Resolver<'_> {
-    /// The coordinates of an entry, each with the value of its index in scope. For `until`, a single target without
-    /// meaning.
+    /// The coordinates of an entry, each with the value of its index in scope. For `until`, one target whose index is
+    /// not used.
     fn initial_targets(&mut self, entry: &InitialValue) -> Vec<(usize, Scope)> {
         match entry.target {
             InitialTarget::Until => vec![(0, Scope::default())],

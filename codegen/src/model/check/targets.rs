@@ -17,7 +17,8 @@ pub(super) enum Section {
 }
 
 impl Resolver<'_> {
-    /// Indices of the coordinates that a name with an index denotes, each with the scope of its value.
+    /// Indices of the coordinates that a name with an index denotes, each with the scope in which its value is
+    /// resolved.
     pub(super) fn targets(
         &mut self,
         declared: &Declared,

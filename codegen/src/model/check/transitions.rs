@@ -175,7 +175,8 @@ impl Resolver<'_> {
         Some(value)
     }
 
-    /// Indices of the coordinates of another mode that a name with an index denotes, each with the scope of its value.
+    /// Indices of the coordinates of another mode that a name with an index denotes, each with the scope in which its
+    /// value is resolved.
     fn entered_coordinates(
         &mut self,
         declared: &Declared,
