@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::source::{self, Refused};
 
-/// Reasons for which the loop of a declaration is not closed.
+/// Reasons for which a feedback loop cannot be closed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FeedbackError {
     /// The text has no models, or is not a text of the language.
@@ -57,9 +57,9 @@ impl std::error::Error for FeedbackError {}
 /// coordinates, velocities, parameters and definitions. An input of a family is written `thrust[2]`, or
 /// `thrust[i in 1..=2]` with a law in `i`.
 ///
-/// The result declares the same model without these inputs: `let u = law;` takes the place of `u`. Whatever holds for
-/// declarations holds for closed loops, among it power series, derivatives across impacts and certified runs. A `cost`
-/// goes when no input is left.
+/// The result declares the same model without these inputs: `let u = law;` takes the place of `u`. A closed loop is a
+/// declaration like any other, with power series, derivatives across impacts and certified runs. A `cost` is removed if
+/// no input is left.
 ///
 /// ```
 /// use dalembert::erased::{Bounded, Erased};
@@ -77,7 +77,7 @@ impl std::error::Error for FeedbackError {}
 /// ```
 ///
 /// # Errors
-/// [`FeedbackError`]; what is wrong inside of a law shows when the result is loaded.
+/// [`FeedbackError`]. Mistakes inside of a law are reported when the result is loaded.
 pub fn close(name: &str, text: &str, laws: &[(&str, &str)]) -> Result<String, FeedbackError> {
     super::in_thread(|| close_here(name, text, laws))
 }
@@ -114,7 +114,7 @@ fn word(input: &str) -> &str {
     input.split('[').next().unwrap_or(input).trim()
 }
 
-/// True for tokens without a semicolon outside of brackets.
+/// True for one or more tokens without a semicolon outside of brackets.
 fn is_expression(law: &str) -> bool {
     let tokens: Result<TokenStream, _> = law.parse();
     tokens.is_ok_and(|tokens| {
@@ -226,7 +226,7 @@ fn entries(tokens: TokenStream) -> Vec<Entry> {
     tokens.split_inclusive(ends).filter_map(entry).collect()
 }
 
-/// The text with parts replaced, which are in order and apart.
+/// The text with parts replaced. The parts are in order and do not overlap.
 fn applied(text: &str, edits: &[(Range<usize>, String)]) -> String {
     let mut result = String::new();
     let mut done = 0;

@@ -10,7 +10,7 @@ use dalembert::state::StateVector;
 use dalembert::{Dop853, Tolerance};
 use dalembert::{Instance, Scene, Simulation, System, VectorField};
 
-/// Models that are loaded and dropped before memory is measured.
+/// Number of models that are loaded and dropped before memory is measured.
 const FIRST: usize = 50;
 
 /// Least memory of a leaked model, in bytes: that of the smallest form.
@@ -33,7 +33,7 @@ fn text(number: usize) -> String {
     )
 }
 
-/// A model that is evaluated and dropped.
+/// Loads, evaluates and drops a model.
 fn load(number: usize) {
     let models = dalembert_jit::load("ball.dal", &text(number)).unwrap();
     let ball = Erased::<4>::of(&models[0].form).unwrap();

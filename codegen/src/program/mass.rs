@@ -56,7 +56,7 @@ impl ConstraintFactors {
         Self::Orthogonal(Orthogonal::factor(builder, metric, columns, guard))
     }
 
-    /// Numbers whose product is `det m^{ab}`, M entries.
+    /// The M numbers whose product is `det m^{ab}`.
     pub fn squares(&self) -> &[Value] {
         match self {
             Self::Orthogonal(orthogonal) => &orthogonal.squares,
@@ -243,8 +243,8 @@ fn orthogonal_work(patterns: &[Vec<bool>]) -> usize {
     work
 }
 
-/// Minimum-degree order: each step eliminates the constraint with the fewest remaining neighbours. Also the number of
-/// products: for the entries of `m`, its factorisation in this order, and one solution.
+/// Minimum-degree order, in which each step eliminates the constraint with the fewest remaining neighbours, and the
+/// number of products that the entries of `m`, its factorisation in this order and one solution take.
 fn minimum_degree(patterns: &[Vec<bool>]) -> (Vec<usize>, usize) {
     let m = patterns.len();
     let mut meets: Vec<Vec<bool>> = patterns

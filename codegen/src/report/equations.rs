@@ -1,4 +1,4 @@
-//! The sections of a report with expressions.
+//! The sections of a report that contain expressions.
 
 use dalembert_expr::ExprId;
 
@@ -281,7 +281,7 @@ impl Writer<'_> {
         formulas.collect()
     }
 
-    /// The instantaneous constraints of a surface, which hold during an impact only.
+    /// The instantaneous constraints of a surface, which hold only at impacts on it and in contact with it.
     fn instantaneous(&mut self, s: usize) -> Vec<Item> {
         let derivation = self.derivation;
         let mut items = Vec::new();

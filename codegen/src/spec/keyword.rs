@@ -135,16 +135,17 @@ pub const RESET: &str = "reset";
 /// The law that ends the motion.
 pub const STOP: &str = "stop";
 
-/// Function of an output that is the integral of an expression along a run.
+/// The function that makes an output the integral of its argument along a run.
 pub const INTEGRAL: &str = "integral";
 
 /// The Lagrangian: its declaration, and its name in `outputs`.
 pub const LAGRANGIAN: &str = "lagrangian";
 
-/// Replacement of `when`: the surface counts where no other surface of the same gap counts.
+/// The word that replaces `when`: the surface counts where no other surface of the same gap does.
 pub const OTHERWISE: &str = "otherwise";
 
-/// The word before the constraints that hold in the moment of an impact only: `=> LAW, instantaneous { .. }`.
+/// The word before constraints that hold only at impacts on a surface and in contact with it:
+/// `=> LAW, instantaneous { .. }`.
 pub const INSTANTANEOUS: &str = "instantaneous";
 
 /// Extras of a scene besides named forces and surfaces: the projection to the constraints after steps, density form,
@@ -198,7 +199,7 @@ pub fn is_function(name: &str) -> bool {
 /// Reason for which `name` cannot be declared, if there is one.
 pub fn reserved(name: &str) -> Option<&'static str> {
     if RUST.contains(&name) || name.starts_with("r#") || name == "_" {
-        Some("a word of Rust")
+        Some("a keyword of Rust")
     } else if RESERVED.contains(&name) || FUNCTIONS.contains(&name) {
         Some("reserved")
     } else {
@@ -222,7 +223,7 @@ pub fn foreign_function(name: &str) -> Option<&'static str> {
         .map(|(_, instead)| *instead)
 }
 
-/// True if `name` is a function that has no derivative everywhere.
+/// True if `name` is a function that is not differentiable everywhere.
 pub fn is_not_differentiable(name: &str) -> bool {
     NOT_DIFFERENTIABLE.contains(&name)
 }

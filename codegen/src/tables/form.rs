@@ -177,8 +177,8 @@ impl FormOf<'_> {
     }
 }
 
-/// True for kernels of impulses and discrete principles. They do not exist for constraints that are not linear in the
-/// velocities.
+/// True for kernels of impulses and of the discrete Lagrange-d'Alembert principle. They do not exist for constraints
+/// that are not linear in the velocities.
 fn is_of_impulses(kernel: Kernel) -> bool {
     matches!(
         kernel,

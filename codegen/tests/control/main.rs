@@ -1,5 +1,5 @@
-//! Tests of the maximum principle across impacts: its equations against finite differences of the model, against values
-//! computed by hand, and error messages.
+//! Tests of the maximum principle across impacts. Its equations are compared with finite differences of the model and
+//! with values computed by hand; its error messages are checked.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a test may stop at the first surprise
 
@@ -420,7 +420,8 @@ fn a_cost_changes_nothing_of_the_model() {
     assert_eq!(program(&without), program(&with));
 }
 
-/// The printed equations of the ball are (9.13) and (9.14) of the thesis, extended by a coefficient of restitution.
+/// The printed equations of the ball are (9.13) and (9.14) of W. Clark's thesis, extended by a coefficient of
+/// restitution.
 #[test]
 fn the_maximum_principle_is_printed() {
     let report = dalembert_codegen::report::control(BALL, None)

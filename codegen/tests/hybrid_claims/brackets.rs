@@ -1,5 +1,5 @@
-//! Brackets against finite differences of functions of `(q, p)` that are constant along the constraint forces, and
-//! their printed form.
+//! Tests of brackets. Their values are compared with finite differences of functions of `(q, p)` that are constant
+//! along the constraint forces; their printed form is checked.
 
 use dalembert_codegen::mechanics::{Bracket, bracket::derive_bracket};
 use dalembert_codegen::model::{Model, Statement};

@@ -75,7 +75,7 @@ fn a_refraction_carries_the_symplectic_form() {
     );
 }
 
-/// A wall at `x = 3` pushes along itself, in proportion to the height. At the state of the verdict, the form on
+/// The wall at `x = 3` adds twice the height to the velocity along it. At the state that the verdict shows, the form on
 /// `partial(x), partial(y)` becomes 7.24.
 #[test]
 fn a_push_along_a_wall_changes_the_symplectic_form() {

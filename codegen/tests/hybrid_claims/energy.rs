@@ -1,4 +1,4 @@
-//! `energy under s: not increasing`.
+//! Tests of the claim `energy under s: not increasing`.
 
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;

@@ -162,7 +162,8 @@ fn impacts_that_change_forms_are_refuted() {
         PLANE,
         False("`left` changes"),
     );
-    // S = [[1, 0], [1, 1]]: from a start further to the right, the motion reaches the other field later.
+    // The saltation matrix is [[1, 0], [1, 1]]: a motion that starts further to the right reaches the other field
+    // later.
     check(
         &crossing(["-2", "1"], ["-2", "-1"], "1"),
         "invariant: d(y)",
@@ -238,7 +239,7 @@ fn near_misses_are_refuted() {
         "invariant: d(y)",
         False("`leftward` changes"),
     );
-    // A wall next to the place where the reset of one coordinate would be the identity.
+    // The wall is next to `x = 0`, where the reset would not change `y`.
     check(
         &particle("left: x >= 1e-9 => reset { dot(x) = -dot(x); y = y + x*dot(y)*dot(x)^2; };"),
         PLANE,
@@ -246,8 +247,8 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// A fall with `g = 2` onto a floor that stops it: held at the floor, and free below a ceiling. Values by hand, from
-/// `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`.
+/// A particle with `g = 2` is stopped by a surface: by a floor, which holds it, or by a ceiling, below which it falls
+/// again. The values follow by hand from `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`.
 #[test]
 fn forms_change_behind_laws_that_stop_the_motion() {
     let stop = |surface: &str| {
@@ -281,8 +282,8 @@ fn forms_change_behind_laws_that_stop_the_motion() {
     check(&rim, "invariant: d(dot(theta))", False("`rim` changes"));
 }
 
-/// A belt with the velocity `z` beside a wall, at an angle to it: `restitution(0)` stops the velocity across the belt,
-/// and leaves the gap rate of the belt.
+/// A particle on a belt that moves with the velocity `dot(z)`, at an angle to a wall. `restitution(0)` stops the
+/// velocity across the belt, and leaves the gap rate due to the belt.
 #[test]
 fn a_belt_carries_the_motion_away_from_a_wall() {
     let belt = |rate: &str, law: &str| {
@@ -307,7 +308,7 @@ fn a_belt_carries_the_motion_away_from_a_wall() {
     check(&belt("1/4", "newton(0)"), pair, False(held));
     check(&belt("1/4", "impact_plastic"), pair, False(held));
     check(&belt("0", "restitution(0)"), pair, False(held));
-    // Volumes are lost in both cases.
+    // The volume becomes 0 even where the verdict on `pair` is open.
     let volume = "invariant: d(x)^d(z)^d(dot(x))";
     check(
         &belt("-1/4", "restitution(0)"),
@@ -318,7 +319,7 @@ fn a_belt_carries_the_motion_away_from_a_wall() {
 
 #[test]
 fn forms_that_are_not_examined_stay_open() {
-    // The velocity that sticks exerts a force on the wall.
+    // The metric couples x and y: stopping the velocity along the wall changes the velocity across it.
     let coupled = particle("hold: x >= 0 => elastic, instantaneous { stick: dot(y) = 0; };")
         .replace("dot(y)^2)/2", "dot(y)^2 + dot(x)*dot(y))/2");
     check(

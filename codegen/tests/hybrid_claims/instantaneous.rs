@@ -1,4 +1,5 @@
-//! Forms and quantities after impacts with instantaneous constraints: the projection to these precedes the law.
+//! Tests of forms and quantities across impacts with instantaneous constraints. The projection onto these precedes the
+//! law.
 
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;
@@ -12,7 +13,7 @@ fn wall(law: &str, psi: &str) -> String {
     ))
 }
 
-/// A solid cylinder that falls along a wall, and rolls on the wall while it touches it.
+/// A solid cylinder that falls beside a wall, and does not slip on it during an impact.
 const ROLLER: &str = "pub Roller { coordinates { x; y; theta; } parameters { k > 0 = 1/2; }
     lagrangian = (dot(x)^2 + dot(y)^2 + k*dot(theta)^2)/2 - y;
     impacts { wall: x >= 0 => elastic, instantaneous { no_slip: dot(y) = dot(theta); }; } CLAIM }";
@@ -44,7 +45,7 @@ fn what_the_projection_leaves_is_proved() {
         "not conserved under hold: dot(x)^2",
         True,
     );
-    // The impulse along the wall rotates the cylinder about its line of contact.
+    // The impulse along the wall has no moment about the line of contact.
     check(
         ROLLER,
         "conserved under wall: momentum(y) + momentum(theta)",
@@ -101,7 +102,8 @@ fn what_it_takes_is_refuted_at_a_point() {
         "conserved under wall: momentum(y) + (1 + 1e-9)*momentum(theta)",
         False("difference"),
     );
-    // By hand (4/9 + 8/9) 2/3: free fall changes only dot(y), and the common velocity by 2/3 of that.
+    // By hand, the value is (4/9 + 8/9) 2/3: free fall changes only dot(y), and an impact hands 2/3 of this change on
+    // to the common velocity.
     check(
         ROLLER,
         "invariant: d(dot(y))^d(dot(theta))",

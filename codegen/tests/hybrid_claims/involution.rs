@@ -1,4 +1,4 @@
-//! `involution: f, g, ..`.
+//! Tests of the claim `involution: f, g, ..`.
 
 use crate::Expected::{False, Shown, True};
 use crate::check;
@@ -7,7 +7,7 @@ use crate::systems::{ball, disk, particle};
 const CENTRAL: &str = "pub Central { coordinates { x; y; } parameters { k > 0 = 2; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 + k/sqrt(1 + x^2 + y^2); CLAIM }";
 
-/// A charge in a field of the strength b.
+/// A charge in a magnetic field of the strength b.
 const CHARGED: &str = "pub Charged { coordinates { x; y; } parameters { b > 0 = 3; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 + b*x*dot(y); CLAIM }";
 

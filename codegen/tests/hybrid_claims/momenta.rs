@@ -42,8 +42,8 @@ fn a_straight_wall_keeps_the_momentum_along_it() {
     );
 }
 
-/// The rotation of a disk together with its place is a symmetry that is not in D. A round table keeps the symmetry. Its
-/// momentum still jumps, because the impulse acts within D.
+/// The rotation of the disk and of its position about the origin is a symmetry that is not in D. A round table keeps
+/// the symmetry. The momentum of the symmetry still jumps, because the impulse acts within D.
 #[test]
 fn a_disk_on_a_round_table_keeps_its_symmetry() {
     let table = |tb: &str| {

@@ -1,4 +1,4 @@
-//! `conserved under TRANSITION: e`.
+//! Tests of the claim `conserved under TRANSITION: e`.
 
 use crate::Expected::{Barred, False, Shown, True};
 use crate::check;
@@ -113,7 +113,7 @@ fn reflections_count_too() {
     check(&same, &kept("rightward", "x*momentum(y)"), True);
 }
 
-/// A map that keeps `dot(y)` on one side of `dot(y) = 0` only.
+/// The maps keep `dot(y)` on one side of `dot(y) = 0` only.
 #[test]
 fn all_branches_of_resets_are_examined() {
     for map in ["abs(dot(y))", "sqrt(dot(y)^2)"] {

@@ -35,13 +35,13 @@ enum Kind {
     FirstOrder,
     /// Without constraints and forces, with elastic impacts and refractions alone.
     Elastic,
-    /// With forces or maps that are declared.
+    /// With forces, or with maps that are not elastic.
     Changed,
     /// With constraints in some mode.
     Constrained,
 }
 
-/// The modes of a declaration, or the model in one piece.
+/// The models of all modes of a declaration; one model if there are no modes.
 fn modes(text: &str) -> Vec<Model> {
     match read(unclaimed(text).parse().expect("tokens")).expect("syntax") {
         Declaration::Model(spec) => vec![model::check(&spec).expect("a model")],
@@ -106,7 +106,7 @@ fn elastic_models_without_constraints_or_on_leaves_alone_are_symplectic() {
         assert!(holds, "{name}, {kind:?}: {notes:?}");
         seen[counted] += 1;
     }
-    // Elastic ones, on leaves, across leaves, nonholonomic ones, with forces or declared maps.
+    // Numbers of models: elastic, on leaves, across leaves, nonholonomic, with forces or other maps.
     assert_eq!(seen, [11, 2, 1, 11, 4]);
 }
 

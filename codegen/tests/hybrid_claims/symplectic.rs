@@ -1,4 +1,4 @@
-//! `symplectic`.
+//! Tests of the claim `symplectic`.
 
 use crate::Expected::{Barred, False, Open, Shown, True};
 use crate::check;
@@ -128,7 +128,7 @@ fn constraints_without_forces_keep_the_form_on_d() {
     check(slope, CLAIM, False("lambda_a deta^a(X, Y)"));
 }
 
-/// A bead on a wire that is a circle, or grows.
+/// A bead on a circular wire whose squared radius is `size`.
 fn bead(size: &str, rest: &str) -> String {
     format!(
         "pub Bead {{ coordinates {{ x; y; }} parameters {{ c > 0 = 1/2; }} lagrangian = (dot(x)^2 + dot(y)^2)/2 - y;
@@ -144,7 +144,7 @@ fn held(constraint: &str, rest: &str) -> String {
     )
 }
 
-/// On a leaf the motion is that of its own Lagrangian.
+/// On a leaf the motion is that of the Lagrangian restricted to the leaf.
 #[test]
 fn integrable_constraints_keep_the_form_on_their_leaves() {
     let wall = "impacts { wall: x >= 0; }";
@@ -160,7 +160,7 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
             "dot(z) = 3",
             "impacts { wall: x + z <= 3 + t => newton(1); }",
         ),
-        // Integrable with time, and the force of a magnetic field.
+        // This constraint is integrable with time as a variable: `z - t*x` is constant.
         held("dot(z) = t*dot(x) + x", ""),
     ] {
         check(&declaration, CLAIM, True);
@@ -173,7 +173,8 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
 
 #[test]
 fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
-    // On the circle the form on these vectors is -1 at x = 0, times the factor of the area.
+    // On the circle, the form on these vectors is -1 before the impact at x = 0. The law multiplies it by its factor of
+    // the area.
     let wall = |law: &str| bead("1", &format!("impacts {{ wall: x >= 0 => {law}; }}"));
     let after = "the form on partial(x), partial(dot(x)) after";
     check(&wall("newton(c)"), CLAIM, Shown(after, -0.25));
@@ -183,7 +184,7 @@ fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
         CLAIM,
         Shown("rate of the form on partial(x), partial(dot(x))", 0.5),
     );
-    // Near misses: of the factor, of a force, of integrability in space and with time.
+    // The factor, a force, and integrability in space and with time are off by 1e-9.
     check(
         &wall("newton(1 - 1e-9)"),
         CLAIM,
@@ -198,10 +199,10 @@ fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
     check(&slope, CLAIM, False("lambda_a deta^a(X, Y)"));
     let belt = held("dot(z) = 1e-9*y", "");
     check(&belt, CLAIM, False("the motion changes"));
-    // An elastic impulse beside an affine constraint turns the rate of the gap into another one.
+    // With an affine constraint the elastic law does not reverse the gap rate.
     let turned = held("dot(z) = 3", "impacts { wall: x + z <= 3 + t; }");
     check(&turned, CLAIM, Shown(after, 1.4));
-    // A reset that tears a leaf.
+    // The reset moves the states of one leaf to different leaves.
     let torn = held(
         "dot(z) = 0",
         "impacts { wall: x >= 0 => reset { dot(x) = -dot(x); z = z + y; }; }",
@@ -209,7 +210,7 @@ fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
     check(&torn, CLAIM, False("`wall` changes"));
 }
 
-/// The form behind a transition is that of its mode, with the coordinates that the mode has.
+/// After a transition the form is that of the target mode, in the coordinates of that mode.
 #[test]
 fn transitions_lead_from_leaves_to_leaves() {
     let step = |potential: &str, z: &str| {
@@ -221,7 +222,7 @@ fn transitions_lead_from_leaves_to_leaves() {
             transitions {{ go: near -> far when x <= 0 => reset {{ z = {z}; dot(z) = 0; }}; }} }}"
         )
     };
-    // Leaves of the groove have one value of x - y; without forces all states of D keep the form.
+    // On a leaf of the groove `x - y` is constant. Without forces the form is kept on all of D.
     check(&step("x*z", "x - y"), CLAIM, True);
     check(&step("0", "x + y"), CLAIM, True);
     check(
@@ -258,7 +259,8 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     let wall = |gap: &str| format!("impacts {{ wall: {gap} >= -1; }}");
     check(&step("", "dot(y)", ""), CLAIM, True);
     check(&step(&wall("x"), "dot(y)", ""), CLAIM, True);
-    // The wall turns dz/dt = dot(y) into a part of the form: leaves of the shelf keep it, other vectors do not.
+    // The gap of the wall contains z: its impact keeps the form along leaves of the shelf, but not on vectors that
+    // change z.
     let across = Open("across the leaves of the constraints behind it");
     check(&step(&wall("x + z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + 1e-9*z"), "dot(y)", ""), CLAIM, across);
@@ -301,7 +303,7 @@ fn states_of_more_dimensions_may_keep_the_form() {
     check(&wider(moving, ""), CLAIM, Shown(after, -2.0));
     let near = "y = 0; dot(y) = 1e-6*dot(x); z = 0; dot(z) = 0;";
     check(&wider(near, ""), CLAIM, False("`go` changes"));
-    // Along leaves of the mode that is entered, and across them.
+    // The target mode is entered along its leaves, or across them.
     let belt = "constraints { belt: dot(z) = x*dot(x); }";
     let on_belt = |z: &str| format!("y = 0; dot(y) = 0; z = {z}; dot(z) = x*dot(x);");
     check(&wider(&on_belt("x^2/2"), belt), CLAIM, True);
@@ -314,13 +316,13 @@ fn states_of_more_dimensions_may_keep_the_form() {
     let across = Open("across the leaves of the constraints behind it");
     check(&shelf("dot(x)"), CLAIM, across);
     check(&shelf("3 + 1e-9*dot(x)"), CLAIM, across);
-    // Constraints that are not linear in the velocities have no leaves that are known.
+    // For constraints that are not linear in the velocities no leaves are known.
     let speed = wider(
         "y = 0; dot(y) = 1; z = 0; dot(z) = 0;",
         "constraints { speed: dot(y)^2 + dot(z)^2 = 1; }",
     );
     check(&speed, CLAIM, Open("not known to be integrable or not"));
-    // Fewer dimensions keep no such form.
+    // A map to fewer dimensions does not keep the form.
     let narrow = "pub Narrow { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
         modes { free { CLAIM } bound { constraints { shelf: dot(y) = 0; } } } transitions { go: free -> bound when x <= 0; } }";
     check(narrow, CLAIM, False("`go`"));

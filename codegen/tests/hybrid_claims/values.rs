@@ -6,7 +6,7 @@ use dalembert_expr::{ExprId, SymbolId};
 /// Components of a vector.
 pub(super) type Row = Vec<f64>;
 
-/// Value of an expression at a state. Other parameters have their declared defaults.
+/// Value of an expression at a state. Parameters that the state does not contain have their declared defaults.
 pub(super) fn value(model: &Model, id: ExprId, state: &[(SymbolId, f64)]) -> f64 {
     let known = |symbol: SymbolId| {
         let given = state.iter().find(|(key, _)| *key == symbol);

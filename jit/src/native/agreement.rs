@@ -40,7 +40,7 @@ models! {
     two_wheels_rod
 }
 
-/// A field whose series has features of no shipped model: time, polynomials of time as factors, an absolute value
+/// A field whose series has features that no shipped model has: time, polynomials of time as factors, an absolute value
 /// together with gaps.
 #[test]
 fn driven() {
@@ -120,7 +120,7 @@ fn compare(known: &FormOf<'_>) {
     let series = Series::of(&known.program.jet, dimensions);
     let functions = Functions::of(known);
     let compiled = functions.compiled(&series);
-    let compiled = compiled.expect("a processor that there is code for");
+    let compiled = compiled.expect("machine code for this processor");
     let mut random = Random(3);
     let points: [Point; ROUNDS] = core::array::from_fn(|_| Point::draw(&mut random, known));
     for (kernel, native) in functions.0.keys().zip(&compiled.functions) {

@@ -21,8 +21,8 @@ const FIXED: usize = 3;
 /// Places of coefficients in the room.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// Places of the histories that are read one coefficient at a time, at order 0. In a large expansion these are all
-    /// histories.
+    /// Place of the order-0 coefficient of each history that is read one coefficient at a time. In a large expansion
+    /// these are all histories.
     pub(super) alone: BTreeMap<History, usize>,
     pub(super) groups: Vec<Group>,
     /// Distance between consecutive orders, in numbers.
@@ -37,7 +37,7 @@ pub(super) struct Layout {
 #[derive(Debug)]
 pub(super) struct Group {
     pub(super) sums: Vec<Sum>,
-    /// Places of the first and of the second factors, at order 0. For half sums both are the same.
+    /// Places of the order-0 coefficients of the first and of the second factors. For half sums both are the same.
     pub(super) places: [usize; 2],
     /// First frame slot of the results.
     pub(super) results: usize,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Code   --function--> Straight --registers--> Allocated --assembly--> executable memory
-//! Series --series----> (the same, twice, and the sums of layout)
+//! Series --series----> (the same for the code before the loop and in it, with the sums of layout)
 //! ```
 //!
 //! The assembly depends on the processor: `x64.rs` is for x86-64 with AVX, `aarch64.rs` for aarch64. It defines the

@@ -9,7 +9,7 @@ use crate::error::CliError;
 use crate::names;
 use crate::state_input::find_model;
 
-/// Signs between the sides of an expression; longer ones first.
+/// Relation signs between the sides of an expression; longer ones first.
 const SIGNS: [(&str, Sign); 5] = [
     (">=", Sign::AtLeast),
     ("<=", Sign::AtMost),
@@ -98,7 +98,7 @@ impl Expression {
         self.text.trim()
     }
 
-    /// True for two sides with a sign of order between them.
+    /// True for two sides with `<`, `<=`, `>` or `>=` between them.
     pub fn is_inequality(&self) -> bool {
         self.sign.is_some_and(|sign| sign != Sign::Equal)
     }
@@ -119,7 +119,7 @@ impl Expression {
         }
     }
 
-    /// The first sign from this byte on: its position and its length.
+    /// The first relation sign from this byte on, with its position and its length.
     fn find_sign(&self, from: usize) -> Option<(Sign, usize, usize)> {
         let places = SIGNS.iter().filter_map(|(text, sign)| {
             let at = from + self.text[from..].find(text)?;

@@ -180,7 +180,7 @@ fn dispatch(
 /// Writes help to the standard output; any other error of `clap` is a refusal.
 fn explain(mut error: clap::Error, streams: &mut Streams<'_>) -> Exit {
     if error.kind() == ErrorKind::UnknownArgument {
-        // The tip to pass an unknown flag as a value: no argument takes one.
+        // Removes the tip to pass an unknown flag as a value, because no argument takes such a value.
         error.remove(ContextKind::Suggested);
     }
     let text = error.to_string();

@@ -1,4 +1,4 @@
-//! Motions between two configurations against closed forms, and flags that are refused.
+//! Tests of motions between two configurations, which are compared with closed forms, and of refused flags.
 
 // A test may fail by panicking.
 #![allow(clippy::unwrap_used)]
@@ -213,7 +213,7 @@ fn a_ball_that_loses_speed() {
         let [before, after] = ["qdot_minus", "qdot_plus"].map(|key| number(&impact[key][0]));
         assert_near(after, -0.8 * before, 1e-14);
     }
-    // All changes of sign on a fine grid of velocities.
+    // The error at the end changes its sign three times on a fine grid of velocities.
     let grid = (-40_000..40_000).map(|k| 1e-4 * f64::from(k));
     let is_hit = |v: &f64| v + (v * v + 2.0).sqrt() < 5.0;
     let changes =
@@ -314,7 +314,7 @@ fn motions_of_springs_meet_after_half_their_periods() {
     );
     let conjugate = motion["conjugate"].as_array().unwrap();
     let times: Vec<f64> = conjugate.iter().map(|it| number(&it["t"])).collect();
-    // sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches it at pi, where both motions meet.
+    // sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches it at pi, where both factors vanish.
     assert_eq!(times.len(), 2, "{times:?}");
     assert_near(times[0], std::f64::consts::FRAC_PI_2, 1e-10);
     assert_near(times[1], std::f64::consts::PI, 1e-7);

@@ -117,8 +117,8 @@ impl History {
 /// A function with recurrences for the Taylor coefficients of its values.
 #[derive(Debug)]
 pub struct Jet {
-    /// Order 0: the operations of the original functions, followed by the companions. The results are those of the
-    /// original functions.
+    /// Order 0: the operations of the original functions, with constant factors taken out of products, then the
+    /// companions. The results are those of the original functions.
     pub function: Function,
     /// Recurrence of each value.
     pub recurrences: Vec<Recurrence>,
@@ -210,7 +210,8 @@ impl Jet {
         self.varying().map(sums).sum()
     }
 
-    /// Largest degree of the motion, whose rates are the first `components` results, and of the other results.
+    /// Largest degree in time of the motion and of the results. The first `components` results are the rates of the
+    /// motion, which has one degree more.
     pub fn degree(&self, components: usize) -> Degree {
         let degrees = self.function.outputs.iter().enumerate();
         let degrees = degrees.map(|(i, output)| {
@@ -223,7 +224,7 @@ impl Jet {
         degrees.max().unwrap_or(Degree::AtMost(0))
     }
 
-    /// Values with coefficients of order `k`, in an order in which these can be computed.
+    /// Values that are needed and not constant. Their coefficients of order `k` can be computed in this order.
     pub fn varying(&self) -> impl Iterator<Item = Value> + '_ {
         let varies = |i: &usize| self.needed[*i] && self.recurrences[*i] != Recurrence::Constant;
         (0..self.recurrences.len()).filter(varies).map(Value::new)

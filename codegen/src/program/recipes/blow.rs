@@ -3,8 +3,8 @@
 //!
 //! Let `z` be any multiple of `X^T dh`, and `d = G_D^{-1} z`. For laws with a constant share, the impulse of a wall at
 //! rest is `-share (z . u)/(z . d) d`. Without constraints, `z` is a multiple of `dh` and also the direction. If the
-//! metric is a multiple of the identity along `z`, the impulse does not depend on it. For other laws, and for surfaces
-//! without a frame, the impulse is computed from all values of the [contact](super::impact).
+//! metric is a multiple of the identity along `z`, the impulse does not depend on it. For other laws, without a frame,
+//! and with affine or instantaneous constraints, it is computed from all values of the [contact](super::impact).
 
 use dalembert_expr::{ExprId, Rational, Sign};
 
@@ -14,8 +14,8 @@ use crate::model::{Law, Model};
 use crate::program::kernel::Kernel;
 use crate::program::{Form, Function, Guard, Value};
 
-/// `(t, s) -> size, share, direction`; `None` if the law is no impulse. Of several formulas, the one with the fewest
-/// operations is used.
+/// `(t, state) -> size, share, direction` of surface `s`; `None` if its law is no impulse. Of several formulas, the one
+/// with the fewest operations is used.
 pub(super) fn blow(
     model: &Model,
     derivation: &Derivation,
@@ -202,8 +202,8 @@ fn from_contact(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
 }
 
 impl Kernel<'_> {
-    /// True if all coordinates along which `z` has components have the same weight in a metric, and are coupled to no
-    /// others.
+    /// True if all coordinates along which `z` has components have the same positive weight in a metric, and are
+    /// coupled to no others.
     fn is_round(&self, z: &[ExprId], entry: impl Fn(usize, usize) -> Option<ExprId>) -> bool {
         let pool = &self.model.pool;
         let met = |i: &usize| !pool.is_syntactic_zero(z[*i]);

@@ -111,8 +111,8 @@ fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Func
     kernel.finish(outputs)
 }
 
-/// The momenta with the dependent velocities computed from the independent ones, if a minor of the forms is regular
-/// everywhere; the nearest momenta otherwise.
+/// The momenta with the dependent velocities computed from the independent ones, if the constraints are affine in the
+/// velocities and a minor of the forms is regular everywhere; the nearest momenta otherwise.
 ///
 /// The independent velocities, which integration computes accurately, are unchanged. An orthogonal projection would
 /// spread the error of the dependent velocities over them, and over the energy.

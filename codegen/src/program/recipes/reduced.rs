@@ -1,4 +1,4 @@
-//! Functions between the state reduced to D and velocities or momenta.
+//! Functions that convert between the state reduced to D and velocities or momenta.
 
 use dalembert_expr::ExprId;
 

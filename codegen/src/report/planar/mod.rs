@@ -83,7 +83,7 @@ const STATEMENTS: [(&str, &str); 6] = [
 /// Decides the hypotheses for a model at these values of its parameters.
 ///
 /// # Errors
-/// A text that declares no model.
+/// [`ReportError`]: a text that declares no model, or a declaration that is refused.
 pub fn planar(source: &str, parameters: &[(&str, f64)]) -> Result<Planar, ReportError> {
     let refused = ReportError::Declaration;
     let modes: Vec<Model> = match declaration(source)?.without_claims() {

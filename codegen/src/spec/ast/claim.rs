@@ -7,7 +7,7 @@ use super::{Declared, ItemId, Scalar, Word};
 pub struct Claim {
     /// Statement.
     pub statement: Statement,
-    /// True if an answer that stays open is accepted: `assume ..`.
+    /// True if an undecided claim is accepted: `assume ..`.
     pub is_assumed: bool,
     /// The scene it is about; the whole model if there is none.
     pub scene: Option<Word>,

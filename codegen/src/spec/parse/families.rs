@@ -230,7 +230,7 @@ impl Members {
             )
         };
         let help = match called {
-            Some(member) => format!("`{member}` is called so; choose another name"),
+            Some(member) => format!("`{member}` has this name; choose another name"),
             None => "choose another name".to_owned(),
         };
         let error = diagnostics.error(base.at, text);
@@ -278,7 +278,7 @@ impl Members {
             Some(Index::One(index)) => self.member(&name, &index, constants, cursor),
             Some(Index::Each(binder)) => {
                 let text = format!("a transition connects one mode with another, found `{binder}`");
-                let help = "the range stands behind the name of the transition: `name[i in 1..=N]: slow[i] -> fast[i] ..`";
+                let help = "the range follows the name of the transition: `name[i in 1..=N]: slow[i] -> fast[i] ..`";
                 let at = binder.name.at.to(binder.high.at);
                 Err(cursor.refuse(at, text, help))
             }

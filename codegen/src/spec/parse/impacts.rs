@@ -60,7 +60,7 @@ pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<(Vec<Compa
     Ok((conditions, false))
 }
 
-/// Signs that a comparison may have.
+/// Operators that a comparison may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Strictness {
     /// `>=`, `<=`

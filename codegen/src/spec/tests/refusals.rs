@@ -213,7 +213,7 @@ fn reserved_words_are_not_declared() {
     );
     refused(
         "P { coordinates { «move»; } lagrangian = 1; }",
-        "`move` is a word of Rust",
+        "`move` is a keyword of Rust",
     );
     refused_in("let «t» = 1;", "`t` is reserved");
     refused_in("let f(«pi») = 1;", "`pi` is reserved");
@@ -277,13 +277,13 @@ fn a_model_and_its_module_have_two_names() {
     refused(&named("«__»"), "camel case, like `RollingDisk`");
     refused(
         &named("pub «Loop»"),
-        "the module of `Loop` cannot be called `loop`, a word of Rust\nhelp: choose another name, for example `LoopModel`",
+        "the module of `Loop` cannot be called `loop`, a keyword of Rust\nhelp: choose another name, for example `LoopModel`",
     );
     refused(&named("«Match»"), "cannot be called `match`");
     refused(&named("«Box»"), "cannot be called `box`");
     refused(&named("«Type»"), "cannot be called `type`");
-    refused(&named("«Self»"), "`Self` is a word of Rust");
-    refused(&named("«r#Loop»"), "`r#Loop` is a word of Rust");
+    refused(&named("«Self»"), "`Self` is a keyword of Rust");
+    refused(&named("«r#Loop»"), "`r#Loop` is a keyword of Rust");
     refused(
         &named("pub «struct» P"),
         "expected the name of a model, found `struct`\nhelp: a model is written `pub Name",

@@ -17,7 +17,7 @@ with the derivatives of the equations of motion, exact to rounding. The state is
 positions and quasi-velocities; of a first-order model, its coordinates. Impacts do not enter. A model with modes is linearised
 in the mode that --mode names, as if there were no other.
 
---trim searches an equilibrium near the given state by the Levenberg-Marquardt method. It changes all components of the state
+--trim searches for an equilibrium near the given state by the Levenberg-Marquardt method. It changes all components of the state
 and all inputs, or only the named ones: `--trim=u,theta`. --moving names coordinates that need not rest, such as the position of
 a wheel that rolls steadily.
 An equilibrium is stable if all eigenvalues of A have negative real parts, unstable if one has a positive one.
@@ -53,7 +53,7 @@ pub struct LineariseArgs {
     /// The time, for equations that depend on it.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse), default_value = "0")]
     pub at: f64,
-    /// Search an equilibrium first. With names, the search changes only these components of the state and inputs.
+    /// Search for an equilibrium first. With names, the search changes only these components of the state and inputs.
     #[arg(
         long,
         value_name = "NAME,..",
@@ -68,7 +68,7 @@ pub struct LineariseArgs {
     /// Follow the motion from the state, and print how deviations of state and inputs change it after each time T.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub every: Option<f64>,
-    /// Number of samples of the motion, a time --every each.
+    /// Number of samples of the motion, at multiples of the time --every.
     #[arg(long, value_name = "N", requires = "every", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=100_000), default_value_t = 1)]
     pub samples: u32,
     /// The sampled motion.

@@ -23,7 +23,7 @@ Expressions are those of `outputs` in a model file: coordinates, velocities `dot
 evaluated at the start, at every return and after every step of the integrator, which --max-step shortens.
 
 Rows of --csv: `member`, `in.NAME` for what is varied, `class`, `outcome`, `returns`, `period`, `orbit` (0 without one),
-`t`, `end.NAME` (the state after the last return, without returns at the end), `exponent` with --lyapunov, `value` with a
+`t`, `end.NAME` (the state after the last return, or at the end without returns), `exponent` with --lyapunov, `value` with a
 --class that is an expression, `out.NAME` with --output, `contour.K`, `reason`. The rows and the picture do not depend on threads.
 
 Exit status: 0 every cell was run, 1 some start was refused, 2 bad flags or input.
@@ -39,7 +39,7 @@ pub struct MapArgs {
     /// Model, start and laws of all cells.
     #[command(flatten)]
     pub run: RunArgs,
-    /// Their integrator and their end.
+    /// Integrator and end of all cells.
     #[command(flatten)]
     pub course: CourseArgs,
     /// Vary a coordinate, a velocity or a parameter over equally spaced values, both ends included; once or twice.

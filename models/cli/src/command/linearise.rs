@@ -125,7 +125,7 @@ fn sampling(model: &dyn AnyModel, args: &LineariseArgs) -> Result<Option<Samplin
     }))
 }
 
-/// A reason in the names of the model.
+/// The reason in words, with the names of the model.
 fn text(description: &Description, reason: &Unlinear) -> String {
     match reason {
         Unlinear::Fault(fault) => format!("{reason}: {}", words::fault_text(description, fault)),

@@ -35,7 +35,7 @@ pub(crate) struct Finished<'a> {
     pub verified: Option<Verified>,
 }
 
-/// Model, start and settings of a run.
+/// Settings, start, inputs and picture of a run.
 #[derive(Clone)]
 pub struct Prepared {
     pub settings: Settings,
@@ -133,7 +133,7 @@ pub fn draw(models: &[Entry], args: &SimulateArgs) -> Result<Drawn, CliError> {
     })
 }
 
-/// Makes model, start and settings, and refuses invalid requests before the run.
+/// Reads the settings, the start, the inputs and the request for a picture, and refuses invalid ones before the run.
 ///
 /// # Errors
 /// Invalid flags, a state that is refused.

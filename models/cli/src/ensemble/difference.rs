@@ -35,7 +35,7 @@ pub fn explain(before: &Map<String, Value>, metadata: &Map<String, Value>) -> Op
 /// Adds the differences of one key. Objects whose members stand for flags of their own are compared by member.
 fn compare(key: &str, was: &Value, value: &Value, differences: &mut Vec<Difference>) {
     match (key, was, value) {
-        // The hash tells as much.
+        // The key `model_hash` differs too and is reported.
         ("model_source", ..) => {}
         (
             "parameters" | "start" | "q" | "qdot" | "p" | "map",
@@ -98,7 +98,8 @@ fn flag(key: &str, was: &Value, value: &Value) -> Difference {
     }
 }
 
-/// `until` as it was and as it is, if these are short; else that it differs.
+/// The change in words: both values if they are short, as in "`until` was 6.0 and is 7.0"; otherwise only that they
+/// differ, or that one of them is absent.
 fn changed(key: &str, was: &Value, value: &Value) -> String {
     let is_short = |value: &Value| !matches!(value, Value::Object(_) | Value::Array(_));
     match (was, value) {
@@ -126,7 +127,7 @@ fn spelled(key: &str) -> String {
     }
 }
 
-/// The flags that give a value; `None` if the value does not tell.
+/// The flags that give a value; `None` if the value does not determine them.
 fn flags(key: &str, flag: &str, value: &Value) -> Option<String> {
     match (key, value) {
         ("density", value) => density(value),

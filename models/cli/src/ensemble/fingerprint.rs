@@ -1,5 +1,5 @@
-//! A short hash of bytes for comparisons: FNV-1a with 64 bits. Bytes that differ in one place have different hashes.
-//! The hash does not protect against forgery.
+//! A short hash of bytes for comparisons: FNV-1a with 64 bits. Texts of equal length that differ in one byte have
+//! different hashes. The hash does not protect against forgery.
 
 /// The hash.
 pub fn hash(bytes: &[u8]) -> u64 {

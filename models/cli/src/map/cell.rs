@@ -34,11 +34,11 @@ pub struct Cell {
     pub cycle: Vec<Vec<f64>>,
     /// The Lyapunov exponent; NaN if there is none.
     pub exponent: f64,
-    /// The value at the end of the expression that the colours show; NaN if they show none.
+    /// At the end, the value of the expression that the colours show; NaN if they show none.
     pub value: f64,
-    /// The values at the end of the expressions of `--output`.
+    /// At the end, the values of the expressions of `--output`.
     pub outputs: Vec<f64>,
-    /// The values at the start of the expressions of `--contour`.
+    /// At the start, the values of the expressions of `--contour`.
     pub contours: Vec<f64>,
     /// Details of the outcome.
     pub reason: String,
@@ -144,7 +144,7 @@ struct Seen<'a> {
     has_begun: bool,
     has_failed: bool,
     returns: u64,
-    /// The last returns: as many as two longest periods have.
+    /// The last returns, twice as many as the longest period has.
     recent: VecDeque<Return>,
     /// The state after the last requested return.
     last: Option<Point>,
@@ -199,7 +199,7 @@ impl Watch for Seen<'_> {
             return;
         }
         self.returns += 1;
-        // Only the returns of the last two longest periods are compared.
+        // Only the last returns are compared, twice as many as the longest period has.
         let left = returns.count.saturating_sub(self.returns);
         if left < 2 * returns.period as u64 {
             self.recent.push_back(Return {

@@ -16,9 +16,9 @@ pub struct Sums {
     pub orbits: Orbits,
     /// Number of returns.
     pub returns: u64,
-    /// Number of cells without a run.
+    /// Number of cells whose start was refused or whose run panicked.
     pub refused: u64,
-    /// The reason why the first of them has no run.
+    /// The reason for the first of them.
     pub reason: Option<String>,
     /// The data of the picture, if one is drawn.
     pub drawn: Option<Cells>,

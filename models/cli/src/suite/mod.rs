@@ -75,8 +75,8 @@ pub enum Run {
     Integrators(fn(Setting, &mut Report)),
     /// Measured by these integrators only, otherwise like [`Run::Integrators`].
     Chosen(&'static [Integrator], fn(Setting, &mut Report)),
-    /// Measured by every integrator: with steps of any length, with steps of at most each of [`FORCED_STEPS`], and with
-    /// the dense output read in every step. The class of the outcome must be the same in all settings.
+    /// Measured by every integrator in four settings: with steps of any length, with the dense output read in every step,
+    /// and with each of [`FORCED_STEPS`] as the longest step. All settings must have the same class of outcome.
     Steps(fn(Setting, &mut Report)),
 }
 

@@ -8,7 +8,7 @@ use super::Finished;
 use crate::{names, table};
 
 /// Writes the columns: number of impacts, action, velocities at the start, positions and velocities at the end, residual.
-/// Then come lists, separated by spaces: times and surfaces of the impacts, times of the conjugate points.
+/// Then come lists with spaces between their items: times and surfaces of the impacts, times of the conjugate points.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     let description = finished.model.description();
     let coordinates = || names::coordinates(description);

@@ -9,7 +9,8 @@ use super::summary::verdict;
 use crate::{names, table};
 
 /// Writes a row for each extremal: number of impacts, cost, terminal cost, costate at the start, state and costate at
-/// the end, H*, residual, second-order test. Then come lists, separated by spaces: times and surfaces of the impacts.
+/// the end, H* at the start, residual, second-order test. Then come two lists with spaces between their items: times and
+/// surfaces of the impacts.
 pub(super) fn write(output: &mut dyn Write, finished: &Finished<'_>) -> io::Result<()> {
     table::write_rows(output, |writer| {
         writer.write_record(header(finished))?;

@@ -119,7 +119,7 @@ pub fn draw(models: &[Entry], args: &OrbitArgs) -> Result<Drawn, CliError> {
     )
 }
 
-/// Follows the branch and hands it on. `open` opens files once the flags are checked.
+/// Follows the branch and passes it to `finish`. `open` opens files once the flags are checked.
 fn follow<F, T>(
     models: &[Entry],
     args: &OrbitArgs,

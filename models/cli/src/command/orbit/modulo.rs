@@ -1,4 +1,4 @@
-//! `orbit --modulo`: symmetries up to which an orbit closes, and coordinates that drift where one is missing.
+//! `orbit --modulo`: symmetries up to which an orbit closes, and coordinates that drift if a symmetry is not given.
 
 use dalembert::OrbitError;
 use dalembert_codegen::report::{ReportError, Symmetry, symmetries};

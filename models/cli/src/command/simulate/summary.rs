@@ -12,7 +12,7 @@ use super::Finished;
 use crate::names;
 use crate::outcome;
 
-/// Remedy against a run whose impacts are not confirmed.
+/// Remedy for a run whose impacts are not confirmed.
 const SHORTER_STEPS: &str =
     "a smaller --tol, or --max-step H for shorter steps of the run and of its references";
 

@@ -98,7 +98,7 @@ impl Path {
         }
     }
 
-    /// Searches the cheapest extremal from the same start.
+    /// Searches for the cheapest extremal from the same start.
     ///
     /// # Errors
     /// Invalid flags of the search.

@@ -33,7 +33,7 @@ pub(super) fn draw(finished: &Finished, args: &ControlArgs) -> Result<String, Cl
     drawn.map_err(|reason| CliError::picture(&args.plot, reason))
 }
 
-/// The places of the quantities of --axes among time, state, input and cost.
+/// Indices of the quantities of --axes in [`values`]; `None` without --axes.
 fn quantities(problem: &Problem, args: &ControlArgs) -> Result<Option<Vec<usize>>, CliError> {
     let Some(axes) = &args.axes else {
         return Ok(None);
@@ -51,6 +51,7 @@ fn quantities(problem: &Problem, args: &ControlArgs) -> Result<Option<Vec<usize>
     }
 }
 
+/// Time, state, input and cost so far.
 fn values(moment: &Moment) -> [f64; 5] {
     let [x, y] = moment.state;
     [moment.t, x, y, moment.input, moment.cost]

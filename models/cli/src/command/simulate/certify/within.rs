@@ -100,7 +100,7 @@ impl Within {
         Ok(())
     }
 
-    /// Sets the start to the middles of the ranges. The constraints determine the components that are not given.
+    /// Sets positions of the start to the middles of their ranges, and velocities if the form is not reduced.
     ///
     /// # Errors
     /// Ranges of velocities together with momenta.
