@@ -198,7 +198,7 @@ pub fn is_function(name: &str) -> bool {
 /// Reason for which `name` cannot be declared, if there is one.
 pub fn reserved(name: &str) -> Option<&'static str> {
     if RUST.contains(&name) || name.starts_with("r#") || name == "_" {
-        Some("a word of Rust")
+        Some("a keyword of Rust")
     } else if RESERVED.contains(&name) || FUNCTIONS.contains(&name) {
         Some("reserved")
     } else {

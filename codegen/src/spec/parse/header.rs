@@ -56,12 +56,16 @@ fn name(cursor: &mut Cursor<'_>) -> Read<(Word, String)> {
     let snake = snake_case(&name.text);
     if is_rust_keyword(&name.text) || name.text.starts_with("r#") || name.text == "_" {
         let help = "choose another name in camel case, like `RollingDisk`";
-        cursor.refuse(name.at, format!("`{}` is a word of Rust", name.text), help);
+        cursor.refuse(
+            name.at,
+            format!("`{}` is a keyword of Rust", name.text),
+            help,
+        );
     } else if snake == name.text {
         refuse_snake_case(cursor, &name);
     } else if is_rust_keyword(&snake) {
         let text = format!(
-            "the module of `{}` cannot be called `{snake}`, a word of Rust",
+            "the module of `{}` cannot be called `{snake}`, a keyword of Rust",
             name.text
         );
         let help = format!("choose another name, for example `{}Model`", name.text);

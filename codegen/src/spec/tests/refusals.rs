@@ -147,21 +147,21 @@ fn instantaneous_constraints_stand_in_braces_behind_a_law() {
 
 #[test]
 fn modes_and_transitions_keep_their_forms() {
-    refused_in("«modes» { }", "`modes` without a mode");
+    refused_in("«modes» { }", "`modes` needs at least one mode");
     refused_in(
         "«transitions» { a: b -> c when x >= 0; }",
-        "`transitions` without a mode",
+        "`transitions` needs at least one mode",
     );
     refused_in("modes { «a» }", "expected `{ .. }` after the mode `a`");
     refused_in("modes { a { } «a» { } }", "mode `a` declared again");
     refused_in("modes { «sin» { } }", "`sin` is reserved");
     refused_in(
         "modes { a { «parameters» { k = 1; } } }",
-        "`parameters` stands outside of `modes`",
+        "`parameters` belongs outside of `modes`",
     );
     refused_in(
         "modes { a { «const» N = 1; } }",
-        "`const` stands outside of `modes`",
+        "`const` belongs outside of `modes`",
     );
     refused_in(
         "modes { a { } } «scenes» { s; }",
@@ -173,11 +173,11 @@ fn modes_and_transitions_keep_their_forms() {
     );
     refused_in(
         "modes { a { «inputs» { u; } } }",
-        "`inputs` stands outside of `modes`",
+        "`inputs` belongs outside of `modes`",
     );
     refused_in(
         "modes { a { «modes» { b { } } } }",
-        "`modes` stands inside of a mode",
+        "`modes` is not allowed inside a mode",
     );
     let transition = |text: &str, message: &str| {
         refused_in(
@@ -213,7 +213,7 @@ fn reserved_words_are_not_declared() {
     );
     refused(
         "P { coordinates { «move»; } lagrangian = 1; }",
-        "`move` is a word of Rust",
+        "`move` is a keyword of Rust",
     );
     refused_in("let «t» = 1;", "`t` is reserved");
     refused_in("let f(«pi») = 1;", "`pi` is reserved");
@@ -277,13 +277,13 @@ fn a_model_and_its_module_have_two_names() {
     refused(&named("«__»"), "camel case, like `RollingDisk`");
     refused(
         &named("pub «Loop»"),
-        "the module of `Loop` cannot be called `loop`, a word of Rust\nhelp: choose another name, for example `LoopModel`",
+        "the module of `Loop` cannot be called `loop`, a keyword of Rust\nhelp: choose another name, for example `LoopModel`",
     );
     refused(&named("«Match»"), "cannot be called `match`");
     refused(&named("«Box»"), "cannot be called `box`");
     refused(&named("«Type»"), "cannot be called `type`");
-    refused(&named("«Self»"), "`Self` is a word of Rust");
-    refused(&named("«r#Loop»"), "`r#Loop` is a word of Rust");
+    refused(&named("«Self»"), "`Self` is a keyword of Rust");
+    refused(&named("«r#Loop»"), "`r#Loop` is a keyword of Rust");
     refused(
         &named("pub «struct» P"),
         "expected the name of a model, found `struct`\nhelp: a model is written `pub Name",
