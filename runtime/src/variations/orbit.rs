@@ -134,8 +134,7 @@ where
     /// ([`ITERATIONS`] is enough).
     ///
     /// Angles need to return only up to full turns. If orbits form a family, as in every conservative system, the
-    /// iteration converges
-    /// to a member near the point. A step that does not bring point and image closer is halved.
+    /// iteration converges to a member near the point. A step that does not bring point and image closer is halved.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where a point is not mapped back or the map has no derivative,
