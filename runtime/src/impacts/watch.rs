@@ -27,8 +27,8 @@ use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Fraction of a step after a hit within which other surfaces are tested for simultaneous impacts by the rounding of
-/// their gaps.
+/// Time after a hit, as a fraction of the step, within which other surfaces may be hit at the same time up to the
+/// rounding of their gaps.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
 /// Maximum number of surfaces for which the polynomials of the gaps are tested first, if the step is a power series.
