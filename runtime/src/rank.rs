@@ -1,6 +1,6 @@
 //! Detection of instants between the ends of a step at which the constraint forms become dependent.
 //!
-//! Rates are evaluated at a few places only. A rank drop at one instant is invisible from there: on either side the
+//! A step evaluates rates at a few places only. A rank drop at one instant is invisible from there: on either side the
 //! forms may be well independent. The test uses the plane that the forms span, with its orientation: the multivector
 //! `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent. If it vanishes
 //! to odd order, it reverses its orientation, whatever rotation it performs besides. Two places between which it

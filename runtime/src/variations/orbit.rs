@@ -22,7 +22,8 @@ const HALVINGS: u32 = 12;
 
 /// Residual that counts as 0, relative to the size of the state times the amplification of the orbit.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Residual that counts as 0, relative in the same way, as a multiple of the integrator's tolerance.
+/// Residual that counts as 0, relative to the same product, in units of the integrator's tolerance. The larger of both
+/// bounds applies.
 const STEPS: f64 = 16.0;
 
 /// A closed point is final if its residual exceeds this multiple of the residual before it.
