@@ -16,7 +16,7 @@ pub struct Profile {
     /// Common denominator of the coefficients inside sin, cos and exp; `None` if there is no small one.
     pub denominator: Option<i64>,
     /// Bound for the degrees of numerators and denominators as polynomials in the drawn residues, times
-    /// [`Squares::odds`]. Divided by the prime, it bounds the chance of an accidental zero.
+    /// `Squares::odds`. Divided by the prime, it bounds the chance of an accidental zero.
     pub degree: f64,
 }
 

@@ -26,7 +26,7 @@ pub struct Division {
 
 impl Division {
     /// Divides the work into blocks of at most `largest` items. Every thread gets about 16 blocks if there are many
-    /// items. Few items are divided into blocks of up to [`TOGETHER`].
+    /// items. Few items are divided into blocks of up to 8.
     pub fn new(items: u64, threads: u64, largest: u64) -> Self {
         let threads = threads.clamp(1, items.max(1));
         let least = items.div_ceil(threads).min(TOGETHER);
