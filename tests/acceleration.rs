@@ -102,8 +102,8 @@ fn check_constraints(name: &str) {
     assert_eq!(rates, vec![0; residuals.len()], "{name}");
 }
 
-/// Checks if `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)` is 0. It is if neither time nor forces nor affine parts
-/// of constraints act.
+/// Checks that `dE/dt = -d_t L + F(qdot) + lambda_a eta^a(qdot)` is 0 if `is_kept`, and is not 0 otherwise. It is 0 if
+/// the Lagrangian does not depend on time, no force does work, and no constraint has an affine part.
 fn check_energy(name: &str, is_kept: bool) {
     let (mut model, _, dynamics) = derive(name);
     let lagrangian = model.lagrangian.whole;

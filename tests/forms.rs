@@ -16,7 +16,7 @@ use dalembert_tests::reference::{compare, read};
 use dalembert_tests::sampling::{Random, every_system, states};
 use serde_json::{Map, Value};
 
-/// Quantities of the files by the names `eval` gives them.
+/// Names of the compared quantities, in the reference files and in the output of `eval`.
 const QUANTITIES: [&str; 7] = [
     "u",
     "udot",

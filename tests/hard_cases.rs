@@ -54,7 +54,8 @@ fn whispering_galleries_keep_their_angle() {
             let end = Course::new(&table, &[1.0, 0.0], &start, 1e6)
                 .impacts(count)
                 .run(setting);
-            // The angle with the tangent has the relative error u/angle. A chord adds twice it to the polar angle.
+            // Rounding errors give the angle with the tangent a relative error of `EPSILON/angle`. A chord adds twice
+            // this angle to the polar angle.
             let bound = 256.0 * f64::EPSILON * count as f64 / angle;
             assert_eq!(end.hits.len() as u64, count, "{}", setting.words());
             assert_near("t", &[end.t], &[number(&case["t_n"])], bound);
@@ -114,7 +115,8 @@ fn an_inelastic_ball_accumulates_where_and_after_how_many_impacts_it_must() {
             let right = case["impacts_completed_before_zeno_minus_1e-6"]
                 .as_u64()
                 .expect("a count");
-            // For e = 0.999 a flight at this time takes 1e-9, and the time has a rounding error of three times that.
+            // For e = 0.999 a flight at this time takes 1e-9, and the rounding errors of all flights add up to three
+            // times that.
             let spread = if e > 0.99 { 8 } else { 0 };
             assert!(
                 before.abs_diff(right) <= spread,

@@ -160,7 +160,7 @@ fn inputs_decide_no_transition() {
     assert!(text.contains("`u` may depend on the state"), "{text}");
     let text = refused("modes { a { inputs { w; } } }");
     assert!(
-        text.contains("`inputs` stands outside of `modes`"),
+        text.contains("`inputs` belongs outside of `modes`"),
         "{text}"
     );
 }

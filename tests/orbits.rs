@@ -184,7 +184,7 @@ fn an_orbit_of_an_angle_closes_after_a_turn() {
     assert_eq!(multipliers, [[1.0, 0.0]]);
 }
 
-/// In the global form states can leave the constraint and its level set. Neither is a direction of the section.
+/// In the global form states can leave the constraint and its level set. The directions of the section keep both.
 #[test]
 fn directions_of_a_section_keep_constraints_and_levels() {
     let bead = Text::new(IntegrableBead::DESCRIPTION.source.value()).model();

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 const TOLERANCE: f64 = 1e-12;
 
-/// Quantities of a state file by the names `eval` gives them.
+/// Names of the compared quantities, in the state files and in the output of `eval`.
 const QUANTITIES: [&str; 14] = [
     "qdot",
     "p",

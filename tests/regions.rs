@@ -49,7 +49,7 @@ static BRINK: Text = Text::new(
 const RIGHT: usize = 2;
 const LEFT: usize = 3;
 
-/// Counts impacts and asserts that every one of them happens where its surface counts.
+/// Counts impacts, and asserts that each happens where the condition of its surface holds.
 #[derive(Default)]
 struct Checked {
     impacts: [usize; 4],
@@ -111,7 +111,8 @@ fn a_stadium_keeps_its_particle() {
     assert!((energy - 0.5).abs() < 1e-12, "{energy}");
 }
 
-/// An impact is located where the gap is closest to 0 on either side, but only inside the chart.
+/// An impact is put at the time just before or just after the root at which the gap is closer to 0, but never outside
+/// the chart.
 #[test]
 fn an_impact_at_the_end_of_a_chart_is_inside_it() {
     let brink = BRINK.model();

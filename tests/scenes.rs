@@ -90,7 +90,7 @@ fn named(item: &syn::ImplItem) -> (String, String) {
         syn::ImplItem::Fn(item) => (&item.sig.ident, item.block.to_token_stream()),
         syn::ImplItem::Type(item) => (&item.ident, item.ty.to_token_stream()),
         syn::ImplItem::Const(item) => (&item.ident, item.expr.to_token_stream()),
-        _ => panic!("what traits have no other items"),
+        _ => panic!("an item that is no function, type or constant"),
     };
     (name.to_string(), tokens.to_string())
 }

@@ -16,7 +16,7 @@ static BEHIND: Text = Text::new(
     }",
 );
 
-/// The same wall, which counts above the start only.
+/// The same wall, which counts only for `y > 1` and so not at the start.
 static BESIDE: Text = Text::new(
     "Beside {
         coordinates { x; y; }

@@ -12,7 +12,7 @@ from environment import Environment
 
 EXAMPLES = """examples:
   python run.py build/                        everything, five rounds, about twenty minutes
-  python run.py build/ --only W1,W1r          some works
+  python run.py build/ --only W1,W1r          some workloads
   python run.py build/ --rounds 9 --out results.json
   python run.py --from results.json           prints kept results again
 """
@@ -23,8 +23,8 @@ def arguments():
         description=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("folder", nargs="?", type=Path, help="where peers are installed, built and kept")
-    parser.add_argument("--only", metavar="WORKS", help=f"works, separated by commas: {', '.join(rounds.WORKS)}")
-    parser.add_argument("--rounds", type=int, default=5, help="turns of every peer at every work; medians count")
+    parser.add_argument("--only", metavar="WORKS", help=f"workloads, separated by commas: {', '.join(rounds.WORKS)}")
+    parser.add_argument("--rounds", type=int, default=5, help="repetitions of every workload by every program; medians are compared")
     parser.add_argument("--out", type=Path, help="where results are written; results.json in the folder unless given")
     parser.add_argument("--from", dest="kept", type=Path, metavar="RESULTS", help="reads results, runs nothing")
     chosen = parser.parse_args()
@@ -38,7 +38,7 @@ def arguments():
 
 
 def measure(chosen, works):
-    """Runs one work after the other; results are written after each, beside those of other works that are kept."""
+    """Runs the workloads in order. After each, writes its results to a file, which keeps results of other workloads."""
     environment = Environment(chosen.folder)
     environment.prepare()
     out = chosen.out or environment.folder / "results.json"

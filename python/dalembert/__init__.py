@@ -1,4 +1,4 @@
-"""Nonholonomic mechanics with impacts: declared models, checked equations, exact events.
+"""Nonholonomic mechanics with impacts: declared models, checked equations, events located to rounding.
 
 >>> import dalembert
 >>> disk = dalembert.models.rolling_disk

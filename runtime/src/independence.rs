@@ -7,9 +7,9 @@ use crate::events::first::{Walk, walk};
 use crate::events::path::Path;
 use crate::integrate::Stepper;
 
-/// Maximum number of halvings, after which a piece is examined pointwise. Maximum number of pieces, after which the
-/// rest of the step is examined at once.
+/// Maximum number of halvings, after which a piece is examined pointwise.
 const HALVINGS: u32 = 20;
+/// Maximum number of pieces, after which the rest of the step is examined as one piece.
 const STRETCHES: u32 = 1024;
 
 /// Fraction of the step at which independence is tested in addition to both ends.
@@ -61,7 +61,8 @@ pub(crate) fn drop<Sys: System, Step: Stepper<Sys>>(
     ) {
         Walk::Found(drop) => Some(drop),
         Walk::Passed if is_independent([reach - shortest, reach]) => None,
-        // Relative to the start of the step, the forms are dependent at its end up to rounding.
+        // All pieces passed, but independence at the end of the step is not proved. The whole step is examined with the
+        // reference sizes of its start.
         Walk::Passed => looked_at([0.0, reach]),
         Walk::Stopped(at) => looked_at([at, reach]),
     }

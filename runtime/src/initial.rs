@@ -17,8 +17,8 @@ const ACCEPTED: f64 = 1e-9;
 /// Maximum number of Newton steps, for positions and for constraints that are nonlinear in the velocities.
 const STEPS: u32 = 48;
 
-/// Start values of all free positions, in this order, for a Newton iteration that fails from the given ones. At 0, the
-/// usual start value, a square has zero slope.
+/// Values at which all free positions start, tried in this order if Newton's iteration from the given positions fails.
+/// At 0, the usual start value, a square has zero slope.
 const BEGINNINGS: [f64; 6] = [1.0, -1.0, 0.25, -0.25, 4.0, -4.0];
 
 /// Completes positions. Positions of `q` where `placed` is not 0 are kept. The others come from least-norm Newton steps

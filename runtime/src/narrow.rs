@@ -4,15 +4,15 @@
 //! On a part of the step all rates of the system are enclosed, for the states and times on the motion's path there:
 //!
 //! ```text
-//! R = f(Y) and f(y_m) + [-1, 1] f'(Y) (b - a)/2,   Y the states on [a, b], y_m the one in the middle
+//! R = the intersection of f(Y) and f(y_m) + [-1, 1] f'(Y) (b - a)/2,   Y the states on [a, b], y_m the middle one
 //! ```
 //!
 //! and compared with the interval `P` of the rates of the step's polynomial there. The excess of `R` over `P` is a
-//! force that the step has not seen. The excess may be as large as the change of the rates over the step, or a quarter
-//! of their size, since an enclosure is wider than the range. It may also be so small that the error allowed in the
-//! step covers it. Other parts are halved. If halving does not help, the step is too long. It is also too long if the
-//! integral of `R` over the step does not contain the change of the state over the step. The shortest parts on which
-//! `R` has no bounds, for example at a pole or at a jump of a force, are left undecided; the other parts decide.
+//! force that the step has not seen. Since an enclosure is wider than the range, an excess is accepted up to the change
+//! of the rates over the step plus a quarter of their size. It is also accepted if the error allowed in the step covers
+//! it. Parts with a larger excess are halved. If halving does not help, the step is too long. It is also too long if
+//! the integral of `R` over the step does not contain the change of the state over the step. The shortest parts on
+//! which `R` has no bounds, for example at a pole or at a jump of a force, are left undecided; the other parts decide.
 
 use crate::contract::System;
 use crate::effects::StepView;
@@ -31,15 +31,16 @@ const DEPTH_OF_POLES: u32 = 40;
 /// Maximum number of parts that are examined. It ends the search if rates have no bounds anywhere.
 const PARTS: u32 = 256;
 
-/// Number of initial halvings of steps without an error estimate. Their integral decides.
+/// Number of initial halvings of a fixed step, which has no error estimate. The integral of its rates must be enclosed
+/// well enough to decide.
 const DEPTH_OF_FIXED: u32 = 3;
 
 /// Shortest step that is examined, as a fraction of its time. Times inside a shorter step cannot be distinguished.
 const SAME_MOMENT: f64 = 64.0 * f64::EPSILON;
 
-/// Allowed excess of an enclosure over the rates of the step, as fractions of the change of these rates and of their
-/// size.
+/// Allowed excess of an enclosure over the rates of the step, relative to the change of these rates over the step.
 const OF_CHANGE: f64 = 1.0;
+/// Allowed further excess, relative to the size of these rates.
 const OF_SIZE: f64 = 0.25;
 
 /// Fraction of a step up to which its rates agree with the assumed rates; 1 if they agree everywhere.
@@ -114,7 +115,7 @@ fn allowed<Sys: System, Step: Stepper<Sys>>(
     allowed
 }
 
-/// Width of the range of each rate over the whole step, by the fraction of the step.
+/// Width of the range of each rate over the whole step. Rates are with respect to the fraction of the step.
 fn changes<S: StateVector>(like: &S, path: &Path<S>) -> S {
     let mut changes = like.zeroed();
     for (i, entry) in changes.as_mut_slice().iter_mut().enumerate() {
@@ -145,7 +146,7 @@ struct Along<'a, Sys: System> {
 }
 
 impl<Sys: System> Along<'_, Sys> {
-    /// True if the change between these states agrees with the integral of the rates, or if that has no bounds.
+    /// True if the change between these states agrees with the integral of the rates, or if the integral has no bounds.
     fn has_gained(&self, start: &Sys::State, end: &Sys::State) -> bool {
         let is_within = |i: usize| {
             let change = end.as_slice()[i] - start.as_slice()[i];

@@ -1,6 +1,6 @@
 //! Detection of instants between the ends of a step at which the constraint forms become dependent.
 //!
-//! Rates are evaluated at a few places only. A rank drop at one instant is invisible from there: on either side the
+//! A step evaluates rates at a few places only. A rank drop at one instant is invisible from there: on either side the
 //! forms may be well independent. The test uses the plane that the forms span, with its orientation: the multivector
 //! `eta^1 ^ .. ^ eta^M`. It is continuous along the motion and vanishes where the forms are dependent. If it vanishes
 //! to odd order, it reverses its orientation, whatever rotation it performs besides. Two places between which it
@@ -11,7 +11,7 @@ use crate::contract::{Constrained, RankDrop};
 use crate::math::{abs, sqrt};
 
 /// Places at which a step is examined. The values at three places show a minimum between two of them: neighbouring
-/// distances differ by at most a factor of three.
+/// distances differ by at most a factor of four.
 const PLACES: [f64; 11] = [
     0.0,
     1.0 / 256.0,
@@ -26,9 +26,8 @@ const PLACES: [f64; 11] = [
     1.0,
 ];
 
-/// A size that stays above this fraction of its values nearby has no zero between. The fraction is
-/// `((3 - 1)/(3 + 1))^2`, for three places with distances 1 and 3 and a zero of second order half way along the longer
-/// one, and a margin.
+/// A size that stays above this fraction of its values nearby has no zero between. For three places with distances 1
+/// and 4, and a zero of second order half way along the longer one, the fraction is `(2/(2 + 1))^2`. A margin is added.
 const DIP: f64 = 0.5;
 
 /// Relative size that counts as zero.
@@ -231,8 +230,8 @@ fn turned_round<const M: usize, const N: usize>(
     }
 }
 
-/// Bracket in which the last of these places shows a possible zero of the size: around the place before it, or next to
-/// an end of the step.
+/// Bracket of a possible zero of the size, from three successive places with the sizes there: around the middle place,
+/// or next to an end of the step. `k` is the index of the last place.
 fn dip(k: usize, [a, b, c]: [(f64, f64); 3]) -> Option<[f64; 2]> {
     let falls = |least: f64, most: f64| least < DIP * most;
     if b.1 <= a.1 && b.1 <= c.1 && falls(b.1, a.1.max(c.1)) {

@@ -23,8 +23,8 @@ pub const STEP_BUDGET: u64 = 1_000_000_000;
 /// Longest step after an impact, as a multiple of the last flight: shrinking hops get steps of their own size.
 const FLIGHTS: f64 = 4.0;
 
-/// A step that passes a narrow force ends before it if at least this fraction of the step remains. Otherwise the step
-/// is repeated with this fraction of its length.
+/// A step during which a force acts only between two stages is repeated. The repeated step ends before the force if
+/// that leaves at least this fraction of the length, and has this fraction of the length otherwise.
 const AHEAD: f64 = 1.0 / 8.0;
 
 /// Factor of the length of a step that is repeated because its dense output meets dependent constraints. The stages of
@@ -450,7 +450,7 @@ impl<Sys: System, Step: Stepper<Sys>, Effects: Effect<Sys>> Course<'_, Sys, Step
         Ok(())
     }
 
-    /// Reports the motion from the start of the step to the present to the observer. `part`: the present as a fraction
+    /// Reports to the observer the motion from the start of the step to the current time, which is the fraction `part`
     /// of the step.
     #[inline(always)]
     fn show<O: Observer<Sys>>(&mut self, part: f64, observer: &mut O) -> Result<(), Outcome> {

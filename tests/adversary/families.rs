@@ -325,7 +325,7 @@ fn gauge(draw: &mut Draw) -> Case {
     }
 }
 
-/// A parameter whose default is 0, an exceptional value, or not.
+/// A parameter whose default may be 0, for which the density does not exist.
 fn exceptional(draw: &mut Draw) -> Case {
     let (value, is_zero) =
         draw.choice(&[("0", true), ("1", false), ("1/3", false), ("1e-9", false)]);

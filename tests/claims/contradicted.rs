@@ -150,7 +150,7 @@ fn the_density_of_the_sleigh_has_one_exponent() {
     all_refuted(
         "chaplygin_sleigh",
         &[
-            // The exponent of the thesis, which counts the divergence three times (5.10).
+            // The exponent in W. Clark's thesis, which counts the divergence three times (5.10).
             "density = 1/abs(dot(theta))^3",
             "density = 1/dot(theta)^2",
             "density = 1/sqrt(abs(dot(theta)))",
@@ -319,7 +319,7 @@ fn fields_with_a_wrong_sign_or_a_component_less_are_no_symmetries() {
             "symmetry: partial(theta)",
             "symmetry: x*partial(y) - y*partial(x)",
             "symmetry: partial(theta) - y*partial(x)",
-            // The vector field of the thesis (V.35) with its sign as printed.
+            // The vector field of W. Clark's thesis (V.35), with the sign that is printed there.
             "symmetry: partial(theta) - a*sin(theta)*partial(x) - a*cos(theta)*partial(y)",
         ],
     );

@@ -37,7 +37,8 @@ fn friction_contracts_and_what_does_no_work_on_d_does_not() {
     }
 }
 
-/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`. On a line, not on a circle, it has the density `exp(2 k x/m)`.
+/// `F = -k xdot^2 dx` has the divergence `-2 k xdot/m`. The density is `exp(2 k x/m)`, which is not single-valued if
+/// `x` is an angle.
 #[test]
 fn drag_quadratic_in_the_velocity_is_a_density_on_a_line() {
     let bead = |domain: &str, drag: &str| {
@@ -122,8 +123,8 @@ fn time_enters_metric_and_constraints() {
         verified(&blade("(1 + t^2)", "d(y) - t*d(x)")),
         Existence::Global
     );
-    // With `s = t + x` the divergence is the rate of `-ln(1 + s^2)/2` for the drift `-x`. The drift `-y` adds
-    // `-1/(1 + s^2)`, which is not the rate of a function of the configuration.
+    // With `s = t + x` and the affine part `x`, the divergence is the rate of `-ln(1 + s^2)/2`. The affine part `y`
+    // adds `-1/(1 + s^2)`, which is not the rate of a function of the configuration.
     let drift = |drift: &str| blade("1", &format!("d(y) - (t + x)*d(theta) + {drift}*d(t)"));
     assert_eq!(verified(&drift("x")), Existence::Global);
     assert_eq!(verified(&drift("y")), Existence::None);

@@ -1,6 +1,6 @@
-//! Emitted implementations of `InvariantVolume`. They equal stored texts, the interpreted functions and reference
-//! values; the emitted motion keeps them. A model without a claim or without a closed form has none. `golden.rs` says
-//! how to accept changes of the stored texts.
+//! Emitted implementations of `InvariantVolume`. Their text is the stored one. Their values are those of the
+//! interpreter and of the reference, and the emitted motion preserves the volumes. A model without a claim or without a
+//! closed form has none. `golden.rs` says how to accept changes of the stored texts.
 
 use dalembert::describe::Report;
 use dalembert::{Described, Fault, Instance, InvariantVolume, StateVector, System};

@@ -6,7 +6,7 @@ use dalembert_expr::SymbolId;
 use dalembert_tests::verdict::{Decided, Existence};
 use dalembert_tests::visible::{Scheme, declaration, visible_system, visible_systems};
 
-/// Every system of the file, unchanged, with its verdict.
+/// Every system of `reference/verdicts_visible.json`, unchanged, with its verdict.
 fn systems() -> Vec<(Scheme, Decided)> {
     visible_systems()
         .iter()
@@ -81,7 +81,7 @@ fn assert_same_verdict_and_volume(scheme: &Scheme, decided: &Decided) -> bool {
     let (local, known) = (&other.exactness().local, &decided.exactness().local);
     assert_eq!(local.exists, known.exists, "{source}");
     assert_eq!(local.growth, known.growth, "{source}");
-    // On leaves of an integrable distribution the search finds no density of unknown form.
+    // If the motion stays on leaves, the search finds only densities that have a closed form.
     if other.potential().is_some() || known.rank == decided.model.coordinates.len() {
         assert_eq!(other.existence(), decided.existence(), "{source}");
     }

@@ -49,8 +49,8 @@ fn decided(source: &str) -> (Model, Derivation, Problem, Exactness) {
     (model, derivation, problem, exactness)
 }
 
-/// The number of expressions that a search for a density adds to the model. The search must find a density or not, as
-/// expected.
+/// The number of expressions that a search for a density adds to the model. Asserts that the search finds a density if
+/// and only if `is_found`.
 fn expressions_of_search(source: &str, is_found: bool) -> usize {
     let (mut model, derivation, problem, exactness) = decided(source);
     let is_exact = exactness.global == Some(Global::Exists);

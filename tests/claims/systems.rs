@@ -143,7 +143,8 @@ fn particle(f: &str) -> String {
     )
 }
 
-/// `theta = -f f_y dy/(1 + f^2) - ..` is closed for `f(y)`, including Martinet's form, and for holonomic constraints.
+/// The divergence is a form in the velocities, `-f f_y dy/(1 + f^2) - ..`. It is closed for `f(y)`, including
+/// Martinet's form, and for holonomic constraints.
 #[test]
 fn particles_with_one_form() {
     for f in [

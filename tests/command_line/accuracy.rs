@@ -46,7 +46,7 @@ impl<F: Fn(f64) -> [f64; 2]> dalembert::Observer<Oscillator> for Closed<'_, F> {
     }
 }
 
-/// The oscillator that starts at rest and moves as `cos(t)` along x and as `cos(2 t)` along y.
+/// The oscillator that starts at rest at `q` and moves as `q[0] cos(t)` along x and as `q[1] cos(2 t)` along y.
 fn oscillator(q: [f64; 2]) -> (Oscillator, <Oscillator as dalembert::VectorField>::State) {
     let mut system = Oscillator::with_defaults();
     system.k = 4.0;

@@ -446,7 +446,7 @@ fn a_ball_has_every_speed_for_the_same_time() {
     let svg = folder.read("density.svg");
     for text in [
         "x\u{307}",
-        "distance of halves of time",
+        "distance between halves of the time",
         "white: none",
         "crispEdges",
         "</svg>",

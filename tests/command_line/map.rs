@@ -118,7 +118,7 @@ fn an_expression_ends_runs_as_failed() {
     }
     let (outcome, returns) = (column(&table, "outcome"), column(&table, "returns"));
     assert_eq!(outcome[5..], ["failed"; 4]);
-    // x(t) = (1 + 3 exp(-2 t))^(-1/2) passes 0.9 at t = 1.2739..
+    // x(t) = (1 + 3 exp(-2 t))^(-1/2) passes 0.9 at t = 1.2743..
     assert_eq!(returns[5..], ["1", "0", "0", "0"]);
 }
 
@@ -469,11 +469,11 @@ fn returns_at_uneven_times_are_no_orbit() {
         assert_eq!((done.exit, done.errors.as_str()), (Exit::Reached, ""));
         done.output
     };
-    // The times between firings range from 0.77 to 2.23.
+    // The times between firings range from 0.75 to 2.26.
     assert_eq!(numbers_of(&map(""), "period"), [0.0, 0.0]);
     // With a constant current these times are equal.
     assert_eq!(numbers_of(&map("--set A=0"), "period"), [1.0, 1.0]);
-    // A motion that depends on time has no exponent on its section.
+    // A field that depends on time has no exponent on its section.
     let exponents = numbers_of(&map("--lyapunov 3"), "exponent");
     assert!(exponents.iter().all(|it| it.is_nan()), "{exponents:?}");
 }

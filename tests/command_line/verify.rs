@@ -1,4 +1,5 @@
-//! `--verify` and `accuracy` give no error for a run that misses an impact, even if every run misses it.
+//! `--verify` and `accuracy` report no measured error for a run that misses an impact: it is not verified, even if
+//! every run misses the same impact.
 
 use dalembert::Described;
 use dalembert_cli::{Entry, models};

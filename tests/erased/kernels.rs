@@ -44,7 +44,7 @@ impl Pair<'_> {
     }
 }
 
-/// A number over which kernels are compared.
+/// A kind of number over which kernels are compared.
 trait Drawn: Numbers {
     /// A random number with a value of order 1 and random further components.
     fn draw(random: &mut Random) -> Self;

@@ -32,7 +32,7 @@ impl Case {
         self.flight.scale(self.until)
     }
 
-    /// True if the flight starts at most 1e-6 away from a surface, or behind it.
+    /// True if the flight is at most 1e-6 away from a surface, or behind it, at the time `after`.
     pub fn is_at_hand(&self) -> bool {
         self.distances(self.after)
             .iter()

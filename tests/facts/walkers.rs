@@ -1,4 +1,4 @@
-//! Walkers: a walker whose foot slips, in two systems of units, the simplest walker, and a walker on spring legs.
+//! Walkers: one whose foot slips (in two systems of units), the simplest walker, and one on spring legs.
 
 use dalembert::{EventLog, Fault, Outcome, System, VectorField};
 use dalembert_cli::Integrator;
@@ -12,7 +12,7 @@ fn a_step_repeats_itself() {
     let walker = shipped("dimensionless_walker").model();
     let delta = value(&walker, "delta");
     let start = [delta, -0.902_057_449_429_909_7, 0.991_308_369_223_558_5];
-    // The states shortly after the start and as long after the step agree.
+    // The state at the time `late` after the start equals the state at the time `late` after the step.
     let late = 0.01;
     let [once, again] = [late, 1.544_965_864_061_404 + late]
         .map(|until| end(course(&walker, &start, &[0.0; 3], until).tol(1e-13)));
@@ -44,7 +44,7 @@ fn slopes(walker: &Model, at: [f64; 3]) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|i| columns.map(|column| column[i]))
 }
 
-/// In the thesis, the stable plane of the upright walker separates starts that walk from starts that fall.
+/// In W. Clark's thesis, the stable plane of the upright walker separates starts that walk from starts that fall.
 #[test]
 fn the_upright_walker_is_a_saddle_whose_plane_is_the_line_of_the_figure() {
     let walker = shipped("dimensionless_walker").model();

@@ -20,7 +20,8 @@ use serde_json::Value;
 
 type State = <Model as VectorField>::State;
 
-/// The ball at a wall with the sign as printed in the source, which places the wall on the other side.
+/// The ball at a wall, with the sign of `no_slip` that is printed in the source. The sign fits a wall on the other side
+/// of the ball.
 static PRINTED_WALL: Text = Text::new(
     "PrintedWall {
         coordinates { x; y; phi: angle; theta in (0, pi); psi: angle; }

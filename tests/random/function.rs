@@ -33,7 +33,7 @@ pub struct Names<'a> {
     pub angles: &'a [bool],
     /// The first coordinate that may occur.
     pub first: usize,
-    /// End of the coordinates that may occur.
+    /// The coordinate after the last one that may occur.
     pub end: usize,
 }
 

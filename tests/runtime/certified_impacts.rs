@@ -154,7 +154,7 @@ fn references(
     impacts.map(reference).collect()
 }
 
-/// Index of the surface in front or of the surface behind.
+/// Index of the surface of an edge or a tip: 0 in front, 1 behind.
 fn edge(name: &Value) -> usize {
     match name.as_str() {
         Some("leading_edge" | "front_tip") => 0,

@@ -161,8 +161,8 @@ fn end<Step: Stepper<Well>>(well: &Well, stepper: Step, start: Plane, t_end: f64
     run.state
 }
 
-/// Sums and counts of the energy over ten equal parts of a run, relative to the first energy, and the largest
-/// difference from it.
+/// Differences of the energies of a run from its first energy: their sum and number in each tenth of the run, and the
+/// largest of their absolute values.
 #[derive(Default)]
 struct Energies {
     until: f64,
@@ -240,7 +240,7 @@ where
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// First steps, and starts whose motion meets the wall early or late in that step.
+/// Lengths of a step, and starts whose motion meets the wall early or late in this step.
 const MEETING: [(f64, [f64; 2]); 4] = [
     (0.4, [-0.15, -0.8]),
     (0.4, [-0.2, -0.8]),

@@ -1,4 +1,4 @@
-//! Runs of a start, and their impacts, computed and certified.
+//! Runs from a start with their impacts, either computed or certified.
 
 use dalembert::Policies;
 use dalembert_driver::{

@@ -1,4 +1,5 @@
-//! Counts allocations of the current thread, so that a test can assert that there are none, and the bytes in use.
+//! Counts the allocations of the current thread and the bytes that it holds. A test can thus assert that code does not
+//! allocate.
 
 #![allow(unsafe_code, reason = "a global allocator cannot be written without")]
 

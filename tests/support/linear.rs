@@ -1,6 +1,6 @@
 //! Small linear systems and determinants in double precision, by elimination with pivots.
 
-/// The solution of a square system. Entries of a row past the diagonal block are ignored.
+/// The solution of a square system with as many unknowns as `right` has entries. Further entries of a row are ignored.
 ///
 /// # Panics
 /// If a pivot is 0.

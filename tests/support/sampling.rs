@@ -8,7 +8,7 @@ use dalembert_stability::text::{Large, Text, shipped};
 
 use crate::systems;
 
-/// The generator of [`course::Random`] with numbers and vectors. The same seed gives the same numbers everywhere.
+/// [`course::Random`], extended by numbers and vectors within bounds. The same seed gives the same numbers everywhere.
 #[derive(Debug, Clone)]
 pub struct Random(course::Random);
 

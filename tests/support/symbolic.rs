@@ -1,5 +1,5 @@
-//! The criterion `X_i(G) = theta(X_i)` as expressions, by Cramer's rule. Series and residues modulo primes are used by
-//! the final zero test alone.
+//! The criterion `X_i(G) = theta(X_i)` as expressions, by Cramer's rule. Only the final zero test uses series and
+//! residues modulo primes.
 
 use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;

@@ -52,7 +52,7 @@ pub fn rate(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
 /// `m^{ab}` and bars for absolute values.
 ///
 /// # Panics
-/// If messages do not contain potentials of this form.
+/// If the text does not have this form.
 pub fn rate_of_potential(system: &dyn Numeric, text: &str, t: f64, state: &[f64]) -> f64 {
     let text = text.replace("ln(det m)", "mass");
     let direction = system.rate(t, state);

@@ -15,7 +15,8 @@ pub struct Profile {
     pub hidden_relations: bool,
     /// Common denominator of the coefficients inside sin, cos and exp; `None` if there is no small one.
     pub denominator: Option<i64>,
-    /// Bound for the degrees of numerators and denominators as polynomials in the drawn residues.
+    /// Bound for the degrees of numerators and denominators as polynomials in the drawn residues, times
+    /// `Squares::odds`. Divided by the prime, it bounds the chance of an accidental zero.
     pub degree: f64,
 }
 
@@ -78,8 +79,8 @@ impl Pool {
             let exact_turn =
                 (coefficient * &Rational::from(12)).is_integer() && residue == Residue::Circular;
             if *term == self.pi() && exact_turn {
-                // NOTE: only sqrt(2) and sqrt(3) enter. A field automorphism exchanges their signs: either root is
-                // right.
+                // NOTE: only sqrt(2) and sqrt(3) enter. Field automorphisms change the sign of each by itself, so
+                // either choice of a root is right.
                 continue;
             }
             profile.denominator = common(profile.denominator, coefficient);
@@ -128,7 +129,8 @@ impl Pool {
         }
     }
 
-    /// A base angle has the degrees (2, 2), a base exponential the degree 2. A multiple multiplies them.
+    /// The functions of `n` times a base angle or base exponential have degrees up to `2 n` in numerator and
+    /// denominator; quotients such as `tan` have up to twice that.
     fn degree_of_call(&self, function: Function, argument: ExprId, denominator: f64) -> (f64, f64) {
         if !function.residue().has_base() {
             return (1.0, 0.0);

@@ -1,5 +1,6 @@
-//! Obstruction to a density, in real numbers: a bracket that is a combination of others as a vector field, while its
-//! demand differs from the same combination of their demands.
+//! Obstruction to a density, in real numbers. The *demand* of a vector field is the derivative of `G` along it that a
+//! density requires. An obstruction is a bracket that is a combination of others as a vector field, while its demand
+//! differs from the same combination of their demands.
 
 use dalembert_expr::{
     Arithmetic, BallPoint, EnclosedPoint, ExpansionPoint, JetSpace, Jets, Pool, RangePoint,
@@ -35,9 +36,10 @@ pub struct Obstruction {
 
 /// Largest number of points that are tried.
 const ATTEMPTS: usize = 64;
-/// Number of monomials from which series are first computed in doubles, and smallest ratio of `delta` to its scale at
-/// which these doubles are used.
+/// Spaces of series with more monomials than this are first evaluated in doubles, or in intervals of doubles where
+/// residues are no proof. Both are faster than balls.
 const LARGE: usize = 200;
+/// Smallest ratio of `delta` to its scale at which doubles are used.
 const CLEAR_IN_DOUBLES: f64 = 1e-4;
 /// Largest relative radius at which the printed digits are certain.
 const SHARP: f64 = 1e-9;
@@ -49,7 +51,7 @@ const LEAST_PIVOT: f64 = 1e-9;
 
 /// The obstruction at the first real point that shows one; `None` if no point tried shows one. If the hull does not
 /// span all components, combinations of its elements are known only on the branches that were sampled modulo primes.
-/// For a density with roots all points tried must then show the obstruction.
+/// For a density with roots, every point at which the bracket is such a combination must then show the obstruction.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
     let spans = local.rank == problem.components();
@@ -93,7 +95,7 @@ impl Obstruction {
         obstruction_at(model, problem, local, sample)
     }
 
-    /// The obstruction with numbers rounded to eight digits, which doubles represent exactly when printed.
+    /// The obstruction with numbers rounded to eight digits, which are the same after printing and parsing.
     fn with_eight_digits(mut self) -> Self {
         self.delta = eight_digits(self.delta);
         for (_, value) in &mut self.relation {
@@ -156,7 +158,7 @@ struct Parts<S> {
 }
 
 impl Question<'_> {
-    /// The obstruction in doubles. They are printed if residues alone decide.
+    /// The obstruction in doubles, for printing only: the residues are the proof.
     fn in_doubles(&self) -> Option<Obstruction> {
         let parts = self.parts(&mut self.sample.point())?;
         let size = |values: &[f64]| {

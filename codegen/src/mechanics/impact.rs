@@ -47,7 +47,7 @@ pub struct SurfaceForm {
     pub instantaneous: Vec<InstantaneousForm>,
     /// Direction of `dh` without common factors that are never zero; `None` for a moving wall.
     pub ray: Option<Vec<ExprId>>,
-    /// The ray of `X^T dh`, with the frame `X` of D as columns; `None` if it is not written out.
+    /// The ray of `X^T dh`, with the frame `X` of D as columns; `None` for a moving wall, or if it is not written out.
     pub ray_on_d: Option<Vec<ExprId>>,
 }
 

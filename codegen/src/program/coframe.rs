@@ -258,7 +258,7 @@ fn named_row(block: &Block) -> Row {
     row.unwrap_or(block.rows[0])
 }
 
-/// The guard of a row that depends on the others where `squared` vanishes beside `reference`.
+/// The guard for a row: the row depends on the others where `squared` is negligible against `reference`.
 fn row_guard(row: Row, squared: Value, reference: Option<Value>) -> Guard {
     match row {
         Row::Quasi(quasi) => Guard::Frame {

@@ -1,4 +1,5 @@
-//! Well-formedness of a function: operands before users, guards read values, results are values.
+//! Well-formedness of a function: every operation and every guard reads only values that are defined before it, and
+//! every result is a value.
 
 use super::{Function, Op, Value};
 

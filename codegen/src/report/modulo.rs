@@ -57,7 +57,7 @@ impl Symmetry {
 }
 
 /// Proves that the vector fields in a list, written as in claims, are symmetries at the given values of parameters.
-/// `part` names a scene. In a model with modes, each mode uses the terms whose coordinates it has.
+/// `part` names a scene. In a model with modes, each mode uses the terms whose `partial(..)` name its coordinates.
 ///
 /// # Errors
 /// [`ReportError`] for a field without such a proof, with the place where the proof fails, and for a flow that is not
@@ -123,7 +123,7 @@ fn claim(field: &str, coordinates: &[String]) -> Option<String> {
     (!kept.is_empty()).then(|| format!("symmetry: {kept}"))
 }
 
-/// The terms of a sum that name no coordinates other than the given ones.
+/// The terms of a sum whose `partial(..)` name given coordinates only.
 fn restricted(tokens: TokenStream, coordinates: &[String]) -> String {
     let mut terms: Vec<Vec<TokenTree>> = vec![Vec::new()];
     for token in tokens {

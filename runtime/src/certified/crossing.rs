@@ -2,8 +2,8 @@
 //!
 //! From a time `t_0` shortly before the impact, all motions of a box `Y` are continued across the surface. If the gap
 //! is positive at `t_0`, negative at `t_1` and decreasing in between, each motion meets the surface once. Interval
-//! Newton iteration narrows these times to `[t_a, t_b]`. With the time `tau(y)` of the motion from `y`, the flow
-//! `phi` before, the flow `psi` after and the law `R`
+//! Newton iteration narrows these times to `[t_a, t_b]`. With the impact time `tau(y)` of the motion from `y`, the flow
+//! `phi` before the impact, the flow `psi` after it and the law `R`:
 //!
 //! ```text
 //! P(y) = psi_(t_b - tau) R(tau, phi_tau(y))   is in   P(y_c) + DP(Y) (Y - y_c)
@@ -333,7 +333,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
             true => {
                 let system = self.surfaces.field.system;
                 let mut sides = PerSurface::all(&system.zero_gaps(), Side::Unknown);
-                // The state is unchanged, on the surface of both transitions.
+                // The opposite transition has the same surface, and the state is unchanged. The state therefore lies on
+                // that surface and leaves it.
                 if let Some(back) = system.opposite(surface) {
                     sides[back] = Side::Above;
                 }
@@ -386,7 +387,7 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
         })
     }
 
-    /// Derivatives of the state after the law along a direction from `t_0`, and of the time.
+    /// Derivatives of the state after the impact and of the impact time, along a direction at `t_0`.
     fn struck_along(
         &self,
         strike: &Strike,
@@ -510,7 +511,8 @@ impl<'s, 'f, 'a, Sys: Variational + Impacting> Approach<'s, 'f, 'a, Sys> {
     }
 }
 
-/// Derivative of the state after the law along a change of the state before it and of the time.
+/// Directional derivative of the law: change of the state after it for the change `along` of the state before it and
+/// the change `delay` of the time.
 fn applied_along<Sys: Variational + Impacting>(
     field: &Field<'_, Sys>,
     strike: &Strike,

@@ -1,10 +1,10 @@
 //! Event location: falls of a gap through zero along the dense output of a step.
 //!
 //! Every reported crossing has a witness: two times such that the gap is not negative at the earlier and negative at
-//! the later one. Taylor models of the gap along the motion ([`path`]) show that none was overlooked: they enclose
-//! its values and rates on a stretch of the step ([`piece`]). Stretches that these do not decide are halved
-//! ([`locate`]). If a step is a power series, the gap is one too. A bound of its truncated terms ([`tails`]) then makes
-//! its signs certain without a Taylor model.
+//! the later one. Taylor models of the gap along the motion ([`path`]) enclose the gap's values and rates on a stretch
+//! of the step ([`piece`]). They show that no crossing was overlooked. Stretches that these models do not decide are
+//! halved ([`locate`]). If a step is a power series, the gap is one too. A bound of its truncated terms ([`tails`])
+//! then makes its signs certain without a Taylor model.
 
 pub(crate) mod bends;
 pub(crate) mod crossing;

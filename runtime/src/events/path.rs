@@ -12,7 +12,7 @@ use crate::state::StateVector;
 /// The motion along a step.
 #[derive(Debug, Clone)]
 pub(crate) struct Path<S> {
-    /// Time at the start, and length.
+    /// Time at the start of the step.
     start: f64,
     length: f64,
     polynomials: Polynomials<S>,
@@ -64,8 +64,8 @@ impl<S: StateVector> Path<S> {
         path
     }
 
-    /// Sets the step: its dense output if that is ready, otherwise the cubic through its ends, with an error bound
-    /// from the rates inside. Prepares the dense output if no rates inside are known.
+    /// Sets the path to a step: to its dense output if that is ready, otherwise to the cubic through its ends, with an
+    /// error bound from the rates inside the step. If no rates inside are known, the dense output is prepared.
     ///
     /// # Errors
     /// The [`Fault`](crate::Fault) of the dense output.
@@ -79,7 +79,7 @@ impl<S: StateVector> Path<S> {
         Ok(())
     }
 
-    /// Same as [`Path::follow`], without error bounds: [`Path::enclose`] completes them.
+    /// Same as [`Path::follow`], but the error bounds may be missing until [`Path::enclose`] completes them.
     ///
     /// # Errors
     /// The [`Fault`](crate::Fault) of the dense output.
@@ -257,8 +257,8 @@ impl<S: StateVector> Path<S> {
         }
     }
 
-    /// Enclosures of component `i` on a part of the step of positive length, and of its derivative with respect to the
-    /// fraction.
+    /// Enclosures of component `i` and of its derivative with respect to the fraction of the step, on a part of the
+    /// step. The part has positive length.
     pub(crate) fn rated(&self, i: usize, part: [f64; 2]) -> Rated {
         let model = self.component(i, part);
         let radius = Interval::point(0.5 * (part[1] - part[0]));

@@ -6,7 +6,7 @@
 use super::crossing::Signs;
 use crate::numbers::TaylorModel;
 
-/// Rounding of coefficients, relative to the sum of the absolute values of all powers.
+/// Bound for the rounding error of a coefficient, relative to the sum of the absolute values of all terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The gap on a piece.
@@ -88,7 +88,7 @@ impl Piece {
         [ahead[0].max(within[0]), ahead[1].min(within[1])]
     }
 
-    /// Signs of a gap that is enclosed away from zero.
+    /// Signs of the gap from its enclosure alone, which must exclude 0 at both ends of the piece.
     #[inline]
     pub(crate) fn signs(&self) -> Signs {
         let (hull, error) = (&self.hull, self.error);

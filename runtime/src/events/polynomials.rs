@@ -15,7 +15,8 @@ pub(crate) const FEW: usize = 8;
 /// the middle.
 const SMALL: f64 = 1.0 / (1 << 10) as f64;
 
-/// Rounding of a coefficient, and of the sums that shift it, relative to the sum of the absolute values of all terms.
+/// Bound for the rounding error of a coefficient and of moving the centre of expansion, relative to the sum of the
+/// absolute values of all terms.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// One polynomial per component.

@@ -2,14 +2,14 @@
 //!
 //! Along a step the positions are polynomials `p_i` of its fraction `z`. On the disk `|z| <= R` in the complex plane,
 //! the distance `|p_i(z) - p_i(0)|` is at most `r_i = sum_(k>=1) |p_ik| R^k`. Let a gap be analytic on a box of complex
-//! positions that contains these disks, with imaginary part at most `h`. Then coefficient `k` of its series along the
-//! step is at most `2 h / R^k` ([`ComplexInterval`]), and the sum of all coefficients above order `n` is at most
-//! `2 h R^-n / (R - 1)`. In a step whose radii are smaller than those of the box by a factor, `h` is smaller by this
-//! factor too.
+//! positions that contains these disks, and let its imaginary part on the box be at most `h`. Then coefficient `k` of
+//! its series along the step is at most `2 h / R^k` ([`ComplexInterval`]), and the sum of all coefficients above order
+//! `n` is at most `2 h R^-n / (R - 1)`. If the radii of a step are smaller than those of the box by a factor, the bound
+//! `h` is smaller by this factor too.
 //!
-//! The box serves many steps, and grows with the motion. A step whose radii exceed the imaginary parts of the box has a
-//! box of its own, unless this happens often. If the shared box gives a useless bound, it is set anew for the present
-//! step.
+//! The box serves many steps, and grows with the motion. A step whose radii exceed the imaginary parts of the box gets
+//! a box of its own. If this happens often, the shared box is extended. If the shared box gives a useless bound, it is
+//! set anew for the present step.
 
 use core::cell::Cell;
 
@@ -38,8 +38,8 @@ const POWERS: [[f64; LENGTH]; 2] = {
     powers
 };
 
-/// Fraction of the box's imaginary parts used to bound the rounding of the coefficients. On a disk that is smaller by a
-/// factor, polynomials without constant term are smaller by this factor too.
+/// Fractions of the box's imaginary parts with which the rounding of the coefficients is bounded, for both [`RATIOS`].
+/// On a disk that is smaller by a factor, polynomials without constant term are smaller by at least this factor.
 const PARTS: [f64; 2] = [
     ComplexInterval::LEAST_RATIO / RATIOS[0],
     ComplexInterval::LEAST_RATIO / RATIOS[1],
@@ -52,20 +52,20 @@ const LEVELS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 /// Factor by which the imaginary parts of the box exceed those of a step that made it grow.
 const GROWTH: f64 = 1.25;
 
-/// A step whose radii exceed the imaginary parts of the box raises the strain by `SHARE`, any other step lowers it by one.
-/// Above `MOST_STRAIN` the imaginary parts are extended.
+/// A step whose radii exceed the imaginary parts of the box raises the strain by `SHARE`, any other step lowers it by
+/// one. Above `MOST_STRAIN` the imaginary parts are extended.
 const SHARE: u32 = 32;
 const MOST_STRAIN: u32 = 64;
 
-/// Largest useful bound of the missing terms, relative to the terms of the series, and largest bound for which no
-/// better box is tried.
+/// Largest useful bound of the missing terms, relative to the terms of the series.
 const USEFUL: f64 = 1.0 / (1 << 6) as f64;
+/// Largest bound for which no better box is tried, relative to the terms of the series.
 const GOOD: f64 = 1.0 / (1 << 10) as f64;
 
 /// Maximum number of steps to wait after a useless bound.
 const MOST_PATIENCE: u32 = 256;
 
-/// Relative rounding errors of the estimate.
+/// Factor that covers the relative rounding errors of the estimate.
 const UP: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// The gap of a surface as a function of complex time and complex components.
@@ -115,8 +115,9 @@ struct Surface {
     /// The bounds, for each of [`LEVELS`].
     bounds: [Option<Bound>; LEVELS.len()],
     takes: Option<Takes>,
-    /// Number of the step from which bounds are tried again, and the wait after the last failure in steps.
+    /// Number of the step from which bounds are tried again.
     resumes: u32,
+    /// Number of steps of the wait after the last failure.
     patience: u32,
 }
 
@@ -203,7 +204,7 @@ impl<S: StateVector, G: StateVector> Tails<S, G> {
     #[inline]
     pub(crate) fn skips(&self, surface: usize) -> bool {
         let left = self.surfaces[surface].resumes.wrapping_sub(self.number);
-        // Once that step has passed, the difference wraps around.
+        // Once the step `resumes` has passed, the difference wraps around.
         left != 0 && left <= MOST_PATIENCE
     }
 

@@ -15,8 +15,8 @@
 //!   detect them.
 //!
 //! Parameters and laws chosen for a run are doubles; so is a start, unless it is given in more digits. A projection
-//! onto constraints acts on the rounded states alone: the extended motion satisfies them to all its digits. A motion
-//! that passes a kink of `|x|` has no series there: the run ends as
+//! onto constraints acts on the rounded states only, since the extended motion satisfies the constraints to all its
+//! digits. A motion that passes a kink of `|x|` has no series there: the run ends as
 //! [`Outcome::StepUnderflow`](crate::Outcome::StepUnderflow). For a surface whose gap has a kink somewhere, grazing
 //! impacts within the rounding of doubles are decided in doubles and not refused.
 //!

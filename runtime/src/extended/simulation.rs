@@ -1,4 +1,4 @@
-//! A run in extended precision: the ordinary driver, applied to the steps of a flight rounded to doubles.
+//! A run in extended precision. The driver of ordinary runs is applied to the steps of a flight, rounded to doubles.
 
 use core::cell::RefCell;
 use core::ops::ControlFlow;

@@ -1,9 +1,11 @@
 //! Accumulation of impacts (Zeno behaviour): flights between impacts shrink to zero.
 //!
-//! Two criteria detect it. Impacts follow each other at the same floating-point time `t` ([`super::coincident`]). Or
-//! the flights between impacts on one surface have shrunk several times in a row, and the height of the next one,
-//! about `gap rate * time / 4`, is below the rounding of the gap, so that it would consist of rounding errors
-//! ([`super::hops`]).
+//! Each of three criteria detects it:
+//!
+//! - Many impacts follow each other at the same floating-point time `t` ([`super::coincident`]).
+//! - The flights between impacts on one surface have shrunk several times in a row, and the height of the next one,
+//!   about `gap rate * time / 4`, is below the rounding of the gap ([`super::hops`]).
+//! - The flights have become too short to be resolved while the energy grew ([`super::growth`]).
 
 use super::coincident::{Coincident, Gathering};
 use super::growth::Growth;

@@ -26,7 +26,7 @@ pub(super) enum Verdict {
     Settled,
 }
 
-/// End of the impacts of one moment that are followed in advance.
+/// End of a trial in which the impacts of one moment are carried out in advance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Until {
     /// The end of the round.
@@ -35,8 +35,9 @@ enum Until {
     End,
 }
 
-/// Detects impacts at one moment that never end: without loss of energy they return to an earlier state. The state is
-/// compared with those after impacts whose number is a power of two (Brent's cycle detection).
+/// Detects impacts at one moment that never end: without loss of energy they return to an earlier state. After
+/// [`LONGEST`] impacts, each state is compared with a kept one, which is replaced after every impact whose number is a
+/// power of two (Brent's cycle detection).
 ///
 /// In a corner with an open exit, every impact increases the momentum in a direction towards the exit, so states
 /// never return.
@@ -118,7 +119,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// The first and the last surface of a round, if the two orders of its impacts give different states.
+    /// The first and the last surface of a round, if the two orders of its impacts give different states at its end,
+    /// and also when all impacts of the moment are over.
     fn ambiguous(
         &mut self,
         hits: &Hits<Sys::Gaps>,
@@ -137,7 +139,7 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// True if the impacts lead to the same state in both orders.
+    /// True if the impacts lead to the same state in both orders, or do not end in one of them.
     fn orders_agree(
         &mut self,
         hits: &Hits<Sys::Gaps>,

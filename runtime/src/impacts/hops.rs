@@ -8,7 +8,7 @@ pub(super) const SHRUNK: u32 = 3;
 /// Ratio of the gap rates at the start of successive flights below which a single shrinking flight suffices.
 const STEEP: f64 = 0.125;
 
-/// The impacts on one surface from which the motion bounced off.
+/// Record of successive impacts on one surface from which the motion bounced off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hops {
     last: Option<Impact>,
@@ -23,7 +23,7 @@ struct Impact {
     rate: f64,
     /// Length of the flight; `None` at the first impact.
     length: Option<f64>,
-    /// Number of successive flights, up to this one, that were shorter than the flight before.
+    /// The count [`Flight::shrunk`] of the flight before; 0 at the first impact.
     shrunk: u32,
 }
 
@@ -35,7 +35,8 @@ pub(super) struct Flight {
     pub(super) before: Option<f64>,
     /// Gap rates at the start of this flight and of the next.
     rates: [f64; 2],
-    /// Number of successive flights, up to this one, that were shorter than the flight before.
+    /// Number of successive flights up to this one that were shorter than their predecessor; the first flight counts,
+    /// too. A flight that is shorter and ends with a far smaller gap rate ([`STEEP`]) gets [`SHRUNK`]` + 1` at once.
     shrunk: u32,
 }
 

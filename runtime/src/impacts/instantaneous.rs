@@ -7,7 +7,7 @@
 use crate::contract::Impacting;
 use crate::error::Fault;
 
-/// The state at the instantaneous constraints of a surface; `None` if it has none.
+/// The state after the impulse that establishes the instantaneous constraints of a surface; `None` if it has none.
 pub(super) fn focused<Sys: Impacting>(
     system: &Sys,
     surface: usize,

@@ -14,7 +14,7 @@ pub(super) struct Passing<G: StateVector> {
     last: Option<f64>,
     /// Time between the last two impacts.
     stretch: Option<f64>,
-    /// Number of times in a row that `stretch` became shorter.
+    /// Number of successive times that `stretch` became shorter. The first stretch counts as one of them.
     shortened: u32,
     /// Time of the last impact on each surface.
     on_each: PerSurface<Option<f64>, G>,

@@ -159,8 +159,8 @@ impl<Sys: Impacting> Watch<Sys> {
                     };
                 }
                 Search::Unfinished(part) => return Ok(Found::Unfinished(part)),
-                // Between indistinguishable times the motion leaves a touched surface, whatever the rounding error of
-                // its gap.
+                // If the times at both ends of the step cannot be distinguished, a motion with nonnegative gap rate
+                // leaves the touched surface, whatever the rounding error of the gap.
                 Search::Pole(_) if slope >= Some(0.0) && glance.is_moment() => {
                     return Ok(Found::Nothing);
                 }
@@ -266,7 +266,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(is_approached.then_some((there, rate)))
     }
 
-    /// Checks that the surface does not count behind a pole: the motion is on the forbidden side, and met no wall.
+    /// Refuses a wall that counts behind a pole of its gap while the gap is negative there: the motion came to the
+    /// forbidden side without an impact.
     fn check_behind_pole<Step: Stepper<Sys>>(
         &self,
         surface: usize,
@@ -295,7 +296,7 @@ impl<Sys: Impacting> Watch<Sys> {
         step: &mut StepView<'_, Sys, Step>,
     ) -> Result<(), Outcome> {
         let ends = [self.rates.as_slice()[surface], last];
-        // Forward change of the rate per fraction of the step.
+        // Change of the gap rate between the hit and the farther end of the step, and the fraction of the step between.
         let (change, apart) = if part > 0.5 {
             (rate - ends[0], part)
         } else {

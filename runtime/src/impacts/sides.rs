@@ -18,7 +18,7 @@ use crate::numbers::{Interval, TaylorModel};
 use crate::outcome::Outcome;
 use crate::state::StateVector;
 
-/// Relative rounding error of a component or of the time, for conditions as for gaps.
+/// Bound for the relative rounding error of a component or of the time.
 const UNITS: f64 = 32.0 * f64::EPSILON;
 
 impl<Sys: Impacting> Watch<Sys> {
@@ -39,7 +39,8 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Proposes to cut the step where a surface began to count that counts at its end with the motion behind it.
+    /// For a surface that counts at the end of the step with the motion behind it: proposes to cut the step where the
+    /// surface began to count.
     #[cold]
     pub(super) fn end_where_behind<Step: Stepper<Sys>>(
         &mut self,

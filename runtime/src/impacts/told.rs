@@ -12,9 +12,9 @@ use crate::state::StateVector;
 
 /// Result of the first tests of a step for a surface.
 pub(super) enum Told {
-    /// No hit, from the gaps at the ends and the bounds of their derivatives.
+    /// No hit: the gaps at the ends and the bounds of their derivatives exclude it.
     Passed,
-    /// No hit, from the gap on the whole step.
+    /// No hit: the values of the gap on the whole step exclude it.
     Clear,
     /// Undecided, with the gap on the whole step if it was computed.
     Unclear(Option<TaylorModel>),
@@ -70,8 +70,8 @@ impl<Sys: Impacting> Watch<Sys> {
         let at = |values: &Sys::Gaps| values.as_slice()[surface];
         let (first, last) = (at(&self.gaps), at(&glance.gaps));
         let is_at_hand = first == 0.0;
-        // NOTE: the motion presses into a surface at hand whose gap is negative throughout, unless it passes through
-        // the surface.
+        // NOTE: if the gap of a surface at hand is negative on the whole step, the motion presses into the surface,
+        // unless it passes through it. A constant sign therefore decides nothing here.
         let is_passed = self.is_passable(surface) && at(&self.rates) <= 0.0;
         if (is_at_hand && last < 0.0 && !is_passed) || glance.is_due(surface) {
             return Told::Unclear(None);

@@ -27,8 +27,8 @@ use crate::outcome::Outcome;
 use crate::per_surface::PerSurface;
 use crate::state::StateVector;
 
-/// Fraction of a step after a hit within which other surfaces are tested for simultaneous impacts by the rounding of
-/// their gaps.
+/// Time after a hit, as a fraction of the step, within which other surfaces may be hit at the same time up to the
+/// rounding of their gaps.
 pub(super) const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 
 /// Maximum number of surfaces for which the polynomials of the gaps are tested first, if the step is a power series.
@@ -45,7 +45,7 @@ pub(super) struct Watch<Sys: Impacting> {
     /// Rates at the start of the step, if known; always known for surfaces at hand.
     pub(super) rates: Sys::Gaps,
     has_rates: bool,
-    /// The earliest proposal of the last step.
+    /// The earliest fraction of the last step at which a cut is proposed.
     pub(super) proposed: Option<f64>,
     /// Fraction of the last step at which a surface is hit; valid while there is a proposal.
     pub(super) parts: PerSurface<Option<f64>, Sys::Gaps>,
@@ -55,7 +55,7 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) bends: Sys::Gaps,
     /// Length of the last step.
     pub(super) length: f64,
-    /// Quantities at the place of a hit, possibly the earliest.
+    /// Quantities at the hit that was located last, which may be the earliest.
     pub(super) place: Option<Place<Sys>>,
     /// Gaps at the position of the impacts, once known.
     pub(super) here: Option<Sys::Gaps>,
@@ -78,8 +78,9 @@ pub(super) struct Watch<Sys: Impacting> {
     pub(super) is_told: PerSurface<bool, Sys::Gaps>,
     /// The motion along the last step.
     pub(super) path: Path<Sys::State>,
-    /// A box in which no gap vanishes, and a box with bounds of the gaps' derivatives.
+    /// A box in which no gap vanishes.
     haven: Haven<Sys::State>,
+    /// A box with bounds of the gaps' derivatives.
     pub(super) limits: Bends<Sys::State, Sys::Gaps>,
     /// Bounds of the truncated terms of the gaps' power series.
     pub(super) tails: Tails<Sys::State, Sys::Gaps>,
@@ -346,8 +347,8 @@ impl<Sys: Impacting> Watch<Sys> {
         )
     }
 
-    /// True if a gap rate at the last hit is so slow that an error of the gap, for example its rounding, may have
-    /// decided its sign.
+    /// True if the gap rate at the last hit is so small that the gap may have reached 0 only by an error of this size,
+    /// for example its rounding error.
     pub(super) fn is_slow(
         &self,
         surface: usize,

@@ -168,8 +168,8 @@ impl<S: StateVector, M: Scheme> Embedded<S, M> {
         }
     }
 
-    /// Limits the length of steps to `max_step`, in units of time; infinity means no limit. A short force, for example
-    /// a pulse that begins and ends between two steps, is detected if it lasts longer than `max_step`.
+    /// Limits the length of steps to `max_step`, in units of time; infinity means no limit. A pulse of a force may
+    /// begin and end between two stages of a step. It is detected if it lasts longer than `max_step`.
     ///
     /// # Errors
     /// [`MaxStepError`] if `max_step` is not positive.

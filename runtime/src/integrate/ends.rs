@@ -10,7 +10,7 @@ pub struct Ends<S> {
     pub(super) t: [Instant; 2],
     pub(super) start: Precise<S>,
     pub(super) end: Precise<S>,
-    /// State at the cut of the step, until the next step begins.
+    /// State at the last cut of a step, until the integration restarts.
     cut: Option<Precise<S>>,
 }
 

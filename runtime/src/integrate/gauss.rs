@@ -20,8 +20,8 @@ use crate::state::StateVector;
 /// Gauss's method with two stages: order 4, dense output of order 4.
 ///
 /// Properties of the fixed step, for systems without constraints and impacts:
-/// - symplectic in `(q, p)`: phase volume is exact. Where `H` is analytic its error stays of size `h^4`, without
-///   growing, over times exponentially long in `1/h`. Quadratic invariants (angular momentum) hold to rounding;
+/// - symplectic in `(q, p)`: phase volume is preserved. Where `H` is analytic, the energy error stays of size `h^4`,
+///   without growing, over times exponentially long in `1/h`. Quadratic invariants (angular momentum) hold to rounding;
 /// - symmetric: with velocities reversed the motion retraces its path to rounding.
 ///
 /// Measured over a million steps: the energy of a harmonic oscillator (`h = 0.1`, `H = 0.5`) is off by 4e-15 at most,
@@ -207,7 +207,8 @@ impl<S: StateVector, const STAGES: usize> Slopes<S, STAGES> {
         }
     }
 
-    /// Sets the start of the iteration: the rates of the last step, extrapolated if that step has the same length.
+    /// Sets the start of the iteration: the rates of the last step, extrapolated, if that step has the same length, and
+    /// `rate` otherwise.
     fn predict(&mut self, table: &Table<STAGES>, h: f64, rate: &S) {
         let last = self.stages;
         let known = self.h == Some(h);

@@ -15,7 +15,7 @@
 //! `q` are those of Cortes and Martinez. Compositions of the step are maps of D, and self-adjoint where they are
 //! symmetric.
 //!
-//! The iteration that solves the first line for `v` takes the velocity that the constraints at the midpoint allow:
+//! Every iteration that solves the first line for `v` satisfies the constraints at the midpoint:
 //! `P = p0 + h/2 f(v) + lambda eta(q0)`, `(v, nu) = constrained_velocity(qm, P)`, `lambda += nu`. At the solution `nu`
 //! is 0.
 
@@ -35,7 +35,8 @@ use crate::state::{StateVector, scaled};
 ///   projection. If the start violates the constraints, the end of the first step satisfies them.
 /// - The method is symmetric: reversible systems retrace their path to rounding. If their motion is regular, the energy
 ///   error of size `h^2` does not grow. The method is not symplectic, since there is no symplectic structure to
-///   preserve: if the motion is chaotic and not reversible, the energy performs a random walk and grows like `t^(1/2)`.
+///   preserve: if the motion is chaotic and not reversible, the energy error performs a random walk and grows like
+///   `t^(1/2)`.
 /// - Without constraints and forces it is the variational midpoint rule, symplectic in `(q, p)`, with the
 ///   consequences listed in [`Gauss4`](super::Gauss4).
 /// - Holonomic constraints (`d(f) = 0`) hold on velocities. Their levels `f` are kept to order 2, to rounding where

@@ -4,8 +4,8 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Counters {
-    /// Evaluations of the vector field, including those of rejected steps. An evaluation of the force with a solution
-    /// for a velocity, as in a discrete principle, takes as much work and counts as one.
+    /// Evaluations of the vector field, including those of rejected steps. In the discrete Lagrange-d'Alembert
+    /// principle, a force together with the constrained velocity takes as much work and counts as one evaluation.
     pub rate_evaluations: u64,
     /// Expansions of the motion in a power series.
     pub expansions: u64,
@@ -22,7 +22,7 @@ pub struct Counters {
     pub event_evaluations: u64,
     /// Enclosures of one gap along a part of a step.
     pub enclosures: u64,
-    /// Roots of a gap that were located, for any direction of the motion afterwards.
+    /// Falls of a gap through 0 that were located, including those that are no impacts.
     pub crossings: u64,
     /// Impacts.
     pub impacts: u64,

@@ -185,15 +185,16 @@ pub trait Stepper<F: VectorField> {
     /// Meaningful only while [`Stepper::dense_ready`].
     fn powers(&self, coefficients: &mut [F::State; LENGTH]) -> usize;
 
-    /// Largest known deviation of the rates along the step, times its length, from those of the cubic through its
-    /// ends, from data available without dense output; `None` if no rates inside the step are known.
+    /// For each component, the largest known difference between a rate inside the step and the rate of the cubic
+    /// through its ends, times the length of the step. Dense output is not needed. `None` if no rates inside the step
+    /// are known.
     fn sway(&self) -> Option<F::State> {
         None
     }
 
-    /// Repeats the last step with the length, near the fraction `theta` of it, at which the gap at its end is 0. `gap`
-    /// returns a gap and its rate. True on success; otherwise the step is unchanged. Only methods that solve for
-    /// impacts succeed.
+    /// Repeats the last step with a shorter length, close to the fraction `theta` of the last one, such that the gap at
+    /// the end of the step is 0. `gap` returns a gap and its rate. True on success; otherwise the step is unchanged.
+    /// Only methods that solve for impacts succeed.
     fn meet(
         &mut self,
         field: &F,

@@ -1,4 +1,5 @@
-//! `Constrained` for every declared model with constraints. For a model with modes it refers to the mode of new states.
+//! `Constrained` for every declared model with constraints. For a model with modes, it describes the constraints of the
+//! mode in which new states begin.
 
 use super::{At, Declared, Form, HasConstraints, Kernels, Part};
 use crate::contract::{Constrained, Level, System};

@@ -74,7 +74,8 @@ fn hold<'m>(conditions: &[Condition], margins: &'m [f64]) -> (bool, &'m [f64]) {
     (all, rest)
 }
 
-/// True if the conditions of a surface of a part hold, and true if those of one of its other lists hold.
+/// The first value is true if all conditions of a surface's own list hold, the second if all conditions of one of its
+/// other lists hold.
 fn conditions<S: Declared>(
     part: &Part<'_, S>,
     (local, surface): (usize, &Surface),
@@ -106,8 +107,8 @@ fn conditions<S: Declared>(
     [holds, other]
 }
 
-/// True if a surface counts all along a motion, false if it counts nowhere on it; `None` if neither is certain. Margins
-/// within rounding errors count as 0.
+/// True if a surface counts all along a motion, false if it counts nowhere on it; `None` if neither is certain. A
+/// condition whose margin is within its rounding error counts as violated, also a closed one.
 fn counts_along<S: Declared>(
     system: &S,
     surface: usize,
@@ -563,7 +564,7 @@ fn known<V>(found: Result<V, Fault>) -> Result<Option<V>, Fault> {
     }
 }
 
-/// Fault of a surface that has no impulse.
+/// The reason why a surface has no impulse, from the fault of the kernel.
 #[cold]
 pub(super) fn no_impulse(tables: &Tables, fault: Fault, surface: usize) -> Fault {
     match fault {

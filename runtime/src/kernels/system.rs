@@ -91,7 +91,7 @@ impl<S: Declared> VectorField for S {
     }
 }
 
-/// True if a rate of the part may be sharp at some state, or cannot be bounded for all states.
+/// True if a rate of the part may have narrow features at some state, or cannot be bounded for all states.
 fn has_sharp_rates<S: Declared>(system: &S, part: &Part<'_, S>) -> bool {
     let mut state = S::Components::<Everywhere>::zeros(system.state_len());
     state.as_mut_slice().fill(Everywhere::ANY);

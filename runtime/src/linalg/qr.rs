@@ -1,6 +1,6 @@
 //! Orthogonalisation of the rows of a wide matrix, and least-norm solutions.
 //!
-//! Let `A x = b` with M rows of length N. Modified Gram-Schmidt on the rows, applied twice (the second pass suffices),
+//! Let `A x = b` be M equations in N unknowns, with the rows `a_i`. Modified Gram-Schmidt on the rows, with two passes,
 //! gives `a_i = sum_j r_ij q_j`. Then `x = sum_j z_j q_j` with `R z = b` is the solution of least norm.
 
 use crate::math;

@@ -9,13 +9,14 @@ use crate::kernels::{Declared, Documented, Mode, Part};
 use crate::numbers::{Numbers, Row};
 use crate::state::StateVector;
 
-/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. Methods take the number of a mode, and
-/// call the function of that mode as a system of its own.
+/// The types of the modes of a model `W`, in order: `(First, (Second, ()))`. A method calls a function of one mode,
+/// which is given by its number, or of all modes in which motions of the lanes are.
 pub trait ModeList<W> {
     /// Storage for the coefficients of intermediate values of all modes.
     type Jets<L: Numbers>: Jets;
 
-    /// Calls [`TaylorField::begin`] of every mode of any lane. `number` is the number of the first of `modes`.
+    /// Calls [`TaylorField::begin`] of every mode in which some lane is. `modes` are the modes of this list, with the
+    /// number of the first.
     ///
     /// # Errors
     /// The [`Fault`] of a mode.
@@ -27,7 +28,7 @@ pub trait ModeList<W> {
         firsts: &mut [L],
     ) -> Result<(), Fault>;
 
-    /// Calls [`TaylorField::advance`] of every mode of any lane.
+    /// Calls [`TaylorField::advance`] of every mode in which some lane is.
     fn advance<L: Numbers, R: Row<L>, G: Row<L>>(
         whole: &W,
         modes: (usize, &[Mode]),

@@ -89,7 +89,7 @@ impl<Sys: Variational> Fixed<Sys> {
 
 impl<Sys: Variational> Chart<Sys> {
     /// The directions at a point, and a step to first order. Without a parameter, the step moves the point onto the
-    /// section. With a parameter, it keeps the point on the section, per unit of the parameter.
+    /// section. With a parameter, it is the change per unit of the parameter that keeps the point on the section.
     fn at(
         system: &Sys,
         (fixed, group): (&Fixed<Sys>, Option<&dyn Group>),
@@ -313,7 +313,7 @@ fn complete<S: StateVector>(rows: &mut [S], count: usize) {
                 }
             }
             let left = dot(&row, &row);
-            // The factor selects the first of several equal remainders.
+            // The factor selects the first of several remainders that are equal up to rounding.
             if left > 1.000_001 * best.0 {
                 best = (left, row);
             }

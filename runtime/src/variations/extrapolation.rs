@@ -102,7 +102,7 @@ impl<Sys: Variational> Flow<Sys> {
         Ok(None)
     }
 
-    /// True if two changes of a state agree within the tolerance, each direction in units of its own size.
+    /// True if two changes of a state agree up to [`LAST`], each direction in units of its own size.
     fn is_near(
         &self,
         state: &Sys::Row<Dual>,

@@ -1,6 +1,6 @@
 //! Variations along motion that a surface holds, or that slides between two modes (sliding mode).
 //!
-//! The contact force, or the mixture of two fields, has no power series. Over dual numbers the field is
+//! No power series is generated for the contact force, or for the mixture of two fields. Over dual numbers the field is
 //!
 //! ```text
 //! f + lambda w,        lambda = -h''/dh(w)            held by h, whose impulses are along w

@@ -22,7 +22,8 @@ const HALVINGS: u32 = 12;
 
 /// Residual that counts as 0, relative to the size of the state times the amplification of the orbit.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// The same in units of the integrator's tolerance.
+/// Residual that counts as 0, relative to the same product, in units of the integrator's tolerance. The larger of both
+/// bounds applies.
 const STEPS: f64 = 16.0;
 
 /// A closed point is final if its residual exceeds this multiple of the residual before it.
@@ -133,8 +134,8 @@ where
     /// The periodic orbit near a point on or near the section, by Newton's method in at most `iterations` steps
     /// ([`ITERATIONS`] is enough).
     ///
-    /// Angles close up to full turns. If orbits form a family, as in every conservative system, the iteration converges
-    /// to a member near the point. A step that does not bring point and image closer is halved.
+    /// Angles need to return only up to full turns. If orbits form a family, as in every conservative system, the
+    /// iteration converges to a member near the point. A step that does not bring point and image closer is halved.
     ///
     /// # Errors
     /// [`OrbitError::Section`] where a point is not mapped back or the map has no derivative,
@@ -224,8 +225,8 @@ where
         let mut shift = self.system.zero_state();
         let mut carried = dimension;
         if let Some(parameter) = parameter {
-            // The section has at least one equation less than the state has components, so that there is room for one
-            // direction more.
+            // The section has at least one equation, so it has fewer directions than the state has components, and
+            // there is room for one direction more.
             shift = Chart::shift(self.system, fixed, 0.0, &point, parameter)?;
             tangents.as_mut()[dimension] = Tangent {
                 state: shift,

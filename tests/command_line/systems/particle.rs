@@ -1,4 +1,5 @@
-//! The motion of a particle, which the systems share. These are macros, since types contain the lengths of vectors.
+//! Implementations of the traits for a particle, which the systems share. They are macros, since the types contain the
+//! lengths of vectors.
 
 /// Mass, force and potential of a system.
 pub(super) trait Particle<const N: usize> {

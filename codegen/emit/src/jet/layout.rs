@@ -1,4 +1,4 @@
-//! Storage of coefficients over the orders, and the sums over their products that are computed side by side.
+//! Storage of the coefficients of all orders, and the sums over their products that are computed side by side.
 //!
 //! A sum over `a_j b_(k-j)` with `0 < j < k` needs no coefficient of order `k`: all such sums of an order can be
 //! computed at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the storage holds
@@ -18,7 +18,7 @@ const SIDE_BY_SIDE: usize = 8;
 /// The sum over `a_j b_(k-j)` with `0 < j < k`, for the coefficients of two series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sum {
-    /// Half of the sum over a series with itself.
+    /// Half of the sum of `a_j a_(k-j)`, for one series.
     Half(Value),
     /// The sum over two series.
     Middle(History, History),
@@ -29,9 +29,9 @@ pub(super) enum Sum {
 pub(super) struct Layout {
     /// Histories read one coefficient at a time, and their places.
     alone: BTreeMap<History, usize>,
-    /// Values that grow steadily and multiply others. Their only coefficient above order 0 is a local.
+    /// Values that are linear in time and multiply others. Their only coefficient above order 0 is a local.
     steady: BTreeSet<Value>,
-    /// Values that the steady values multiply. Their coefficient of the previous order is a local.
+    /// Values that the linear values multiply. Their coefficient of the previous order is a local.
     multiplied: BTreeSet<Value>,
     halves: Vec<Value>,
     middles: Vec<(History, History)>,
@@ -40,8 +40,9 @@ pub(super) struct Layout {
 /// A block of sums that are computed side by side: the sums of one kind from index `first` on.
 struct Block {
     first: usize,
-    /// Place of the coefficients of the first factor in a row, and number of places of each factor.
+    /// Index of the first factor's coefficients within a row.
     place: usize,
+    /// Number of places that each factor takes.
     width: usize,
     /// Histories in the sums, by factor.
     factors: Vec<Vec<History>>,
@@ -73,15 +74,15 @@ impl Layout {
         Literal::usize_unsuffixed(*self.alone.entry(history).or_insert(place))
     }
 
-    /// Factors of the only product of a steadily growing value with a coefficient of another value, as two locals. The
-    /// product needs no stored coefficients.
+    /// For the product of a value that is linear in time with another value: the two locals whose product enters order
+    /// `k`, the slope of the first and coefficient `k - 1` of the second. The product needs no stored coefficients.
     pub(super) fn product_with_steady(&mut self, steady: Value, other: Value) -> [Ident; 2] {
         self.steady.insert(steady);
         self.multiplied.insert(other);
         [local("slope", steady), local("last", other)]
     }
 
-    /// True if a value grows steadily and multiplies another.
+    /// True if a value is linear in time and multiplies another.
     pub(super) fn is_steady(&self, value: Value) -> bool {
         self.steady.contains(&value)
     }

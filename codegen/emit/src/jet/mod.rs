@@ -34,7 +34,7 @@ pub(super) fn emit_taylor(context: &Context<'_>) -> TokenStream {
     } = Expansion::of(jet, context);
     let documentation = doc::lines(&[
         "The power series of the motion from `coefficients[0]`: coefficient `k + 1` of the state is coefficient `k` of \
-         its rate, divided by `k + 1`, in units of time. Those of the gaps follow from it."
+         its rate times `unit/(k + 1)`. The series of the gaps follow from that of the state."
             .to_string(),
     ]);
     let attributes = super::attributes();
@@ -100,8 +100,8 @@ struct Expansion {
 
 impl Expansion {
     fn of(jet: &Jet, context: &Context<'_>) -> Self {
-        // The first pass finds the coefficients to store. The statements depend on the storage layout, so a small
-        // expansion is written a second time.
+        // The first pass finds the coefficients to store. In a small expansion, statements depend on the final layout
+        // of all of them, so they are written a second time. In a large one, every coefficient keeps its first place.
         let mut writer = Writer::of(jet, context);
         let mut orders = writer.orders();
         if !writer.is_large() {

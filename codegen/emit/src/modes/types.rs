@@ -52,8 +52,8 @@ pub(super) fn first_mode(whole: &Whole<'_>) -> TokenStream {
 fn documentation(whole: &Whole<'_>) -> Vec<String> {
     let mut lines = whole.model().documentation.clone();
     lines.push(String::new());
-    lines.push(" Modes, each with the order of its state. The state of the whole is the state of the present mode, zeros, and the \
-                number of the mode:".to_owned());
+    lines.push(" The modes, each with the components of its state in order. A state of the model consists of the state of the \
+                current mode, zeros as padding, and the number of the mode:".to_owned());
     lines.push(String::new());
     for (mode, context) in whole.graph.modes.iter().zip(whole.mode_contexts()) {
         lines.push(format!(

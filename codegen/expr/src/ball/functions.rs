@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! exp x     t = x/2^s, |t| <= 1/256;  sum of t^k/k!, squared s times
-//! sin, cos  t = x/2^s, |t| <= 1/256;  sums of (-t^2)^k/(2k)!, doubled s times
+//! sin, cos  t = x/2^s, |t| <= 1/256;  sums of t (-t^2)^k/(2k+1)! and (-t^2)^k/(2k)!;  s doublings of the angle
 //! ln x      y by Newton's method;  ln x - y = ln(x exp(-y)),   |ln(1 + r)| <= 2|r| for |r| <= 1/2
 //! atan x    y by Newton's method;  atan x - y = atan u,  u = (x cos y - sin y)/(cos y + x sin y),   |atan u| <= |u|
 //! ```
@@ -70,7 +70,8 @@ impl Ball {
         Some((above.sub(below).shifted(-1), above.add(below).shifted(-1)))
     }
 
-    /// `ln(self)`; `None` if the ball may contain numbers without a logarithm.
+    /// `ln(self)`; `None` if the ball may contain numbers that are not positive, is too wide, or is beyond the range of
+    /// doubles.
     pub fn ln(self) -> Option<Self> {
         if self.sign()? == Ordering::Less {
             return None;

@@ -15,7 +15,7 @@ use crate::program::kernel::Kernel;
 use crate::program::linear::Orthogonal;
 use crate::program::{Form, Function, Guard, Value};
 
-/// `(t, s) ->` impulse that establishes the instantaneous constraints of a surface; `None` without these.
+/// `(t, state) ->` the impulse that establishes the instantaneous constraints of surface `s`; `None` without these.
 pub(super) fn focus(
     model: &Model,
     derivation: &Derivation,
@@ -39,8 +39,8 @@ pub(super) fn focus_values(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Opt
     Some(against(kernel, form, s, &residuals))
 }
 
-/// `(t, s, w) ->` addition to the rates `w` that maintains the instantaneous constraints of a surface; `None` without
-/// these.
+/// `(t, state, w) ->` the addition to the rates `w` that maintains the instantaneous constraints of surface `s`; `None`
+/// without these.
 pub(super) fn trace(
     model: &Model,
     derivation: &Derivation,
@@ -70,7 +70,7 @@ fn constraints<'d>(kernel: &Kernel<'d>, s: usize) -> Option<&'d [InstantaneousFo
     (!instantaneous.is_empty()).then_some(instantaneous)
 }
 
-/// The impulse within the constraints that cancels these rates of the instantaneous constraints.
+/// The impulse that preserves the constraints and changes each `psi^b(qdot)` by `-rates[b]`.
 fn against(kernel: &mut Kernel<'_>, form: Form, s: usize, rates: &[Value]) -> Vec<Value> {
     let factors = kernel.factor_instantaneous(form, s);
     let wanted: Vec<Value> = rates.iter().map(|&rate| kernel.builder.neg(rate)).collect();

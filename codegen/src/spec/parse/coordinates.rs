@@ -66,11 +66,11 @@ fn check_end_of_angle(cursor: &mut Cursor<'_>, name: &Word) -> Read<()> {
         let tokens = tokens_of(group.stream());
         let size = cursor.inside(&tokens, group).whole_scalar()?;
         let help = format!("write `{}[{size}]: angle`", name.text);
-        return Err(cursor.refuse(at, "the size of a family stands behind its name", &help));
+        return Err(cursor.refuse(at, "the size of a family follows its name", &help));
     }
     if cursor.is_word("in") {
         let help = format!(
-            "an angle runs through a circle; write `{}: angle;` or `{} in (a, b);`",
+            "an angle takes all values on a circle; write `{}: angle;` or `{} in (a, b);`",
             name.text, name.text
         );
         return Err(cursor.unexpected("expected `;`", &help));

@@ -61,7 +61,7 @@ pub(super) fn are_declared(tokens: &[TokenTree]) -> bool {
 
 /// Refuses modes inside of a mode.
 pub(super) fn refuse_nested(word: &Word, cursor: &mut Cursor<'_>) -> Refused {
-    let text = format!("`{}` stands inside of a mode", word.text);
+    let text = format!("`{}` is not allowed inside a mode", word.text);
     let help = format!("write `{}` beside the other declarations", word.text);
     cursor.refuse(word.at, text, &help)
 }
@@ -79,7 +79,7 @@ pub(super) fn read(
     let mut diagnostics = Diagnostics::new();
     let parts = take_apart(tokens, body, &mut diagnostics);
     if let (Some(first), [], true) = (&parts.first, &*parts.entries, diagnostics.is_empty()) {
-        let text = format!("`{}` without a mode", first.text);
+        let text = format!("`{}` needs at least one mode", first.text);
         let help = format!("write `{MODE}`");
         diagnostics.error(first.at, text).help(help);
     }
@@ -191,7 +191,7 @@ fn refuse_shared(tokens: &[TokenTree], diagnostics: &mut Diagnostics) {
             let at = Location::of(&declaration[documentation_length(declaration)]);
             let text = match word.as_str() {
                 "cost" | "scenes" => format!("a model with modes has no `{word}`"),
-                word => format!("`{word}` stands outside of `modes`"),
+                word => format!("`{word}` belongs outside of `modes`"),
             };
             diagnostics.error(at, text).help(help);
         }

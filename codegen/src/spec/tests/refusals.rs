@@ -147,21 +147,21 @@ fn instantaneous_constraints_stand_in_braces_behind_a_law() {
 
 #[test]
 fn modes_and_transitions_keep_their_forms() {
-    refused_in("«modes» { }", "`modes` without a mode");
+    refused_in("«modes» { }", "`modes` needs at least one mode");
     refused_in(
         "«transitions» { a: b -> c when x >= 0; }",
-        "`transitions` without a mode",
+        "`transitions` needs at least one mode",
     );
     refused_in("modes { «a» }", "expected `{ .. }` after the mode `a`");
     refused_in("modes { a { } «a» { } }", "mode `a` declared again");
     refused_in("modes { «sin» { } }", "`sin` is reserved");
     refused_in(
         "modes { a { «parameters» { k = 1; } } }",
-        "`parameters` stands outside of `modes`",
+        "`parameters` belongs outside of `modes`",
     );
     refused_in(
         "modes { a { «const» N = 1; } }",
-        "`const` stands outside of `modes`",
+        "`const` belongs outside of `modes`",
     );
     refused_in(
         "modes { a { } } «scenes» { s; }",
@@ -173,11 +173,11 @@ fn modes_and_transitions_keep_their_forms() {
     );
     refused_in(
         "modes { a { «inputs» { u; } } }",
-        "`inputs` stands outside of `modes`",
+        "`inputs` belongs outside of `modes`",
     );
     refused_in(
         "modes { a { «modes» { b { } } } }",
-        "`modes` stands inside of a mode",
+        "`modes` is not allowed inside a mode",
     );
     let transition = |text: &str, message: &str| {
         refused_in(

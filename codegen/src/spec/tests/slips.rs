@@ -113,11 +113,11 @@ fn coordinates_and_parameters_keep_their_forms() {
     let coordinates = |entry: &str| format!("P {{ coordinates {{ {entry}; }} lagrangian = x; }}");
     refused(
         &coordinates("theta: angle«[3]»"),
-        "the size of a family stands behind its name\nhelp: write `theta[3]: angle`",
+        "the size of a family follows its name\nhelp: write `theta[3]: angle`",
     );
     refused(
         &coordinates("u: angle «in» (0, pi)"),
-        "expected `;`, found `in`\nhelp: an angle runs through a circle",
+        "expected `;`, found `in`\nhelp: an angle takes all values on a circle",
     );
     refused(
         &coordinates("q[1«.».=3]"),

@@ -116,7 +116,7 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Removes the rows that this run began.
+    /// Removes the file of rows that this run started.
     pub fn abandon(self) {
         if let Self::Journal(journal) = self {
             journal.abandon();

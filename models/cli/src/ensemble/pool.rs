@@ -12,7 +12,7 @@ use std::thread;
 /// Number of blocks per thread that may be handed out ahead of the first missing result.
 const AHEAD: u64 = 8;
 
-/// Smallest number of items in a block if there are so many for every thread. Runs side by side fill SIMD lanes.
+/// Smallest number of items in a block, as long as every thread gets that many. Runs side by side fill SIMD lanes.
 const TOGETHER: u64 = 8;
 
 /// Division of the work.
@@ -25,7 +25,8 @@ pub struct Division {
 }
 
 impl Division {
-    /// Divides the work into blocks of at most `largest` items, small enough that every thread gets many of them.
+    /// Divides the work into blocks of at most `largest` items. Every thread gets about 16 blocks if there are many
+    /// items. Few items are divided into blocks of up to 8.
     pub fn new(items: u64, threads: u64, largest: u64) -> Self {
         let threads = threads.clamp(1, items.max(1));
         let least = items.div_ceil(threads).min(TOGETHER);

@@ -97,8 +97,9 @@ pub struct Taylor<F: TaylorField> {
     max_step: f64,
     first_step: Option<f64>,
     weights: Weights<F::State>,
-    /// Unit of time of the present coefficients, and of the next ones. Both are powers of two.
+    /// Unit of time of the present coefficients: a power of two.
     unit: f64,
+    /// Unit of time of the coefficients of the next step: a power of two.
     next_unit: f64,
     /// Temporary limit of the step length, after a jump and at the start.
     limit: f64,
@@ -131,7 +132,8 @@ impl<F: TaylorField> fmt::Debug for Taylor<F> {
 }
 
 impl<F: TaylorField> Taylor<F> {
-    /// An integrator with this tolerance. Its order is chosen by the tolerance.
+    /// An integrator with this tolerance. At the start of a run, its order is chosen from the tolerance and the work of
+    /// the system's series.
     pub fn new(tolerance: Tolerance) -> Self {
         let zeros = F::State::zeros(0);
         Self {
@@ -152,15 +154,15 @@ impl<F: TaylorField> Taylor<F> {
         }
     }
 
-    /// Sets the order of the series, clamped to the range from 3 to 32. The default is chosen by the tolerance.
+    /// Sets the order of the series, clamped to the range from 3 to 32, in place of the chosen one.
     #[must_use]
     pub fn with_order(mut self, order: usize) -> Self {
         self.given_order = Some(order.clamp(LEAST_ORDER, LENGTH - 1));
         self
     }
 
-    /// Limits the length of steps to `max_step`, in units of time; infinity means no limit. A short force, for example
-    /// a pulse that begins and ends between two steps, is detected if it lasts longer than `max_step`.
+    /// Limits the length of steps to `max_step`, in units of time; infinity means no limit. A pulse of a force may
+    /// begin and end inside a step. It is detected if it lasts longer than `max_step`.
     ///
     /// # Errors
     /// [`MaxStepError`] if `max_step` is not positive.

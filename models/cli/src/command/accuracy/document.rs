@@ -68,7 +68,7 @@ fn case(sample: &Sample) -> Value {
     })
 }
 
-/// The fastest case for an error.
+/// The fastest case that reaches an error.
 fn chosen(error: f64, best: &Sample) -> Value {
     json!({
         "error": number(error),

@@ -80,19 +80,19 @@ pub fn caption(finished: &Finished<'_>, checkpoints: &[Checkpoint]) -> String {
         return String::new();
     };
     let states: u64 = counts.total().iter().sum();
-    let mut text = format!("{states} states, {} of time apart", density.every);
+    let mut text = format!("{states} states, sampling interval {}", density.every);
     if density.discard > 0.0 {
         text += &format!(", after {}", density.discard);
     }
     if let Some(last) = checkpoints.last() {
-        text += "; distance of halves";
+        text += "; distance between halves";
         if !last.over_time.is_nan() {
-            text += &format!(" of time {:.3}", last.over_time);
+            text += &format!(" of the time {:.3},", last.over_time);
         }
         if !last.over_members.is_nan() {
-            text += &format!(", of members {:.3}", last.over_members);
+            text += &format!(" of the members {:.3},", last.over_members);
         }
-        text += &format!(", of independent states {:.3}", last.independent);
+        text += &format!(" of independent states {:.3}", last.independent);
     }
     text
 }
@@ -116,7 +116,7 @@ fn time(finished: &Finished<'_>) -> String {
     let mut text = format!("{seconds:.2} s");
     if ran > 0 {
         text += &format!(
-            " on {}, {:.0} members per second with functions {}",
+            " on {}, {:.0} members per second (functions: {})",
             counted(finished.threads as usize, "thread"),
             ran as f64 / seconds,
             finished.model.code().name()
