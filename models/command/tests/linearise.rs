@@ -56,7 +56,7 @@ const SPRING: &str = "
         initial { x = 0.4; }
     }";
 
-/// A ball above a floor that reduces its speed by the factor e.
+/// A ball above a floor. Every impact multiplies its speed by `e`.
 const BALL: &str = "
     Ball {
         coordinates { x; }

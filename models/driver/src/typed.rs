@@ -1,4 +1,4 @@
-//! [`AnyModel`] for the type of a system.
+//! [`AnyModel`] for systems of any type.
 
 use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};

@@ -1,6 +1,6 @@
 //! Derivatives of a run with respect to its start and its parameters, across impacts, as plain data.
 //!
-//! An erased system of the largest capacity computes them, for which this code is compiled once.
+//! They are computed on the erased system of the largest capacity, so that this code is compiled only once.
 
 use std::ops::ControlFlow;
 

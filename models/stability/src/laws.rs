@@ -9,7 +9,7 @@ use super::course::{Course, Random, U, vector};
 use super::location::FALL;
 use super::text::{Model, Text, shipped, value};
 
-/// A vertical disk that rolls towards a wall through its centre.
+/// A vertical disk that rolls towards a wall. The gap is the distance of its centre from the wall.
 static DISK_AT_WALL: Text = Text::new(
     "DiskAtWall {
         coordinates { x; y; theta: angle; phi: angle; }

@@ -25,7 +25,7 @@ pub(super) struct Balance {
     size: f64,
     /// The largest kinetic energy.
     swing: f64,
-    /// The sum of the absolute values of the work.
+    /// The sum of the absolute values of the work in each step.
     work: f64,
     /// The error so far.
     error: f64,

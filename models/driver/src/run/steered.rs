@@ -1,6 +1,6 @@
 //! Runs whose inputs are functions of time and state.
 //!
-//! An erased system of the largest capacity makes them, for which this code is compiled once.
+//! They run on the erased system of the largest capacity, so that this code is compiled only once.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
