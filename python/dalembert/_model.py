@@ -263,7 +263,7 @@ class Model(Swept):
 
     @property
     def view(self) -> tuple[list[str], list[int] | None, bool] | None:
-        """The declared view, or None: labels, the indices of its two coordinates (None for other quantities), true with a region."""
+        """The declared view, or None: labels, indices of its two coordinates (None for other quantities), true with a region."""
         return self._description["view"]
 
     @property

@@ -78,7 +78,7 @@ pub struct Surface {
     pub takes: u64,
 }
 
-/// Constraint of a level.
+/// A position level: a function of the positions that a constraint keeps constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Level {
     /// Index of the constraint.
@@ -94,9 +94,9 @@ pub enum Passage {
     Declared,
     /// First-order systems: the position stays.
     Kept,
-    /// Both modes have the same Lagrangian: the focusing point.
+    /// Both modes have the same Lagrangian: the state moves to the focusing point.
     Focused,
-    /// The Lagrangian changes: refraction or reflection.
+    /// The Lagrangian changes: the motion is refracted or reflected.
     Refracted,
 }
 

@@ -471,7 +471,7 @@ impl Numbers for TaylorModel {
 
     crate::numbers::constants_of_intervals!();
 
-    /// The value of the cubic in the middle. It implies nothing for the rest of the stretch.
+    /// The value of the cubic in the middle. It does not bound the values on the stretch.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.powers[0]
@@ -818,7 +818,7 @@ mod tests {
     use super::*;
     use crate::interval::tests::{FUNCTIONS, Sample};
 
-    /// Paths between two places: a line, and one that bends by a part of the way.
+    /// Two paths between two numbers: a straight line and a parabola.
     fn paths(from: f64, to: f64) -> [TaylorModel; 2] {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let exact = |powers: [f64; 4]| TaylorModel {

@@ -173,9 +173,9 @@ pub trait System: VectorField {
         false
     }
 
-    /// The first position in `[0, reach]` along a piece of smooth motion at which the constraint forms become
-    /// dependent. `motion` gives time and state at a fraction of the piece. `None` if [`System::can_lose_rank`] is
-    /// false.
+    /// The first place in a piece of smooth motion at which the constraint forms become dependent, up to the fraction
+    /// `reach` of the piece. `motion` gives time and state at a fraction of the piece. `None` if there is no such
+    /// place, or if [`System::can_lose_rank`] is false.
     fn rank_drop(
         &self,
         motion: impl Fn(f64) -> (f64, Self::State),
@@ -333,10 +333,10 @@ pub(crate) fn carried<S: System + ?Sized>(
     }
 }
 
-/// A place at which constraint forms become dependent along a motion.
+/// A place in a piece of smooth motion at which constraint forms become dependent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankDrop {
-    /// The last position before it, as a fraction of the motion.
+    /// The last fraction of the piece before it.
     pub theta: f64,
     /// Index of the constraint that depends on the earlier ones there, or vanishes.
     pub constraint: usize,
