@@ -389,7 +389,7 @@ def moved(point, direction, h):
 # The motion ------------------------------------------------------------------------------------------------------------
 
 class Model:
-    """A declaration, and what follows from it. A state is a list `[t, q.., v.., parameters..]`."""
+    """A declaration, and the quantities that follow from it. A state is a list `[t, q.., v.., parameters..]`."""
 
     def __init__(self, content):
         self.q = [item["name"] for item in content["coordinates"]]
@@ -411,7 +411,7 @@ class Model:
         self.constraints = [self.constraint(item) for item in content["constraints"]]
         self.is_nonlinear = any(item["nonlinear"] is not None for item in content["constraints"])
         self.surfaces = content["surfaces"]
-        #: Surfaces behind which the motion goes on, by index.
+        #: Indices of the surfaces at which the motion does not end.
         self.acting = [index for index, surface in enumerate(self.surfaces) if surface["law"] != "stop"]
         self.density = content["density"]
         self.parts = {}
@@ -425,7 +425,7 @@ class Model:
         return form, self.names.compile(entry["affine"])
 
     def within(self, surface):
-        """The model with the instantaneous constraints of a surface beside its own."""
+        """The model with the instantaneous constraints of a surface in addition to its own."""
         added = surface.get("instantaneous")
         if not added:
             return self
@@ -548,7 +548,7 @@ class Model:
         return Decimal(source.randint(1, 9999)) / 10000 * (high - low) + low
 
     def random_state(self, source, given):
-        """A random state on the constraints, with the given values where there are some."""
+        """A state on the constraints, with random values except the given ones."""
         state = [self.number(source, Decimal(-1), Decimal(1))]
         for item in self.coordinates:
             low, high = Decimal("-1.6"), Decimal("1.6")
@@ -676,7 +676,7 @@ EVERYTHING = (Decimal("-Infinity"), Decimal("Infinity"))
 
 
 def enclosure(tree, box):
-    """An interval that holds the values of an expression over a box of intervals by name."""
+    """An interval that contains the values of an expression over a box, which has an interval for each name."""
     kind = tree[0]
     if kind == "number":
         value = Decimal(tree[1])
@@ -886,7 +886,7 @@ def counts(model, surface, state):
 
 
 def landed(model, surface, state, slope, rate):
-    """The mode that the motion goes on in, and its state after the impact."""
+    """The mode in which the motion continues, and its state after the impact."""
     transition = surface["transition"]
     if transition is not None:
         return passed(model, model.mode(transition["enters"]), transition, state, slope, rate)
@@ -900,7 +900,7 @@ def landed(model, surface, state, slope, rate):
 
 
 def passed(model, entered, transition, state, slope, rate):
-    """The state behind a transition: as declared, or as mechanics continues the motion."""
+    """The entered mode and its state: as declared, or by refraction, reflection and the nearest velocity that the constraints allow."""
     declared = transition["state"]
     if declared is not None:
         values = {name: [model.names.compile(item)(state) for item in declared[name]] for name in ("q", "qdot")}

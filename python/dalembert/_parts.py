@@ -187,7 +187,7 @@ def finite(data: Any) -> Any:
 
 
 def digest(path: Path) -> str | None:
-    """The checksum of a file; None where there is none."""
+    """The checksum of a file; None if there is no such file."""
     try:
         with open(path, "rb") as file:
             checksum = hashlib.sha256()

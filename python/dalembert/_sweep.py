@@ -326,7 +326,7 @@ def _density(kept: Directory, spec: dict[str, Any], native: _native.NativeEnsemb
 
 @contextmanager
 def _shown(shows: bool, count: int, name: str, done: int) -> Iterator[Callable[[int], Any]]:
-    """A function that shows how many members are done, by tqdm where it is installed."""
+    """A function that shows the number of finished members, by tqdm; without tqdm, an error."""
     if not shows:
         yield lambda members: None
         return

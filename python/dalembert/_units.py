@@ -23,7 +23,7 @@ SHORTEST = 50
 AHEAD = 2
 #: Units over which the pace is measured, for each worker.
 RECENT = 4
-#: Names of the errors by which executors report a lost worker, beside those of the standard library.
+#: Names of the errors by which executors report a lost worker, in addition to errors of the standard library.
 LOST = frozenset({"KilledWorker", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError"})
 
 

@@ -1,4 +1,4 @@
-//! Periodic orbits, their branches, and Lyapunov exponents of a model whose type is erased.
+//! Periodic orbits, their branches, and Lyapunov exponents of a system of any type, as plain data.
 
 use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;

@@ -32,7 +32,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "C02",
-        title: "a vertical disk at a wall through its centre",
+        title: "a vertical disk whose centre hits a wall",
         right: "roll rate times -1, 0 and (I + mR^2 - 2mR^2 cos^2 phi)/(I + mR^2); turn rate kept",
         bound: "16 u",
         run: Run::Once(disk_at_wall),

@@ -81,15 +81,15 @@ pub const CASES: &[Case] = &[
     Case {
         id: "F09",
         title: "dense output between the impacts of an oscillator",
-        right: "cos between its reflections; nothing is interpolated across one",
+        right: "a cosine between reflections; no interpolation across a reflection",
         bound: "ten times the largest error at ends of steps",
         run: Run::Integrators(dense_across_impacts),
         ..Case::QUICK
     },
     Case {
         id: "F11",
-        title: "one run of arithmetic and roots alone on several machines, 200 bounces off a disk in a square",
-        right: "the same bits; with the feature `strict` those of every run, see `tests/strict.rs`",
+        title: "200 bounces off a disk in a square, by arithmetic and square roots alone, on several machines",
+        right: "the same bits; with the feature `strict`, this holds for every run, see `tests/strict.rs`",
         bound: "a hash kept with the sources",
         // NOTE: without `strict`, multiplications and additions are fused in builds for machines that support it.
         pending: match cfg!(target_feature = "fma") {

@@ -64,7 +64,7 @@ pub enum Beside {
 /// A surface.
 #[derive(Debug, PartialEq)]
 pub struct Surface {
-    /// The law, with a coefficient of 0 where it has one.
+    /// The law, with 0 in place of its coefficient, which may depend on parameters.
     pub law: Law,
     /// The name of the coefficient, for errors.
     pub coefficient: Option<&'static str>,

@@ -136,7 +136,8 @@ pub struct Connected {
     pub directions: usize,
     /// Largest kinetic energy of a scanned start.
     pub kinetic: f64,
-    /// True if the starts at that energy have too many impacts or no motion to the end, in every direction.
+    /// True if, in every direction, no motion from the fastest scanned starts reaches the end with few enough impacts,
+    /// and none was given up.
     pub is_bounded: bool,
     /// Number of motions that were computed.
     pub runs: u64,

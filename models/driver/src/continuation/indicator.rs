@@ -140,7 +140,7 @@ impl Test {
     }
 }
 
-/// True if a member is a bifurcation up to rounding, or belongs to a family at a constant parameter.
+/// True if a member counts as a bifurcation, or belongs to a family at a constant parameter.
 pub(super) fn is_degenerate(node: &Node, tests: &[Test], width: f64, precision: Precision) -> bool {
     let is_zero = |test: &Test| {
         let value = test.value(node, width, precision);

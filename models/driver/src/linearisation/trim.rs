@@ -20,7 +20,7 @@ const SETTLED: f64 = 1e-12;
 /// Largest accepted residual of an equilibrium, in the same unit.
 const SOLVED: f64 = 1e-9;
 
-/// Largest damping of a step, as a multiple of the residual or of the largest derivative, if that is smaller.
+/// Largest damping of a step, as a multiple of the residual or of the largest derivative, whichever is smaller.
 const DAMPED: f64 = 1e8;
 
 /// Smallest damping, in the same unit.
