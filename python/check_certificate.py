@@ -8,12 +8,12 @@ of the generator. It sets up the equations of motion from the Lagrangian and the
   conserved          d/dt of the quantity along the motion is 0 (or, if the claim is that it changes, is not 0)
   conserved under    the quantity is the same before and after an impact or a transition
   density            the density times mu_C satisfies Liouville's equation
-  exact              the same for the closed form exp(G); what G takes logarithms of is enclosed away from 0
+  exact              the same for the closed form exp(G); every argument of a logarithm in G is enclosed away from 0
   no_density         a density prescribes its logarithmic derivative along the fields of D and along their brackets; the prescribed
                      values contradict each other
   locally_exact      the same values do not contradict each other
   symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints, or commutes with the rates
-  volume_kept        the density satisfies Liouville's equation, and the motion through each surface has the derivative that keeps it
+  volume_kept        the density satisfies Liouville's equation, and the motion through each surface keeps its volume
   factor             it is the determinant of the derivative of the motion through the surface, times the ratio of the densities
   symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt; with constraints, the motion keeps
                      dp dq on all states, or on the leaves if the constraints are integrable
@@ -23,8 +23,8 @@ of the generator. It sets up the equations of motion from the Lagrangian and the
                      independent
   energy_not_increasing  the energy after an impact is not above that before
 
-Random states cannot prove an identity, but a false one passes only where it holds to 28 digits, or to 18 for maps through
-surfaces and forms. Only the standard library of Python is used.
+Random states cannot prove an identity, but a false one passes only where it holds to 28 digits (18 to 20 for symmetries,
+forms and maps through surfaces). Only the standard library of Python is used.
 
 The verdict on a claim is `holds`, `FAILED`, `partly` (the part that can be checked holds), `unchecked` (this kind of claim is not
 checked) or `open` (the claim was not proved). Exit status: 0 if nothing failed, 1 if a claim failed, 2 if a file cannot be read.
@@ -900,7 +900,7 @@ def landed(model, surface, state, slope, rate):
 
 
 def passed(model, entered, transition, state, slope, rate):
-    """The entered mode and its state: as declared, or by refraction, reflection and the nearest velocity that the constraints allow."""
+    """The mode behind a transition and its state: as declared, or by refraction or reflection and the constraints."""
     declared = transition["state"]
     if declared is not None:
         values = {name: [model.names.compile(item)(state) for item in declared[name]] for name in ("q", "qdot")}

@@ -382,7 +382,7 @@ class Model(Swept):
             Stop after this many impacts. Without `until`, the end time is then the declared one, but at least 3600.
         state : mapping of str to float, optional
             Changes of the declared initial state: coordinates ``x``, velocities ``x_dot``. Values that are neither declared nor
-            given here follow from the constraints.
+            given here are 0, or such that the constraints hold.
         q, qdot, p : sequence of float, optional
             All positions, with all velocities or all momenta, instead of `state`.
         off_constraint : {"error", "project", "keep"}

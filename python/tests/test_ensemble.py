@@ -142,7 +142,7 @@ def test_a_pool_of_processes_that_loses_a_worker_is_replaced(whole, tmp_path):
 
 
 def doomed(path):
-    """Initializer of workers, the first of which is killed at its third unit."""
+    """Initializer of workers. The first worker that reaches its third unit is killed."""
     _sweep.run_unit = partial(killed_later, path, itertools.count(), _sweep.run_unit)
 
 

@@ -1,4 +1,4 @@
-"""Equations: shown, and checked against the Euler-Lagrange equations of SymPy."""
+"""Equations: their display, and a check against the Euler-Lagrange equations of SymPy."""
 
 import re
 from pathlib import Path
@@ -48,7 +48,7 @@ def test_the_motion_satisfies_the_equations_of_sympy(name):
     for _ in range(3):
         q, qdot, derived = admissible(model, generator)
         values = {symbol: model.parameters[item] for item, symbol in symbolic.parameters.items()}
-        # Accelerations first: they contain the velocities, and these the coordinates.
+        # Accelerations first: as derivatives, they contain the velocities, and these contain the coordinates.
         values |= dict(zip([item.diff(symbolic.t) for item in symbolic.qdot.values()], derived["acceleration"]))
         values |= dict(zip(symbolic.qdot.values(), qdot))
         values |= dict(zip(functions, q))
