@@ -270,7 +270,7 @@ impl Differentiator<'_> {
             .and_then(|tangents| derivatives(system, run.t, &run.state, tangents)))
     }
 
-    /// The direction of a variable, in the state and the parameters.
+    /// The tangent vector of a variable, in state and parameters.
     fn direction<S: Instance + Variational>(
         &self,
         system: &S,
@@ -287,7 +287,7 @@ impl Differentiator<'_> {
         }
     }
 
-    /// The direction of a variable in the state that is composed of positions and velocities.
+    /// The same for a state that is computed from positions and velocities.
     fn composed<S: Instance + Variational>(
         &self,
         system: &S,

@@ -4,8 +4,8 @@ use super::{Along, Chart, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
-/// Quantity that a state keeps when parameters change. A state holds momenta or quasi-velocities, and other
-/// parameters give them other velocities.
+/// Quantity that a state keeps when parameters change. A state holds momenta or quasi-velocities. With other
+/// parameters, the same momenta belong to other velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
     /// The velocities: a body whose mass is exchanged keeps its speed.
@@ -75,7 +75,7 @@ pub trait System: VectorField {
     /// Positions q.
     fn position(&self, state: &Self::State) -> Self::Vector;
 
-    /// Velocities `qdot = g^{-1}(p - A)`.
+    /// Velocities `qdot = g^{-1}(p - A)`. `A` is the part of the Lagrangian that is linear in the velocities.
     ///
     /// # Errors
     /// [`Fault::MetricNotPositive`].

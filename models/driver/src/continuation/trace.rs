@@ -150,7 +150,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     fn approached(&mut self, start: Node) -> Result<Result<Node, BranchEnd>, Failure> {
         let [low, high] = self.extent.limits();
         let from = start.parameter();
-        // The branch may move away from the range by the same distance.
+        // The branch may first move away from the range, at most by its distance from the range.
         let (limits, is_rising) = match from < low {
             true => ([from - (low - from), low], true),
             false => ([high, from + (from - high)], false),
@@ -465,7 +465,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 }
 
-/// The end of a branch from whose last member even the shortest step fails. `last` are the last two members.
+/// The end of a branch from whose last member even the shortest step fails. `last`: its last two members.
 fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     let grazed = failures.iter().rev().find_map(|failure| match failure {
         Failure::Itinerary(surface) => Some(*surface),

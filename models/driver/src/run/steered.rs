@@ -200,7 +200,7 @@ fn run<'f, 'c>(
     Ok(ending(ends, Solved { run, step, laws }, settings))
 }
 
-/// Observes a system with input functions as the system without them.
+/// Observer of the system with input functions that forwards to an observer of the system without them.
 struct Driver<'a, 'f, R>(Bridge<'a, Plain<'f>, R>);
 
 /// The values at states, with the inputs at these states.
