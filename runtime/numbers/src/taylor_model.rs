@@ -137,7 +137,7 @@ impl TaylorModel {
         }
     }
 
-    /// All values on the stretch.
+    /// Enclosure of all values on the stretch.
     pub fn range(&self) -> Interval {
         let [middle, first, second, third] = self.powers;
         let reach = (first.abs() + third.abs() + self.error) * (1.0 + ROUNDING);
@@ -149,7 +149,7 @@ impl TaylorModel {
         }
     }
 
-    /// All derivatives with respect to `s`, and all slopes of chords.
+    /// Enclosure of all derivatives with respect to `s`, and of all slopes of chords.
     pub fn rates(&self) -> Interval {
         let [_, first, second, third] = self.powers;
         let turns = Interval::new(first + 3.0 * third.min(0.0), first + 3.0 * third.max(0.0));
@@ -164,13 +164,13 @@ impl TaylorModel {
         }
     }
 
-    /// The largest distance of the cubic from its middle value.
+    /// Bound of the distance of the cubic from its middle value.
     #[inline(always)]
     fn spread(&self) -> f64 {
         self.powers[1].abs() + self.powers[2].abs() + self.powers[3].abs()
     }
 
-    /// The largest rate of the cubic.
+    /// Bound of the rate of the cubic.
     #[inline(always)]
     fn steepness(&self) -> f64 {
         self.powers[1].abs() + 2.0 * self.powers[2].abs() + 3.0 * self.powers[3].abs()
@@ -285,7 +285,7 @@ impl TaylorModel {
         }
     }
 
-    /// The largest distance of all values from the middle of the cubic.
+    /// Bound of the distance of all values from the middle value of the cubic.
     #[inline(always)]
     fn radius(&self) -> f64 {
         (self.spread() + self.error) * (1.0 + ROUNDING)
