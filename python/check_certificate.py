@@ -1,32 +1,33 @@
 #!/usr/bin/env python3
 """Checks certificates of dalembert: `dalembert check MODEL --certificate FILE`, then `check_certificate.py FILE ..`.
 
-A certificate holds a declaration written out in coordinates, and the verdicts on its claims. Nothing of the generator is
-used here. Equations of motion are set up from the Lagrangian and the constraints by numerical differentiation, with as many
-digits as that takes, and every claim that was proved is tested at random states:
+A certificate holds a declaration written out in coordinates, and the verdicts on its claims. This program uses nothing
+of the generator. It sets up the equations of motion from the Lagrangian and the constraints by numerical differentiation in 120 or
+220 digits, and tests every claim that was proved at random states:
 
-  conserved          d/dt of the quantity along the motion is 0 (or, if it is claimed to change, is not)
+  conserved          d/dt of the quantity along the motion is 0 (or, if the claim is that it changes, is not 0)
   conserved under    the quantity is the same before and after an impact or a transition
   density            the density times mu_C satisfies Liouville's equation
-  exact              the same for the closed form exp(G); what G takes logarithms of is enclosed away from 0
-  no_density         brackets of the fields of D: one of them is a combination of others, and its demand is not
-  locally_exact      all demands of brackets are those of a function, as far as the brackets are independent
+  exact              the same for the closed form exp(G); every argument of a logarithm in G is enclosed away from 0
+  no_density         a density prescribes its logarithmic derivative along the fields of D and along their brackets; the prescribed
+                     values contradict each other
+  locally_exact      the same values do not contradict each other
   symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints, or commutes with the rates
-  volume_kept        the density satisfies Liouville's equation, and the motion through each surface has the derivative that keeps it
-  factor             the determinant of the derivative of the motion through the surface, times the densities
-  symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt; with constraints dp dq, on all states
-                     or on the leaves of integrable ones
+  volume_kept        the density satisfies Liouville's equation, and the motion through each surface keeps its volume
+  factor             it is the determinant of the derivative of the motion through the surface, times the ratio of the densities
+  symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt; with constraints, the motion keeps
+                     dp dq on all states, or on the leaves if the constraints are integrable
   invariant_form     the form is the same on vectors that the motion carries along, between surfaces and through each of them
-  involution         the Poisson bracket of functions that are made constant along the constraint forces is 0 on D
+  involution         the Poisson bracket of the functions, extended from D as constants along the constraint forces, is 0 on D
   integrable         the same, each function is conserved between surfaces and through each of them, and their differentials are
                      independent
   energy_not_increasing  the energy after an impact is not above that before
 
-States that are random cannot prove an identity, but a false one passes only where it holds to some forty digits. Only the
-standard library of Python is used.
+Random states cannot prove an identity, but a false one passes only where it holds to 28 digits (18 to 20 for symmetries,
+forms and maps through surfaces). Only the standard library of Python is used.
 
-A claim is said to be `holds`, `FAILED`, `partly` (what can be checked holds), `unchecked` (of a kind that is not) or `open` (it was
-not proved). Exit status: 0 if nothing failed, 1 if a claim failed, 2 if a file cannot be read.
+The verdict on a claim is `holds`, `FAILED`, `partly` (the part that can be checked holds), `unchecked` (this kind of claim is not
+checked) or `open` (the claim was not proved). Exit status: 0 if nothing failed, 1 if a claim failed, 2 if a file cannot be read.
 """
 
 import argparse
@@ -41,7 +42,7 @@ from decimal import (
 from functools import lru_cache
 
 FORMAT = "dalembert certificate 2"
-# What can be checked of a claim holds, and something is left.
+# The part of a claim that can be checked holds; the rest is not checked.
 PARTLY = "partly"
 STATES = 3
 ATTEMPTS = 200
@@ -388,7 +389,7 @@ def moved(point, direction, h):
 # The motion ------------------------------------------------------------------------------------------------------------
 
 class Model:
-    """A declaration, and what follows from it. A state is a list `[t, q.., v.., parameters..]`."""
+    """A declaration, and the quantities that follow from it. A state is a list `[t, q.., v.., parameters..]`."""
 
     def __init__(self, content):
         self.q = [item["name"] for item in content["coordinates"]]
@@ -410,21 +411,21 @@ class Model:
         self.constraints = [self.constraint(item) for item in content["constraints"]]
         self.is_nonlinear = any(item["nonlinear"] is not None for item in content["constraints"])
         self.surfaces = content["surfaces"]
-        #: Surfaces behind which the motion goes on, by index.
+        #: Indices of the surfaces at which the motion does not end.
         self.acting = [index for index, surface in enumerate(self.surfaces) if surface["law"] != "stop"]
         self.density = content["density"]
         self.parts = {}
         self.precision = SIMPLE
 
     def constraint(self, entry):
-        """The components of a form and its affine part, or nothing and a function of the state."""
+        """The components of a form and its affine part; for a nonlinear constraint, None and the function of the state."""
         if entry["nonlinear"] is not None:
             return None, self.names.compile(entry["nonlinear"])
         form = [self.names.compile(item) for item in entry["form"]]
         return form, self.names.compile(entry["affine"])
 
     def within(self, surface):
-        """The model with the instantaneous constraints of a surface beside its own."""
+        """The model with the instantaneous constraints of a surface in addition to its own."""
         added = surface.get("instantaneous")
         if not added:
             return self
@@ -482,7 +483,7 @@ class Model:
         return [self.form_at(state, *item) for item in self.constraints]
 
     def form_at(self, state, form, phi):
-        """The form, or the derivative of the function by the velocities (Chetaev's rule)."""
+        """The form; for a nonlinear constraint, its derivative with respect to the velocities (Chetaev's rule)."""
         if form is None:
             return [self.derivative(phi, state, self.along(state, 0, None, self.axis(i))) for i in range(self.n)]
         return [item(state) for item in form]
@@ -547,7 +548,7 @@ class Model:
         return Decimal(source.randint(1, 9999)) / 10000 * (high - low) + low
 
     def random_state(self, source, given):
-        """A random state on the constraints, with the given values where there are some."""
+        """A state on the constraints, with random values except the given ones."""
         state = [self.number(source, Decimal(-1), Decimal(1))]
         for item in self.coordinates:
             low, high = Decimal("-1.6"), Decimal("1.6")
@@ -576,7 +577,7 @@ class Model:
         return self.number(source, Decimal("0.2"), Decimal("1.4")) * source.choice((1, -1))
 
     def on_constraints(self, state):
-        """With velocities changed as little as possible."""
+        """The state with velocities that satisfy the constraints, changed as little as possible."""
         if self.rates is not None or not self.constraints:
             return state
         for _ in range(40 if self.is_nonlinear else 1):
@@ -593,7 +594,7 @@ class Model:
 
     # The volume mu_C.
     def dependent(self, state):
-        """The places of dependent velocities that are safe here."""
+        """The indices of velocities that the others determine at this state, through a matrix that is not nearly singular."""
         if not self.constraints:
             return []
         rows, chosen = [list(item) for item in self.forms_at(state)], []
@@ -624,7 +625,7 @@ class Model:
         return self.with_velocities(state, v)
 
     def reached(self, state, given, dependent):
-        """The state near by with the given velocities that satisfies constraints that are not linear (Newton's method)."""
+        """The nearby state with the given velocities that satisfies nonlinear constraints (Newton's method)."""
         v = [given.get(i, item) for i, item in enumerate(self.velocities(state))]
         state = self.with_velocities(state, v)
         for _ in range(40):
@@ -675,7 +676,7 @@ EVERYTHING = (Decimal("-Infinity"), Decimal("Infinity"))
 
 
 def enclosure(tree, box):
-    """An interval that holds the values of an expression over a box of intervals by name."""
+    """An interval that contains the values of an expression over a box, which has an interval for each name."""
     kind = tree[0]
     if kind == "number":
         value = Decimal(tree[1])
@@ -773,7 +774,7 @@ def called(name, arguments):
 
 
 def is_exponential(tree):
-    """Whether an expression is a product of exponentials and numbers, which is never 0."""
+    """True if an expression is a product of exponentials, hyperbolic cosines and numbers, which is never 0."""
     kind = tree[0]
     if kind == "number":
         return Decimal(tree[1]) != 0
@@ -783,7 +784,7 @@ def is_exponential(tree):
 
 
 def excludes_zero(tree, box, depth):
-    """Whether an expression is not 0 anywhere in a box, by halving its longest side."""
+    """True if an expression is proved to be nowhere 0 in a box, whose longest side is halved as often as `depth`."""
     if is_exponential(tree):
         return True
     low, high = enclosure(tree, box)
@@ -809,7 +810,7 @@ def excludes_zero(tree, box, depth):
 # Claims ----------------------------------------------------------------------------------------------------------------
 
 def states(model, source, test, count=STATES, at=None):
-    """Calls `test` at random states until it has worked at `count` of them, or at one that is given; gives its answers."""
+    """Calls `test` at random states, with the values `at` if given, until it has answered `count` times. Returns the answers."""
     answers = []
     for _ in range(ATTEMPTS):
         try:
@@ -848,7 +849,7 @@ def across(model, surface, text, state):
 
 
 def arrived(model, surface, state):
-    """A state near this one that comes to the surface, with the slope of the gap and its rate."""
+    """A state on the surface near this one that approaches it, with the gradient of the gap and its rate."""
     gap = model.names.compile(surface["gap"])
     gradient = lambda s: [model.derivative(gap, s, model.along(s, 0, model.axis(i))) for i in range(model.n)]
     for _ in range(60):
@@ -878,14 +879,14 @@ def rate_of(model, gap, slope, state):
 
 
 def counts(model, surface, state):
-    """Whether a surface counts at a state: by its own conditions, and where none of the lists of other surfaces holds."""
+    """True if a surface counts at a state: its own conditions hold, and no list of conditions that excludes it does."""
     value = lambda text: model.names.compile(text)(state)
     is_excluded = any(all(value(item) >= 0 for item in others) for others in surface["excluded"])
     return all(value(item) > 0 for item in surface["when"]) and not is_excluded
 
 
 def landed(model, surface, state, slope, rate):
-    """The mode that the motion goes on in, and its state after the impact."""
+    """The mode in which the motion continues, and its state after the impact."""
     transition = surface["transition"]
     if transition is not None:
         return passed(model, model.mode(transition["enters"]), transition, state, slope, rate)
@@ -899,7 +900,7 @@ def landed(model, surface, state, slope, rate):
 
 
 def passed(model, entered, transition, state, slope, rate):
-    """The state behind a transition: as declared, or as mechanics continues the motion."""
+    """The mode behind a transition and its state: as declared, or by refraction or reflection and the constraints."""
     declared = transition["state"]
     if declared is not None:
         values = {name: [model.names.compile(item)(state) for item in declared[name]] for name in ("q", "qdot")}
@@ -930,7 +931,7 @@ def nearest(model, state):
 
 
 def refracted(model, entered, state, slope, rate):
-    """The velocity behind the surface for the momentum `p + c pi_D^* dh` at which the energies differ by `-c dh/dt`; nothing where there is none."""
+    """The velocity behind the surface for the momentum `p + c pi_D^* dh` at which the energies differ by `-c dh/dt`, or None."""
     momentum, normal = model.momentum_at(state), projected_normal(model, slope, state)
     push = [dot(row, normal) for row in model.metric_at(state)]
     after = entered.state_of(model, state, model.positions(state), model.velocities(state))
@@ -938,7 +939,7 @@ def refracted(model, entered, state, slope, rate):
     moving = rate - dot(slope, model.velocities(state))
 
     def excess(c):
-        """By how much the energy behind is too large, a quadratic function of c."""
+        """Excess of the energy behind the surface, a quadratic function of c, and the velocity there."""
         velocity = solve(g, [p + c * by - a for p, by, a in zip(momentum, push, linear)])
         energy = entered.energy_at(entered.with_velocities(after, velocity))
         return energy - model.energy_at(state) + c * moving, velocity
@@ -1002,7 +1003,7 @@ class Crossing:
         size = len(self.coordinates(self.before, 0))
         carried = [self.derivative(i) for i in range(size)]
         incoming, outgoing = self.motion(self.before, 0), self.motion(self.after, 1)
-        # What the map makes of the motion before is replaced by the motion after.
+        # The saltation term replaces the image of the motion before the surface by the motion after it.
         image = [dot(column, incoming) for column in zip(*carried)]
         gap = model.names.compile(surface["gap"])
         self.columns = []
@@ -1031,7 +1032,7 @@ class Crossing:
         return [(a - b) / (2 * h) for a, b in zip(*ends)]
 
     def derivative(self, i):
-        """The derivative of the map by a coordinate, as a formula that is defined near the surface."""
+        """The derivative with respect to a coordinate of the map at the surface, whose formula is defined near the surface, too."""
         model, entered = self.models
         h, start, ends = model.precision.h, self.coordinates(self.before, 0), []
         gap = model.names.compile(self.surface["gap"])
@@ -1052,7 +1053,7 @@ class Crossing:
         return [Decimal(1), *model.velocities(state), *(acceleration[i] for i in self.independent(side))]
 
     def factor(self, densities):
-        """By how much the volume of a density is multiplied; by 0 where a motion of first order slides, as the gap rates have other signs."""
+        """The factor of the volume; 0 if a first-order motion slides, because the gap rates on both sides differ in sign."""
         ends = list(zip(self.models, (self.before, self.after), self.dependent))
         weights = [Decimal(1) if mode.rates else mode.weight(state, dependent) for mode, state, dependent in ends]
         values = [density(state) * weight for density, (_, state, _), weight in zip(densities, ends, weights)]
@@ -1086,12 +1087,12 @@ class Crossing:
 
 
 def density_of(model, text):
-    """The density of a text, 1 without one."""
+    """The density that a text states; 1 without a text."""
     return (lambda state: Decimal(1)) if text is None else model.claimed(text)
 
 
 def densities_of(model, surface, density):
-    """The densities before and after: that which the claims of the entered mode state, 1 if they state none."""
+    """The densities before and after. Behind a transition, the claims of the entered mode state it; 1 if they state none."""
     if surface["transition"] is None:
         return density, density
     entered = model.mode(surface["transition"]["enters"])
@@ -1113,7 +1114,7 @@ def check_factor(model, claim, source):
 
 
 def constrained_to_less(model, surface, stated, source):
-    """Whether instantaneous constraints hold that the others do not imply: volumes become 0."""
+    """True if the stated factor is 0 and the other constraints do not imply the instantaneous ones, which map volumes to 0."""
     def ranks(state):
         forms, m = model.forms_at(state), len(model.constraints)
         extra = [[model.names.compile(item)(state) for item in entry["form"]] for entry in surface["instantaneous"]]
@@ -1123,7 +1124,7 @@ def constrained_to_less(model, surface, stated, source):
 
 
 def check_kept(model, claim, source):
-    """One volume of the motion, of all impacts and of all transitions."""
+    """The motion, all impacts and all transitions keep one volume."""
     closed = claim.get("density")
     density = density_of(model, model.density) if closed is None else closed_density(model, closed)
     holds, text = balanced(model, source, density)
@@ -1135,8 +1136,8 @@ def check_kept(model, claim, source):
 
 
 def check_symplectic(model, claim, source):
-    """The forces are closed, and all that happens at surfaces keeps `dp dq - dH dt`; with constraints `dp dq` as a form on their states, or
-    on the leaves of constraints that are integrable."""
+    """The forces are closed, and the motion through each surface keeps `dp dq - dH dt`. With constraints, the motion keeps `dp dq`
+    as a form on all their states, or on the leaves if they are integrable."""
     if model.rates is not None:
         raise NotChecked("the symplectic form belongs to mechanical systems")
     entered = [model.mode(item["transition"]["enters"]) for item in model.surfaces if item["transition"] is not None]
@@ -1160,7 +1161,7 @@ def check_symplectic(model, claim, source):
 
 
 class Chart:
-    """Positions and independent velocities near a state, with the time before them."""
+    """Coordinates near a state: the time, the positions, the independent velocities."""
 
     def __init__(self, model, state, dependent=None):
         self.model, self.state = model, state
@@ -1182,7 +1183,7 @@ class Chart:
         return self.model.completed(state, z[1 + n:], self.dependent)
 
     def along(self, z, vector):
-        """The direction of states that a vector of coordinates stands for."""
+        """The tangent vector of states that has these components in the chart."""
         h = self.model.precision.h
         ends = [self.at(moved(z, vector, sign * h)) for sign in (1, -1)]
         return [(a - b) / (2 * h) for a, b in zip(*ends)]
@@ -1208,7 +1209,7 @@ def symplectic_terms(model):
 
 
 def are_integrable(model, source):
-    """Whether the derivatives of `eta + eta_0 dt` vanish on all pairs of fields that these forms annihilate (Frobenius)."""
+    """True if the derivatives of `eta + eta_0 dt` vanish on all pairs of fields that these forms annihilate (Frobenius)."""
     if model.is_nonlinear:
         return False
 
@@ -1233,14 +1234,14 @@ def are_integrable(model, source):
 
 
 def check_form(model, claim, source):
-    """The form on vectors that the motion carries along, between surfaces and through each of them."""
+    """The form is constant on vectors that the motion carries along, between surfaces and through each of them."""
     def terms_of(mode):
         return [(mode.claimed(item["coefficient"]), [mode.claimed(f) for f in item["differentials"]]) for item in claim["terms"]]
     return kept_form(model, terms_of, source)
 
 
 def along_leaves(chart, vectors):
-    """The vectors of a chart with other positions, so that all constraint forms vanish on these."""
+    """The vectors of a chart with the dependent positions changed so that all constraint forms vanish on them."""
     if not chart.dependent:
         return vectors
     forms, found = chart.model.forms_at(chart.state), []
@@ -1256,8 +1257,8 @@ def along_leaves(chart, vectors):
 
 
 def kept_form(model, terms_of, source, is_along_leaves=False, assumed=()):
-    """The form of a mode on vectors that the motion carries along; if asked, along leaves of the constraints alone. Modes that are `assumed` are
-    being examined, and are taken to keep the form on all of their states."""
+    """The form of a mode is constant on vectors that the motion carries along, on all vectors or on those tangent to the leaves of
+    the constraints. Modes in `assumed` are being examined; they are taken to keep the form on all their states."""
     terms = terms_of(model)
     degree = len(terms[0][1])
     on_leaves = {}
@@ -1277,7 +1278,7 @@ def kept_form(model, terms_of, source, is_along_leaves=False, assumed=()):
         return (ends[0] - ends[1]) / (2 * h)
 
     def needs_leaves(entered):
-        """Whether a mode keeps the form on the leaves of its constraints alone: its motion and its surfaces, with the modes behind these."""
+        """True if a mode, with its surfaces and the modes behind them, keeps the form only on the leaves of its constraints."""
         if entered is model:
             return is_along_leaves
         if terms_of is not symplectic_terms or not entered.constraints or entered in assumed:
@@ -1376,7 +1377,7 @@ def check_exact(model, claim, source):
     closed = claim.get("density")
     if closed is None:
         holds, text = check_hull(model, source, exists=True)
-        # The demands are those of a function locally; whether it is one on Q is left.
+        # Locally, a function has the prescribed derivatives. Its existence on all of Q is not checked.
         is_local = claim["kind"] == "locally_exact"
         return (holds if is_local or not holds else PARTLY), f"{text}; no closed form, periods are not checked"
     density = closed_density(model, closed)
@@ -1392,7 +1393,7 @@ def check_exact(model, claim, source):
 
 
 def is_regular(model, text):
-    """Whether the function is nowhere 0, at the declared parameters where there are some."""
+    """True if the function is proved to be nowhere 0, for the declared values of the parameters that have one."""
     box = {}
     for item in model.coordinates:
         low, high = EVERYTHING
@@ -1427,7 +1428,8 @@ def is_single_valued(model, density, source):
 
 
 def check_hull(model, source, exists, at=None):
-    """Brackets of the fields of D with what a density demands of them."""
+    """True if the ranks of the brackets of the fields of D, without and with the derivative of ln(density) that each prescribes,
+    show that a density exists locally or, for `exists=False`, that none does."""
     if model.rates is not None or model.is_nonlinear:
         raise NotChecked("densities belong to mechanical systems with linear constraints")
     bends = states(model, source, lambda state: bend(model, state), 1, at)[0]
@@ -1523,12 +1525,12 @@ def check_symmetry(model, claim, source):
         return all(is_small(item, 1, 20) for item in found), f"largest defect {float(max(map(abs, found))):.1e}"
 
     def change(state):
-        """The derivative of L along the lifted flow."""
+        """The derivative of L along the flow, lifted to velocities."""
         spread = model.derivative(at, state, model.along(state, 0, model.velocities(state)))
         return model.derivative(model.lagrangian_at, state, model.along(state, 0, at(state), spread))
 
     def gauge_at(state):
-        """Coefficients of the change, which has to be linear in the velocities and closed."""
+        """Coefficients of the velocities in the change of L. The change must be affine in them, with closed coefficients."""
         rest = change(model.with_velocities(state, [Decimal(0)] * model.n))
         return [change(model.with_velocities(state, model.axis(i))) - rest for i in range(model.n)]
 
@@ -1556,7 +1558,7 @@ def check_symmetry(model, claim, source):
 
 
 def on_d(model, state):
-    """The velocity in D of positions and momenta: the one of the momenta, projected along the constraint forces."""
+    """The state in D as a function of positions and momenta: the momenta are projected onto D along the constraint forces."""
     n = model.n
 
     def velocity(z):
@@ -1650,7 +1652,7 @@ def is_prime(n):
 
 
 def judged(model, claim, source):
-    """The word for a claim, and why."""
+    """The verdict on a claim, and its reason."""
     if claim["verdict"] != "proved":
         return "open", claim["verdict"]
     if not all(is_prime(item) and item > 2 ** 60 for item in claim["primes"]):

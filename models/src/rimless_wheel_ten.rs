@@ -1,8 +1,9 @@
-//! A rimless wheel with ten spokes of different lengths that rolls down a slope. Each spoke that stands is a mode.
+//! A rimless wheel with ten spokes of different lengths rolls down a slope. There is one mode for each stance spoke.
 //!
-//! Facts: on one spoke the wheel is an inverted pendulum. When the next spoke lands, the wheel loses speed. The square
-//! of the rate is mapped affinely from turn to turn, so that there is one limit cycle, to which every motion tends that
-//! does not stop. Source: W. Clark, thesis, section 4.3 and Table 4.2, with the angles of the triangles between feet
-//! and hub by the law of cosines.
+//! Facts: on one spoke the wheel is an inverted pendulum, and it loses speed when the next spoke lands. The square of
+//! the angular rate changes from turn to turn by an affine map. There is therefore one limit cycle, and every motion
+//! that does not stop converges to it.
+//! Source: W. Clark, thesis, section 4.3 and Table 4.2. The angles of the triangles between feet and hub follow from
+//! the law of cosines.
 
 dalembert::model_file!("src/rimless_wheel_ten.dal");

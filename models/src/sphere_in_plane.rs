@@ -1,4 +1,5 @@
-//! A point on a plane in which a hemisphere replaces a disk, projected onto the plane: the metric changes at a circle.
+//! A point on a plane in which a spherical cap replaces a disk, in coordinates of the plane: the metric changes at a
+//! circle.
 //!
 //! Facts: motions are straight lines outside, and great circles inside. At the circle, the momentum along it and the
 //! energy are conserved. Source: W. Clark and A. Bloch, Example 3, with the metric `1 + x^2/(1 - x^2 - y^2)` of the

@@ -1,4 +1,4 @@
-"""Moving pictures of runs: by matplotlib, and in a canvas of HTML."""
+"""Animations of runs, with matplotlib and on an HTML canvas."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
     from ._run import Run
 
-#: Points of the grid on which a border that moves is looked for.
+#: Points per side of the grid on which a moving border is computed.
 COARSE = 90
 
-#: Points of a path in a page of HTML.
+#: About the number of points of a path on an HTML page.
 POINTS = 4000
 
 
 @dataclass(frozen=True)
 class Curve:
-    """What one line of the picture shows: the path with its times, the place of its head in each frame, the impacts."""
+    """One line of the picture: the path with its times, the position of its head in each frame, the impacts."""
 
     label: str
     times: np.ndarray
@@ -39,7 +39,7 @@ class Curve:
 
 
 class Animation:
-    """A moving picture of a run. In a notebook it plays in a canvas, which needs no library.
+    """An animation of a run. In a notebook it plays on a canvas, which needs no library.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Animation:
     times : array
         Times of the frames, equally spaced.
     fps : float
-        Frames in a second.
+        Frames per second.
     """
 
     def __init__(self, run: Run, duration: float, fps: float) -> None:
@@ -58,7 +58,7 @@ class Animation:
         self.fps = fps
         self.times = np.linspace(0.0, run.outcome.t, max(2, round(duration * fps)))
 
-    # What is shown ---------------------------------------------------------------------------------------------------------
+    # Content ---------------------------------------------------------------------------------------------------------------
 
     @cached_property
     def curves(self) -> tuple[Curve, ...]:
@@ -78,7 +78,7 @@ class Animation:
 
     @cached_property
     def labels(self) -> tuple[str, str]:
-        """What the axes show."""
+        """The labels of the axes."""
         view = self.run.model.view
         if view is not None:
             return tuple(view[0])
@@ -99,7 +99,7 @@ class Animation:
 
     @cached_property
     def borders(self) -> tuple[np.ndarray, ...]:
-        """The border of the declared region as segments: once, or for each frame where it moves."""
+        """The border of the declared region as segments: one array, or one for each frame if the border moves."""
         view = self.run.model.view
         if view is None or view[1] is None or not view[2]:
             return ()
@@ -111,17 +111,17 @@ class Animation:
     # By matplotlib ---------------------------------------------------------------------------------------------------------
 
     def to_matplotlib(self, ax: Axes | None = None) -> FuncAnimation:
-        """The animation by matplotlib. Keep what is returned as long as it is to play.
+        """The animation with matplotlib. Keep a reference to the result while it plays.
 
         Parameters
         ----------
         ax : matplotlib axes, optional
-            Where to draw.
+            The axes to draw on. Default: those of a new figure.
 
         Returns
         -------
         matplotlib.animation.FuncAnimation
-            With a method ``save``.
+            The animation. Its method ``save`` writes a file.
         """
         import matplotlib.pyplot as plt
         from matplotlib.animation import FuncAnimation
@@ -154,14 +154,14 @@ class Animation:
         return FuncAnimation(ax.figure, draw, frames=len(self.times), interval=1000 / self.fps)
 
     def save(self, path: str, **arguments: Any) -> None:
-        """Write the animation to a file, by matplotlib: ``run.gif``, ``run.mp4``; or as a page, ``run.html``.
+        """Write the animation to a file with matplotlib (``run.gif``, ``run.mp4``), or as a page (``run.html``).
 
         Parameters
         ----------
         path : str
             The file.
         **arguments
-            For ``FuncAnimation.save``.
+            Further arguments of ``FuncAnimation.save``.
         """
         if str(path).endswith(".html"):
             with open(path, "w", encoding="utf-8") as file:
@@ -176,7 +176,7 @@ class Animation:
     # In a page -------------------------------------------------------------------------------------------------------------
 
     def data(self) -> dict[str, Any]:
-        """What the page plays, as data of JSON."""
+        """The data that the page plays, for JSON."""
         left, right, low, high = self.box
         shown = self.run.model.view is not None
         shape = (high - low) / (right - left) if shown else 0.5
@@ -214,7 +214,7 @@ def _curve(curve: Curve) -> dict[str, Any]:
 
 
 def _numbers(values: np.ndarray) -> list[Any]:
-    """Six digits of each number; null for what is none."""
+    """Six digits of each number; None for a number that is not finite."""
     if values.ndim > 1:
         return [_numbers(row) for row in values]
     return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values.tolist()]

@@ -38,18 +38,18 @@ class Normal:
 
 @dataclass(frozen=True)
 class Statistics:
-    """Statistics of a column over all members: those of its finite numbers, correctly rounded from exact sums.
+    """Statistics of the finite numbers in a column over all members, correctly rounded from exact sums.
 
     Attributes
     ----------
     count : int
-        Finite numbers.
+        Number of finite numbers.
     mean : float
-        Their mean; NaN without any.
+        Their mean; NaN if there are none.
     std : float
-        Their standard deviation, with ``count - 1``; NaN below two.
+        Their standard deviation, with the divisor ``count - 1``; NaN if there are fewer than two.
     least, greatest : float
-        The extremes; NaN without any.
+        The extremes; NaN if there are none.
     """
 
     count: int
@@ -68,14 +68,14 @@ class Density:
     names : tuple of str
         The two quantities.
     edges : tuple of numpy.ndarray
-        Edges of the cells along each.
+        Edges of the cells along each of them.
     counts : numpy.ndarray
         Numbers of states; rows belong to the second quantity, from its least values on.
     outside : int
-        States outside of the cells.
+        Number of states outside of the cells.
     convergence : tuple of mapping of str to float
-        For 1/16, 1/8, .. 1 of the states: the total variation distance between the densities of two halves by time and by
-        members, and that of as many independent states.
+        For 1/16, 1/8, .. 1 of the states: the total variation distance between the densities of two halves, divided by time and
+        by members, and the distance expected for as many independent states.
     """
 
     names: tuple[str, str]
@@ -117,7 +117,7 @@ class Ensemble:
         Returns
         -------
         Ensemble
-            The same as the one that was returned then.
+            The ensemble as :meth:`Model.ensemble` returned it.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Ensemble:
 
     @property
     def directory(self) -> Path:
-        """The directory. Without one that was given it is removed with this object."""
+        """The directory. A temporary one is removed with this object."""
         return self._directory.path
 
     @property
@@ -164,7 +164,7 @@ class Ensemble:
 
     @property
     def density(self) -> Density | None:
-        """The density; None where none was asked for."""
+        """The density; None if none was requested."""
         import numpy as np
 
         told = self._summary["density"]
@@ -251,46 +251,47 @@ class Swept:
     ) -> Ensemble:
         """Run the model many times, each time with another start or other parameters, on any executor.
 
-        Rows and sums are the same, to the bit, for any executor, any number of workers and any sizes of units, after any losses and
-        interruptions; rows are those of the command ``ensemble``.
+        Rows and statistics are the same, to the bit, for every executor, every number of workers and every division of the work,
+        also after lost workers and interruptions. The rows are those of the command ``ensemble``.
 
         Parameters
         ----------
         vary : mapping of str to object, optional
             Values of coordinates and velocities at the start and of parameters, by name. ``(low, high, count)`` are equally spaced
-            values, both ends included; ``(low, high)`` as many as `members`; a list is its values. Several names make all
-            combinations, the last one changing fastest. With `seed`, ``(low, high)`` is uniform and ``Normal(mean, deviation)``
-            normal.
+            values, both ends included, ``(low, high)`` the same with `members` values, a list the values themselves. Several names
+            make all combinations, the last one changing fastest. With `seed`, values are drawn from the uniform distribution for
+            ``(low, high)``, from the normal one for ``Normal(mean, deviation)``.
         members : int, optional
             Number of members.
         seed : int, optional
             Draw the values at random. A member depends on the seed and on its index alone.
         table : mapping of str to sequence of float, optional
-            Columns with a row for each member in place of `vary`; a table of pandas is one.
+            Columns by name, with one row for each member, instead of `vary`; a table of pandas, for example.
         executor : executor or callable, optional
             Anything with the `submit` of :mod:`concurrent.futures`: a pool of processes, ``client.get_executor()`` of Dask,
-            ``MPIPoolExecutor``, an executor of loky or submitit. A function that makes one is asked for another after a loss. All
-            processors of this machine by default.
+            ``MPIPoolExecutor``, an executor of loky or submitit. Or a function that makes an executor; it is called again if the
+            executor breaks. Default: threads on all processors of this machine.
         directory : path, optional
-            Where the parts are kept. One that holds parts of the same ensemble is continued. A temporary one by default.
+            Directory in which results are kept in parts. If it holds parts of the same ensemble, the ensemble is continued.
+            Default: a temporary directory.
         density : sequence or mapping, optional
             Two quantities over which states of all members are counted: ``("x", "y")``, or with ranges ``{"x": (-1, 1), "y": None}``.
             Ranges that are not given come from short runs of a few members.
         bins : int or tuple of int, default 100
-            Cells along each.
+            Number of cells along each quantity.
         every, discard : float, default 1 and 0
-            Time between the states that are counted, and before the first.
+            Time between counted states, and time at the start that is left out. The first state is counted at ``discard + every``.
         unit : float, default 10
-            Seconds that a call in a worker should take. Numbers of members come from the measured pace; no call goes on beyond six
-            times this, but for the member that it is at.
+            Seconds that a call in a worker should take. The number of its members follows from the measured pace. A call that takes
+            six times as long ends after its current member.
         retries : int, default 3
-            Workers that one unit may lose before the ensemble is given up.
+            Number of workers that the same members may lose before the ensemble is given up.
         workers : int, optional
-            Number of workers, where the executor does not tell it.
+            Number of workers. Default: the number that the executor reports, or that of the processors.
         progress : bool, default False
             Show how many members are done, by tqdm.
         **course
-            What members share, as for :meth:`simulate`: ``until``, ``impacts``, ``state``, ``tol``, ``integrator``, ``law`` and others.
+            Arguments of :meth:`simulate` that all members share: ``until``, ``impacts``, ``state``, ``tol``, ``law`` and others.
 
         Returns
         -------
@@ -302,7 +303,7 @@ class Swept:
         RequestError
             Arguments that are refused; a directory of another ensemble.
         EnsembleError
-            Workers that were lost too often, or failed. Parts that are done stay in the directory.
+            Workers that were lost too often, or failed. Finished parts stay in the directory.
 
         Examples
         --------

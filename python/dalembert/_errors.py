@@ -7,15 +7,15 @@ from typing import Any, Mapping
 
 
 class DalembertError(Exception):
-    """Anything that this package refuses."""
+    """Base class of the exceptions of this package."""
 
 
 class RequestError(DalembertError, ValueError):
-    """A parameter, a state or a run that is refused, in the names of the model."""
+    """A parameter, a state or a run is refused. The message uses the names of the model."""
 
 
 class EnsembleError(DalembertError, RuntimeError):
-    """An ensemble that cannot go on: workers that were lost too often, or files that were altered. Parts that are done are kept."""
+    """An ensemble cannot go on: workers were lost too often, or files were altered. Finished parts are kept."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,11 @@ class Mistake:
     Attributes
     ----------
     message : str
-        What is wrong, and what to write instead.
+        The mistake and its remedy.
     line, column : int
         The place, from 1 on; columns count characters.
     width : int
-        Columns that are wrong in this line.
+        Number of wrong characters in this line.
     counterexample : mapping of str to float, or None
         A state that refutes a claim, parameters included.
     values : mapping of str to float, or None
@@ -50,7 +50,7 @@ class ModelError(DalembertError, ValueError):
     Attributes
     ----------
     text : str
-        All mistakes, each with its line of the text and carets below what is wrong.
+        All mistakes, each with its line of the text and carets below the wrong characters.
     mistakes : tuple of Mistake
         The mistakes as data.
     line, column : int

@@ -25,19 +25,19 @@ _FOREIGN = (";", "{", "}", "//", "/*", "\n")
 
 @dataclass(frozen=True)
 class Event:
-    """An event: a place where a function of the state changes its sign.
+    """An event: a change of sign of a function of the state.
 
     Attributes
     ----------
     function : str or callable
-        An expression of the language in time, coordinates, velocities ``dot(x)``, parameters and what else outputs may have; or a
-        function of ``t``, ``q`` and ``qdot``, which is called 9 times or more in each step.
+        An expression of the language, in the quantities that outputs may contain: time, coordinates, velocities ``dot(x)``,
+        parameters and others. Or a function of ``t``, ``q`` and ``qdot``, which is called 9 times or more in each step.
     direction : int, default 0
-        Positive to count rises alone, negative to count falls alone.
+        Positive: only rises count. Negative: only falls count.
     terminal : bool, default False
         End the run there, with the outcome ``event``.
     name : str, optional
-        The name in tables; without it the expression, or the name of the function.
+        The name in tables. Default: the expression, or the name of the function.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Occurrence:
-    """What a callback on events is given.
+    """The argument of the callback `on_event` of :meth:`Model.simulate`.
 
     Attributes
     ----------
@@ -71,11 +71,11 @@ class Occurrence:
     name : str
         The surface or the event.
     t : float
-        When.
+        The time.
     q, qdot : array
-        The state; at an impact that before it.
+        The state; at an impact, the state before it.
     q_after, qdot_after : array
-        At an impact the state after it, else the same.
+        At an impact, the state after it; otherwise the same state.
     """
 
     kind: str
@@ -88,7 +88,7 @@ class Occurrence:
 
 
 def taken(events: Sequence[Any]) -> tuple[Event, ...]:
-    """Events as they may be given: an expression or a function, one with a direction, or an :class:`Event`."""
+    """The events of a request. Each is an expression, a function, a tuple of one of both and a direction, or an :class:`Event`."""
     found = []
     for event in events:
         if isinstance(event, (str, tuple)) or (callable(event) and not isinstance(event, Event)):
@@ -125,7 +125,7 @@ def watched(model: Model, events: Sequence[Event]) -> _native.NativeModel | None
 
 
 def listener(model: Model, events: Sequence[Event], call: Callable[[Occurrence], Any] | None) -> Callable[..., Any] | None:
-    """What the extension module calls for a callback on events."""
+    """The function that the extension module calls at events; None without a callback."""
     if call is None:
         return None
     surfaces, labels = list(model.surfaces), [event.label for event in events]
@@ -139,7 +139,7 @@ def listener(model: Model, events: Sequence[Event], call: Callable[[Occurrence],
 
 @contextmanager
 def progress(shows: bool, until: float | None, name: str) -> Iterator[Callable[[float], None] | None]:
-    """A function that shows how far a run is: by tqdm where it is installed, else in a line of the terminal."""
+    """A function that shows the progress of a run: by tqdm if it is installed, else in a line of the terminal."""
     if not shows:
         yield None
         return

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from ._model import Model
 
-#: Operations that are no functions of a module by their name in C.
+#: Operations that are not functions of a module under their name in C.
 SIGNS = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "neg": operator.neg, "pow": operator.pow,
 }
@@ -56,7 +56,7 @@ def to_casadi(model: Model, name: str, scene: str | None) -> casadi.Function:
 
 
 def results(module: Any, routine: Sequence[Any], known: Mapping[str, Sequence[Any]]) -> list[Any]:
-    """The results of a function over the numbers of a module that has the functions of C."""
+    """The results of a function of a model, over the numbers of a module that has the functions of C, such as CasADi."""
     _, lines, outputs, _ = routine
     values: dict[int, Any] = {}
 

@@ -1,4 +1,4 @@
-"""The end of a run as a function of numbers, with its derivatives: what `dalembert.jax` and `dalembert.torch` wrap."""
+"""The end of a run as a function of numbers, with its derivatives. `dalembert.jax` and `dalembert.torch` wrap it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class Final:
     """Positions and velocities at the end of a run, as a function of initial values and parameters.
 
-    What is not varied begins as the model declares it, in numbers: a declared start that depends on a varied parameter stays.
+    Initial values that are not varied have the declared numbers, which do not change with a varied parameter.
     """
 
     def __init__(self, model: Model, names: Sequence[str], arguments: dict[str, Any]) -> None:
@@ -38,7 +38,7 @@ class Final:
 
     @property
     def size(self) -> int:
-        """Numbers of an end: positions, then velocities."""
+        """The number of components of an end: positions and velocities."""
         return 2 * len(self.model.coordinates)
 
     def _made(self, values: tuple[float, ...]) -> Run:
@@ -59,10 +59,10 @@ class Final:
         return np.ascontiguousarray(results).reshape(values.shape[:-1] + shape)
 
     def end(self, values: Any) -> np.ndarray:
-        """The ends of the runs with these values."""
+        """The ends of the runs with these values: positions, then velocities."""
         columns = [*self.model.coordinates, *self.model.velocities]
         return self._each(values, (self.size,), lambda run: [run.last[name] for name in columns])
 
     def jacobian(self, values: Any) -> np.ndarray:
-        """Their derivatives, across impacts."""
+        """The derivatives of these ends with respect to the values, across impacts."""
         return self._each(values, (self.size, len(self.names)), lambda run: run.jacobian(self.names))

@@ -1,4 +1,4 @@
-"""Models: what is declared, values of parameters, and what can be done with both."""
+"""Models: declarations with values for their parameters, and computations with them."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Parameter:
     Attributes
     ----------
     name : str
-        The name; a member of a family has its index behind a dot, ``m.3``.
+        The name; a member of a family has its index after a dot, ``m.3``.
     value : float
-        The value of the model at hand; NaN where there is none yet.
+        The value in this model; NaN if it has none.
     default : float or None
         The declared value.
     assumption : str
-        The values that are allowed.
+        The allowed values.
     documentation : str
         The doc comment of the declaration.
     """
@@ -55,7 +55,7 @@ class Parameter:
 
 
 class Model(Swept):
-    """A mechanical system with values for its parameters. Models do not change: other values make another model.
+    """A mechanical system with values for its parameters. Models are immutable: other values make another model.
 
     Values of parameters are attributes: ``disk.m``. Names with dots are items of :attr:`parameters`.
 
@@ -90,7 +90,7 @@ class Model(Swept):
     def _description(self) -> dict[str, Any]:
         return self._native.description()
 
-    # Where models come from ------------------------------------------------------------------------------------------------
+    # Construction ----------------------------------------------------------------------------------------------------------
 
     @classmethod
     def from_text(cls, text: str, name: str | None = None, claims: bool = True, *, file: str = "text") -> Model:
@@ -101,23 +101,23 @@ class Model(Swept):
         text : str
             One or more declarations.
         name : str, optional
-            The model that is meant, where the text declares several; as it is declared or in snake case.
+            Name of the model, as declared or in snake case; needed if the text declares several models.
         claims : bool, default True
-            Examine the claims. Without them a model loads faster, and nothing is known that follows from a claim.
+            Examine the claims. Without them a model loads faster, but facts that follow from a claim are not available.
         file : str, optional
             The name of the text in messages.
 
         Returns
         -------
         Model
-            With the declared values of its parameters.
+            The model with the declared values of its parameters.
 
         Raises
         ------
         ModelError
-            Every mistake of the first stage that found any; claims that are refuted, with a counterexample.
+            The text has mistakes, or a claim is refuted, with a counterexample, or left open.
         RequestError
-            No model of this name, or several without a name; a model that is too large.
+            No model has this name, the text declares several and no name is given, or the model is too large.
         """
         models = [cls(native, claims) for native in _native.load(text, file, claims)]
         if name is None:
@@ -145,7 +145,7 @@ class Model(Swept):
         Returns
         -------
         Model
-            With the declared values of its parameters.
+            The model with the declared values of its parameters.
         """
         text = Path(path).read_text(encoding="utf-8")
         return cls.from_text(text, name, claims, file=os.fspath(path))
@@ -159,12 +159,12 @@ class Model(Swept):
         Parameters
         ----------
         **values : float
-            New values by name; of a name with a dot as ``with_parameters(**{"m.3": 2})``.
+            New values by name. Names with a dot are given as ``with_parameters(**{"m.3": 2})``.
 
         Returns
         -------
         Model
-            This one stays as it is.
+            The new model. This one does not change.
 
         Raises
         ------
@@ -176,20 +176,20 @@ class Model(Swept):
     def with_feedback(self, /, **laws: str) -> Model:
         """The closed loop: the model with inputs replaced by laws in the language.
 
-        The result is a model without these inputs. Whatever a model has, it has too: derivatives, power series, ensembles,
-        machine code. An input that is a Python function belongs into :meth:`simulate`.
+        The result is a model without these inputs. It has everything that a model has: derivatives, power series, ensembles,
+        machine code. To close the loop with a Python function, use `inputs` of :meth:`simulate`.
 
         Parameters
         ----------
         **laws : str
-            Expressions of time, coordinates, velocities, parameters and definitions, by inputs:
-            ``with_feedback(u="-4*x - dot(x)")``; of a member of a family as
+            Expressions in time, coordinates, velocities, parameters and definitions, by input:
+            ``with_feedback(u="-4*x - dot(x)")``. For a member of a family:
             ``with_feedback(**{"thrust[2]": "-x"})``.
 
         Returns
         -------
         Model
-            In the same scene, with the values of the parameters of this one.
+            The closed loop in the same scene, with the same values of the parameters.
 
         Raises
         ------
@@ -210,7 +210,7 @@ class Model(Swept):
         return _restored(text, self._claims, self._scene, self._values())
 
     def scene(self, name: str) -> Model:
-        """A declared scene of this model, with the values of this one.
+        """A declared scene of this model, with the same values of the parameters.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class Model(Swept):
         """
         return self._changed(self._native.in_scene(name), name)
 
-    # What is declared ------------------------------------------------------------------------------------------------------
+    # Declaration -----------------------------------------------------------------------------------------------------------
 
     @property
     def name(self) -> str:
@@ -263,7 +263,7 @@ class Model(Swept):
 
     @property
     def view(self) -> tuple[list[str], list[int] | None, bool] | None:
-        """The declared view: labels, indices of the coordinates that it shows, true with a region; None without a view."""
+        """The declared view, or None: labels, indices of its two coordinates (None for other quantities), true with a region."""
         return self._description["view"]
 
     @property
@@ -273,7 +273,7 @@ class Model(Swept):
 
     @property
     def surfaces(self) -> dict[str, str]:
-        """Declared laws by names of surfaces."""
+        """The declared law of each surface, by name."""
         return dict(self._description["surfaces"])
 
     @property
@@ -298,7 +298,7 @@ class Model(Swept):
 
     @property
     def quasi_velocities(self) -> tuple[str, ...]:
-        """Names of the velocities that the constraints leave."""
+        """Names of the quasi-velocities: the independent velocities of the reduced form."""
         return tuple(self._description["quasi_velocities"])
 
     @cached_property
@@ -372,21 +372,21 @@ class Model(Swept):
     ) -> Run:
         """Run the model from a state at ``t = 0``.
 
-        Other threads go on meanwhile, and Ctrl-C interrupts. The numbers are those of the command line, to the bit.
+        Other Python threads run meanwhile, and Ctrl-C interrupts. The numbers are those of the command line, to the bit.
 
         Parameters
         ----------
         until : float, optional
-            The end; the declared one without it.
+            The end time. Default: the declared one.
         impacts : int, optional
-            Stop after this many impacts. Without `until` the run may then take up to 3600 units of time.
+            Stop after this many impacts. Without `until`, the end time is then the declared one, but at least 3600.
         state : mapping of str to float, optional
-            Changes of the declared initial state: coordinates ``x``, velocities ``x_dot``. What nobody names follows from the
-            constraints.
+            Changes of the declared initial state: coordinates ``x``, velocities ``x_dot``. Values that are neither declared nor
+            given here are 0, or such that the constraints hold.
         q, qdot, p : sequence of float, optional
-            All positions, with all velocities or all momenta, instead.
+            All positions, with all velocities or all momenta, instead of `state`.
         off_constraint : {"error", "project", "keep"}
-            What becomes of positions or velocities that violate the constraints.
+            Treatment of positions or velocities that violate the constraints.
         times : sequence of float, optional
             Times of the samples, in order.
         samples : int, default 1000
@@ -394,51 +394,51 @@ class Model(Swept):
         tol : float, default 1e-10
             Relative error allowed per step, from 1e-15 to 0.1.
         integrator : {"dop853", "dopri5", "taylor", "rk4", "gauss4", "gauss6", "dla2", "dla4"}
-            The last five keep one step.
+            The integrator. The last five have a fixed step.
         step : float, optional
-            The step of an integrator that keeps it; without it one that suits `tol`.
+            The step of an integrator with a fixed step. Default: a step that suits `tol`.
         max_step : float, optional
-            The largest step of the others.
+            The largest step of an adaptive integrator.
         steps : int, optional
             Stop after this many steps.
         law : str or mapping of str to str, optional
             The impact law of all surfaces, or of each by name, instead of the declared ones: ``"elastic"``, ``"newton:0.5"``.
         form : {"reduced", "global"}, optional
-            The form of the equations; reduced where the model has such a form.
+            The form of the equations. Default: ``"reduced"`` if the model has this form.
         projection : bool, optional
-            Project on the constraints after each step, in global form.
+            Project onto the constraints after each step, in global form.
         rest : {"stop", "contact"}
-            On a surface that the motion presses into.
+            Policy if the motion presses against a surface without leaving it.
         penetration : {"stop", "repeat", "contact"}
-            After a law that leaves the state approaching.
+            Policy if the state still approaches the surface after the law.
         corner : {"stop", "ascending", "descending"}
-            At several surfaces at one time whose order matters.
+            Policy for impacts on several surfaces at one time, if their order matters.
         split : {"first", "stop"}
-            At a transition that the motion can go on from in more than one way.
+            Policy at a transition from which the motion can continue in more than one way.
         inputs : mapping of str to float or callable, optional
-            Values of inputs that are held through the run, or functions of ``t``, ``q`` and ``qdot``; 0 without.
+            Constant values of inputs, or functions of ``t``, ``q`` and ``qdot``. Other inputs are 0.
         period : float, optional
             Call these functions at multiples of this time and hold their values. Without it they are called wherever the motion is
             evaluated, and should be smooth.
         mode : str, optional
-            The mode to begin in, of a model with modes.
+            The initial mode of a model with modes.
         events : sequence, optional
-            Places where a function of the state changes its sign: an expression such as ``"x - 2*dot(theta)"``, a function of
-            ``t``, ``q`` and ``qdot``, one of both with a direction, ``("x", 1)``, or an :class:`Event`. They are
-            :attr:`Run.crossings`; the motion is that without them, to the bit.
+            Functions of the state whose changes of sign are recorded in :attr:`Run.crossings`: an expression such as
+            ``"x - 2*dot(theta)"``, a function of ``t``, ``q`` and ``qdot``, one of both with a direction, ``("x", 1)``, or an
+            :class:`Event`. The motion is the same as without them, to the bit.
         on_step : callable, optional
             Called with ``t``, ``q`` and ``qdot`` after each step. If it returns True or ``"stop"``, the run ends there with the
             outcome ``stopped``.
         on_event : callable, optional
-            Called with an :class:`Occurrence` at each impact, each beginning and end of a contact, and each event; it may end the
-            run too.
+            Called with an :class:`Occurrence` at each impact, each beginning and end of a contact, and each event. It can end the
+            run in the same way.
         progress : bool, default False
-            Show how far the run is, by tqdm where it is installed.
+            Show the progress of the run, by tqdm if it is installed.
 
         Returns
         -------
         Run
-            Samples, impacts, and how it ended. Any end is a result, not an exception.
+            Samples, impacts and outcome. An early end is an outcome, not an exception.
 
         Raises
         ------
@@ -474,14 +474,14 @@ class Model(Swept):
         p: Sequence[float] | None = None,
         t: float = 0.0,
     ) -> dict[str, Any]:
-        """Everything that is derived, at a state.
+        """All derived quantities at a state.
 
         Parameters
         ----------
         q : sequence of float
             Positions.
         qdot, p : sequence of float
-            Velocities or momenta; one of them.
+            Either velocities or momenta.
         t : float, default 0
             The time.
 
@@ -500,12 +500,12 @@ class Model(Swept):
         return derivations(self.source, self._claims, self.scenes)
 
     def derive(self, scene: str | None = None) -> Derivation:
-        """Derive the equations again, with the claims that the model makes.
+        """The derivation of the equations, with the verdicts on the claims.
 
         Parameters
         ----------
         scene : str, optional
-            One of :attr:`scenes`, which are the modes of a model with modes; without it that of this model.
+            One of :attr:`scenes`; for a model with modes, these are its modes. Default: the scene of this model.
 
         Returns
         -------
@@ -523,7 +523,7 @@ class Model(Swept):
         Returns
         -------
         tuple of Verdict
-            In the order of the declaration.
+            The verdicts in the order of the declaration.
         """
         return tuple(verdict for derivation in self._derivations.values() for verdict in derivation.verdicts)
 
@@ -538,7 +538,7 @@ class Model(Swept):
         Parameters
         ----------
         scene : str, optional
-            As for :meth:`derive`. A model with modes has a declaration for each of them, and none as a whole.
+            As for :meth:`derive`. A model with modes needs it: each mode has a declaration of its own.
 
         Returns
         -------
@@ -553,7 +553,7 @@ class Model(Swept):
         return Symbolic.of(declaration)
 
     def to_c(self, path: str | os.PathLike[str] | None = None) -> str:
-        """The model as a C99 header, which allocates nothing and needs ``math.h`` alone.
+        """The model as a C99 header, which allocates nothing and needs only ``math.h``.
 
         Parameters
         ----------
@@ -563,7 +563,7 @@ class Model(Swept):
         Returns
         -------
         str
-            Rate, velocity, energy, gaps, impacts and what else the state has, of this scene; of a model with modes those of each.
+            The text: functions for rate, velocity, energy, gaps, impacts and other quantities, for this scene or for each mode.
         """
         return _export.to_c(self, path)
 
@@ -580,12 +580,12 @@ class Model(Swept):
         Returns
         -------
         casadi.Function
-            Of the time ``t``, the state ``s`` (positions, then momenta or quasi-velocities) and the parameters ``k`` in their order,
-            inputs last; ``"motion"`` of ``t``, ``q``, ``v`` and ``k``. Where a result does not exist it is no number.
+            A function of the time ``t``, the state ``s`` (positions, then momenta or quasi-velocities) and the parameters ``k`` in
+            their order, inputs last; ``"motion"`` is a function of ``t``, ``q``, ``v`` and ``k``. A result may be NaN.
         """
         return _export.to_casadi(self, function, scene)
 
-    # Shown -----------------------------------------------------------------------------------------------------------------
+    # Display ---------------------------------------------------------------------------------------------------------------
 
     def __repr__(self) -> str:
         lines = [f"Model {self.name}" + ("" if self._scene == "all" else f", scene {self._scene}")]
@@ -613,6 +613,6 @@ class Model(Swept):
 
 
 def _restored(source: str, claims: bool, scene: str, values: dict[str, float]) -> Model:
-    """The model of a text, in a scene, with these values of parameters."""
+    """The model that a text declares, in a scene, with these values of its parameters."""
     model = Model.from_text(source, claims=claims)
     return (model if scene == "all" else model.scene(scene)).with_parameters(**values)

@@ -33,7 +33,7 @@ class Directory:
         self.parts: dict[int, dict[str, Any]] = {}
 
     def begin(self, identity: dict[str, Any]) -> None:
-        """Begins or continues an ensemble: reads the parts that are there.
+        """Begins or continues an ensemble: reads the finished parts.
 
         Raises
         ------
@@ -86,14 +86,14 @@ class Directory:
             self._lock = None
 
     def manifest(self) -> dict[str, Any]:
-        """What the manifest says."""
+        """The content of the manifest."""
         try:
             return json.loads((self.path / MANIFEST).read_text(encoding="utf-8"))
         except FileNotFoundError:
             raise RequestError(f"directory: `{self.path}` holds no ensemble: {MANIFEST} is missing") from None
 
     def read(self) -> None:
-        """Reads the parts. Rows without the file that completes a part were cut off, and are not read."""
+        """Reads the parts. Parts whose last file is missing were interrupted, and are not read."""
         self.parts = {}
         for path in sorted(self.path.glob("part-*.json")):
             part = json.loads(path.read_text(encoding="utf-8"))
@@ -163,7 +163,7 @@ class Directory:
 
     @staticmethod
     def _write(path: Path, content: bytes) -> None:
-        """Writes a file that is there as a whole or not at all."""
+        """Writes a file atomically: afterwards it exists as a whole or not at all."""
         new = path.with_name(path.name + ".new")
         with open(new, "wb") as file:
             file.write(content)
@@ -187,7 +187,7 @@ def finite(data: Any) -> Any:
 
 
 def digest(path: Path) -> str | None:
-    """The checksum of a file; None where there is none."""
+    """The checksum of a file; None if there is no such file."""
     try:
         with open(path, "rb") as file:
             checksum = hashlib.sha256()

@@ -20,13 +20,13 @@ class Expression:
     Attributes
     ----------
     name : str
-        What it is the value of.
+        The name of the quantity.
     text : str
         The expression as the language writes it.
     latex : str
         The same in LaTeX.
     declaration : mapping
-        What its names stand for: :attr:`Derivation.declaration`.
+        The declaration that explains its names: :attr:`Derivation.declaration`.
     """
 
     name: str
@@ -46,8 +46,8 @@ class Expression:
         Returns
         -------
         sympy.Expr
-            Coordinates are functions of ``t``, velocities their derivatives, parameters symbols with what the declaration says of
-            their signs: those of :meth:`Model.to_sympy`. Names of members of families are written with an underscore: ``theta_3``.
+            The expression in the objects of :meth:`Model.to_sympy`: coordinates are functions of ``t``, velocities their
+            derivatives, parameters symbols with the declared signs. Members of families have names with an underscore: ``theta_3``.
         """
         from ._sympy import Scope
 
@@ -63,9 +63,9 @@ class Section:
     title : str
         The title.
     equation, equation_latex : str
-        The equation that it is about; empty where there is none.
+        The equation of the section; empty if there is none.
     items : tuple of str or (str, str) pairs with rows
-        Lines of words; or a left side and the rows of a matrix, each entry as text and as LaTeX.
+        Lines of text, or left sides with the rows of a matrix. Left sides and entries are given as text and as LaTeX.
     """
 
     title: str
@@ -79,7 +79,7 @@ class Section:
         Returns
         -------
         str
-            An element for each item.
+            One element for each item.
         """
         parts = [f"<h4>{escape(self.title)}</h4>"]
         if self.equation_latex:
@@ -98,17 +98,17 @@ class Verdict:
     claim : str
         The claim as written.
     verdict : {"proved", "refuted", "assumed", "undecided"}
-        What became of it. A model that is loaded with its claims has none that is refuted.
+        The verdict. A model that was loaded with its claims has no refuted claim.
     grounds : str
         The certificate, the counterexample or the reason, in words.
     remarks : tuple of str
-        What else was found out.
+        Further findings.
     scene : str
-        The scene that it is about; ``"all"`` for the model itself.
+        The scene of the claim; ``"all"`` for the model itself.
     chance_of_error : float or None
-        A bound of the chance that a proof is wrong; 0 for a proof without chance.
+        An upper bound of the probability that the proof is wrong; 0 for a proof without random choices.
     counterexample, values : mapping of str to float, or None
-        A state that refutes it, and quantities that contradict it there.
+        A state that refutes the claim, and quantities that contradict it there.
     """
 
     claim: str
@@ -130,7 +130,7 @@ class Derivation:
 
     @property
     def text(self) -> str:
-        """The derivation as text: that of the command `derive`."""
+        """The derivation as text, as the command `derive` prints it."""
         return self._native["text"]
 
     @property
@@ -140,7 +140,7 @@ class Derivation:
 
     @property
     def declaration(self) -> dict[str, Any] | None:
-        """The declaration written out in coordinates, as data; expressions are texts of the language. None of a model with modes."""
+        """The declaration in coordinates, as data; expressions are texts of the language. None for a model with modes."""
         return self._native["declaration"]
 
     @cached_property
@@ -164,7 +164,7 @@ class Derivation:
         Raises
         ------
         AttributeError
-            Of a first-order system, and of a model with modes as a whole.
+            A first-order system has none, nor has a model with modes as a whole.
         """
         for section in self.sections:
             if section.title == "Lagrangian":
@@ -189,7 +189,7 @@ class Derivation:
         Returns
         -------
         str
-            Without scripts: notebooks bring MathJax.
+            HTML without scripts; notebooks load MathJax.
         """
         name, documentation = self._native["name"], self._native["documentation"]
         head = f"<h3>{escape(name)}</h3><p>{escape(documentation)}</p>" if heading else ""

@@ -1,4 +1,4 @@
-"""Arguments of runs, as the extension module takes them."""
+"""Arguments of runs, in the form that the extension module accepts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def inputs(
     names: Sequence[str], given: Mapping[str, float | StateFunction],
 ) -> tuple[list[tuple[str, float]], Callable[..., list[float]] | None]:
-    """Inputs that are numbers; and all inputs as one function of the state, if one of them is a function."""
+    """The inputs that are numbers. If an input is a function, also all inputs as one function of time and state, else None."""
     numbers = {name: value for name, value in given.items() if not callable(value)}
     functions = {name: value for name, value in given.items() if callable(value)}
     if not functions:

@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended.
+    """The outcome of a run.
 
     Attributes
     ----------
     kind : str
         ``"done"`` at the requested end; ``"event"`` at a terminal event; ``"stopped"`` by a callback; ``"zeno"``, ``"contact"``,
-        ``"ambiguous"``, ``"left_chart"`` and others elsewhere.
+        ``"ambiguous"``, ``"left_chart"`` and others before the requested end.
     t : float
-        When.
+        The time of the end.
     reached : bool
         True if the requested time, number of impacts or event was reached.
     details : mapping of str to object
-        Facts that go with the kind, in the names of the model: ``surface``, ``accumulates_at``.
+        Details of this kind of outcome, in the names of the model: ``surface``, ``accumulates_at``.
     words : str
         The outcome in a sentence.
     """
@@ -54,7 +54,7 @@ class Outcome:
 class Run:
     """A run of a model.
 
-    Arrays are those that the run filled; nothing is copied. Rows are samples, columns coordinates.
+    Arrays are not copied: they are those that the run has filled. Rows are samples, columns coordinates.
 
     Examples
     --------
@@ -108,7 +108,7 @@ class Run:
 
     @property
     def mode(self) -> np.ndarray | None:
-        """Names of the modes of the samples; None of a model without modes."""
+        """Names of the modes of the samples; None for a model without modes."""
         return _modes(self.model, self._native.samples)
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -118,20 +118,20 @@ class Run:
     def __call__(self, t: float | Sequence[float] | np.ndarray, side: str = "right") -> Samples:
         """States at any times of the run.
 
-        The run is made once more, up to the last of the times: the states are those of a run with these ``times``, to the bit,
-        from the polynomials that the integrator itself has of its steps. Ask for many times at once.
+        The run is repeated up to the last of the times, so ask for many times at once. The states are those of a run with these
+        ``times``, to the bit: they come from the dense output of the integrator.
 
         Parameters
         ----------
         t : float or array of float
             Times from 0 to the end, in any order.
         side : {"right", "left"}
-            At the time of an impact the state after it, or the one before it.
+            At the time of an impact: the state after it (right) or before it (left).
 
         Returns
         -------
         Samples
-            With arrays in the shape of `t`.
+            The states, with arrays in the shape of `t`.
 
         Raises
         ------
@@ -158,7 +158,7 @@ class Run:
 
         Fields are ``t``, ``surface`` (its name), ``simultaneous`` (another surface was hit at the same time), ``grazing`` (so
         light that rounding may have decided it), and ``before`` and ``after``, which have a field for each coordinate, each
-        velocity and the energy: ``run.events["after"]["theta_dot"]``. Of a model with modes, ``mode`` is a field of both.
+        velocity and the energy: ``run.events["after"]["theta_dot"]``. For a model with modes, ``mode`` is a field of both.
         """
         item = self._native.impacts
         flags = {"simultaneous": item.simultaneous, "grazing": item.grazing}
@@ -166,9 +166,9 @@ class Run:
 
     @cached_property
     def contacts(self) -> np.ndarray:
-        """Moments where a surface begins or ceases to hold the motion, as a structured array.
+        """Beginnings and ends of contacts, as a structured array: a surface begins or ceases to hold the motion.
 
-        Fields are ``t``, ``surface``, ``begins``, ``accumulates_at`` (NaN where the contact does not begin by impacts that
+        Fields are ``t``, ``surface``, ``begins``, ``accumulates_at`` (NaN unless the contact begins with impacts that
         accumulate), and ``at``, the state.
         """
         item = self._native.contacts
@@ -177,11 +177,11 @@ class Run:
 
     @cached_property
     def crossings(self) -> np.ndarray:
-        """Changes of sign of the events that the run was given, as a structured array.
+        """Changes of sign of the functions of the given events, as a structured array.
 
-        Fields are ``t``, ``event`` (its name), ``rising``, and ``at``, the state. A sign is that of values beyond rounding: an event
-        that begins at 0 or only touches it is none, and neither is a jump at an impact. Between the integrator's steps nothing
-        is missed that a polynomial of degree 8 resolves on some part of a step.
+        Fields are ``t``, ``event`` (its name), ``rising``, and ``at``, the state. Values within rounding of 0 have no sign: a
+        function that begins at 0 or only touches 0 does not change its sign. A jump at an impact does not count either. Within a
+        step, every change is found that a polynomial of degree 8 resolves on some part of the step.
         """
         item, names = self._native.crossings, [event.label for event in self._events]
         return self._table(item.events, {"rising": item.rising}, {"at": item.at}, "event", names)
@@ -219,7 +219,7 @@ class Run:
 
     @cached_property
     def outcome(self) -> Outcome:
-        """How the run ended."""
+        """The outcome of the run."""
         item = self._native
         event, callback = item.stop
         if event is not None:
@@ -242,7 +242,7 @@ class Run:
 
     @property
     def warnings(self) -> list[str]:
-        """Places where an integrator of fixed step was out of its depth, in words."""
+        """Warnings about the accuracy of an integrator with a fixed step, as texts."""
         return self._native.warnings
 
     @property
@@ -255,13 +255,13 @@ class Run:
     def jacobian(self, wrt: Sequence[str]) -> np.ndarray:
         """Derivatives of the last positions and velocities, across impacts.
 
-        The run is made once more, and its first variations with it. Times of start and end are fixed.
+        The run is repeated together with its first variations. Times of start and end are fixed.
 
         Parameters
         ----------
         wrt : sequence of str
-            Names of coordinates, velocities, quasi-velocities and parameters. A velocity brings along those that follow from it by
-            the constraints. With respect to a parameter the start stays as it is.
+            Names of coordinates, velocities, quasi-velocities and parameters. With a velocity, the dependent velocities vary so
+            that the constraints hold. With a parameter, the initial positions and velocities stay fixed.
 
         Returns
         -------
@@ -283,7 +283,7 @@ class Run:
         Returns
         -------
         dict of str to array
-            The columns of the table that the command ``simulate --csv`` writes, but for its events.
+            The columns of the table that the command ``simulate --csv`` writes, without those of events.
         """
         names = ["t", *self.model.coordinates, *self.model.velocities]
         if not self.model.is_first_order:
@@ -349,34 +349,34 @@ class Run:
         Parameters
         ----------
         *quantities : str
-            What to draw over time, or the second and others over the first if that is not ``"t"``. Without any the declared
-            view, in which both axes have one scale; without a view all coordinates over time.
+            One quantity is drawn over time; of several, the others over the first. Default: the declared view, in which both axes
+            have the same scale, or all coordinates over time if there is no view.
         ax : matplotlib axes, optional
-            Where to draw.
+            The axes to draw on. Default: the current ones.
 
         Returns
         -------
         matplotlib axes
-            Of the picture.
+            The axes of the picture.
         """
         from . import _plot
 
         return _plot.plot(self, quantities, ax)
 
     def animate(self, *, duration: float = 10.0, fps: float = 25.0) -> Animation:
-        """A moving picture of the run: the declared view with its region and the impacts, or each coordinate over time.
+        """An animation of the run: the declared view with its region and the impacts, or each coordinate over time.
 
         Parameters
         ----------
         duration : float, default 10
-            Seconds that it plays.
+            Duration in seconds.
         fps : float, default 25
-            Frames in a second.
+            Frames per second.
 
         Returns
         -------
         Animation
-            It plays in a notebook; :meth:`Animation.to_matplotlib` is a ``FuncAnimation``, :meth:`Animation.save` writes a file.
+            It plays in a notebook. :meth:`Animation.to_matplotlib` gives a ``FuncAnimation``, :meth:`Animation.save` writes a file.
         """
         from ._animation import Animation
 
@@ -392,7 +392,7 @@ class Run:
 
 
 class Samples:
-    """States at times that were asked for, in the shape of these times. Items are quantities by name, as of a :class:`Run`."""
+    """States at requested times, in the shape of these times. Items are quantities by name, as in a :class:`Run`."""
 
     def __init__(self, model: Model, times: np.ndarray, table: _native.Table, order: np.ndarray) -> None:
         self._model = model
@@ -405,7 +405,7 @@ class Samples:
 
     @property
     def q(self) -> np.ndarray:
-        """Positions; the last axis is that of the coordinates."""
+        """Positions; the last axis runs over the coordinates."""
         return self._rows(self._table.q)
 
     @property

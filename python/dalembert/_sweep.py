@@ -37,9 +37,9 @@ WITHOUT: dict[str, Any] = {
     "times": None, "samples": 0, "events": [], "watched": None, "on_step": None, "on_event": None, "on_progress": None,
     "control": None, "period": None,
 }
-#: Units of an executor inside this process: they cost nothing, and end soon after Ctrl-C.
+#: Longest planned time of a unit in this process, in seconds. Short units cost nothing there, and end soon after Ctrl-C.
 INSIDE = 1.0
-#: Members without the requested end that a summary lists.
+#: Maximum number of members that did not reach the requested end in the list of a summary.
 TOLD = 5
 
 
@@ -64,7 +64,7 @@ def ensemble(
     if density is not None:
         spec["density"] = density | {"axes": native.axes()}
     kept = Directory(tempfile.mkdtemp(prefix="dalembert-") if directory is None else directory)
-    # A temporary directory goes with its object, or at once.
+    # A temporary directory is removed with its object, or at once after an error.
     removal = weakref.finalize(kept, shutil.rmtree, kept.path, ignore_errors=True) if directory is None else None
     try:
         kept.begin(_identity(model, spec, native, rows))
@@ -118,7 +118,7 @@ def _complete(
 def run_unit(
     work: bytes, first: int, last: int, longest: float, rows: np.ndarray | None, attempt: int, version: str,
 ) -> dict[str, Any]:
-    """Rows and sums of a unit, in a worker. `attempt` makes the calls after a loss differ from those before."""
+    """Rows and sums of a unit, in a worker. `attempt` makes a call after a loss differ from the lost call."""
     if version != _native.version():
         raise EnsembleError(f"the worker has dalembert {_native.version()}, and the driver {version}; install the same")
     model, spec = _taken(work)
@@ -158,7 +158,7 @@ def _request(model: Model, course: dict[str, Any]) -> dict[str, Any]:
 def _members(
     model: Model, vary: Mapping[str, Any], table: Mapping[str, Sequence[float]] | None, members: int | None, seed: int | None,
 ) -> tuple[dict[str, Any], np.ndarray | None]:
-    """Members as the extension module takes them; and the rows of a table."""
+    """The members in the form that the extension module accepts, and the rows of a table."""
     if members is not None and not (isinstance(members, int) and members > 0):
         raise RequestError(f"members: {members} is not accepted; expected a positive whole number")
     if seed is not None and not (isinstance(seed, int) and 0 <= seed < 1 << 64):
@@ -241,7 +241,7 @@ def _count(values: list[tuple[str, str, list[float]]], members: int | None, draw
 def density_of(
     quantities: Sequence[str] | Mapping[str, tuple[float, float] | None] | None, bins: int | tuple[int, int], every: float, discard: float,
 ) -> dict[str, Any] | None:
-    """A density as the extension module takes it."""
+    """A density in the form that the extension module accepts."""
     if quantities is None:
         return None
     ranges = quantities if isinstance(quantities, Mapping) else dict.fromkeys(quantities)
@@ -262,7 +262,7 @@ def density_of(
 
 
 def _identity(model: Model, spec: dict[str, Any], native: _native.NativeEnsemble, rows: np.ndarray | None) -> dict[str, Any]:
-    """What rows and sums depend on, and the names of the columns."""
+    """All data that rows and sums depend on, and the names of the columns."""
     varied = spec["varied"] | {"table": None if rows is None else hashlib.sha256(rows.tobytes()).hexdigest()}
     return {
         "version": _native.version(), "model": model.name, "scene": model._scene, "source": model.source,
@@ -326,7 +326,7 @@ def _density(kept: Directory, spec: dict[str, Any], native: _native.NativeEnsemb
 
 @contextmanager
 def _shown(shows: bool, count: int, name: str, done: int) -> Iterator[Callable[[int], Any]]:
-    """A function that shows how many members are done, by tqdm where it is installed."""
+    """A function that shows the number of finished members, by tqdm; without tqdm, an error."""
     if not shows:
         yield lambda members: None
         return

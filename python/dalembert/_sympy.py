@@ -12,7 +12,7 @@ from sympy import Expr, Function, Symbol
 #: The time.
 T = Symbol("t", real=True)
 
-#: Functions of the language whose names differ, or that need care, in SymPy.
+#: Functions of the language that have another name in SymPy.
 FUNCTIONS = {"ln": sympy.log, "abs": sympy.Abs}
 
 _TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)|([^\W\d]\w*(?:\.\d+)*)|(.))")
@@ -23,7 +23,7 @@ class Scope:
     """Names of a declaration, as objects of SymPy.
 
     Coordinates are functions of the time, velocities their derivatives, parameters symbols with their assumptions. The index of a
-    member of a family is written behind an underscore: ``theta_3``.
+    member of a family is written after an underscore: ``theta_3``.
     """
 
     def __init__(self, declaration: Mapping[str, Any]) -> None:
@@ -151,15 +151,15 @@ class Symbolic:
     q, qdot : dict of str to Expr
         Functions of the time and their derivatives, by the name of the coordinate.
     parameters : dict of str to Symbol
-        Parameters and inputs, with what the declaration says of their signs.
+        Parameters and inputs, with the declared signs.
     lagrangian : Expr or None
-        None of a first-order system.
+        The Lagrangian; None for a first-order system.
     rates : dict of str to Expr
         The field of a first-order system; else empty.
     forces : dict of str to Expr
         The sum of all forces, by coordinate.
     constraints : dict of str to Expr
-        Functions of positions and velocities that are 0.
+        Functions of positions and velocities that vanish along the motion.
     constraint_forms : dict of str to tuple of Expr
         Their derivatives with respect to the velocities: directions of the constraint forces.
     surfaces : dict of str to Expr
@@ -179,7 +179,7 @@ class Symbolic:
 
     @classmethod
     def of(cls, declaration: Mapping[str, Any]) -> Symbolic:
-        """The declaration of a derivation."""
+        """The SymPy form of the declaration of a derivation."""
         scope = Scope(declaration)
         read, motion = scope.read, declaration["motion"]
         names, v = list(scope.q), sympy.Matrix(list(scope.qdot.values()))

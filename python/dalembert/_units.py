@@ -15,15 +15,15 @@ from ._errors import EnsembleError
 FIRST = 64
 #: Largest number of members of a unit: its rows are in the memory of the driver until they are written.
 MOST = 50_000
-#: A unit ends after this multiple of its time, and the rest of its members is another unit.
+#: A unit ends early after this multiple of its planned time. Its remaining members then form another unit.
 LONGEST = 6.0
-#: Towards the end units become shorter, down to their time divided by this.
+#: Towards the end units become shorter, down to the planned time divided by this.
 SHORTEST = 50
 #: Units in flight for each worker, so that none waits.
 AHEAD = 2
 #: Units over which the pace is measured, for each worker.
 RECENT = 4
-#: Names of the errors by which executors report a lost worker, beside those of the standard library.
+#: Names of the errors by which executors report a lost worker, in addition to errors of the standard library.
 LOST = frozenset({"KilledWorker", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError"})
 
 
@@ -36,7 +36,7 @@ class Executor(Protocol):
 
 @dataclass(frozen=True)
 class Unit:
-    """Members from `first` up to `last`, which is not among them; `attempts` are those before."""
+    """Members from `first` up to, but without, `last`; `attempts` is the number of earlier attempts."""
 
     first: int
     last: int
@@ -48,16 +48,16 @@ class Unit:
 
 @dataclass(frozen=True)
 class Plan:
-    """How units are made.
+    """Rules for the division of members into units.
 
     Attributes
     ----------
     seconds : float
-        Time that a unit should take.
+        Planned time of a unit.
     retries : int
         Number of workers that one unit may lose.
     workers : int or None
-        Number of workers; None for that of the executor.
+        Number of workers; None for the number that the executor reports.
     """
 
     seconds: float
@@ -78,13 +78,13 @@ class Units:
     Parameters
     ----------
     executor
-        An executor, or a function that makes one, which is asked for another after a loss.
+        An executor, or a function that makes one. The function is called again if the executor breaks.
     call
         Makes the function and the arguments of a unit.
     gaps
         Ranges of members that are to be run.
     plan
-        How units are made.
+        Rules for the division into units.
     """
 
     def __init__(
@@ -191,7 +191,7 @@ class Units:
         self._executor, self._owned = replacement, True
 
     def _close(self) -> None:
-        """Shuts an executor down that was made here."""
+        """Shuts down the executor if it was made here."""
         if self._owned and hasattr(self._executor, "shutdown"):
             self._executor.shutdown(wait=False)
 
@@ -208,7 +208,7 @@ def renewed(executor: Any) -> ProcessPoolExecutor | None:
 
 
 def workers_of(executor: Any) -> int:
-    """Number of workers of an executor; that of the processors of this machine where it cannot be told."""
+    """Number of workers of an executor; the number of processors of this machine if the executor does not report it."""
     client = getattr(executor, "_client", None)
     if client is not None and hasattr(client, "nthreads"):
         return max(1, sum(client.nthreads().values()))

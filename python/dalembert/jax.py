@@ -27,15 +27,15 @@ def final_state(model: Model, names: Sequence[str], **arguments: Any) -> Callabl
     model : Model
         The model.
     names : sequence of str
-        What varies: initial coordinates and velocities, and parameters.
+        Names of the varied initial coordinates, initial velocities and parameters.
     **arguments
-        For :meth:`dalembert.Model.simulate`: ``until``, ``tol``, ``state`` for what does not vary.
+        Arguments of :meth:`dalembert.Model.simulate`: ``until``, ``tol``, ``state`` for initial values that do not vary.
 
     Returns
     -------
     callable
-        Of an array with one number for each name; it gives positions, then velocities, at the end. Where a run has no derivative, as
-        at a graze, JAX raises its error for callbacks, whose text names the reason, the surface and the time.
+        A function of an array with one number for each name. It returns the positions, then the velocities at the end. If a run has
+        no derivative, as at a graze, JAX raises its error for callbacks, whose text names the reason, the surface and the time.
     """
     final = Final(model, names, arguments)
 
@@ -48,7 +48,7 @@ def final_state(model: Model, names: Sequence[str], **arguments: Any) -> Callabl
     def end(values: jax.Array) -> jax.Array:
         return call(final.end, (final.size,), values)
 
-    # Linear in the tangents, so that reverse mode is its transpose.
+    # The result is linear in the tangents, so JAX obtains reverse mode by transposition.
     @end.defjvp
     def _(primals: tuple[jax.Array], tangents: tuple[jax.Array]) -> tuple[jax.Array, jax.Array]:
         (values,), (directions,) = primals, tangents

@@ -1,4 +1,4 @@
-"""The shipped models, loaded where they are first asked for: ``dalembert.models.rolling_disk``."""
+"""The shipped models, each loaded on first use: ``dalembert.models.rolling_disk``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def names() -> list[str]:
     Returns
     -------
     list of str
-        In the order of the alphabet.
+        The names in alphabetical order, chains by their length.
     """
     return list(_TEXTS)
 

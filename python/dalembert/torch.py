@@ -26,19 +26,20 @@ def final_state(model: Model, names: Sequence[str], **arguments: Any) -> Callabl
     model : Model
         The model.
     names : sequence of str
-        What varies: initial coordinates and velocities, and parameters.
+        Names of the varied initial coordinates, initial velocities and parameters.
     **arguments
-        For :meth:`dalembert.Model.simulate`: ``until``, ``tol``, ``state`` for what does not vary.
+        Arguments of :meth:`dalembert.Model.simulate`: ``until``, ``tol``, ``state`` for initial values that do not vary.
 
     Returns
     -------
     callable
-        Of a tensor whose last axis has one number for each name; it gives positions, then velocities, at the end of each run.
+        A function of a tensor whose last axis has one number for each name. It returns the positions, then the velocities at the
+        end of each run.
 
     Raises
     ------
     RequestError
-        By the backward pass: the run has no derivative, as at a graze, with the reason, the surface and the time.
+        In the backward pass: the run has no derivative, as at a graze. The text names the reason, the surface and the time.
     """
     final = Final(model, names, arguments)
 

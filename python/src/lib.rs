@@ -13,7 +13,7 @@
 //! | `evaluate.rs` | all derived quantities at a state |
 //! | `report.rs` | derivations and verdicts |
 //!
-//! Names, defaults and documentation that users see are those of the Python files beside it.
+//! The names, defaults and documentation that users see are in the Python files of the package.
 
 mod cells;
 mod ensemble;

@@ -48,7 +48,7 @@ fn derivation<'py>(py: Python<'py>, report: &Report) -> PyResult<Bound<'py, PyDi
     Ok(dict)
 }
 
-/// A line: words; or the left side and rows of entries, each as text and as LaTeX.
+/// A line: text, or a left side and rows of entries, each as text and as LaTeX.
 fn item<'py>(py: Python<'py>, item: &Item) -> PyResult<Bound<'py, PyAny>> {
     match item {
         Item::Words(words) => words.into_bound_py_any(py),
@@ -57,7 +57,7 @@ fn item<'py>(py: Python<'py>, item: &Item) -> PyResult<Bound<'py, PyAny>> {
     }
 }
 
-/// The arguments of `Verdict`.
+/// The arguments of the Python class `Verdict`, except the scene.
 fn finding<'py>(py: Python<'py>, finding: &Finding) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("claim", &finding.claim)?;

@@ -231,7 +231,7 @@ impl NativeRun {
         self.ending.outcome.to_string()
     }
 
-    /// Facts that go with the outcome, by name.
+    /// Details of the outcome, by name.
     #[getter]
     fn details<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

@@ -1,4 +1,4 @@
-"""What several tests need: the command line beside the package, and declarations."""
+"""Shared parts of the tests: declarations, and the command `dalembert`."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""Moving pictures: frames of matplotlib, and the script of the canvas."""
+"""Animations: frames of matplotlib, and the script of the canvas."""
 
 import json
 import re
@@ -12,7 +12,7 @@ from conftest import BALL
 import dalembert
 from dalembert import Model
 
-#: A page for the script, whose pen writes down what it is told; the pictures of all frames are drawn one after the other.
+#: A page for the script. Its pen records all calls. The frames are drawn one after the other.
 PAGE = """
 const told = [];
 const pen = new Proxy({}, { get: (target, name) => (...given) => told.push([name, ...given]), set: () => true });
@@ -73,7 +73,7 @@ def test_the_canvas_draws_impacts_and_heads(animation):
     times = animation.run.events["t"]
     assert drawn["counts"] == [1 + int((times <= t).sum()) for t in animation.times]
     assert drawn["button"] == "▶" and drawn["lines"] > 1000
-    # Both axes have one scale, and the middle of the box is that of the picture.
+    # Both axes have the same scale, and the middle of the box is the middle of the picture.
     left, right, low, high = animation.box
     x, y = animation.run(20).view
     height = animation.data()["height"]

@@ -8,7 +8,7 @@ import pytest
 
 import dalembert
 
-#: Flags and arguments that mean the same run.
+#: Flags of the command, and arguments in Python, of the same run.
 RUNS = {
     "rolling_disk": (["--until", "40", "--initial", "theta_dot=12"], {"until": 40, "state": {"theta_dot": 12}}),
     "chaplygin_sleigh": (["--until", "20", "--integrator", "taylor"], {"until": 20, "integrator": "taylor"}),
@@ -53,7 +53,7 @@ def test_samples_and_impacts_have_the_same_bits(command, name):
 
 
 def canonical(values):
-    """The values with one kind of NaN: tables know no other."""
+    """The values with the same bits for every NaN: a table does not keep them."""
     return np.where(np.isnan(values), np.nan, values)
 
 

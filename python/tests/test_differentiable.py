@@ -30,7 +30,7 @@ SLOPE = """
     }
 """
 
-#: Models, what varies, and arguments: a bounce, many bounces on constraints, sliding, a change of mode.
+#: Models, varied quantities and arguments: a bounce, many bounces with constraints, sliding, a change of mode.
 CASES = {
     "bounce": (lambda: Model.from_text(BALL), {"x": 1.0, "x_dot": 0.2, "g": 9.81}, {"until": 0.7, "tol": 1e-13}),
     "disk": (

@@ -25,7 +25,7 @@ from dalembert import EnsembleError, Normal, RequestError, _sweep, _units
 #: Members whose runs differ in length, with some that cannot start.
 VARY = {"x": (-0.5, 3.5, 9), "x_dot": (-1.0, 1.0, 14)}
 FLAGS = ["--vary", "x=-0.5..3.5:9", "--vary", "x_dot=-1..1:14"]
-#: With `fork` a pool starts workers while others run, and may wait forever for one that it starts while another is lost.
+#: With `fork`, a pool starts workers while others run. It may wait forever if a worker is lost meanwhile.
 SPAWN = multiprocessing.get_context("spawn")
 SMALL = {"unit": 0.001, "until": 6}
 DENSITY = {"density": {"x_dot": (-3, 3), "x": (0, 4)}, "bins": 8, "every": 0.25}
@@ -82,7 +82,7 @@ def test_densities_are_those_of_the_command(command):
     assert density.counts.tolist() == told["counts"] and density.outside == told["density_outside"]
     assert [dict(row) for row in density.convergence] == told["convergence"]
     assert density.counts.sum() == told["density_states"] and density.edges[1].tolist() == [0.5 * k for k in range(9)]
-    # Ranges that are not given come from the whole ensemble.
+    # Ranges that are not given come from members of the whole ensemble, not of a unit.
     told = json.loads(command("ensemble", "bouncing_ball", *FLAGS, "--until", "6", "--density", "x,x_dot:5", "--json", "-"))
     with ThreadPoolExecutor(3) as pool:
         density = drops(until=6, density=("x", "x_dot"), bins=5, executor=pool, unit=0.001).density
@@ -142,7 +142,7 @@ def test_a_pool_of_processes_that_loses_a_worker_is_replaced(whole, tmp_path):
 
 
 def doomed(path):
-    """Begins a worker, one of which is killed in its third unit."""
+    """Initializer of workers. The first worker that reaches its third unit is killed."""
     _sweep.run_unit = partial(killed_later, path, itertools.count(), _sweep.run_unit)
 
 
@@ -205,7 +205,7 @@ class Job:
 
 
 class KilledWorker(Exception):
-    """As that of dask."""
+    """An error with the name that dask uses."""
 
 
 class Lossy:
@@ -277,7 +277,7 @@ def test_an_interruption_keeps_what_is_done(whole, tmp_path):
     arguments = {"directory": tmp_path / "kept", **SMALL, **DENSITY}
     with pytest.raises(KeyboardInterrupt):
         drops(executor=lambda: Interrupted(1), **arguments)
-    # A part whose last file is missing was cut off.
+    # A part whose last file is missing was interrupted.
     parts = sorted((tmp_path / "kept").glob("part-*.json"))
     if parts:
         parts[0].unlink()
@@ -420,7 +420,7 @@ def test_workers_with_another_version_are_refused():
 
 
 def test_a_thousand_small_units_keep_their_order():
-    """Sizes follow the pace, towards the end the share of a worker."""
+    """The sizes of units follow the measured pace, and towards the end the share of a worker."""
     units = _units.Units(Lossy(0), lambda unit, longest: (dict, ({"members": unit.last - unit.first, "seconds": 1e-3},)), [(0, 5000)],
                          _units.Plan(0.002, 0, 1))
     sizes = {first: result["members"] for first, result in units.results()}

@@ -1,4 +1,4 @@
-"""Equations: shown, and checked against the Euler-Lagrange equations of SymPy."""
+"""Equations: their display, and a check against the Euler-Lagrange equations of SymPy."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from sympy.calculus.euler import euler_equations
 import dalembert
 from dalembert import Model
 
-#: Models of every kind: constraints, affine ones and ones that are not linear, forces, families, velocity-linear terms, time.
+#: Models without constraints and with linear, affine and nonlinear ones, with families, resets and a moving wall.
 NAMES = [
     "rolling_disk", "moving_wall_disk", "chaplygin_sleigh", "rolling_ball_euler", "ball_on_rotating_table", "two_wheels_rod",
     "holonomic_bead_on_ellipses", "appell_hamel", "constant_speed", "bouncing_ball", "point_billiard", "double_pendulum", "chain3",
@@ -26,7 +26,7 @@ FUNCTIONS = re.search(
 
 
 def admissible(model, generator):
-    """A state at random, and everything that is derived there."""
+    """A random state, and all derived quantities there."""
     for _ in range(100):
         state = {name: generator.uniform(-0.9, 0.9) for name in model.coordinates}
         rates = {name: generator.uniform(0.5, 1.5) for name in model.velocities}
@@ -48,7 +48,7 @@ def test_the_motion_satisfies_the_equations_of_sympy(name):
     for _ in range(3):
         q, qdot, derived = admissible(model, generator)
         values = {symbol: model.parameters[item] for item, symbol in symbolic.parameters.items()}
-        # Highest derivatives first: lower ones are parts of them.
+        # Accelerations first: as derivatives, they contain the velocities, and these contain the coordinates.
         values |= dict(zip([item.diff(symbolic.t) for item in symbolic.qdot.values()], derived["acceleration"]))
         values |= dict(zip(symbolic.qdot.values(), qdot))
         values |= dict(zip(functions, q))

@@ -47,7 +47,7 @@ def test_a_refuted_claim_has_its_counterexample_as_data():
     assert (error.line, error.column) == (8, 14)
     at = error.counterexample
     assert set(at) == {"theta", "m", "I", "a"}
-    # Independently: no density depends on q alone unless a = 0, by the coefficient that the message names.
+    # A density that depends on q alone exists only if this coefficient is 0. The reported value is a positive multiple of it.
     delta = -at["m"] * at["a"] / (at["I"] + at["m"] * at["a"] ** 2)
     scale = error.mistakes[0].values["delta"] / delta
     assert math.isfinite(scale) and scale > 0

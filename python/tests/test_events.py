@@ -9,7 +9,7 @@ from conftest import BALL
 import dalembert
 from dalembert import Event, Model, RequestError
 
-#: The free motion x = x0 + v*t, and an angle that turns by 1 in a unit of time.
+#: A free particle. Its declared motion is x = t, y = 0.
 FREE = """
 Free {
     coordinates { x; y; }

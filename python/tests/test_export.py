@@ -12,7 +12,7 @@ from test_equations import NAMES, admissible
 import dalembert
 from dalembert import RequestError, _native
 
-#: Models of every kind, with modes and fields besides.
+#: The models of the equations, and models with modes, fields and instantaneous constraints.
 EXPORTED = [*NAMES, "compass_walker", "rolling_ball_wall", "spring_mass_walker", "filippov_field", "refracted_particle"]
 
 
@@ -25,7 +25,7 @@ def compiler():
 
 
 def compiled(compiler, header, folder, name):
-    """Functions of a header by name, as functions of t, arrays and the number of results."""
+    """The compiled functions of a header: numbers of results and of arrays by name, and a function that calls one by its name."""
     folder.joinpath("model.h").write_text(header, encoding="utf-8")
     source = '#include "model.h"\n'
     sizes = {}
@@ -57,7 +57,7 @@ def parameters(model):
 
 
 def close(found, expected):
-    """The same but for roundings, of numbers of the size of the largest."""
+    """Asserts equality up to rounding errors of numbers of the size of the largest."""
     expected = np.asarray(expected, dtype=float)
     np.testing.assert_allclose(found, expected, rtol=1e-13, atol=4e-15 * max(1.0, np.abs(expected).max(initial=0.0)))
 

@@ -1,4 +1,4 @@
-"""Inputs that are functions: of every evaluation, and held for a period."""
+"""Inputs that are functions, called at every evaluation or held for a period, and laws in the language."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Where models come from, and what they say of themselves."""
+"""Construction of models, and their descriptions."""
 
 import pickle
 import subprocess

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
-#: Lines of code of a notebook that a newcomer reads in one go.
+#: Limit for the lines of code of a notebook.
 LINES = 40
-#: Folder for the pictures, if they are to be looked at.
+#: Folder for the pictures, if they are to be kept.
 PICTURES = os.environ.get("NOTEBOOK_PICTURES")
 
 
@@ -21,7 +21,7 @@ def cells(path):
 
 
 def run(source, names, place):
-    """Executes a cell; the value of its last expression is what a notebook shows."""
+    """Executes a cell, and returns the value of its last expression, which a notebook shows."""
     tree = ast.parse(source)
     shown = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
     exec(compile(tree, place, "exec"), names)

@@ -192,7 +192,7 @@ def test_a_parameter_without_default_must_be_given():
 
 @pytest.fixture
 def interrupts():
-    """The handler of interrupts that Python installs, which it leaves out where a shell starts it in the background."""
+    """Python's handler of SIGINT. Python does not install it if a shell has started it in the background."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)

@@ -87,10 +87,10 @@ impl fmt::Display for Fault {
             ),
             Self::SeveralModes => write!(
                 f,
-                "what was asked for (a step of a discrete principle, a state of positions and velocities) belongs to one mode, \
-                 and the system has several"
+                "a step of a discrete principle, or a state from positions and velocities, belongs to one mode, and the \
+                 system has several"
             ),
-            Self::NotDerived => write!(f, "this was not derived of the system"),
+            Self::NotDerived => write!(f, "the called function was not derived for this system"),
             Self::FirstOrder => {
                 write!(
                     f,

@@ -82,7 +82,7 @@ fn extremals_on(input: &str, line: &str) -> Vec<Value> {
     extremals
 }
 
-/// `H*` is the same at both ends and on both sides of every impact, because nothing depends on time.
+/// The minimised Hamiltonian `H*` is the same at both ends and on both sides of every impact: nothing depends on time.
 fn check_energy(extremal: &Value) {
     let first = number(&extremal["start"]["hamiltonian"]);
     let impacts = extremal["impacts"].as_array().unwrap().iter();
@@ -414,8 +414,7 @@ fn the_costate_is_the_gradient_of_the_cost() {
     }
 }
 
-/// The ball moves under the forces of the table, which are linear in time between rows, and reaches the end of the
-/// extremal.
+/// With the inputs of the table, linear in time between rows, the ball reaches the end of the extremal.
 #[test]
 fn the_table_of_inputs_reaches_the_end() {
     let done = run_on(

@@ -1,4 +1,4 @@
-//! The command `errata`: every computed value differs from the printed one and equals the value of the formula by hand.
+//! The command `errata`: every computed value differs from the printed one and equals a value computed by hand.
 
 mod support;
 
@@ -14,7 +14,7 @@ fn run(words: &[&str]) -> (Exit, String) {
     (done.exit, done.output)
 }
 
-/// Printed and right values by hand, in the order of the list; the right formulas are those of the page Errata.
+/// Printed and right values, computed by hand, in the order of the list. The page Errata has the right formulas.
 fn by_hand() -> Vec<[f64; 2]> {
     // d(ln p_theta)/dt = -m a v/(I + m a^2) of the sleigh; its divergence is the same.
     let sleigh = -1.5 * 0.5 * 1.5 / (0.4 + 1.5 * 0.25);

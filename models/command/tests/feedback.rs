@@ -10,7 +10,7 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::{Done, run_on};
 
-/// A cart between a wall and a force, whose second input acts in an output too.
+/// A cart with two inputs and a wall. The first input enters an output, too.
 const CART: &str = "
     Cart {
         coordinates { x; }
@@ -18,7 +18,7 @@ const CART: &str = "
         inputs {
             /// The drive.
             u;
-            wind; // not closed everywhere
+            wind; // without a law in some tests
         }
         lagrangian = dot(x)^2/2;
         cost { running = u^2 + wind^2; }
@@ -28,7 +28,7 @@ const CART: &str = "
         initial { x = 0.5; until = 6; }
     }";
 
-/// Thrusts at both ends of a rod.
+/// Two independent masses, each with a thrust.
 const ROD: &str = "
     Rod {
         const N = 2;
@@ -39,7 +39,7 @@ const ROD: &str = "
         initial { x[1] = 1; x[2] = 2; until = 1; }
     }";
 
-/// A mass on a table that is rough on one side.
+/// A mass that is four times as heavy from `x = 1/2` down.
 const TABLE: &str = "
     Table {
         coordinates { x; }
@@ -72,7 +72,7 @@ fn written(text: &str, law: &str) -> String {
     format!("{head} {}", rest.replace("u*dot(x)", "-k*x*dot(x)"))
 }
 
-/// A run of the closed loop, its derivatives, its periodic orbit and its enclosures are those of the written model.
+/// Runs of the closed loop and its linearisation are those of the model with the law written out.
 #[test]
 fn a_closed_loop_is_the_model_with_the_law_written_out() {
     let laws = "--feedback u=-k*x --feedback wind=sin(3*t)/10-c*dot(x)";
@@ -91,7 +91,7 @@ fn a_closed_loop_is_the_model_with_the_law_written_out() {
     }
 }
 
-/// x = cos(2 t) until the wall, and the derivative by the start.
+/// The derivatives of `x = x_0 cos(2 t) + v_0 sin(2 t)/2` with respect to `x_0` and `v_0`, before the wall.
 #[test]
 fn derivatives_of_a_closed_loop_are_those_of_its_closed_form() {
     let line = "linearise - --feedback u=-k*x --feedback wind=0 --initial x=0.3,x_dot=0 --every 0.5 --samples 1 --json -";
@@ -108,7 +108,7 @@ fn derivatives_of_a_closed_loop_are_those_of_its_closed_form() {
     }
 }
 
-/// The input that is left is given as before, and a cost goes with the last input only.
+/// An input without a law still takes the value of `--input`. The cost stays as long as an input is left.
 #[test]
 fn inputs_without_a_law_stay() {
     let half = "simulate - --feedback u=-k*x --input wind=0.3 --json -";
@@ -125,7 +125,7 @@ fn inputs_without_a_law_stay() {
     assert!(none.contains("cost"), "{none}");
 }
 
-/// Members of a family by number and all at once: x[i] decays by its own law.
+/// Laws for the members of a family, one by one and all at once: `x[i]` oscillates at the frequency `i`.
 #[test]
 fn families_of_inputs_have_laws() {
     let all = ran(
@@ -147,7 +147,7 @@ fn families_of_inputs_have_laws() {
     assert!(errors.contains("thrust"), "{errors}");
 }
 
-/// One law acts in every mode: x = cos t to x = 1/2, and a quarter of the acceleration from there on.
+/// One law acts in every mode: `x = cos(t)` until `x = 1/2`, and from there on a quarter of the acceleration.
 #[test]
 fn modes_share_a_law() {
     let document = ran(TABLE, "simulate - --feedback u=-x --tol 1e-13 --json -");

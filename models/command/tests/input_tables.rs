@@ -104,8 +104,8 @@ fn between_rows_inputs_are_as_asked() {
     );
 }
 
-/// For rows at the distance h the cubic differs from a sine by at most `3/128 h^4`, and by `h^4/24` in the intervals at
-/// the ends. Over the time 3 the integral differs by less than 5e-7.
+/// Between rows `h` apart the cubic differs from a sine by at most `3/128 h^4`, in the first and last interval by at
+/// most `h^4/24`. Over the time 3 the integral differs by less than 5e-7.
 #[test]
 fn a_smooth_input_is_met_closely() {
     let folder = Folder::new("inputs-sine");

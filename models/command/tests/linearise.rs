@@ -56,7 +56,7 @@ const SPRING: &str = "
         initial { x = 0.4; }
     }";
 
-/// A ball above a floor that reduces its speed by the factor e.
+/// A ball above a floor. Every impact multiplies its speed by `e`.
 const BALL: &str = "
     Ball {
         coordinates { x; }
@@ -144,7 +144,7 @@ fn only_what_is_free_changes_and_what_moves_may_move() {
     );
 }
 
-/// The derivatives against central differences of the rates that `linearise` prints at neighbouring states and inputs.
+/// The derivatives are central differences of the rates that `linearise` prints at neighbouring states and inputs.
 #[test]
 fn derivatives_are_those_of_the_rates() {
     let line = |values: [f64; 6]| {
@@ -352,8 +352,8 @@ const SWITCHED: &str = "
         initial { dot(x) = 1; }
     }";
 
-/// A mass on a spring whose equilibrium -1 lies outside of an interval, or behind a floor; and a pendulum that a torque
-/// holds at an angle.
+/// The equilibrium -1 of a mass on a spring is refused outside of its interval or behind a floor. The angle at which a
+/// torque holds a pendulum is found.
 #[test]
 fn an_equilibrium_is_a_state_that_the_model_allows() {
     for (coordinate, surface) in [("x in (0.5, 3)", ""), ("x", "impacts { floor: x >= 0; }")] {

@@ -13,7 +13,7 @@ pub struct Window {
     pub t: f64,
     /// The largest absolute deviation from the value at the start of the run, over the ends of the steps.
     pub largest: f64,
-    /// The mean deviation.
+    /// The mean deviation over the same states.
     pub mean: f64,
 }
 
@@ -26,7 +26,7 @@ pub struct Series {
     pub windows: Vec<Window>,
     /// The outcome of the run.
     pub outcome: Outcome,
-    /// Steps made.
+    /// Number of accepted steps.
     pub steps: u64,
 }
 

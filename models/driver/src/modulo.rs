@@ -1,5 +1,4 @@
-//! Symmetry groups whose flows are affine in the coordinates: translations, rotations and the groups that they
-//! generate.
+//! Symmetry groups whose flows are affine in the coordinates, for example translations and rotations.
 //!
 //! ```text
 //! dq/ds = A q + c,   dqdot/ds = A qdot,   [A q + a, B q + b] = (B A - A B) q + B a - A b

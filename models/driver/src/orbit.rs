@@ -1,4 +1,4 @@
-//! Periodic orbits, their branches, and Lyapunov exponents of a model whose type is erased.
+//! Periodic orbits, their branches, and Lyapunov exponents of a system of any type, as plain data.
 
 use dalembert::contract::Variational;
 use dalembert::describe::VariationalVisitor;
@@ -45,13 +45,13 @@ pub struct Search {
 pub struct Found {
     /// The period.
     pub period: f64,
-    /// The point of the section.
+    /// The point of the section: the state before the event.
     pub before: Point,
-    /// The state after the event at the section.
+    /// The state after the event.
     pub after: Point,
     /// Distance between the point of the section and its image.
     pub residual: f64,
-    /// The factors of the symmetries whose flow takes the point to its image.
+    /// The combination of the symmetries whose flow takes the point to its image: one factor per symmetry.
     pub element: Vec<f64>,
     /// Number of Newton steps.
     pub iterations: u32,

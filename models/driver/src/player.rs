@@ -10,7 +10,7 @@
 /// | `equal` | true for equal scales of both axes |
 /// | `height`, `fps` | height of the canvas, in pixels; frames in a second |
 /// | `times` | times of the frames, in order |
-/// | `borders` | polylines behind the motion: once, or for each frame |
+/// | `borders` | polylines behind the motion: one list for all frames, or one for each frame |
 /// | `curves` | for each curve its `label`; the points of its `path` with their `times`; `heads`, its point at each frame; `impacts`, each as time and point |
 ///
 /// A point is a pair of numbers. A point with a null interrupts its line.
@@ -18,7 +18,7 @@ pub const SCRIPT: &str = include_str!("player.js");
 
 /// The elements and the script of a player, in a page in which no other element is called `name`. `data` is JSON.
 pub fn element(name: &str, data: &str) -> String {
-    // Nothing in a name may end the script.
+    // A name that contains `</script>` must not end the script.
     let data = data.replace('<', "\\u003c");
     format!(
         "<div id='{name}'><canvas></canvas><br><button style='width: 3em'></button> \

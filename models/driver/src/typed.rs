@@ -1,4 +1,4 @@
-//! [`AnyModel`] for the type of a system.
+//! [`AnyModel`] for systems of any type.
 
 use dalembert::declaration::Described;
 use dalembert::describe::{Description, Instance, Report};
@@ -106,7 +106,7 @@ fn located<M: Model>(model: &M, origin: &Origin) -> Result<(M::Vector, M::Vector
     Ok((model.position(&state), qdot))
 }
 
-/// The initial state of a system, which is either form of a model.
+/// The initial state of `system`, which is the reduced or the global form of `model`.
 pub(crate) fn prepare<M: Model, S: System<Vector = M::Vector>>(
     model: &M,
     system: &S,

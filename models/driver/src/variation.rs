@@ -1,6 +1,6 @@
 //! Derivatives of a run with respect to its start and its parameters, across impacts, as plain data.
 //!
-//! An erased system of the largest capacity computes them, for which this code is compiled once.
+//! They are computed on the erased system of the largest capacity, so that this code is compiled only once.
 
 use std::ops::ControlFlow;
 
@@ -270,7 +270,7 @@ impl Differentiator<'_> {
             .and_then(|tangents| derivatives(system, run.t, &run.state, tangents)))
     }
 
-    /// The direction of a variable, in the state and the parameters.
+    /// The tangent vector of a variable, in state and parameters.
     fn direction<S: Instance + Variational>(
         &self,
         system: &S,
@@ -287,7 +287,7 @@ impl Differentiator<'_> {
         }
     }
 
-    /// The direction of a variable in the state that is composed of positions and velocities.
+    /// The same for a state that is computed from positions and velocities.
     fn composed<S: Instance + Variational>(
         &self,
         system: &S,

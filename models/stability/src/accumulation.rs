@@ -42,14 +42,14 @@ pub const CASES: &[Case] = &[
         id: "B06",
         title: "elastic accumulation on rising treads, a = 0.5 .. 0.84",
         right: "x_n = (v0/k)(1 - r^n), v_n = v0 r^n, k = sqrt(2) a^2, r = (1 - k)/(1 + k); accumulates at v0/k",
-        bound: "`zeno` within 1e-10, 1e-6 for a = 0.84, where hops rise 5e-16 after two impacts; energy to 8 u per impact",
+        bound: "`zeno` within 1e-10, 1e-6 for a = 0.84, where hops after two impacts are 7e-16 high; energy to 8 u per impact",
         run: Run::Steps(treads),
         ..Case::QUICK
     },
     Case {
         id: "B07",
-        title: "rising treads with a = 0.85, where k > 1 and the start lies below the table",
-        right: "nothing accumulates: the parabola comes up to the table from below at x = 2 v0/(1 + k) = 0.989232550505",
+        title: "rising treads with a = 0.85: k > 1, so that the motion passes below the curve at once",
+        right: "nothing accumulates: the parabola meets the curve from below at x = 2 v0/(1 + k) = 0.989232550505",
         bound: "`still_penetrating` at the start, one record",
         run: Run::Steps(below_the_treads),
         ..Case::QUICK
@@ -80,7 +80,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "B10",
-        title: "a piston that closes on an elastic point",
+        title: "an elastic point between a wall and an approaching piston",
         right: "X_n (v_n - u) constant: X = 4.9999750001249995e-06 after 1e5 impacts on the piston",
         bound: "1e-8 relative",
         run: Run::Integrators(piston),
@@ -88,7 +88,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "B10b",
-        title: "a piston that closes to the end",
+        title: "an approaching piston that reaches the wall",
         right: "accumulates algebraically at t = L/u = 2",
         bound: "`spasmodic`, never `zeno`",
         run: Run::Integrators(piston_to_the_end),

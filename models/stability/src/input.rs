@@ -26,7 +26,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "H02",
-        title: "parameters that are not finite, or against their declarations",
+        title: "parameters that are not finite, or contradict their declarations",
         right: "refused, with the parameter named",
         bound: "the error of its kind",
         run: Run::Once(bad_parameters),
@@ -34,7 +34,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "H03",
-        title: "an end before the start, and one at it",
+        title: "an end time before the start time, and one equal to it",
         right: "refused; done at once",
         bound: "the error of its kind",
         run: Run::Once(backwards),

@@ -9,7 +9,7 @@ use super::course::{Course, Random, U, vector};
 use super::location::FALL;
 use super::text::{Model, Text, shipped, value};
 
-/// A vertical disk that rolls towards a wall through its centre.
+/// A vertical disk that rolls towards a wall. The gap is the distance of its centre from the wall.
 static DISK_AT_WALL: Text = Text::new(
     "DiskAtWall {
         coordinates { x; y; theta: angle; phi: angle; }
@@ -32,7 +32,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "C02",
-        title: "a vertical disk at a wall through its centre",
+        title: "a vertical disk whose centre hits a wall",
         right: "roll rate times -1, 0 and (I + mR^2 - 2mR^2 cos^2 phi)/(I + mR^2); turn rate kept",
         bound: "16 u",
         run: Run::Once(disk_at_wall),

@@ -58,13 +58,13 @@ pub const CASES: &[Case] = &[
         id: "F05",
         title: "a Sinai billiard, a square with a disk of radius 1/2",
         right: "bounces of a 200-digit run",
-        bound: "ten times exact-formula double arithmetic: 1e-14, 8e-13 and 2e-9 at bounces 3, 10, 20",
+        bound: "ten times exact-formula double arithmetic: 1e-14, 1e-13, 8e-13 and 2e-9 at bounces 1, 3, 10, 20",
         run: Run::Integrators(sinai),
         ..Case::QUICK
     },
     Case {
         id: "F07",
-        title: "turned round after 100 bounces, a circle and an ellipse billiard",
+        title: "a circle and an ellipse billiard, turned round at t = 150",
         right: "back at the start with the opposite velocity",
         bound: "1e3 times the error of F01 at n = 100",
         run: Run::Integrators(turned_round),
@@ -72,7 +72,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "F08",
-        title: "error after ten impacts in a smooth potential, for steps halved three times",
+        title: "error after impacts in a smooth potential, for steps halved twice",
         right: "it falls with the order of the integrator, not with order 1",
         bound: "exponent at most 1/2 less than the order",
         run: Run::Integrators(order_across_impacts),
@@ -81,15 +81,15 @@ pub const CASES: &[Case] = &[
     Case {
         id: "F09",
         title: "dense output between the impacts of an oscillator",
-        right: "cos between its reflections; nothing is interpolated across one",
+        right: "a cosine between reflections; no interpolation across a reflection",
         bound: "ten times the largest error at ends of steps",
         run: Run::Integrators(dense_across_impacts),
         ..Case::QUICK
     },
     Case {
         id: "F11",
-        title: "one run of arithmetic and roots alone on several machines, 200 bounces off a disk in a square",
-        right: "the same bits; with the feature `strict` those of every run, see `tests/strict.rs`",
+        title: "200 bounces off a disk in a square, by arithmetic and square roots alone, on several machines",
+        right: "the same bits; with the feature `strict`, this holds for every run, see `tests/strict.rs`",
         bound: "a hash kept with the sources",
         // NOTE: without `strict`, multiplications and additions are fused in builds for machines that support it.
         pending: match cfg!(target_feature = "fma") {

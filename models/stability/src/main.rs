@@ -1,4 +1,4 @@
-//! The `dalembert` command with the hard cases behind `stability`.
+//! The `dalembert` command with the hard cases as the subcommand `stability`.
 
 use std::process::ExitCode;
 

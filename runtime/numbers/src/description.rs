@@ -136,9 +136,9 @@ pub struct Documentation {
     pub description: Description,
     /// The inputs. Their values follow the parameters of the description.
     pub inputs: Held<[&'static str]>,
-    /// True for coordinates whose position was declared, in order.
+    /// One flag per coordinate: true if its initial position is declared.
     pub placed: Held<[bool]>,
-    /// True for coordinates whose velocity was declared, in order.
+    /// One flag per coordinate: true if its initial velocity is declared.
     pub named: Held<[bool]>,
     /// The quantities of [`Kernel::Geometry`](crate::Kernel::Geometry), in order.
     pub geometry: Held<[Quantity]>,

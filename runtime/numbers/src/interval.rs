@@ -20,7 +20,7 @@ const ULP: f64 = f64::EPSILON;
 /// Relative widening of an elementary function's value: at least four units in the last place.
 const CALL: f64 = 4.0 * ULP;
 
-/// Arguments of sine and cosine beyond this magnitude have the range `[-1, 1]`.
+/// For arguments beyond this magnitude, sines and cosines are enclosed by `[-1, 1]`.
 const FAR: f64 = 1e9;
 
 /// All numbers from `lo` to `hi`.
@@ -137,7 +137,7 @@ impl Interval {
         Self::new(PI, PI.next_up())
     }
 
-    /// The range of a non-decreasing function that `libm` computes.
+    /// An enclosure of the range of a non-decreasing function that `libm` computes.
     #[must_use]
     #[inline(always)]
     pub fn increasing(self, function: impl Fn(f64) -> f64) -> Self {
@@ -174,7 +174,7 @@ impl Interval {
         }
     }
 
-    /// The range of a sine or cosine with a maximum at `crest`.
+    /// An enclosure of the range of a sine or cosine with a maximum at `crest`.
     fn wave(self, function: fn(f64) -> f64, crest: f64) -> Self {
         // The limit is a little less than a turn, because extreme values near the ends count as met.
         let is_short = self.magnitude() <= FAR && self.hi - self.lo <= 6.2;
@@ -554,7 +554,8 @@ impl Interval {
     /// The power with the exponent `exponent - 1`, for derivatives of powers.
     #[inline]
     pub(crate) fn powf_below(self, exponent: f64) -> Self {
-        // Rounding of the exponent changes the power by the fraction `u` of its logarithm, less than `746 u`.
+        // Rounding of the exponent changes the power by the fraction `u |ln power|`, less than `746 u`, with the unit
+        // roundoff `u`.
         const SLACK: f64 = 1e-12;
         let power = self.powf(exponent - 1.0);
         power * Self::new(1.0 - SLACK, 1.0 + SLACK)

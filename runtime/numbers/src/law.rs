@@ -1,7 +1,7 @@
 //! Impact laws: the size of the impulse along `pi_D^* dh`, or the reset of the state.
 //!
 //! Every law but `reset`, `stop` and transitions is `p+ = p + eps pi_D^* dh` with some `eps`. Let `G` be the gap rate
-//! `dh(qdot) + d_t h`, and `rho = dh(pi_D grad h) / dh(grad h)`:
+//! `dh(qdot) + d_t h`, `P = g(qdot, .)` the kinetic momentum, and `rho = dh(pi_D grad h) / dh(grad h)`:
 //!
 //! | law | eps |
 //! |---|---|

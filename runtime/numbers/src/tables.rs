@@ -64,7 +64,7 @@ pub enum Beside {
 /// A surface.
 #[derive(Debug, PartialEq)]
 pub struct Surface {
-    /// The law, with a coefficient of 0 where it has one.
+    /// The law, with 0 in place of its coefficient, which may depend on parameters.
     pub law: Law,
     /// The name of the coefficient, for errors.
     pub coefficient: Option<&'static str>,
@@ -78,7 +78,7 @@ pub struct Surface {
     pub takes: u64,
 }
 
-/// Constraint of a level.
+/// A position level: a function of the positions that a constraint keeps constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Level {
     /// Index of the constraint.
@@ -94,9 +94,9 @@ pub enum Passage {
     Declared,
     /// First-order systems: the position stays.
     Kept,
-    /// Both modes have the same Lagrangian: the focusing point.
+    /// Both modes have the same Lagrangian: the state moves to the focusing point.
     Focused,
-    /// The Lagrangian changes: refraction or reflection.
+    /// The Lagrangian changes: the motion is refracted or reflected.
     Refracted,
 }
 

@@ -137,7 +137,7 @@ impl TaylorModel {
         }
     }
 
-    /// All values on the stretch.
+    /// Enclosure of all values on the stretch.
     pub fn range(&self) -> Interval {
         let [middle, first, second, third] = self.powers;
         let reach = (first.abs() + third.abs() + self.error) * (1.0 + ROUNDING);
@@ -149,7 +149,7 @@ impl TaylorModel {
         }
     }
 
-    /// All derivatives with respect to `s`, and all slopes of chords.
+    /// Enclosure of all derivatives with respect to `s`, and of all slopes of chords.
     pub fn rates(&self) -> Interval {
         let [_, first, second, third] = self.powers;
         let turns = Interval::new(first + 3.0 * third.min(0.0), first + 3.0 * third.max(0.0));
@@ -164,13 +164,13 @@ impl TaylorModel {
         }
     }
 
-    /// The largest distance of the cubic from its middle value.
+    /// Bound of the distance of the cubic from its middle value.
     #[inline(always)]
     fn spread(&self) -> f64 {
         self.powers[1].abs() + self.powers[2].abs() + self.powers[3].abs()
     }
 
-    /// The largest rate of the cubic.
+    /// Bound of the rate of the cubic.
     #[inline(always)]
     fn steepness(&self) -> f64 {
         self.powers[1].abs() + 2.0 * self.powers[2].abs() + 3.0 * self.powers[3].abs()
@@ -285,7 +285,7 @@ impl TaylorModel {
         }
     }
 
-    /// The largest distance of all values from the middle of the cubic.
+    /// Bound of the distance of all values from the middle value of the cubic.
     #[inline(always)]
     fn radius(&self) -> f64 {
         (self.spread() + self.error) * (1.0 + ROUNDING)
@@ -471,7 +471,7 @@ impl Numbers for TaylorModel {
 
     crate::numbers::constants_of_intervals!();
 
-    /// The value of the cubic in the middle. It implies nothing for the rest of the stretch.
+    /// The value of the cubic in the middle. It does not bound the values on the stretch.
     #[inline(always)]
     fn lane(&self, _: usize) -> f64 {
         self.powers[0]
@@ -818,7 +818,7 @@ mod tests {
     use super::*;
     use crate::interval::tests::{FUNCTIONS, Sample};
 
-    /// Paths between two places: a line, and one that bends by a part of the way.
+    /// Two paths between two numbers: a straight line and a parabola.
     fn paths(from: f64, to: f64) -> [TaylorModel; 2] {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let exact = |powers: [f64; 4]| TaylorModel {

@@ -3,8 +3,8 @@
 //!
 //! An audit observes a run and does not rely on the events that the run reports. It encloses all values of every gap
 //! along every step, by interval arithmetic on the dense output (`motion.rs`) and bisection (`scan.rs`). It shares no
-//! code with event location. A claim that it cannot prove within its budget is reported as a [`Finding`], in the same
-//! way as a surface that was passed.
+//! code with event location except the functions of the model. A claim that it cannot prove within its budget is
+//! reported as a [`Finding`], in the same way as a surface that was passed.
 //!
 //! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative,
 //! unless the system encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while

@@ -36,8 +36,8 @@ enum Sign {
     Unclear,
 }
 
-/// Rounding error of a gap, from its enclosure at one state: twice the width, which is the effect of the rounding of
-/// the state.
+/// Allowance for the rounding error of a gap: twice the width of its enclosure at one state. This width is the effect
+/// of the rounding of the state.
 pub(super) fn floor(gap: Interval) -> f64 {
     2.0 * gap.width()
 }

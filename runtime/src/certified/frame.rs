@@ -1,9 +1,9 @@
 //! A set of states `centre + C r_0 + Q r`. The axes `C` of the box `r_0` are propagated with the motion. The frame `Q`
 //! of the box `r` is orthonormal up to rounding.
 //!
-//! The first box is the image of an earlier set and takes up no errors. The second one takes up the errors of the
-//! steps; its frame is rotated by QR against the wrapping effect. When the second box becomes as large as the first,
-//! both are joined into one.
+//! The first box is the image of an earlier set and contains no errors of steps. The second box collects these errors;
+//! its frame is rotated by QR against the wrapping effect. When the second box becomes as large as the first, both are
+//! joined into one.
 
 use crate::contract::{Variational, VectorField};
 use crate::math;

@@ -139,7 +139,8 @@ pub trait Impacting: System {
     }
 
     /// True if the surface counts all along a part of the motion, false if it counts nowhere on it; `None` if neither
-    /// is certain. A condition holds where its margin exceeds the width of the range of its margin along `rounding`.
+    /// is certain. `rounding` holds one moment of the motion, with its rounding errors. The range of a margin over it
+    /// is as wide as the rounding error of the margin. A condition counts as satisfied if its margin exceeds this width.
     fn counts_along(&self, surface: usize, along: Along<'_>, rounding: Along<'_>) -> Option<bool> {
         let _ = (surface, along, rounding);
         None

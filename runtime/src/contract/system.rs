@@ -4,8 +4,8 @@ use super::{Along, Chart, VectorField};
 use crate::error::{Fault, ParameterError, StateError};
 use crate::state::StateVector;
 
-/// Quantity that a state keeps when parameters change. A state holds momenta or quasi-velocities, and other
-/// parameters give them other velocities.
+/// Quantity that a state keeps when parameters change. A state holds momenta or quasi-velocities. With other
+/// parameters, the same momenta belong to other velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
     /// The velocities: a body whose mass is exchanged keeps its speed.
@@ -75,7 +75,7 @@ pub trait System: VectorField {
     /// Positions q.
     fn position(&self, state: &Self::State) -> Self::Vector;
 
-    /// Velocities `qdot = g^{-1}(p - A)`.
+    /// Velocities `qdot = g^{-1}(p - A)`. `A` is the part of the Lagrangian that is linear in the velocities.
     ///
     /// # Errors
     /// [`Fault::MetricNotPositive`].
@@ -173,9 +173,9 @@ pub trait System: VectorField {
         false
     }
 
-    /// The first position in `[0, reach]` along a piece of smooth motion at which the constraint forms become
-    /// dependent. `motion` gives time and state at a fraction of the piece. `None` if [`System::can_lose_rank`] is
-    /// false.
+    /// The first place in a piece of smooth motion at which the constraint forms become dependent, up to the fraction
+    /// `reach` of the piece. `motion` gives time and state at a fraction of the piece. `None` if there is no such
+    /// place, or if [`System::can_lose_rank`] is false.
     fn rank_drop(
         &self,
         motion: impl Fn(f64) -> (f64, Self::State),
@@ -333,10 +333,10 @@ pub(crate) fn carried<S: System + ?Sized>(
     }
 }
 
-/// A place at which constraint forms become dependent along a motion.
+/// A place in a piece of smooth motion at which constraint forms become dependent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankDrop {
-    /// The last position before it, as a fraction of the motion.
+    /// The last fraction of the piece before it.
     pub theta: f64,
     /// Index of the constraint that depends on the earlier ones there, or vanishes.
     pub constraint: usize,

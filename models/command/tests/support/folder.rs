@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub struct Folder(pub PathBuf);
 
 impl Folder {
-    /// A new folder; `name` tells it from those of other tests.
+    /// A new folder. Tests of one process need different names.
     pub fn new(name: &str) -> Self {
         let folder = format!("dalembert-{name}-{}", std::process::id());
         let folder = std::env::temp_dir().join(folder);

@@ -68,8 +68,8 @@ pub struct Boundary {
     /// Largest kinetic energy of a start. By default the scan continues until every start has too many impacts, or up
     /// to a large multiple of the energies that the problem suggests.
     pub kinetic: Option<f64>,
-    /// Number of starts in each direction whose conjugate points are sought, for one unknown. The points lie on the
-    /// envelope of all motions from the first configuration.
+    /// Number of starts whose conjugate points are computed, in each of the two directions of the one unknown. Must be
+    /// 0 for several unknowns. The points lie on the envelope of all motions from the first configuration.
     pub envelope: usize,
 }
 
@@ -136,7 +136,8 @@ pub struct Connected {
     pub directions: usize,
     /// Largest kinetic energy of a scanned start.
     pub kinetic: f64,
-    /// True if the starts at that energy have too many impacts or no motion to the end, in every direction.
+    /// True if, in every direction, no motion from the fastest scanned starts reaches the end with few enough impacts,
+    /// and none was given up.
     pub is_bounded: bool,
     /// Number of motions that were computed.
     pub runs: u64,

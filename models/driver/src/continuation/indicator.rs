@@ -4,8 +4,8 @@ use super::family::{Failure, Node};
 use super::{Bifurcation, Stability};
 use crate::linear::determinant;
 
-/// Distances below which numbers along a branch count as their limits. They depend on the tolerance of the integrator:
-/// multipliers have an error of about the tolerance, double multipliers of its square root.
+/// Distances below which numbers along a branch count as equal. They depend on the tolerance of the integrator: the
+/// error of a simple multiplier is about the tolerance, that of a double multiplier about its square root.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Precision {
     /// Distance from the unit circle at which multipliers count as lying on it.
@@ -15,7 +15,7 @@ pub(crate) struct Precision {
     always: f64,
     /// Bound for members between the ends, where a factor that changes sign may be small.
     within: f64,
-    /// Accepted distance of the multipliers, and of the direction, at a located bifurcation from their exact values.
+    /// Largest distance of a multiplier or of the direction from its exact value, at an accepted bifurcation.
     near: f64,
 }
 
@@ -45,7 +45,7 @@ impl Precision {
 /// A test function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Test {
-    /// The component of the direction in the parameter.
+    /// The component of the direction along the parameter.
     Rise,
     /// The determinant of the derivative bordered by the direction.
     Crossing,
@@ -140,7 +140,7 @@ impl Test {
     }
 }
 
-/// True if a member is a bifurcation up to rounding, or belongs to a family at a constant parameter.
+/// True if a member counts as a bifurcation, or belongs to a family at a constant parameter.
 pub(super) fn is_degenerate(node: &Node, tests: &[Test], width: f64, precision: Precision) -> bool {
     let is_zero = |test: &Test| {
         let value = test.value(node, width, precision);
@@ -178,7 +178,7 @@ pub(super) fn outside(multipliers: &[[f64; 2]], margin: f64) -> usize {
     moduli.filter(|modulus| *modulus > 1.0 + margin).count()
 }
 
-/// The bifurcation by the multiplier farthest from 1 among those near the unit circle.
+/// The bifurcation that the multipliers near the unit circle indicate: the one farthest from 1 decides.
 pub(super) fn passing(multipliers: &[[f64; 2]], precision: Precision) -> Option<Bifurcation> {
     let on_circle = multipliers
         .iter()
@@ -191,7 +191,7 @@ pub(super) fn passing(multipliers: &[[f64; 2]], precision: Precision) -> Option<
     })
 }
 
-/// The stability by the multipliers; `None` if one of them is NaN.
+/// The stability that follows from the multipliers; `None` if one of them is NaN.
 pub(super) fn stability(multipliers: &[[f64; 2]], precision: Precision) -> Option<Stability> {
     // NOTE: `f64::max` ignores NaN.
     if multipliers.iter().flatten().any(|part| part.is_nan()) {

@@ -36,16 +36,16 @@ const SAME: f64 = 1e-6;
 /// Maximum number of Newton steps.
 const NEWTON: usize = 12;
 
-/// Distance along the branch to an arrival at speed 0 below which the end of the branch is a grazing orbit.
+/// A branch ends at a grazing orbit if the speed of an arrival, extrapolated linearly, is 0 within this distance.
 const GRAZING: f64 = 1e-5;
 
-/// Distance along the branch to an end inside the range below which points are left out.
+/// Points within this distance of an end inside the range, along the branch, are left out.
 const CROWDED: f64 = 1e-3;
 
 /// Largest deviation of a step from the arc of a circle that its directions imply, as a fraction of the arc's height. A
 /// member of a neighbouring sheet lies off this arc.
 const UNEVEN: f64 = 0.25;
-/// The same as a fraction of the step; both deviations are added.
+/// Additional deviation, as a fraction of the step.
 const CROOKED: f64 = 1e-3;
 
 /// Observer of the points of a branch.
@@ -97,13 +97,13 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// Also ends the branch where the last component of the state leaves this range, and locates no bifurcations.
+    /// Ends the branch also where the last component of the state leaves this range, and locates no bifurcations.
     pub fn within(&mut self, window: [f64; 2]) {
         self.window = Some(window);
         self.tests = &[];
     }
 
-    /// Records if the branch passes through the members near these states, all at one value of the parameter.
+    /// Records from now on which of the members near these states lie on the branch. All have the same `parameter`.
     pub fn seek(&mut self, states: &[Vec<f64>], parameter: f64) {
         let found = states.iter().map(|state| {
             let local = self.corrected(state, parameter, Unknowns::State, f64::INFINITY);
@@ -150,7 +150,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     fn approached(&mut self, start: Node) -> Result<Result<Node, BranchEnd>, Failure> {
         let [low, high] = self.extent.limits();
         let from = start.parameter();
-        // The branch may move away from the range by the same distance.
+        // The branch may first move away from the range, at most by its distance from the range.
         let (limits, is_rising) = match from < low {
             true => ([from - (low - from), low], true),
             false => ([high, from + (from - high)], false),
@@ -368,7 +368,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
         Ok(place)
     }
 
-    /// The member at a distance along the direction of another, or the closest one to it at a value of the parameter.
+    /// The member near the end of a step of this length from another member, along its direction. If a value of the
+    /// parameter is given, the member has this value.
     fn reached(
         &mut self,
         node: &Node,
@@ -464,7 +465,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 }
 
-/// The end of a branch at which no step from the second of two members is short enough.
+/// The end of a branch from whose last member even the shortest step fails. `last`: its last two members.
 fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     let grazed = failures.iter().rev().find_map(|failure| match failure {
         Failure::Itinerary(surface) => Some(*surface),

@@ -31,7 +31,7 @@ const HEIGHTS: [f64; 3] = [0.25, 1.0, 2.0];
 /// Maximum number of steps.
 const STEPS: usize = 60;
 
-/// Length of a Newton step, in units of the unknowns, below which the equations are solved.
+/// Length of a Newton step, in units of the unknowns, below which the equations count as solved.
 const SOLVED: f64 = 1e-8;
 
 /// Least unit of a costate.

@@ -10,7 +10,7 @@ const LOST: f64 = -1.0;
 pub struct Move {
     /// The state after the step.
     pub state: [f64; 2],
-    /// The cost of the step; infinite for a motion that does not reach its end, NaN if there is no initial state.
+    /// The cost of the step; infinite if the motion does not reach the end of the step, NaN if it has no initial state.
     pub cost: f64,
     /// Number of impacts in the step.
     pub impacts: u32,

@@ -1,5 +1,5 @@
-//! Motions over a step from many states, with each of several inputs. The first-order model has the components state,
-//! held inputs and cost.
+//! Motions over a step from many states, with each of several inputs. The components of the first-order model are the
+//! state, the held inputs and the cost.
 
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ use crate::typed::vector;
 /// Maximum number of impacts in a step.
 const IMPACTS: u64 = 64;
 
-/// Maximum number of integration steps in a step.
+/// Maximum number of steps of the integrator in one step in time.
 const STEPS: u64 = 4096;
 
 /// Number of components of the state.

@@ -14,16 +14,16 @@ use crate::linear::norm;
 /// Maximum number of steps.
 const STEPS: u32 = 200;
 
-/// Residual at which the search stops, as a fraction of the largest derivative times the largest value.
+/// Residual at which the search stops, in units of [`Walk::unit`].
 const SETTLED: f64 = 1e-12;
 
 /// Largest accepted residual of an equilibrium, in the same unit.
 const SOLVED: f64 = 1e-9;
 
-/// Largest damping of a step, as a multiple of the residual.
+/// Largest damping of a step, as a multiple of the residual or of the largest derivative, whichever is smaller.
 const DAMPED: f64 = 1e8;
 
-/// Smallest damping, as a multiple of the residual.
+/// Smallest damping, in the same unit.
 const LEAST: f64 = 1e-6;
 
 /// Search for an equilibrium from a state.
@@ -76,7 +76,7 @@ struct Walk<'a, S: Instance + Variational> {
     /// The state, then the inputs.
     values: Vec<f64>,
     sample: Sample,
-    /// Damping of the next step, as a multiple of the residual.
+    /// Damping of the next step, in the unit of [`DAMPED`].
     factor: f64,
 }
 
@@ -126,7 +126,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
         norm(&residuals.iter().map(|it| it.1).collect::<Vec<_>>())
     }
 
-    /// The unit of the residuals: the largest derivative times the largest value.
+    /// The unit of the residuals: the largest derivative times the largest value, each at least 1.
     fn unit(&self) -> f64 {
         let columns = self.equations.columns(&self.sample, &self.free);
         largest(columns.iter().flatten()).max(1.0) * largest(self.values.iter()).max(1.0)
@@ -177,7 +177,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
         }
     }
 
-    /// Refuses residuals that are not 0 up to rounding.
+    /// Refuses residuals above [`SOLVED`].
     fn check(&self) -> Result<(), Unlinear> {
         let residuals = self.equations.residuals(&self.sample);
         let worst = residuals

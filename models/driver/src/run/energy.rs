@@ -1,9 +1,9 @@
 //! Energy balance of a run with steps of fixed size. Such steps have no error estimate, but the balance reveals large
 //! errors.
 //!
-//! Along smooth motion, the energy changes at the rate of the power, which is 0 unless a force works on the system. Any
-//! other change is an error. The power is integrated by the trapezoidal rule, whose error does not grow with the number
-//! of steps.
+//! Along smooth motion, the energy changes at the rate of the power. The power is 0 unless a force does work or the
+//! Lagrangian depends on time. Any other change is an error. The power is integrated by the trapezoidal rule, whose
+//! error does not grow with the number of steps.
 
 use dalembert::{Segment, StateVector, System};
 
@@ -25,7 +25,7 @@ pub(super) struct Balance {
     size: f64,
     /// The largest kinetic energy.
     swing: f64,
-    /// The sum of the absolute values of the work.
+    /// The sum of the absolute values of the work in each step.
     work: f64,
     /// The error so far.
     error: f64,

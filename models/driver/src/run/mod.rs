@@ -76,7 +76,7 @@ pub struct Ending {
     pub first: Point,
     /// The last state.
     pub last: Point,
-    /// The work.
+    /// Counters of the work: steps, evaluations, impacts and the like.
     pub counters: Counters,
     /// The step of a fixed-step integrator.
     pub step: Option<f64>,

@@ -1,6 +1,6 @@
 //! Runs whose inputs are functions of time and state.
 //!
-//! An erased system of the largest capacity makes them, for which this code is compiled once.
+//! They run on the erased system of the largest capacity, so that this code is compiled only once.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -200,7 +200,7 @@ fn run<'f, 'c>(
     Ok(ending(ends, Solved { run, step, laws }, settings))
 }
 
-/// Observes a system with input functions as the system without them.
+/// Observer of the system with input functions that forwards to an observer of the system without them.
 struct Driver<'a, 'f, R>(Bridge<'a, Plain<'f>, R>);
 
 /// The values at states, with the inputs at these states.

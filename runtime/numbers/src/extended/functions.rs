@@ -1,7 +1,8 @@
 //! Elementary functions in 6 doubles, more than any result has after rounding.
 //!
 //! Exponentials and sines are sums of their series after argument reduction. Their inverses follow by Newton's method
-//! or a similar method of third order. Infinite values, NaN and jumps agree with those of `f64`.
+//! or a similar method of third order. Infinite values, NaN and jumps agree with those of `f64`, except for angles
+//! beyond `2^50`.
 
 use core::f64::consts;
 

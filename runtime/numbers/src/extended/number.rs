@@ -18,10 +18,11 @@ pub const MOST_PARTS: usize = 4;
 /// `PARTS` is 1 to [`MOST_PARTS`]; other counts do not compile. With 1 part the arithmetic is that of `f64`, with the
 /// elementary functions rounded from more digits.
 ///
-/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`. The errors of
-/// differences are relative to the larger operand, and one double less precise. Elementary functions are computed in 6
-/// parts and rounded. Digits below `1e-308` do not exist: numbers below `1e-308 / 2^(-53 (PARTS - 1))` have fewer.
-/// Sines, cosines and tangents of angles beyond `2^50` are NaN. A result is infinite or NaN if it is so in `f64`.
+/// Sums, products, quotients and roots have relative errors of a few units of `2^(-53 PARTS)`. If leading digits
+/// cancel, a difference also has an error of about `2^(-53 (PARTS + 1))` times the larger operand. Elementary
+/// functions are computed in 6 parts and rounded. Digits below `1e-308` do not exist: numbers below
+/// `1e-308 / 2^(-53 (PARTS - 1))` have fewer. Sines, cosines and tangents of angles beyond `2^50` are NaN. A result is
+/// infinite or NaN if it is so in `f64`.
 ///
 /// ```
 /// use dalembert_numbers::Extended;

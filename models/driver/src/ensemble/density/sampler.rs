@@ -21,8 +21,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Samples the states within a stretch of motion. The next stretch samples its last instant, so that at an impact
-    /// the state after it counts.
+    /// Samples the states of a stretch of motion, without its last instant. That instant belongs to the next stretch,
+    /// so that at an impact the state after it counts.
     pub fn follow(&mut self, piece: &dyn Piece) {
         let (_, end) = piece.span();
         while let Some(t) = self.next_time().filter(|&t| t < end) {
