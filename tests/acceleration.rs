@@ -1,6 +1,7 @@
 //! Compares the motion on D that the claims use with independent values of 50 digits.
 
 use dalembert::Instance;
+use dalembert::math::larger;
 use dalembert_codegen::claims::Dynamics;
 use dalembert_codegen::mechanics::{self, Derivation};
 use dalembert_codegen::model::{self, Model};
@@ -69,7 +70,7 @@ fn check(name: &str, file: &str) {
             let expected = numbers(&state[key]);
             let size = expected
                 .iter()
-                .fold(1.0, |size: f64, value| size.max(value.abs()));
+                .fold(1.0, |size: f64, value| larger(size, value.abs()));
             assert_eq!(found.len(), expected.len(), "{name} {key}");
             for (found, expected) in found.iter().zip(&expected) {
                 let error = (found - expected).abs() / size;

@@ -2,6 +2,7 @@
 
 use dalembert::erased::Bounded;
 use dalembert::integrate::Chosen;
+use dalembert::math::larger;
 use dalembert::{
     Constrained, Dop853, Fault, Instance, Simulation, StateVector, System, Tolerance, VectorField,
 };
@@ -123,7 +124,7 @@ impl SameMotion {
             let actual = acceleration(system, t, &state, &rate);
             let size = expected
                 .iter()
-                .fold(1.0_f64, |size, value| size.max(value.abs()));
+                .fold(1.0_f64, |size, value| larger(size, value.abs()));
             assert_eq!(actual.len(), expected.len(), "{name}");
             for (actual, expected) in actual.iter().zip(expected) {
                 let error = (actual - expected).abs();

@@ -1,5 +1,6 @@
 //! First variations of runs that surfaces hold for a while, and of impacts with instantaneous constraints.
 
+use dalembert::math::larger;
 use dalembert::variations::Undefined;
 use dalembert::{Law, Tangent, VectorField};
 use dalembert_cli::Integrator;
@@ -111,7 +112,7 @@ fn loose_runs_have_derivatives_as_good_as_they_are() {
     for tolerance in [1e-5, 1e-8] {
         for (loose, sharp) in columns(tolerance).iter().zip(&sharp) {
             let size = |values: &mut dyn Iterator<Item = f64>| {
-                values.fold(0.0, |worst: f64, value| worst.max(value.abs()))
+                values.fold(0.0, |worst: f64, value| larger(worst, value.abs()))
             };
             let (loose, sharp) = (loose.as_ref(), sharp.as_ref());
             let mut missed = loose.iter().zip(sharp).map(|(a, b)| a - b);

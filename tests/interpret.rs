@@ -7,6 +7,7 @@ use dalembert_codegen::model::Model;
 use dalembert_codegen::program::{Lowered, interpret::interpret, verify::verify};
 use dalembert_codegen::{compile, mechanics, spec};
 use dalembert_expr::SymbolId;
+use dalembert_stability::course::vector;
 use dalembert_stability::text::{Large, Text};
 use dalembert_tests::interpreted::{compare_motion, compare_report, input};
 use dalembert_tests::sampling::{Random, every_system, states};
@@ -90,7 +91,7 @@ fn high_powers_of_scaled_sums_keep_their_values() {
     let system = BUMPS.model();
     for x in [0.0_f64, 0.1, -0.3, 0.55] {
         let state = system
-            .state(0.0, &[x].into(), &[0.0].into())
+            .state(0.0, &vector(&[x]), &vector(&[0.0]))
             .expect("a state");
         let mut outputs = [f64::NAN; 6];
         system.outputs(0.0, &state, &mut outputs).expect("outputs");

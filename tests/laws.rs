@@ -2,6 +2,7 @@
 
 use dalembert::erased::Bounded;
 use dalembert::law::{Blow, Law};
+use dalembert::math::larger;
 use dalembert::{Constrained, Impacting, Instance, StateVector, System, VectorField};
 use dalembert_stability::text::{Large, Text};
 use dalembert_tests::sampling::{states, system};
@@ -88,7 +89,7 @@ fn check_blows(system: &Large) {
             let (expected_impulse, impulse) = (whole(&expected), whole(&actual));
             let size = expected_impulse
                 .iter()
-                .fold(0.0, |size: f64, value| size.max(value.abs()));
+                .fold(0.0, |size: f64, value| larger(size, value.abs()));
             for (actual, expected) in impulse.iter().zip(&expected_impulse) {
                 assert!(
                     (actual - expected).abs() < 1e-12 * size,
@@ -170,7 +171,7 @@ fn impacts_stay_on_the_constraints() {
 /// The largest difference of a component.
 fn distance(a: &State, b: &State) -> f64 {
     let pairs = a.as_slice().iter().zip(b.as_slice());
-    pairs.fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs()))
+    pairs.fold(0.0, |largest: f64, (a, b)| larger(largest, (a - b).abs()))
 }
 
 #[test]

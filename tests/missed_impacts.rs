@@ -3,6 +3,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::{Event, Observer, StateVector, System, VectorField};
 use dalembert_cli::suite::{Setting, every_integrator};
 use dalembert_stability::course::{Course, Random};
@@ -137,7 +138,7 @@ impl Observer<Model> for Watch<'_> {
         } = self.expected;
         let late = event.t - self.last - after;
         let allowed = UNITS * f64::EPSILON / rate.abs() + 4.0 * f64::EPSILON * event.t;
-        self.worst = self.worst.max(late.abs() / allowed);
+        self.worst = larger(self.worst, late.abs() / allowed);
         assert!(
             late.abs() <= allowed && event.surface == surface,
             "{}: impact {} on {} after {}, not on {surface} after {after}; {} at {v:?}, allowed {allowed:e}",

@@ -1,6 +1,7 @@
 //! Constraints that are not linear in the velocities: Chetaev's rule, projection, and quantities that are not defined.
 
 use dalembert::law::Law;
+use dalembert::math::larger;
 use dalembert::projection::Projection;
 use dalembert::{
     Constrained, Fault, Impacting, Instance, Lagrangian, Outcome, SceneEffects, StateError, System,
@@ -232,7 +233,7 @@ fn velocities_off_the_constraint_are_refused_or_moved_to_it() {
     assert!(
         pairs
             .map(|(found, given)| (found - given).abs())
-            .fold(0.0, f64::max)
+            .fold(0.0, larger)
             < 0.2
     );
     let kept = machine.state_unchecked(0.0, &q, &off).expect("a state");
@@ -313,7 +314,7 @@ fn projection_brings_a_coarse_run_back() {
         let left = residuals(&mixed, run.t, &run.state);
         (
             left.iter()
-                .fold(0.0, |worst: f64, value| worst.max(value.abs())),
+                .fold(0.0, |worst: f64, value| larger(worst, value.abs())),
             mixed.levels(run.t, &mixed.position(&run.state)).as_ref()[0],
             run.counters.projections,
         )

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::{Constrained, Law, Observer, Outcome, Segment, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, vector};
@@ -40,12 +41,12 @@ impl Observer<Model> for Kept<'_> {
         self.speed = self.speed.max(square.sqrt());
         let (residuals, _) = model.residuals(t, &q, &v);
         for residual in residuals.as_ref() {
-            self.residual = self.residual.max(residual.abs() / self.speed);
+            self.residual = larger(self.residual, residual.abs() / self.speed);
         }
         let levels = model.levels(t, &q);
         let first = *self.levels.get_or_insert(levels);
         for (level, first) in levels.as_ref().iter().zip(first.as_ref()) {
-            self.excess = self.excess.max((level - first).abs());
+            self.excess = larger(self.excess, (level - first).abs());
         }
         ControlFlow::Continue(())
     }

@@ -7,6 +7,7 @@
 use core::ops::ControlFlow;
 
 use dalembert::law::Law;
+use dalembert::math::larger;
 use dalembert::{
     Described, Event, Instance, Observer, Outcome, Projection, Run, StateVector, System,
     VectorField,
@@ -169,7 +170,7 @@ fn errors_at(method: Method) -> f64 {
     let largest = |impacts: &Impacts, case: &Value| {
         assert_eq!(impacts.times.len(), 8);
         let pairs = impacts.times.iter().zip(times(case)).take(8);
-        pairs.fold(0.0, |worst: f64, (a, e)| worst.max((a - e).abs()))
+        pairs.fold(0.0, |worst: f64, (a, e)| larger(worst, (a - e).abs()))
     };
     let case = &read("rolling_disk_trajectories")["cases"][2];
     let (disk, state) = disk(case);
@@ -414,7 +415,7 @@ fn ladder(tolerances: &[f64], integrator: Integrator) -> Vec<f64> {
                 .map(|(a, e)| (a - e).abs())
                 .collect::<Vec<_>>()
         });
-        errors.fold(0.0, f64::max)
+        errors.fold(0.0, larger)
     };
     tolerances.iter().map(|&tol| worst(tol)).collect()
 }

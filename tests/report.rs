@@ -2,6 +2,7 @@
 
 use dalembert::Instance;
 use dalembert::describe::Description;
+use dalembert::math::larger;
 use dalembert_codegen::claims::geometry_at;
 use dalembert_codegen::report::{Item, density_form, report};
 use dalembert_tests::sampling::every_system;
@@ -47,7 +48,7 @@ impl Compared {
                     error < 1e-10 * (1.0 + expected.abs()),
                     "{name} {k}: {printed} {expected}"
                 );
-                size = size.max(expected.abs());
+                size = larger(size, expected.abs());
             }
         }
         self.not_zero += usize::from(size > 1e-3);

@@ -2,6 +2,7 @@
 //! compared with the same chain in the angles of its rods.
 
 use dalembert::law::Law;
+use dalembert::math::larger;
 use dalembert::{Described, Fault, Impacting, Instance, System, VectorField};
 use dalembert_codegen::compile;
 use dalembert_models::Chain16;
@@ -71,7 +72,7 @@ fn random_state(random: &mut Random) -> (<Rods as VectorField>::State, Vec<f64>)
 }
 
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |largest, value| largest.max(value.abs()))
+    values.fold(0.0, |largest, value| larger(largest, value.abs()))
 }
 
 #[test]

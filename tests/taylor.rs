@@ -1,6 +1,7 @@
 //! Power series of motions: emitted series compared with interpreted ones, with functions, and with closed forms.
 
 use dalembert::jet::{Jets, LENGTH};
+use dalembert::math::larger;
 use dalembert::numbers::Row;
 use dalembert::{
     Described, Instance, Outcome, StateVector, System, Taylor, TaylorField, Tolerance,
@@ -83,7 +84,7 @@ fn assert_is_interpreted<S: Instance + TaylorField>(
         interpret::motion(jet, &at, (unit, order), state.as_slice()).expect("an expansion");
     let mut rate = state;
     system.rate(t, &state, &mut rate).expect("a rate");
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, larger);
     let rounding =
         16.0 * f64::EPSILON * largest(&mut rate.as_slice().iter().map(|component| component.abs()));
     for (coefficient, rate) in emitted[1].iter().zip(rate.as_slice()) {
@@ -302,7 +303,7 @@ fn error(order: usize, count: u32) -> f64 {
     let pairs = run.state.as_ref().iter().zip(soliton_at(1.0));
     pairs
         .map(|(found, expected)| (found - expected).abs())
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 #[test]
@@ -450,7 +451,7 @@ fn runs_repeat_and_agree_with_another_method() {
             assert_eq!((one.t, one.state), (again.t, again.state), "{name}");
             assert_eq!(one.outcome, other.outcome, "{name}");
             let (one, other) = (one.state.as_ref(), other.state.as_ref());
-            let size = one.iter().fold(1.0_f64, |a, b| a.max(b.abs()));
+            let size = one.iter().fold(1.0_f64, |a, b| larger(a, b.abs()));
             for (a, b) in one.iter().zip(other) {
                 assert!((a - b).abs() < 1e-11 * size, "{name}: {a} and {b}");
             }

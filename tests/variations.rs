@@ -2,6 +2,7 @@
 
 use dalembert::contract::Variational;
 use dalembert::law::Law;
+use dalembert::math::larger;
 use dalembert::numbers::{Numbers, Row};
 use dalembert::variations::Dual;
 use dalembert::{Described, Event, Impacting, Instance, System, Tangent, TaylorField, VectorField};
@@ -198,7 +199,7 @@ fn check_reference(text: &Text, name: &str) -> usize {
         let size = rows
             .iter()
             .flatten()
-            .fold(0.0, |size: f64, value| size.max(value.abs()));
+            .fold(0.0, |size: f64, value| larger(size, value.abs()));
         for (direction, column) in directions.iter().zip(&columns) {
             let start = unfolded(&system, t, &before, &direction.state);
             let end = unfolded(&system, t, &after, &column.state);
@@ -375,7 +376,7 @@ fn any_integrator_may_make_the_run() {
             let (one, other) = (one.state.as_ref(), other.state.as_ref());
             let size = other
                 .iter()
-                .fold(0.0, |size: f64, value| size.max(value.abs()));
+                .fold(0.0, |size: f64, value| larger(size, value.abs()));
             for (a, b) in one.iter().zip(other) {
                 assert!(
                     (a - b).abs() <= bound * size,

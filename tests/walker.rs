@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::{Event, Observer, Outcome, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_stability::course::{Course, state};
@@ -47,7 +48,8 @@ fn error(steps: &Steps, stored: &[Value]) -> f64 {
     assert_eq!(steps.0.len(), stored.len());
     let mut largest = 0.0_f64;
     for ((t, before, after), stored) in steps.0.iter().zip(stored) {
-        let mut compare = |found: f64, stored: f64| largest = largest.max((found - stored).abs());
+        let mut compare =
+            |found: f64, stored: f64| largest = larger(largest, (found - stored).abs());
         compare(*t, number(&stored["t"]));
         for (found, stored) in paired(before.as_ref(), &stored["before"]) {
             compare(found, stored);

@@ -3,6 +3,7 @@
 //! closed form has none. `golden.rs` says how to accept changes of the stored texts.
 
 use dalembert::describe::Report;
+use dalembert::math::larger;
 use dalembert::{Described, Fault, Instance, InvariantVolume, StateVector, System};
 use dalembert_models::{
     BallOnRotatingTable, HolonomicBeadOnEllipses, RollingBallEuler, RollingBallWall, RollingDisk,
@@ -147,7 +148,7 @@ fn divergence_of<S: Described + InvariantVolume>(change: fn(f64) -> f64) -> f64 
         let at: Vec<f64> = ranges.map(|(a, b)| random.within(a, b)).collect();
         let motion = |t: f64, at: &[f64]| flow.motion(t, at);
         let [sum, terms] = divergence(0.3, &at, motion, log_volume);
-        largest = largest.max(sum.abs() / terms.max(1.0));
+        largest = larger(largest, sum.abs() / terms.max(1.0));
     }
     largest
 }

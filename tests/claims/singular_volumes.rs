@@ -2,6 +2,7 @@
 //! from `l = 0` show that the motion keeps these volumes.
 
 use dalembert::Described;
+use dalembert::math::larger;
 use dalembert_codegen::claims::{MomentumDensity, Problem, find_momentum_density};
 use dalembert_expr::SymbolId;
 use dalembert_models::ChaplyginSleigh;
@@ -78,7 +79,7 @@ impl Singular {
             }
             let volume = |t: f64, at: &[f64]| self.log_volume(t, at, exponents);
             let [sum, terms] = divergence(0.0, &at, &motion, volume);
-            largest = largest.max(sum.abs() / terms.max(1.0));
+            largest = larger(largest, sum.abs() / terms.max(1.0));
             states += 1;
         }
         largest

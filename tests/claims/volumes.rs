@@ -1,6 +1,7 @@
 //! Invariant volumes `exp(G) mu_C`. Lowered densities are compared with listed ones and with the divergence of the
 //! motion by finite differences.
 
+use dalembert::math::larger;
 use dalembert::{Described, Instance};
 use dalembert_codegen::claims::{Potential, Term, Volume};
 use dalembert_codegen::model::Model;
@@ -128,7 +129,7 @@ fn divergence(system: &WithVolume, states: usize, log_volume: impl Fn(f64, &[f64
         let [divergence, terms] = system.divergence(0.3, &at, &log_volume);
         divergence.abs() / terms.max(1.0)
     };
-    (0..states).map(at).fold(0.0, f64::max)
+    (0..states).map(at).fold(0.0, larger)
 }
 
 fn own_divergence(system: &WithVolume, states: usize) -> f64 {

@@ -2,6 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use dalembert::math::larger;
 use dalembert_stability::course::Random;
 use dalembert_stability::text::{Model, Text};
 use dalembert_tests::flight::{Flight, direction, point, size, towards};
@@ -302,7 +303,7 @@ fn leaving(random: &mut Random) -> Case {
     case.flight.v = [speed * turned.cos(), speed * turned.sin()];
     let table = [a, b, r]
         .into_iter()
-        .fold(1.0, |size: f64, course| size.max(course.abs()));
+        .fold(1.0, |size: f64, course| larger(size, course.abs()));
     case.until = 4.0 * table / speed;
     case.fastest = speed;
     case.after = 1e-3 * r / speed;

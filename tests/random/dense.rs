@@ -7,6 +7,7 @@
 //!
 //! Nothing of the program stage is used: no factorisation, no sparsity, no elimination of the constraints.
 
+use dalembert::math::larger;
 use dalembert_codegen::Compiled;
 use dalembert_expr::{ExprId, SymbolId};
 use dalembert_tests::linear::solve;
@@ -241,5 +242,5 @@ fn norm(matrix: &[Vec<f64>]) -> f64 {
     let sizes = matrix
         .iter()
         .map(|row| row.iter().map(|entry| entry.abs()).sum());
-    sizes.fold(0.0, f64::max)
+    sizes.fold(0.0, larger)
 }

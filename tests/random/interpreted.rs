@@ -1,5 +1,6 @@
 //! Compares the interpreted program of a random declaration with dense linear algebra and finite differences.
 
+use dalembert::math::larger;
 use dalembert_codegen::Compiled;
 use dalembert_codegen::program::{Function, Input, Program, interpret::interpret, verify::verify};
 use dalembert_tests::numeric::{moved, slope, slopes};
@@ -126,7 +127,7 @@ pub fn same_within(
     prop_assert_eq!(actual.len(), expected.len(), "{}", what);
     let size = expected
         .iter()
-        .fold(1.0_f64, |size, value| size.max(value.abs()));
+        .fold(1.0_f64, |size, value| larger(size, value.abs()));
     for (a, e) in actual.iter().zip(expected) {
         prop_assert!(
             (a - e).abs() <= tolerance * size,
@@ -463,7 +464,9 @@ fn check_divergence(comparison: &Comparison<'_>) -> Result<(), TestCaseError> {
         })
         .sum();
     let rate = comparison.dense.rate(comparison.at.t, q, p);
-    let size = rate.iter().fold(1.0_f64, |size, rate| size.max(rate.abs()));
+    let size = rate
+        .iter()
+        .fold(1.0_f64, |size, rate| larger(size, rate.abs()));
     let density = comparison.compiled.programs.global().density.as_ref();
     let actual = comparison.run(&density.expect("of a whole model").divergence);
     same_within(

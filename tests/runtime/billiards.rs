@@ -1,6 +1,7 @@
 //! Billiards with known numbers, orders and positions of impacts.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
+use dalembert::math::larger;
 use dalembert::{Event, Impacts, Observer, Outcome};
 use dalembert_tests::gap;
 use dalembert_tests::particle::*;
@@ -94,7 +95,7 @@ fn f01_circle_keeps_angular_momentum_and_bounces_where_it_must() {
                 .max((event.after[0] - x).hypot(event.after[1] - y));
             for state in [event.before, event.after] {
                 let momentum = state[0] * state[3] - state[1] * state[2];
-                self.momentum = self.momentum.max((momentum - 0.3_f64.sin()).abs());
+                self.momentum = larger(self.momentum, (momentum - 0.3_f64.sin()).abs());
             }
             core::ops::ControlFlow::Continue(())
         }

@@ -9,6 +9,7 @@ use std::time::Instant;
 use dalembert::Described;
 use dalembert::certified::CertifiedRun;
 use dalembert::extended::{At, Extended, ExtendedSimulation, Impact};
+use dalembert::math::larger;
 use dalembert::numbers::{Interval, Numbers, Row};
 use dalembert::{Impacting, Scene, StateVector, Variational};
 use dalembert_stability::text::{Model, Text};
@@ -469,7 +470,7 @@ fn every_motion_from_a_box_is_held_across_impacts() {
     let found = enclosures.last().unwrap().1;
     let [found, reached] = [found, reached].map(|ranges| {
         let widths = ranges.map(Interval::width);
-        widths.into_iter().fold(0.0, f64::max)
+        widths.into_iter().fold(0.0, larger)
     });
     println!("box of {RADIUS}: width {found:.1e}, of its corners {reached:.1e}");
     assert!(found < 1.1 * reached, "{found:e}, {reached:e}");

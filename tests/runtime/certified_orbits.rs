@@ -6,6 +6,7 @@ use core::ops::ControlFlow;
 use std::time::Instant;
 
 use dalembert::certified::{CertifiedRun, CertifiedSection, NotProved};
+use dalembert::math::larger;
 use dalembert::numbers::Interval;
 use dalembert_stability::text::Text;
 use dalembert_tests::certified::{WALKER, about, digits, follow, holds, periodic};
@@ -53,7 +54,7 @@ fn a_walkers_cycle_exists_and_attracts() {
             .with_parameter(2, about("0.4"))
             .with_parameter(3, about("0.4"));
         let orbit = periodic(&section, &near, radius).unwrap();
-        let width = (0..3).map(|i| orbit.point(i).width()).fold(0.0, f64::max);
+        let width = (0..3).map(|i| orbit.point(i).width()).fold(0.0, larger);
         println!(
             "radius {radius}: width {width:.1e}, period {:?}, multipliers below {} in {:.1?}",
             orbit.period,

@@ -4,6 +4,7 @@
 use core::ops::ControlFlow;
 
 use dalembert::integrate::{ComposedPrinciple, FixedStep, Gauss, Method, MidpointPrinciple};
+use dalembert::math::larger;
 use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{
     Contact, Fault, Impacting, Impacts, Lagrangian, Law, Observer, Outcome, ParameterError,
@@ -178,7 +179,7 @@ impl Observer<Well> for Energies {
         let first = *self.first.get_or_insert(energy);
         self.sums[part].0 += energy - first;
         self.sums[part].1 += 1;
-        self.largest = self.largest.max((energy - first).abs());
+        self.largest = larger(self.largest, (energy - first).abs());
         ControlFlow::Continue(())
     }
 }

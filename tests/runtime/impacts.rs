@@ -1,6 +1,7 @@
 //! Impacts are found at the times of closed forms, and each acts once.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
+use dalembert::math::larger;
 use dalembert::{Dop853, Impacts, Law, Outcome, Tolerance};
 use dalembert_tests::gap;
 use dalembert_tests::particle::*;
@@ -135,7 +136,7 @@ fn a12_ten_thousand_impacts_in_a_channel() {
     impl dalembert::Observer<Particle> for Watch {
         fn event(&mut self, event: &dalembert::Event<State>) -> core::ops::ControlFlow<()> {
             self.0 += 1;
-            self.1 = self.1.max((event.t - self.0 as f64 / 1e4).abs());
+            self.1 = larger(self.1, (event.t - self.0 as f64 / 1e4).abs());
             core::ops::ControlFlow::Continue(())
         }
     }

@@ -8,6 +8,7 @@ mod runs;
 mod starts;
 
 use dalembert::Outcome;
+use dalembert::math::larger;
 use dalembert_driver::{Form, Integrator};
 use dalembert_tests::sampling::{Random, asked};
 
@@ -146,7 +147,7 @@ fn mistake(case: &Case, way: Way, reference: &Reference) -> Option<String> {
                 false => told("another impact"),
             };
         }
-        worst = worst.max(error(here, there, case.until));
+        worst = larger(worst, error(here, there, case.until));
         if worst > LOST {
             return None;
         }

@@ -1,6 +1,7 @@
 //! Runs from a start with their impacts, either computed or certified.
 
 use dalembert::Policies;
+use dalembert::math::larger;
 use dalembert_driver::{
     Certification, Certified, Contact, Ending, Form, Impact, Integrator, Piece, Point, Settings,
     Strike, Watch,
@@ -126,7 +127,7 @@ pub fn error(impact: &Impact, reference: &Impact, until: f64) -> f64 {
 /// The largest difference of two vectors relative to their size. Coordinates that the mode does not have are left out.
 pub fn apart(a: &[f64], b: &[f64]) -> f64 {
     let pairs = || a.iter().zip(b).filter(|(a, b)| !(a.is_nan() && b.is_nan()));
-    let largest = pairs().fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-    let size = pairs().fold(1e-3, |most: f64, (a, _)| most.max(a.abs()));
+    let largest = pairs().fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
+    let size = pairs().fold(1e-3, |most: f64, (a, _)| larger(most, a.abs()));
     largest / size
 }

@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 
 use dalembert::erased::Bounded;
 use dalembert::integrate::Chosen;
+use dalembert::math::larger;
 use dalembert::{
     Constrained, Dla2, Dla4, Gauss4, Instance, Observer, Outcome, Segment, Simulation, StateVector,
     Stepper, System, Tolerance, VectorField,
@@ -33,8 +34,8 @@ impl Observer<Large> for Residual<'_> {
         };
         let (residuals, scales) = self.system.residuals(t, &q, &qdot);
         for (residual, scale) in residuals.as_slice().iter().zip(scales.as_slice()) {
-            self.worst = self.worst.max(residual.abs());
-            self.size = self.size.max(*scale);
+            self.worst = larger(self.worst, residual.abs());
+            self.size = larger(self.size, *scale);
         }
         ControlFlow::Continue(())
     }

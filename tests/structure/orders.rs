@@ -2,6 +2,7 @@
 //! Methods with step-size control run at a step limit and a tolerance so loose that it does not act.
 
 use dalembert::integrate::Chosen;
+use dalembert::math::larger;
 use dalembert::{
     Dla2, Dla4, Dop853, DormandPrince5, Gauss4, Gauss6, Instance, Outcome, Rk4, Simulation,
     StateVector, Stepper, System, Taylor, Tolerance, VectorField,
@@ -42,10 +43,10 @@ fn difference<V: StateVector>(a: &[V; 2], b: &[V; 2]) -> f64 {
         let of = *of;
         of.into_iter().flat_map(|part| part.as_slice().to_vec())
     };
-    let size = components(b).fold(1.0, |size: f64, value| size.max(value.abs()));
+    let size = components(b).fold(1.0, |size: f64, value| larger(size, value.abs()));
     components(a)
         .zip(components(b))
-        .fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()))
+        .fold(0.0, |worst: f64, (a, b)| larger(worst, (a - b).abs()))
         / size
 }
 

@@ -1,6 +1,7 @@
 //! Symmetric methods on reversible systems: with reversed velocities a run returns along its path.
 
 use dalembert::integrate::Chosen;
+use dalembert::math::larger;
 use dalembert::{
     Dla2, Dla4, Gauss4, Gauss6, Instance, Outcome, Rk4, Simulation, StateVector, Stepper, System,
     Tolerance, VectorField,
@@ -29,7 +30,7 @@ fn miss(system: &Large, state: State, stepper: impl Stepper<Large> + Copy) -> f6
     };
     let back = reversed(&run(reversed(&run(state))));
     let pairs = back.as_slice().iter().zip(state.as_slice());
-    pairs.fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()))
+    pairs.fold(0.0, |worst: f64, (a, b)| larger(worst, (a - b).abs()))
 }
 
 fn check(system: &Large) {

@@ -5,6 +5,7 @@
 //! in D. All derivatives are five-point stencils in double precision. The only values shared with the program are the
 //! entries of the metric and of the forms.
 
+use dalembert::math::larger;
 use dalembert_codegen::mechanics::Derivation;
 use dalembert_codegen::model::Model;
 use dalembert_expr::{ExprId, SymbolId};
@@ -147,7 +148,9 @@ impl<'m> Curved<'m> {
 
 /// The derivative of a function along a vector.
 fn along(q: &[f64], v: &[f64], f: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
-    let size = v.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+    let size = v
+        .iter()
+        .fold(0.0_f64, |size, value| larger(size, value.abs()));
     if size == 0.0 {
         return vec![0.0; f(q).len()];
     }

@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::numbers::Row;
 use dalembert::{Hold, Observer, StateVector, System, Tangent};
 use dalembert_cli::Integrator;
@@ -72,7 +73,7 @@ pub fn check_differences<M: Varied>(
         assert!(found.len() >= expected.len());
         let size = expected
             .iter()
-            .fold(1.0, |size: f64, value| size.max(value.abs()));
+            .fold(1.0, |size: f64, value| larger(size, value.abs()));
         for (found, expected) in found.iter().zip(expected) {
             assert!(
                 (found - expected).abs() <= DIFFERENCE * size,

@@ -1,5 +1,6 @@
 //! The emitted motion of a system on D, in positions and independent velocities.
 
+use dalembert::math::larger;
 use dalembert::{Described, StateVector};
 
 use crate::volume::difference;
@@ -44,7 +45,7 @@ impl<S: Described> Flow<'_, S> {
         let size = rate
             .as_slice()
             .iter()
-            .fold(1.0, |size: f64, value| size.max(value.abs()));
+            .fold(1.0, |size: f64, value| larger(size, value.abs()));
         let velocity = |shift: f64, i: usize| {
             let mut moved = state;
             let components = moved.as_mut_slice().iter_mut().zip(rate.as_slice());

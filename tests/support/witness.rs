@@ -1,6 +1,7 @@
 //! Independent computation of the numbers in messages about claims, by finite differences along the emitted motion.
 
 use dalembert::law::Law;
+use dalembert::math::larger;
 
 use crate::claim::Witness;
 use crate::formula::{Scope, definitions, value};
@@ -123,7 +124,7 @@ pub fn check_example(system: &mut dyn Numeric, claim: &str, example: &Witness) {
         .collect();
     let size = parts
         .iter()
-        .fold(0.0, |size: f64, part| size.max(part.abs()));
+        .fold(0.0, |size: f64, part| larger(size, part.abs()));
     if !parts.is_empty() {
         let sum: f64 = parts.iter().sum();
         assert!(sum.abs() <= 1e-9 * size, "{claim}: {example:?}");
@@ -318,7 +319,7 @@ fn delta(system: &dyn Numeric, message: &str, q: &[f64]) -> f64 {
     let delta = rest.pop().expect("a demand");
     let largest = rest
         .iter()
-        .fold(0.0, |size: f64, value| size.max(value.abs()));
+        .fold(0.0, |size: f64, value| larger(size, value.abs()));
     assert!(largest < NESTED[1], "no relation: {rest:?}, {message}");
     delta
 }
@@ -361,7 +362,7 @@ pub fn curl(system: &dyn Numeric, q: &[f64]) -> f64 {
         .collect();
     let pairs = (0..q.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
     pairs.fold(0.0, |largest: f64, (i, j)| {
-        largest.max((rows[i][j] - rows[j][i]).abs())
+        larger(largest, (rows[i][j] - rows[j][i]).abs())
     })
 }
 

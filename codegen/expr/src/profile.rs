@@ -139,7 +139,7 @@ impl Pool {
         let sizes = terms
             .iter()
             .map(|(coefficient, _)| coefficient.to_f64().abs());
-        let degree = 4.0 * denominator * sizes.sum::<f64>() + 4.0 * constant.to_f64().abs();
+        let degree = 4.0 * denominator * (sizes.sum::<f64>() + constant.to_f64().abs());
         (degree, degree)
     }
 }

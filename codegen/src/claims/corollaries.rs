@@ -5,7 +5,7 @@
 //! (Theorem VII.21). They are compact if the energy is conserved and surfaces bound all coordinates that are not
 //! angles.
 
-use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
+use dalembert_expr::{ExprId, Function, Node, Pool, Sign, SymbolId, Verdict as Zero};
 
 use super::conserved::check_conserved;
 use super::examine::explicit;
@@ -76,12 +76,28 @@ pub(super) fn of_effects(model: &Model, effects: &[Effect]) -> Option<String> {
 
 /// True if a density is positive and smooth everywhere.
 fn is_smooth(model: &Model, density: &Density) -> bool {
-    let is_positive = |value: ExprId| {
-        let sign = model.pool.sign(value);
-        sign == Sign::Positive && model.pool.is_finite(value)
+    let pool = &model.pool;
+    let is_regular = |value: ExprId| {
+        let parts = pool.reachable(&[value]);
+        pool.sign(value) == Sign::Positive
+            && pool.is_finite(value)
+            && parts
+                .into_iter()
+                .all(|part| has_all_derivatives(pool, part))
     };
     // A density that was found is regular: its existence on all of Q was proved.
-    density.is_found || density.value.is_some_and(is_positive)
+    density.is_found || density.value.is_some_and(is_regular)
+}
+
+/// True if the outermost operation of an expression has all derivatives wherever its value is finite.
+fn has_all_derivatives(pool: &Pool, id: ExprId) -> bool {
+    match pool.node(id) {
+        Node::Product(factors) => factors
+            .iter()
+            .all(|(base, exponent)| exponent.is_integer() || pool.sign(*base) == Sign::Positive),
+        Node::Call(Function::Abs | Function::Asin | Function::Acos, _) | Node::Atan2(..) => false,
+        Node::Call(..) | Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => true,
+    }
 }
 
 /// True if the law of every surface has an impulse proportional to the gap rate, which is 0 in a grazing impact.

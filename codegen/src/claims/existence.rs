@@ -335,7 +335,10 @@ impl Writer<'_> {
             .map(|(i, count)| {
                 let name = &self.model.coordinates[*i].name.display;
                 let back = if *count < 0 { " backwards" } else { "" };
-                format!("{name} makes a turn{back}")
+                match count.abs() {
+                    1 => format!("{name} makes a turn{back}"),
+                    many => format!("{name} makes {many} turns{back}"),
+                }
             })
             .collect();
         format!("when {}", each.join(" and "))

@@ -107,7 +107,7 @@ pub fn derive_reduction(
     fields: &[Vec<ExprId>],
 ) -> Result<Reduction, NoReduction> {
     let bracket = derive_bracket(model, derivation).map_err(NoReduction::NoBracket)?;
-    let structure = structure(&mut model.pool, &bracket.q, fields)?;
+    let structure = structure(&mut model.pool, (&bracket.q, model.time), fields)?;
     let metric = model.lagrangian.metric.clone();
     let forms: Matrix = (model.constraints.iter())
         .map(|constraint| constraint.form.clone())

@@ -13,6 +13,7 @@ use dalembert_codegen::mechanics::derive;
 use dalembert_codegen::model::{Claim, Model, Statement, Topology, check};
 use dalembert_codegen::{compile_control, compile_held, spec};
 use dalembert_expr::{ExprId, SymbolId};
+use dalembert_numbers::math::larger;
 
 const BALL: &str = "Ball {
     coordinates { x; y; }
@@ -180,7 +181,7 @@ impl Derived {
 fn assert_small(residuals: &[f64], what: &str) {
     let most = residuals
         .iter()
-        .fold(0.0_f64, |most, it| most.max(it.abs()));
+        .fold(0.0_f64, |most, it| larger(most, it.abs()));
     assert!(
         most < 1e-7 && residuals.iter().all(|it| it.is_finite()),
         "{what}: {residuals:?}"

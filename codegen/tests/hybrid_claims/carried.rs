@@ -7,6 +7,7 @@ use crate::Expected::{False, Shown, True};
 use crate::check;
 use crate::differences::{Hybrid, State, assert_close, one};
 use crate::systems::{ball, crossing, media, particle, spokes};
+use dalembert_numbers::math::larger;
 
 /// A form of degree 2, as a function of two vectors.
 type Form<'f> = &'f dyn Fn(&[f64], &[f64]) -> f64;
@@ -34,7 +35,7 @@ fn largest_change(
     for (i, first) in columns.iter().enumerate() {
         for (j, second) in columns.iter().enumerate() {
             let change = after(first, second) - before(&axis(i), &axis(j));
-            largest = largest.max(change.abs());
+            largest = larger(largest, change.abs());
         }
     }
     largest

@@ -101,6 +101,17 @@ fn maps_that_are_not_the_identity_at_their_ends_and_rough_densities_have_none() 
         "density = 1 + dot(y)^2; volume: kept;",
         [true, false],
     );
+    for kink in [
+        "1 + abs(dot(y))",
+        "2 + sqrt(dot(y)^2)",
+        "1 + (dot(y)^2)^(3/2)",
+    ] {
+        check(
+            &particle("left: x >= 0;"),
+            &format!("density = {kink}; volume: kept;"),
+            [false; 2],
+        );
+    }
 }
 
 #[test]

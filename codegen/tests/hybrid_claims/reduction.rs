@@ -6,6 +6,7 @@ use dalembert_codegen::mechanics::reduction::{Reduction, derive_reduction};
 use dalembert_codegen::model::{Model, Statement};
 use dalembert_codegen::report::group;
 use dalembert_expr::{ExprId, RealPoint, SymbolId};
+use dalembert_numbers::math::larger;
 
 use crate::derived;
 use crate::systems::disk;
@@ -153,7 +154,7 @@ impl Case {
             full = stepped(&|state| self.full(state), &full, h);
             reduced = stepped(&rate, &reduced, h);
             for (one, other) in self.reduced_of(&full).iter().zip(&reduced) {
-                largest = largest.max((one - other).abs());
+                largest = larger(largest, (one - other).abs());
             }
         }
         largest

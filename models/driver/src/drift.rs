@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::{
     Effect, Observer, Outcome, Segment, Simulation, StartError, Stepper, System, VectorField,
 };
@@ -86,7 +87,7 @@ impl Series {
     /// The largest deviation of all.
     pub fn largest(&self) -> f64 {
         let largest = self.windows.iter().map(|window| window.largest);
-        largest.fold(0.0, f64::max)
+        largest.fold(0.0, larger)
     }
 
     /// The drift: increase over the run of the straight line fitted to the means of the windows, in which oscillations
@@ -146,7 +147,7 @@ impl<S: System, Q: Fn(f64, &<S as VectorField>::State) -> f64> Observer<S> for C
         let sum = &mut self.sums[(part as usize).min(last)];
         sum.count += 1.0;
         sum.total += deviation;
-        sum.largest = sum.largest.max(deviation.abs());
+        sum.largest = larger(sum.largest, deviation.abs());
         ControlFlow::Continue(())
     }
 }

@@ -1,6 +1,7 @@
 //! Linear equations, square or overdetermined, by Householder reflections.
 
 use crate::linear::norm;
+use dalembert::math::larger;
 
 /// Pivots up to this fraction of the largest length of a column count as 0.
 const SINGULAR: f64 = 1e-13;
@@ -25,10 +26,7 @@ pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
         reflect(&reflector, &mut b[k..]);
         pivots.push(pivot);
     }
-    let largest = columns
-        .iter()
-        .map(|column| norm(column))
-        .fold(0.0, f64::max);
+    let largest = columns.iter().map(|column| norm(column)).fold(0.0, larger);
     if pivots
         .iter()
         .any(|pivot| pivot.abs() <= SINGULAR * largest || !pivot.is_finite())

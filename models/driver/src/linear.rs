@@ -1,5 +1,7 @@
 //! Vectors and determinants. A matrix is a list of columns.
 
+use dalembert::math::larger;
+
 /// The determinant of a square matrix, by Gaussian elimination with pivoting.
 pub(crate) fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
     let n = columns.len();
@@ -31,7 +33,7 @@ pub(crate) fn determinant(mut columns: Vec<Vec<f64>>) -> f64 {
 pub(crate) fn norm(values: &[f64]) -> f64 {
     let largest = values
         .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
+        .fold(0.0, |most, value| larger(most, value.abs()));
     if largest == 0.0 || !largest.is_finite() {
         return largest;
     }

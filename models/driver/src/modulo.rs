@@ -4,6 +4,7 @@
 //! dq/ds = A q + c,   dqdot/ds = A qdot,   [A q + a, B q + b] = (B A - A B) q + B a - A b
 //! ```
 
+use dalembert::math::larger;
 use dalembert::numbers::Numbers;
 use dalembert::variations::Dual;
 use dalembert::variations::group::{GENERATORS, Group};
@@ -117,7 +118,7 @@ impl Generator {
     fn size(&self) -> f64 {
         let sums = self.linear.iter();
         let sums = sums.map(|row| row.iter().map(|entry| entry.abs()).sum());
-        sums.fold(0.0, f64::max)
+        sums.fold(0.0, larger)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::numbers::Numbers;
 use dalembert::{Event, Observer, Outcome, StateVector, System, VectorField};
 use dalembert_cli::Integrator;
@@ -119,7 +120,7 @@ fn treads(setting: Setting, report: &mut Report) {
             let bound = location(hit.t, end.eta(2.0), (1.0 + k) * speed, 1.0) * (n + 1) as f64;
             (hit.after[1] - speed).abs() / bound
         };
-        let worst = end.hits.iter().enumerate().map(late).fold(0.0, f64::max);
+        let worst = end.hits.iter().enumerate().map(late).fold(0.0, larger);
         report.error(format!("worst speed over P-LOC, a = {a}"), worst, 1.0);
         let impacts = end.hits.len() as f64;
         report.near(

@@ -1,5 +1,6 @@
 //! Section E, second part: arithmetic of generated code.
 
+use dalembert::math::larger;
 use dalembert::{Impacting, Instance, StateVector, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting, notes, refusal};
 
@@ -181,7 +182,10 @@ fn against_integers(report: &mut Report) {
         let unit = 9.0 * 1_048_576.0;
         let exact = (unit - 4.0 * a * a - 9.0 * b * b) / unit;
         let terms = 1.0 + (4.0 * a * a + 9.0 * b * b) / unit;
-        worst = worst.max((table.gaps(0.0, &state).as_slice()[0] - exact).abs() / terms);
+        worst = larger(
+            worst,
+            (table.gaps(0.0, &state).as_slice()[0] - exact).abs() / terms,
+        );
     }
     report.error("gap over its terms", worst, 1024.0 * U);
 }
@@ -199,7 +203,10 @@ fn fused(report: &mut Report) {
         let (x, y) = (x / ta, y / tb);
         let gap = (-y).mul_add(y, (-x).mul_add(x, 1.0));
         let terms = 1.0 + x * x + y * y;
-        worst = worst.max((table.gaps(0.0, &state).as_slice()[0] - gap).abs() / terms);
+        worst = larger(
+            worst,
+            (table.gaps(0.0, &state).as_slice()[0] - gap).abs() / terms,
+        );
     }
     report.error("gap over its terms", worst, 16.0 * U);
 }

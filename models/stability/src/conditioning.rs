@@ -1,6 +1,7 @@
 //! Section D, second part: nearly dependent constraints, degenerate metrics, inertias and stiffnesses of widely
 //! different magnitude.
 
+use dalembert::math::larger;
 use dalembert::{StateError, System};
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
@@ -164,7 +165,7 @@ fn nearly_dependent(setting: Setting, report: &mut Report) {
         let apart = end.q.iter().zip(&reference.q).map(|(a, b)| (a - b).abs());
         report.error(
             format!("q, d = {delta:e}"),
-            apart.fold(0.0, f64::max),
+            apart.fold(0.0, larger),
             1e-12 / delta,
         );
     }

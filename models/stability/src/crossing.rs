@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::numbers::{Numbers, TaylorModel};
 use dalembert::{Event, Observer, VectorField};
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
@@ -269,7 +270,7 @@ fn channel(setting: Setting, report: &mut Report) {
         let t = (k + 1) as f64 / 1e4;
         (hit.t - t).abs() / location(t, end.eta(2.0), 1e4, 0.0)
     };
-    let worst = end.hits.iter().enumerate().map(late).fold(0.0, f64::max);
+    let worst = end.hits.iter().enumerate().map(late).fold(0.0, larger);
     report.error("worst time over its bound", worst, 1.0);
 }
 
@@ -321,7 +322,7 @@ fn oscillator(setting: Setting, report: &mut Report) {
             ["impact", "error of the phase"],
             errors.collect(),
         );
-        let worst = end.hits.iter().enumerate().map(late).fold(0.0, f64::max);
+        let worst = end.hits.iter().enumerate().map(late).fold(0.0, larger);
         report.error(
             format!("worst time over its bound, W = {rate:e}"),
             worst,
@@ -339,7 +340,7 @@ struct Passages {
 impl Observer<Model> for Passages {
     fn event(&mut self, event: &Event<<Model as VectorField>::State>) -> ControlFlow<()> {
         let t = core::f64::consts::PI * (self.count as f64 + 0.5);
-        self.worst = self.worst.max((event.t - t).abs() / (4.0 * U * t));
+        self.worst = larger(self.worst, (event.t - t).abs() / (4.0 * U * t));
         self.count += 1;
         ControlFlow::Continue(())
     }

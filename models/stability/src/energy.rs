@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::{Event, Observer, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -144,7 +145,7 @@ impl Walk {
         let share = points
             .iter()
             .map(|[n, error]| error / (16.0 * U * n.sqrt()));
-        report.error("worst drift over its bound", share.fold(0.0, f64::max), 1.0);
+        report.error("worst drift over its bound", share.fold(0.0, larger), 1.0);
         // An error of 0 has no logarithm, and shows no growth.
         let is_late = |[n, error]: &[f64; 2]| *n >= FIRST && *error != 0.0;
         let late: Vec<[f64; 2]> = points.iter().copied().filter(is_late).collect();

@@ -1,6 +1,7 @@
 //! Section C, first part: single impacts by every law.
 
 use dalembert::law::{Contact, Law};
+use dalembert::math::larger;
 use dalembert::{Constrained, Impacting, Outcome, Scene, StateVector, System, VectorField};
 use dalembert_cli::suite::{Case, Report, Run, Setting, refusal};
 
@@ -123,7 +124,7 @@ fn laws_of<M: Scene + Impacting>(
                 let rate = system.gap_rates(0.0, &after).expect("rates").as_slice()[surface];
                 let lost = -(c - 0.5 * c * c) * g * g / contact.constrained_compliance;
                 let found = system.energy(0.0, &after).expect("an energy") - energy;
-                rate_error = rate_error.max((rate - (1.0 - c) * g).abs() / g.abs());
+                rate_error = larger(rate_error, (rate - (1.0 - c) * g).abs() / g.abs());
                 energy_error =
                     energy_error.max((found - lost).abs() / energy.abs().max(lost.abs()));
                 residual = residual.max(residual_of(system, &after));
@@ -142,7 +143,7 @@ fn residual<M: Constrained>(system: &M, state: &M::State) -> f64 {
     let pairs = residuals.as_slice().iter().zip(scales.as_slice());
     pairs
         .map(|(residual, scale)| residual.abs() / scale)
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 fn every_law(report: &mut Report) {
@@ -252,7 +253,7 @@ fn still_approaching(setting: Setting, report: &mut Report, law: Law) {
     }
     let limit = struck(&system, &mut at_wall(&system, phi), Law::ImpactPlastic);
     let apart = velocity.iter().zip(limit).map(|(a, b)| (a - b).abs());
-    report.error("limit of repetition", apart.fold(0.0, f64::max), 1e-12);
+    report.error("limit of repetition", apart.fold(0.0, larger), 1e-12);
 }
 
 fn same_surface_twice(report: &mut Report) {

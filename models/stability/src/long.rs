@@ -2,6 +2,7 @@
 
 use core::ops::ControlFlow;
 
+use dalembert::math::larger;
 use dalembert::{Event, Observer, Segment, StateVector, System, VectorField};
 use dalembert_cli::Integrator;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
@@ -140,7 +141,7 @@ fn circle(setting: Setting, report: &mut Report, bounces: u64) {
         count: 0,
         see: |n: u64, _, [x, y]: [f64; 2], [u, v]: [f64; 2]| {
             let (sin, cos) = (n as f64 * turn).sin_cos();
-            worst = worst.max((x - cos).hypot(y - sin));
+            worst = larger(worst, (x - cos).hypot(y - sin));
             let gap = 1.0 - x * x - y * y;
             (inwards, squares) = (inwards + gap, squares + gap * gap);
             last = [u * u + v * v - 1.0, x * v - y * u - vy];
@@ -182,7 +183,7 @@ fn ellipse(setting: Setting, report: &mut Report) {
         system: &table,
         count: 0,
         see: |n: u64, _, q, v| {
-            worst = worst.max((about_foci(q, v) / exact - 1.0).abs());
+            worst = larger(worst, (about_foci(q, v) / exact - 1.0).abs());
             if n.is_power_of_two() {
                 marks.push([n as f64, worst]);
             }
@@ -217,7 +218,7 @@ fn rectangle(setting: Setting, report: &mut Report, bounces: u64) {
         see: |n: u64, t: f64, [x, y]: [f64; 2], _| {
             let apart = (x - folded(q[0] + v[0] * t, a)).hypot(y - folded(q[1] + v[1] * t, b));
             let share = apart / (8.0 * U * t * v[0].hypot(v[1]) + 8.0 * U);
-            worst = worst.max(share);
+            worst = larger(worst, share);
             if n.is_power_of_two() {
                 marks.push([n as f64, apart]);
             }

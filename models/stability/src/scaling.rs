@@ -1,6 +1,7 @@
 //! Section E: scaling, reflection, extreme numbers, arithmetic of generated code.
 
 use dalembert::System;
+use dalembert::math::larger;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, End, location, vector};
@@ -240,7 +241,7 @@ fn late_start(setting: Setting, report: &mut Report) {
         .hits
         .windows(2)
         .map(|pair| (pair[1].q[0] - pair[0].q[0]) / 1e-3 - 1.0);
-    report.error("flights", flights.map(f64::abs).fold(0.0, f64::max), 1e-12);
+    report.error("flights", flights.map(f64::abs).fold(0.0, larger), 1e-12);
 }
 
 fn large_circle(setting: Setting, report: &mut Report) {

@@ -2,6 +2,7 @@
 //! initial value in the cases that theory covers; the curves of the last case show its growth in others.
 
 use dalembert::integrate::Chosen;
+use dalembert::math::larger;
 use dalembert::{
     Dla2, Dla4, Gauss4, Gauss6, Instance, Projection, Rk4, Scene, Stepper, System, Tolerance,
     VectorField,
@@ -114,7 +115,7 @@ impl Long<'_> {
             .equal(format!("{name}: steps"), series.steps, self.steps);
         let mut worst = 0.0_f64;
         let largest = series.windows.iter().map(|window| {
-            worst = worst.max(window.largest);
+            worst = larger(worst, window.largest);
             [window.t, worst]
         });
         let axes = ["time", "largest error of the energy so far"];

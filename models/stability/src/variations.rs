@@ -1,5 +1,6 @@
 //! First variations: two-form and volume (section F); saltation matrices, traces and grazing impacts (section G).
 
+use dalembert::math::larger;
 use dalembert::variations::Section;
 use dalembert::{
     Observer, Outcome, Run as Ran, Scene, SceneEffects, Simulation, StateVector, System, Tangent,
@@ -159,7 +160,7 @@ fn symplectic(report: &mut Report) {
                 (2, 0) | (3, 1) => -1.0,
                 _ => 0.0,
             };
-            worst = worst.max((form(&columns[i], &columns[j]) - right).abs());
+            worst = larger(worst, (form(&columns[i], &columns[j]) - right).abs());
         }
     }
     report.error("J^T W J - W", worst, 1e-11);
@@ -332,7 +333,7 @@ fn two_at_the_end(report: &mut Report) {
         found.push(columns.concat());
     }
     let pairs = found[0].iter().zip(&found[1]);
-    let apart = pairs.fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
+    let apart = pairs.fold(0.0, |worst: f64, (a, b)| larger(worst, (a - b).abs()));
     report.error("derivatives in both orders", apart, 1e-11);
     report.near("dx/dx0", found[0][0], -1.0, 64.0 * U);
     let undefined = at(0.0).and_then(|varied| varied.columns.err());

@@ -1,6 +1,7 @@
 //! Section B, first part: accumulation of impacts on one surface (Zeno), and the contact that follows.
 
 use dalembert::Outcome;
+use dalembert::math::larger;
 use dalembert_cli::suite::{Case, Report, Run, Setting};
 
 use super::course::{Course, End, U, location};
@@ -148,7 +149,7 @@ fn geometric(setting: Setting, report: &mut Report) {
             (hit.t - t).abs()
                 / (location(t, U * 64.0 * height, power / e, 1.0) + spread + end.eta(1.0))
         };
-        let worst = end.hits.iter().enumerate().map(late).fold(0.0, f64::max);
+        let worst = end.hits.iter().enumerate().map(late).fold(0.0, larger);
         report.error(format!("worst time over its bound, e = {e}"), worst, 1.0);
         report.error(format!("depth, e = {e}"), (-end.q[0]).max(0.0), 1e-14);
     }

@@ -83,6 +83,13 @@ pub fn abs(x: f64) -> f64 {
     f64::abs(x)
 }
 
+/// The larger of two numbers; NaN if one of them is NaN. `f64::max` drops NaN, so that the largest of several errors
+/// hides one that is undefined.
+#[inline(always)]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
 /// Sine and cosine of one angle.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {

@@ -15,6 +15,7 @@ use super::iteration::{Iteration, Verdict};
 use super::precise::Precise;
 use super::stepper::{EnergyAt, StepFailure};
 use crate::contract::VectorField;
+use crate::math::larger;
 use crate::state::StateVector;
 
 /// Gauss's method with two stages: order 4, dense output of order 4.
@@ -258,8 +259,8 @@ fn advance<F: VectorField, const STAGES: usize>(
             for i in 0..inside.count() {
                 let (new, old) = (stages[stage].as_slice()[i], before.as_slice()[i]);
                 let unit = units.as_slice()[i];
-                change = largest(change, h * (new - old) / unit);
-                size = largest(size, inside.as_slice()[i] / unit);
+                change = larger(change, (h * (new - old) / unit).abs());
+                size = larger(size, (inside.as_slice()[i] / unit).abs());
             }
         }
         match iteration.judge(change, size) {
@@ -280,13 +281,6 @@ fn advance<F: VectorField, const STAGES: usize>(
             .map(|j| weights[j] * stages[j].padded()[i])
             .sum()
     }))
-}
-
-/// The larger of a size and `|x|`; NaN is larger than anything.
-#[inline(always)]
-fn largest(size: f64, x: f64) -> f64 {
-    let x = x.abs();
-    if x <= size { size } else { x }
 }
 
 macro_rules! collocation {

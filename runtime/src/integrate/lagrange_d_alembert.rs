@@ -27,6 +27,7 @@ use super::precise::Precise;
 use super::stepper::StepFailure;
 use crate::contract::Lagrangian;
 use crate::error::Fault;
+use crate::math::larger;
 use crate::state::{StateVector, scaled};
 
 /// The discrete Lagrange-d'Alembert midpoint rule: order 2 with dense output of order 2.
@@ -252,12 +253,5 @@ fn combined<V: StateVector>(a: &V, alpha: f64, b: &V, beta: f64) -> V {
 /// Largest difference of components; NaN if any difference is.
 fn distance<V: StateVector>(a: &V, b: &V) -> f64 {
     let pairs = a.as_slice().iter().zip(b.as_slice());
-    pairs.fold(0.0, |largest, (a, b)| {
-        let difference = (a - b).abs();
-        if difference <= largest {
-            largest
-        } else {
-            difference
-        }
-    })
+    pairs.fold(0.0, |largest, (a, b)| larger(largest, (a - b).abs()))
 }

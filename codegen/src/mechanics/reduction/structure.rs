@@ -6,10 +6,10 @@ use super::NoReduction;
 use crate::mechanics::bracket::{commutator, settled};
 use crate::mechanics::inverse::{Matrix, dot, independent_minor, inverse};
 
-/// `C_ab^c` of fields that are independent and closed under brackets.
+/// `C_ab^c` of fields that are independent and closed under brackets. They are constant in `q` and in the time `t`.
 pub(super) fn structure(
     pool: &mut Pool,
-    q: &[SymbolId],
+    (q, t): (&[SymbolId], SymbolId),
     fields: &[Vec<ExprId>],
 ) -> Result<Vec<Matrix>, NoReduction> {
     let (rows, columns) = independent_minor(pool, fields)?;
@@ -20,6 +20,7 @@ pub(super) fn structure(
     let minor: Matrix = fields.iter().map(chosen).collect();
     let inverse = inverse(pool, &minor).ok_or(NoReduction::TooLarge)?;
     let size = fields.len();
+    let arguments = [q, &[t]].concat();
     let mut constants = vec![vec![vec![pool.zero(); size]; size]; size];
     for a in 0..size {
         for b in 0..a {
@@ -31,7 +32,7 @@ pub(super) fn structure(
                 settled(pool, factor)
             });
             let factors: Vec<ExprId> = factors.collect();
-            match combination(pool, q, &bracket, (&factors, fields)) {
+            match combination(pool, &arguments, &bracket, (&factors, fields)) {
                 Verdict::Proved => {}
                 Verdict::Refuted => return Err(NoReduction::NotClosed(b, a)),
                 Verdict::Undecided => return Err(NoReduction::Undecided(b, a)),
@@ -46,13 +47,13 @@ pub(super) fn structure(
 /// The verdict on a field being the combination of others with these factors, and on the factors being constant.
 fn combination(
     pool: &mut Pool,
-    q: &[SymbolId],
+    arguments: &[SymbolId],
     field: &[ExprId],
     (factors, fields): (&[ExprId], &[Vec<ExprId>]),
 ) -> Verdict {
     let mut rests = Vec::new();
     for factor in factors {
-        rests.extend(q.iter().map(|symbol| pool.diff(*factor, *symbol)));
+        rests.extend(arguments.iter().map(|symbol| pool.diff(*factor, *symbol)));
     }
     for (k, entry) in field.iter().enumerate() {
         let column: Vec<ExprId> = fields.iter().map(|field| field[k]).collect();

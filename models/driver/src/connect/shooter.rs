@@ -2,6 +2,7 @@
 
 use dalembert::contract::{TaylorField, Variational};
 use dalembert::integrate::{Chosen, Taylor};
+use dalembert::math::larger;
 use dalembert::numbers::{Numbers, Row};
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::variations::{Dual, Tangent};
@@ -363,7 +364,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         let end = marks.last().map_or(f64::NAN, |mark| mark.determinant);
         let determinant = end / (free * time.powi(self.motion[1] as i32));
         let largest = marks.iter().map(|mark| mark.determinant.abs());
-        let largest = largest.fold(0.0, f64::max);
+        let largest = largest.fold(0.0, larger);
         Ok(Connection {
             first: point(system, 0.0, &self.state(w)),
             last,
@@ -372,7 +373,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             residual: shot
                 .misses
                 .iter()
-                .fold(0.0, |most, miss| f64::max(most, miss.abs())),
+                .fold(0.0, |most, miss| larger(most, miss.abs())),
             conjugate,
             determinant,
             is_isolated: end.abs() > SINGULAR * largest,

@@ -3,6 +3,7 @@
 use super::family::{Failure, Node};
 use super::{Bifurcation, Stability};
 use crate::linear::determinant;
+use dalembert::math::larger;
 
 /// Distances below which numbers along a branch count as equal. They depend on the tolerance of the integrator: the
 /// error of a simple multiplier is about the tolerance, that of a double multiplier about its square root.
@@ -168,7 +169,7 @@ fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
             return value;
         }
         let sign = if im == 0.0 && re < 0.0 { -1.0 } else { 1.0 };
-        sign * value.signum() * f64::min(value.abs(), modulus)
+        sign * value.signum() * -larger(-value.abs(), -modulus)
     })
 }
 
@@ -193,12 +194,11 @@ pub(super) fn passing(multipliers: &[[f64; 2]], precision: Precision) -> Option<
 
 /// The stability that follows from the multipliers; `None` if one of them is NaN.
 pub(super) fn stability(multipliers: &[[f64; 2]], precision: Precision) -> Option<Stability> {
-    // NOTE: `f64::max` ignores NaN.
     if multipliers.iter().flatten().any(|part| part.is_nan()) {
         return None;
     }
     let moduli = multipliers.iter().map(|&[re, im]| f64::hypot(re, im));
-    Some(match moduli.fold(0.0, f64::max) - 1.0 {
+    Some(match moduli.fold(0.0, larger) - 1.0 {
         excess if excess < -precision.on_circle => Stability::Stable,
         excess if excess <= precision.on_circle => Stability::Neutral,
         _ => Stability::Unstable,

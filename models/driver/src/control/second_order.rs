@@ -12,6 +12,7 @@
 //! motion would lose digits: over a short time, an input hardly moves the states on which it acts through others.
 
 use crate::least_squares::solve;
+use dalembert::math::larger;
 
 /// The result of the second-order test.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -241,7 +242,7 @@ fn resolved_inverse(matrix: &Matrix) -> Option<Matrix> {
     };
     let size = |matrix: &Matrix| {
         let sums = matrix.iter().map(|row| row.iter().map(|it| it.abs()).sum());
-        sums.fold(0.0, f64::max)
+        sums.fold(0.0, larger)
     };
     let inverse = inverse(&scaled(matrix))?;
     // NaN fails this comparison.

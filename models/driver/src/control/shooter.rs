@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use dalembert::contract::Variational;
 use dalembert::integrate::{Chosen, Taylor};
+use dalembert::math::larger;
 use dalembert::simulation::STEP_BUDGET;
 use dalembert::variations::Tangent;
 use dalembert::{
@@ -426,9 +427,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
             kicks: kicks?,
             cost: running + terminal,
             terminal,
-            residual: residual
-                .iter()
-                .fold(0.0, |most, it| f64::max(most, it.abs())),
+            residual: residual.iter().fold(0.0, |most, it| larger(most, it.abs())),
             second_order: self.second_order(w, &values),
         })
     }

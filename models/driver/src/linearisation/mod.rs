@@ -19,6 +19,7 @@ mod trim;
 
 use dalembert::contract::Variational;
 use dalembert::describe::{Description, VariationalVisitor};
+use dalembert::math::larger;
 use dalembert::state::StateVector;
 use dalembert::variations::eigenvalues;
 use dalembert::{Fault, Instance, Outcome, Scene, Undefined};
@@ -324,7 +325,7 @@ fn sizes(sample: &Sample, state: &[f64], inputs: &[f64]) -> Vec<f64> {
     let size = |slopes: &Vec<f64>| {
         let terms = slopes.iter().zip(&values);
         let terms = terms.map(|(slope, value)| slope * value.abs().max(1.0));
-        terms.fold(0.0_f64, |most, term| most.max(term.abs()))
+        terms.fold(0.0, |most, term: f64| larger(most, term.abs()))
     };
     sample.by_rates.iter().map(size).collect()
 }
@@ -375,5 +376,5 @@ fn spectrum<S: Variational>(rows: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
 
 /// The largest absolute value.
 fn largest<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
-    values.fold(0.0, |most, value| most.max(value.abs()))
+    values.fold(0.0, |most, value| larger(most, value.abs()))
 }

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use dalembert::Instance;
 use dalembert::contract::Variational;
 use dalembert::describe::Topology;
+use dalembert::math::larger;
 
 use super::sample::{Plant, Sample};
 use super::{Unlinear, largest};
@@ -129,7 +130,7 @@ impl<S: Instance + Variational> Walk<'_, S> {
     /// The unit of the residuals: the largest derivative times the largest value, each at least 1.
     fn unit(&self) -> f64 {
         let columns = self.equations.columns(&self.sample, &self.free);
-        largest(columns.iter().flatten()).max(1.0) * largest(self.values.iter()).max(1.0)
+        larger(largest(columns.iter().flatten()), 1.0) * larger(largest(self.values.iter()), 1.0)
     }
 
     /// Makes a step that reduces the residuals. Returns false if no step does.
