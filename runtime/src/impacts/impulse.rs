@@ -146,7 +146,8 @@ impl<Sys: Impacting> Impacts<Sys> {
         }
     }
 
-    /// Replaces the law of a surface. An index past the last surface has no effect.
+    /// Replaces the law of a surface. Its coefficients are used as given: one above 1 adds energy at every impact. An index
+    /// past the last surface has no effect.
     #[must_use]
     pub fn with_law(mut self, surface: usize, law: Law) -> Self {
         self.overrides.set(surface, Some(law));

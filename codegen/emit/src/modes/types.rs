@@ -166,10 +166,15 @@ fn emit_mode(whole: &Whole<'_>, mode: &model::Mode, context: &crate::Context<'_>
 /// The visibility of the model, written for the module of indices beside it. The interface of a mode names the model,
 /// so a mode cannot be more visible.
 fn inner_visibility(written: &str) -> TokenStream {
-    match written.replace(' ', "").as_str() {
-        "" => quote!(pub(super)),
+    let compact = written.replace(' ', "");
+    match compact.as_str() {
+        "" | "pub(self)" | "pub(inself)" => quote!(pub(super)),
         "pub(super)" => quote!(pub(in super::super)),
-        "pub(self)" => quote!(pub(super)),
+        // One level deeper, the path to an ancestor has one `super` more.
+        path if path.starts_with("pub(insuper") => path
+            .replacen("pub(in", "pub(in super::", 1)
+            .parse()
+            .unwrap_or_default(),
         _ => written.parse().unwrap_or_default(),
     }
 }

@@ -99,6 +99,9 @@ impl Census {
     }
 
     fn count(&mut self, [x, y]: [f64; 2]) {
+        if x.is_nan() || y.is_nan() {
+            return;
+        }
         let place = |value: f64, [low, high]: [f64; 2]| {
             let share = (value - low) / (high - low);
             // A point on the upper edge belongs to the last box; the cast of a negative number is 0.

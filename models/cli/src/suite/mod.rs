@@ -239,7 +239,7 @@ fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
     let first = &reports[0].1.classes;
     let changed = reports
         .iter()
-        .find(|(_, report)| holds && report.classes.iter().zip(first).any(|(a, b)| a != b));
+        .find(|(_, report)| holds && report.classes != *first);
     match changed {
         Some((setting, report)) => {
             let words = format!("outcome {:?}, elsewhere {first:?}", report.classes);
