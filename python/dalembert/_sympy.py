@@ -13,7 +13,7 @@ from sympy import Expr, Function, Symbol
 T = Symbol("t", real=True)
 
 #: Functions of the language whose names differ, or that need care, in SymPy.
-FUNCTIONS = {"ln": sympy.log, "abs": sympy.Abs}
+FUNCTIONS = {"ln": sympy.log, "log1p": lambda x: sympy.log(1 + x), "abs": sympy.Abs}
 
 _TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)|([^\W\d]\w*(?:\.\d+)*)|(.))")
 _ASSUMPTIONS = {"positive": {"positive": True}, "nonnegative": {"nonnegative": True}, "nonzero": {"real": True, "nonzero": True}}

@@ -33,7 +33,7 @@ pub(super) fn possible_jump(
             }
         }
     }
-    for id in poles(&model.pool, &parts) {
+    for id in poles(&mut model.pool, &parts) {
         let is_harmless = singular.contains(&id) || model.pool.sign(id).is_nonzero();
         if !is_harmless && !is_constant(model, id) {
             let text = model.pool.text(id);
@@ -56,7 +56,7 @@ fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
 }
 
 /// Denominators, arguments of logarithms, and tangents.
-pub(super) fn poles(pool: &Pool, parts: &[ExprId]) -> Vec<ExprId> {
+pub(super) fn poles(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
     let mut poles = Vec::new();
     for id in parts {
         match pool.node(*id) {
@@ -67,6 +67,10 @@ pub(super) fn poles(pool: &Pool, parts: &[ExprId]) -> Vec<ExprId> {
                 poles.extend(below.map(|(base, _)| *base));
             }
             Node::Call(Function::Ln, argument) => poles.push(*argument),
+            Node::Call(Function::Log1p, argument) => {
+                let (one, argument) = (pool.one(), *argument);
+                poles.push(pool.add(one, argument));
+            }
             Node::Call(Function::Tan, _) => poles.push(*id),
             _ => {}
         }

@@ -152,6 +152,9 @@ fn is_analytic(pool: &Pool, function: ExprId) -> bool {
                 .iter()
                 .all(|(base, exponent)| exponent.is_integer() || is_positive(*base)),
             Node::Call(Function::Ln, argument) => is_positive(*argument),
+            Node::Call(Function::Log1p, argument) => {
+                pool.sign_of_one_plus(*argument) == Sign::Positive
+            }
             Node::Call(Function::Abs | Function::Asin | Function::Acos, _) | Node::Atan2(..) => {
                 false
             }

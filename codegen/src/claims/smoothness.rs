@@ -87,6 +87,10 @@ fn divisors(pool: &mut Pool, problem: &Problem) -> Option<Vec<ExprId>> {
                 divisors.extend(singular.map(|(base, _)| *base));
             }
             Node::Call(Function::Ln, argument) => divisors.push(argument),
+            Node::Call(Function::Log1p, argument) => {
+                let one = pool.one();
+                divisors.push(pool.add(one, argument));
+            }
             Node::Call(Function::Tan, argument) => {
                 divisors.push(pool.call(Function::Cos, argument))
             }
