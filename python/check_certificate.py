@@ -160,6 +160,17 @@ def ln(x):
     return x.ln()
 
 
+def log1p(x):
+    """The logarithm of 1 + x, to all digits for a small x."""
+    if x <= -1:
+        raise Unsuitable("log1p of a number that is not above -1")
+    if x == 0 or x.adjusted() < -here():
+        return x
+    with localcontext(Context(prec=2 * here() + 5)):
+        logarithm = (1 + x).ln()
+    return +logarithm
+
+
 def exp(x):
     return x.exp()
 
@@ -202,7 +213,7 @@ def asinh(x):
 
 
 FUNCTIONS = {item.__name__: item for item in (
-    sin, cos, tan, asin, acos, atan, atan2, sqrt, ln, exp, sinh, cosh, tanh, asinh, abs)}
+    sin, cos, tan, asin, acos, atan, atan2, sqrt, ln, log1p, exp, sinh, cosh, tanh, asinh, abs)}
 
 
 # Expressions -----------------------------------------------------------------------------------------------------------

@@ -41,7 +41,7 @@ dalembert::model! {
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         outputs {
             of_sqrt: sqrt(x); of_atan2: atan2(y, x); of_sin: sin(x); of_cos: cos(y); of_tan: tan(x); of_asin: asin(x);
-            of_acos: acos(x); of_atan: atan(x); of_exp: exp(x); of_ln: ln(x); of_sinh: sinh(x); of_cosh: cosh(x);
+            of_acos: acos(x); of_atan: atan(x); of_exp: exp(x); of_ln: ln(x); of_log1p: log1p(y); of_sinh: sinh(x); of_cosh: cosh(x);
             of_tanh: tanh(x); of_asinh: asinh(x); of_abs: abs(y);
         }
     }

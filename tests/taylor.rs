@@ -150,7 +150,7 @@ dalembert::model! {
         lagrangian = (dot(x)^2 + dot(y)^2)/2;
         forces {
             odd: (sin(x) + tan(c*x) + asin(x)/2 + atan(x*y) + sinh(x) + tanh(y) + asinh(x*y) + sqrt(x + 1) + abs(y))*d(x);
-            even: (cos(y) + acos(y)/2 + exp(-x) + ln(1 + x^2) + cosh(y) + atan2(y, x + 1) + (2 + x)^(2/3)
+            even: (cos(y) + acos(y)/2 + exp(-x) + ln(1 + x^2) + log1p(x*y) + cosh(y) + atan2(y, x + 1) + (2 + x)^(2/3)
                 + (1 + t)/(1 + x*y) + c/(2 + x) + t^2*x)*d(y);
         }
     }
@@ -187,7 +187,7 @@ fn series_of_functions_sum_up_to_their_values() {
     const X: [f64; 4] = [0.4, 0.3, -0.2, 0.1];
     const Y: [f64; 3] = [-0.3, 0.5, 0.25];
     type Function = fn(f64, f64) -> f64;
-    let cases: [(&str, Function); 23] = [
+    let cases: [(&str, Function); 24] = [
         ("sqrt(x)", |x, _| x.sqrt()),
         ("sin(x)", |x, _| x.sin()),
         ("cos(y)", |_, y| y.cos()),
@@ -198,6 +198,7 @@ fn series_of_functions_sum_up_to_their_values() {
         ("atan(x)", |x, _| x.atan()),
         ("exp(x)", |x, _| x.exp()),
         ("ln(x)", |x, _| x.ln()),
+        ("log1p(x)", |x, _| x.ln_1p()),
         ("sinh(x)", |x, _| x.sinh()),
         ("cosh(y)", |_, y| y.cosh()),
         ("tanh(x)", |x, _| x.tanh()),

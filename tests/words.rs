@@ -5,6 +5,7 @@ use dalembert_codegen::spec::{self, FUNCTIONS, LAWS, RESET, SECTIONS};
 
 const LANGUAGE: &str = include_str!("../docs/language.md");
 const EQUATIONS: &str = include_str!("../docs/equations.md");
+const CHECKER: &str = include_str!("../python/check_certificate.py");
 
 /// The text between `start` and the next `end`.
 fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
@@ -43,6 +44,18 @@ fn every_function_is_documented() {
         assert!(
             words.contains(&name),
             "`{name}` is missing in docs/language.md"
+        );
+    }
+}
+
+#[test]
+fn the_checker_of_certificates_knows_every_function() {
+    let list = between(CHECKER, "FUNCTIONS = {", "}");
+    let words: Vec<&str> = list.split(|c: char| !c.is_alphanumeric()).collect();
+    for name in FUNCTIONS {
+        assert!(
+            words.contains(&name),
+            "`{name}` is missing in python/check_certificate.py"
         );
     }
 }

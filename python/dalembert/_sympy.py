@@ -12,8 +12,8 @@ from sympy import Expr, Function, Symbol
 #: The time.
 T = Symbol("t", real=True)
 
-#: Functions of the language that have another name in SymPy.
-FUNCTIONS = {"ln": sympy.log, "abs": sympy.Abs}
+#: Functions of the language that have another name in SymPy, or none.
+FUNCTIONS = {"ln": sympy.log, "log1p": lambda x: sympy.log(1 + x), "abs": sympy.Abs}
 
 _TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)|([^\W\d]\w*(?:\.\d+)*)|(.))")
 _ASSUMPTIONS = {"positive": {"positive": True}, "nonnegative": {"nonnegative": True}, "nonzero": {"real": True, "nonzero": True}}

@@ -72,7 +72,7 @@ impl Pool {
         }
         match (function, self.as_number(argument)?.to_i64()?) {
             (Function::Exp | Function::Cosh, 0) => Some(self.one()),
-            (Function::Ln, 1) => Some(self.zero()),
+            (Function::Ln, 1) | (Function::Log1p, 0) => Some(self.zero()),
             (_, 0) if function.parity() == Parity::Odd => Some(self.zero()),
             _ => None,
         }

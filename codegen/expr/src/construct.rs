@@ -33,7 +33,7 @@
 //! - `f(-x) -> -f(x)` for sin, tan, asin, atan, sinh, tanh, asinh; `f(-x) -> f(x)` for cos, cosh, abs;
 //! - sin and cos of `x + k pi/2` become sin and cos of `x`, with a sign; sin and cos of rational multiples of `pi` if
 //!   the values are rational, tan if its value is 0 or +-1;
-//! - values at 0 of exp, cosh, abs and of all odd functions, and ln at 1;
+//! - values at 0 of exp, cosh, abs, log1p and of all odd functions, and ln at 1;
 //! - asin, acos and atan of numbers and of square roots, if the angle is in the tables of `constants.rs` (multiples of
 //!   `pi/12`);
 //! - `ln(exp x) -> x`; `abs(x)` is `x` or `-x` if the sign of `x` is known; `abs(c x) -> |c| abs(x)`;

@@ -13,7 +13,7 @@ use crate::rational::Rational;
 use crate::sign::Sign;
 
 /// Passes the table of functions to a macro. A row has the meaning, the variant of [`Function`], and the name of the
-/// method of `f64` and of all other number types.
+/// method of all number types. A method that `f64` has under another name is in `Renamed`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! with_functions {
@@ -27,6 +27,7 @@ macro_rules! with_functions {
             "Inverse tangent, in `(-pi/2, pi/2)`." Atan atan
             "Exponential." Exp exp
             "Natural logarithm." Ln ln
+            "Natural logarithm of `1 + x`, exact for small `x`." Log1p log1p
             "Hyperbolic sine." Sinh sinh
             "Hyperbolic cosine." Cosh cosh
             "Hyperbolic tangent." Tanh tanh
@@ -34,6 +35,17 @@ macro_rules! with_functions {
             "Absolute value." Abs abs
         }
     };
+}
+
+/// Functions that `f64` has under another name.
+trait Renamed {
+    fn log1p(self) -> Self;
+}
+
+impl Renamed for f64 {
+    fn log1p(self) -> Self {
+        self.ln_1p()
+    }
 }
 
 macro_rules! functions {
@@ -96,8 +108,28 @@ pub(crate) enum Arguments {
     OffPoles,
     /// `x > 0`
     Positive,
+    /// `x > -1`
+    AboveMinusOne,
     /// `-1 <= x <= 1`
     Unit,
+}
+
+/// Real arguments at which a function is not analytic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Singularity {
+    /// None.
+    None,
+    /// The zeros of the argument plus `shift`, which is positive on the domain.
+    Logarithm {
+        /// 0 or 1.
+        shift: u8,
+    },
+    /// Poles where the cosine of the argument is 0.
+    Poles,
+    /// Arguments -1 and 1, the ends of the domain, where the slope is infinite.
+    Ends,
+    /// Argument 0, where the slope jumps.
+    Kink,
 }
 
 /// Monotonicity and bounds of a function over all real numbers.
@@ -151,6 +183,7 @@ impl Function {
             Self::Acos => r"\arccos",
             Self::Atan => r"\arctan",
             Self::Ln => r"\ln",
+            Self::Log1p => r"\operatorname{log1p}",
             Self::Sinh => r"\sinh",
             Self::Cosh => r"\cosh",
             Self::Tanh => r"\tanh",
@@ -165,7 +198,7 @@ impl Function {
             Self::Sin | Self::Tan | Self::Asin | Self::Atan => Parity::Odd,
             Self::Sinh | Self::Tanh | Self::Asinh => Parity::Odd,
             Self::Cos | Self::Cosh | Self::Abs => Parity::Even,
-            Self::Acos | Self::Exp | Self::Ln => Parity::Neither,
+            Self::Acos | Self::Exp | Self::Ln | Self::Log1p => Parity::Neither,
         }
     }
 
@@ -175,6 +208,7 @@ impl Function {
             Self::Exp | Self::Sinh | Self::Cosh | Self::Tanh => Arguments::All,
             Self::Tan => Arguments::OffPoles,
             Self::Ln => Arguments::Positive,
+            Self::Log1p => Arguments::AboveMinusOne,
             Self::Asin | Self::Acos => Arguments::Unit,
         }
     }
@@ -186,7 +220,20 @@ impl Function {
             Self::Exp | Self::Sinh | Self::Tanh => Course::Increasing,
             Self::Atan | Self::Asinh => Course::Increasing,
             Self::Cosh | Self::Abs => Course::Valley,
-            Self::Tan | Self::Asin | Self::Acos | Self::Ln => Course::Partial,
+            Self::Tan | Self::Asin | Self::Acos | Self::Ln | Self::Log1p => Course::Partial,
+        }
+    }
+
+    /// The arguments at which the function is not analytic.
+    pub fn singularity(self) -> Singularity {
+        match self {
+            Self::Sin | Self::Cos | Self::Atan | Self::Exp => Singularity::None,
+            Self::Sinh | Self::Cosh | Self::Tanh | Self::Asinh => Singularity::None,
+            Self::Ln => Singularity::Logarithm { shift: 0 },
+            Self::Log1p => Singularity::Logarithm { shift: 1 },
+            Self::Tan => Singularity::Poles,
+            Self::Asin | Self::Acos => Singularity::Ends,
+            Self::Abs => Singularity::Kink,
         }
     }
 
@@ -194,7 +241,8 @@ impl Function {
         match self {
             Self::Sin | Self::Cos | Self::Tan => Residue::Circular,
             Self::Exp | Self::Sinh | Self::Cosh | Self::Tanh => Residue::Exponential,
-            Self::Asin | Self::Acos | Self::Atan | Self::Asinh | Self::Ln => Residue::Atom,
+            Self::Asin | Self::Acos | Self::Atan | Self::Asinh => Residue::Atom,
+            Self::Ln | Self::Log1p => Residue::Atom,
             Self::Abs => Residue::Branch,
         }
     }
@@ -212,7 +260,7 @@ impl Function {
             Self::Abs => Sign::known(argument.is_nonzero(), true, argument == Sign::Zero),
             // These functions are increasing and 0 at 0.
             Self::Sinh | Self::Tanh | Self::Asinh => argument,
-            Self::Atan | Self::Asin => argument,
+            Self::Atan | Self::Asin | Self::Log1p => argument,
             Self::Acos => Sign::NonNegative,
             Self::Sin | Self::Cos | Self::Tan | Self::Ln => Sign::Unknown,
         }
@@ -223,6 +271,7 @@ impl Function {
         let has_values = match self.arguments() {
             Arguments::All | Arguments::OffPoles => true,
             Arguments::Positive => x.lo > 0.0,
+            Arguments::AboveMinusOne => x.lo > -1.0,
             Arguments::Unit => x.lo >= -1.0 && x.hi <= 1.0,
         };
         if !has_values {
@@ -243,6 +292,7 @@ impl Function {
             Self::Asinh => x.increasing(libm::asinh),
             Self::Abs => x.abs(),
             Self::Ln => x.increasing(libm::log),
+            Self::Log1p => x.increasing(libm::log1p),
             Self::Asin => x.increasing(libm::asin),
             Self::Acos => (-x).increasing(|x| libm::acos(-x)),
         })
@@ -258,6 +308,7 @@ impl Function {
             Self::Atan => 1.0 / (1.0 + x * x),
             Self::Exp => x.exp(),
             Self::Ln => 1.0 / x,
+            Self::Log1p => 1.0 / (1.0 + x),
             Self::Sinh => x.cosh(),
             Self::Cosh => x.sinh(),
             Self::Tanh => 1.0 - x.tanh() * x.tanh(),
@@ -291,6 +342,11 @@ impl Function {
             }
             Self::Exp => value,
             Self::Ln => pool.pow(argument, Rational::MINUS_ONE),
+            Self::Log1p => {
+                let one = pool.one();
+                let denominator = pool.add(one, argument);
+                pool.pow(denominator, Rational::MINUS_ONE)
+            }
             Self::Sinh => pool.call(Self::Cosh, argument),
             Self::Cosh => pool.call(Self::Sinh, argument),
             Self::Abs => pool.div(argument, value),

@@ -78,7 +78,7 @@ pub use ball::Ball;
 pub use branch::{Branches, Covered};
 pub use enclose::{Domain, Zeros};
 pub use field::Modulus;
-pub use function::{Course, Function};
+pub use function::{Course, Function, Singularity};
 pub use intern::{WordHash, WordHasher};
 pub use interval::Interval;
 pub use node::{Assumption, ExprId, Node, SymbolId};

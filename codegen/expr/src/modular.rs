@@ -8,7 +8,7 @@
 //! - exp, sinh, cosh, tanh: each `exp(x_i / N)` is a random square, and `exp(ln x) = x`;
 //! - `x^(a/b)` is the root among the squares. `x` must be a square; otherwise the point is refused. `abs(x)` is `x` or
 //!   `-x`, whichever is a square;
-//! - ln, asin, acos, atan, asinh, atan2: one atom for each value of the argument.
+//! - ln, asin, acos, atan, asinh, atan2: one atom for each value of the argument. `log1p(x)` is `ln(1 + x)`.
 
 use crate::function::Function;
 use crate::node::{ExprId, Node};
@@ -123,9 +123,8 @@ impl Pool {
                 let quarter = field.mul(point.draw(Atom::Pi, 0, 0), half()?);
                 Ok(field.sub(quarter, point.odd_atom(Function::Asin, x)))
             }
-            Function::Ln if x == 0 => Err(ModularFailure::DivisionByZero),
-            Function::Ln if !field.is_square(x) => Err(ModularFailure::NotASquare),
-            Function::Ln => Ok(point.draw(Atom::Call(function), x, 0)),
+            Function::Ln => logarithm(x, point),
+            Function::Log1p => logarithm(field.add(1, x), point),
             Function::Abs if x == 0 || field.is_square(x) => Ok(x),
             Function::Abs => Ok(field.neg(x)),
         }
@@ -182,6 +181,9 @@ impl Pool {
         for (coefficient, term) in terms.iter().filter(|(c, _)| !c.is_zero()) {
             let factor = match self.node(*term) {
                 Node::Call(Function::Ln, x) => point.power(values[x.index()], coefficient)?,
+                Node::Call(Function::Log1p, x) => {
+                    point.power(field.add(1, values[x.index()]), coefficient)?
+                }
                 _ => {
                     // NOTE: for the constant, the term is the number 1. `values` may have no entry for it.
                     let x = if *term == self.one() {
@@ -198,6 +200,15 @@ impl Pool {
             result = (field.mul(result.0, factor), field.mul(result.1, inverse));
         }
         Ok(result)
+    }
+}
+
+/// The atom of the logarithm of a square.
+fn logarithm(x: u64, point: &ModularPoint) -> Result<u64, ModularFailure> {
+    match x {
+        0 => Err(ModularFailure::DivisionByZero),
+        _ if !point.modulus().is_square(x) => Err(ModularFailure::NotASquare),
+        _ => Ok(point.draw(Atom::Call(Function::Ln), x, 0)),
     }
 }
 

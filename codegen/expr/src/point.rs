@@ -13,7 +13,7 @@ use crate::rational::Rational;
 pub enum ModularFailure {
     /// A denominator is 0 at the point.
     DivisionByZero,
-    /// The argument of a root or of `ln` is not a square at the point.
+    /// The argument of a root or of a logarithm is not a square at the point.
     NotASquare,
     /// Roots of this degree are not unique modulo this prime.
     NoRoot,

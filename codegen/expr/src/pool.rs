@@ -150,6 +150,12 @@ impl Pool {
         ExprId::from_index(1)
     }
 
+    /// `id + shift`
+    pub fn shifted(&mut self, id: ExprId, shift: u8) -> ExprId {
+        let shift = self.number(Rational::from(i64::from(shift)));
+        self.add(id, shift)
+    }
+
     /// The circle constant.
     pub fn pi(&self) -> ExprId {
         ExprId::from_index(2)

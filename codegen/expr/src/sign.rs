@@ -139,6 +139,15 @@ impl Pool {
         }
     }
 
+    /// The sign of `id + shift`.
+    pub fn sign_of_shifted(&self, id: ExprId, shift: u8) -> Sign {
+        if shift == 0 {
+            return self.sign(id);
+        }
+        let (constant, terms) = self.linear_form(id);
+        self.sum_sign(&(&constant + &Rational::from(i64::from(shift))), &terms)
+    }
+
     pub(crate) fn derive_finiteness(&self, node: &Node) -> bool {
         match node {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => true,
@@ -162,19 +171,22 @@ impl Pool {
     /// True if the function has a value wherever its argument has one, false if it has a value nowhere. `None` if the
     /// structure shows neither.
     fn has_value(&self, function: Function, argument: ExprId) -> Option<bool> {
+        let is_positive = |sign: Sign| match sign {
+            Sign::Positive => Some(true),
+            sign => sign.is_nonpositive().then_some(false),
+        };
         match function.arguments() {
             Arguments::All => Some(true),
             Arguments::OffPoles => None,
-            Arguments::Positive => match self.sign(argument) {
-                Sign::Positive => Some(true),
-                sign => sign.is_nonpositive().then_some(false),
-            },
+            Arguments::Positive => is_positive(self.sign(argument)),
+            Arguments::AboveMinusOne => is_positive(self.sign_of_shifted(argument, 1)),
             Arguments::Unit => Some(self.as_number(argument)?.abs() <= Rational::ONE),
         }
     }
 
     /// True if a subexpression is a constant whose form shows that it has no real value: a negative power of 0, a root
-    /// of a negative number, `ln` of a number that is not positive, `asin` or `acos` outside `[-1, 1]`.
+    /// of a negative number, `ln` of a number that is not positive, `log1p` of one that is not above -1, `asin` or
+    /// `acos` outside `[-1, 1]`.
     pub fn is_undefined_constant(&self, id: ExprId) -> bool {
         self.reachable(&[id])
             .into_iter()
@@ -231,6 +243,8 @@ mod tests {
             "atan2(m, x)",
             "sin(x)*exp(y)",
             "sqrt(x^2)",
+            "log1p(w)",
+            "log1p(x^2 - 1/2)",
         ] {
             let id = fixture.read(text);
             assert!(fixture.pool.is_finite(id), "{text}");
@@ -245,6 +259,8 @@ mod tests {
             "asin(x)",
             "x + 1/x",
             "w^(-1/2)",
+            "log1p(x)",
+            "log1p(w - 1)",
         ] {
             let id = fixture.read(text);
             assert!(!fixture.pool.is_finite(id), "{text}");

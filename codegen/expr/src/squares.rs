@@ -6,7 +6,7 @@
 //! all others in the same symbols are squares. The later steps proceed in the same way with the remaining symbols.
 
 use crate::field::mix;
-use crate::function::Function;
+use crate::function::Singularity;
 use crate::node::{ExprId, Node, SymbolId};
 use crate::point::ModularPoint;
 use crate::pool::Pool;
@@ -29,13 +29,20 @@ pub(crate) struct Squares {
 #[derive(Clone, Debug)]
 struct Step {
     symbols: Vec<SymbolId>,
-    positives: Vec<ExprId>,
+    positives: Vec<Positive>,
     /// The subexpressions of the arguments, operands first.
     order: Vec<ExprId>,
 }
 
+/// An expression plus `shift` that must be a square.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+struct Positive {
+    id: ExprId,
+    shift: u8,
+}
+
 /// An argument, with its symbols that are not drawn yet.
-type Open = (ExprId, Vec<SymbolId>);
+type Open = (Positive, Vec<SymbolId>);
 
 impl Pool {
     /// The arguments of roots among the expressions in `order`, without repetition.
@@ -52,11 +59,16 @@ impl Pool {
         radicands
     }
 
-    /// Expressions in `order` that must be squares: arguments of roots and logarithms, without repetition.
-    pub(crate) fn positives(&self, order: &[ExprId]) -> Vec<ExprId> {
-        let mut positives = self.radicands(order);
+    /// What must be a square: arguments of roots and logarithms in `order`, without repetition.
+    fn positives(&self, order: &[ExprId]) -> Vec<Positive> {
+        let positive = |id: ExprId, shift: u8| Positive { id, shift };
+        let radicands = self.radicands(order).into_iter();
+        let mut positives: Vec<Positive> = radicands.map(|id| positive(id, 0)).collect();
         positives.extend(order.iter().filter_map(|id| match self.node(*id) {
-            Node::Call(Function::Ln, argument) => Some(*argument),
+            Node::Call(function, argument) => match function.singularity() {
+                Singularity::Logarithm { shift } => Some(positive(*argument, shift)),
+                _ => None,
+            },
             _ => None,
         }));
         positives.sort_unstable();
@@ -100,10 +112,10 @@ impl Squares {
         }
     }
 
-    fn in_steps(pool: &Pool, positives: Vec<ExprId>) -> Self {
+    fn in_steps(pool: &Pool, positives: Vec<Positive>) -> Self {
         let mut open: Vec<Open> = positives
             .into_iter()
-            .map(|positive| (positive, pool.symbols_below(positive)))
+            .map(|positive| (positive, pool.symbols_below(positive.id)))
             .collect();
         let mut steps = Vec::new();
         while let Some((_, symbols)) = open.iter().min_by_key(|(_, symbols)| symbols.len()) {
@@ -115,8 +127,10 @@ impl Squares {
                 .into_iter()
                 .partition(|(_, unknown)| unknown.is_empty());
             open = rest;
-            let positives: Vec<ExprId> = known.into_iter().map(|(positive, _)| positive).collect();
-            let order = pool.reachable(&positives);
+            let positives: Vec<Positive> =
+                known.into_iter().map(|(positive, _)| positive).collect();
+            let ids: Vec<ExprId> = positives.iter().map(|positive| positive.id).collect();
+            let order = pool.reachable(&ids);
             steps.push(Step {
                 symbols,
                 positives,
@@ -151,7 +165,9 @@ impl Squares {
 impl Step {
     fn is_of_squares(&self, pool: &Pool, point: &mut ModularPoint) -> bool {
         let field = point.modulus();
-        pool.modular_eval_ordered(&self.order, &self.positives, point)
-            .is_ok_and(|values| values.iter().all(|value| field.is_square(*value)))
+        pool.residues(&self.order, point).is_ok_and(|values| {
+            let value = |it: &Positive| field.add(values[it.id.index()], u64::from(it.shift));
+            self.positives.iter().all(|it| field.is_square(value(it)))
+        })
     }
 }

@@ -104,7 +104,8 @@ pub(super) fn jump(
     value: ExprId,
     seed: u64,
 ) -> Option<String> {
-    let singular = poles(&model.pool, &model.pool.reachable(&dynamics.roots()));
+    let parts = model.pool.reachable(&dynamics.roots());
+    let singular = poles(&mut model.pool, &parts);
     possible_jump(model, value, &singular, &mut |model, part| {
         let rate = Rate {
             quantity: Quantity::of(model, part),

@@ -6,7 +6,7 @@
 //! in the cut of `atan2`, a branch may change. No jump occurs where the equations of motion do not exist. None occurs
 //! if the argument that would have to vanish is constant or has one sign.
 
-use dalembert_expr::{ExprId, Function, Node, Pool};
+use dalembert_expr::{ExprId, Function, Node, Pool, Singularity};
 
 use crate::model::Model;
 
@@ -33,7 +33,7 @@ pub(super) fn possible_jump(
             }
         }
     }
-    for id in poles(&model.pool, &parts) {
+    for id in poles(&mut model.pool, &parts) {
         let is_harmless = singular.contains(&id) || model.pool.sign(id).is_nonzero();
         if !is_harmless && !is_constant(model, id) {
             let text = model.pool.text(id);
@@ -56,7 +56,7 @@ fn chooses_branch(pool: &Pool, id: ExprId) -> bool {
 }
 
 /// Denominators, arguments of logarithms, and tangents.
-pub(super) fn poles(pool: &Pool, parts: &[ExprId]) -> Vec<ExprId> {
+pub(super) fn poles(pool: &mut Pool, parts: &[ExprId]) -> Vec<ExprId> {
     let mut poles = Vec::new();
     for id in parts {
         match pool.node(*id) {
@@ -66,9 +66,14 @@ pub(super) fn poles(pool: &Pool, parts: &[ExprId]) -> Vec<ExprId> {
                     .filter(|(_, exponent)| exponent.is_negative());
                 poles.extend(below.map(|(base, _)| *base));
             }
-            Node::Call(Function::Ln, argument) => poles.push(*argument),
-            Node::Call(Function::Tan, _) => poles.push(*id),
-            _ => {}
+            Node::Call(function, argument) => match (function.singularity(), *argument) {
+                (Singularity::None | Singularity::Ends | Singularity::Kink, _) => {}
+                (Singularity::Logarithm { shift }, argument) => {
+                    poles.push(pool.shifted(argument, shift));
+                }
+                (Singularity::Poles, _) => poles.push(*id),
+            },
+            Node::Atan2(..) | Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => {}
         }
     }
     poles

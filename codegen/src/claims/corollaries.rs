@@ -5,7 +5,7 @@
 //! (Theorem VII.21). They are compact if the energy is conserved and surfaces bound all coordinates that are not
 //! angles.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Sign, SymbolId, Verdict as Zero};
+use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity, SymbolId, Verdict as Zero};
 
 use super::conserved::check_conserved;
 use super::examine::explicit;
@@ -95,8 +95,12 @@ fn has_all_derivatives(pool: &Pool, id: ExprId) -> bool {
         Node::Product(factors) => factors
             .iter()
             .all(|(base, exponent)| exponent.is_integer() || pool.sign(*base) == Sign::Positive),
-        Node::Call(Function::Abs | Function::Asin | Function::Acos, _) | Node::Atan2(..) => false,
-        Node::Call(..) | Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => true,
+        Node::Call(function, _) => match function.singularity() {
+            Singularity::None | Singularity::Logarithm { .. } | Singularity::Poles => true,
+            Singularity::Ends | Singularity::Kink => false,
+        },
+        Node::Atan2(..) => false,
+        Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => true,
     }
 }
 

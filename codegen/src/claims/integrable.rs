@@ -6,7 +6,7 @@
 //! says no more than the listed properties: forces do not enter the bracket, and with constraints the bracket is almost
 //! Poisson.
 
-use dalembert_expr::{ExprId, Function, Node, Pool, Sign};
+use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity};
 
 use super::conserved::check_conserved;
 use super::evidence::{Vanishing, Wording, evidence};
@@ -151,11 +151,15 @@ fn is_analytic(pool: &Pool, function: ExprId) -> bool {
             Node::Product(factors) => factors
                 .iter()
                 .all(|(base, exponent)| exponent.is_integer() || is_positive(*base)),
-            Node::Call(Function::Ln, argument) => is_positive(*argument),
-            Node::Call(Function::Abs | Function::Asin | Function::Acos, _) | Node::Atan2(..) => {
-                false
-            }
-            _ => true,
+            Node::Call(function, argument) => match function.singularity() {
+                Singularity::None | Singularity::Poles => true,
+                Singularity::Logarithm { shift } => {
+                    pool.sign_of_shifted(*argument, shift) == Sign::Positive
+                }
+                Singularity::Ends | Singularity::Kink => false,
+            },
+            Node::Atan2(..) => false,
+            Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => true,
         })
 }
 

@@ -2,7 +2,7 @@
 //! out, the loops of Q are those of the declared circles. The origin of a plane, left out by `1/(x^2 + y^2)`, has
 //! further loops around it, and `1/x` divides Q.
 
-use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational};
+use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational, Singularity};
 
 use super::exactness::{branches_of, sample_points};
 use super::frame::frame;
@@ -86,17 +86,18 @@ fn divisors(pool: &mut Pool, problem: &Problem) -> Option<Vec<ExprId>> {
                 let singular = factors.iter().filter(|(_, power)| is_singular(power));
                 divisors.extend(singular.map(|(base, _)| *base));
             }
-            Node::Call(Function::Ln, argument) => divisors.push(argument),
-            Node::Call(Function::Tan, argument) => {
-                divisors.push(pool.call(Function::Cos, argument))
-            }
-            Node::Call(Function::Asin | Function::Acos, argument) => {
-                let square = pool.mul(argument, argument);
-                let one = pool.one();
-                divisors.push(pool.sub(one, square));
-            }
+            Node::Call(function, argument) => match function.singularity() {
+                Singularity::None | Singularity::Kink => {}
+                Singularity::Logarithm { shift } => divisors.push(pool.shifted(argument, shift)),
+                Singularity::Poles => divisors.push(pool.call(Function::Cos, argument)),
+                Singularity::Ends => {
+                    let square = pool.mul(argument, argument);
+                    let one = pool.one();
+                    divisors.push(pool.sub(one, square));
+                }
+            },
             Node::Atan2(..) => return None,
-            _ => {}
+            Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum { .. } => {}
         }
     }
     Some(divisors)

@@ -517,6 +517,18 @@ impl Numbers for ComplexInterval {
         }
     }
 
+    fn log1p(self) -> Self {
+        let value = self.real.log1p();
+        let least = (Interval::point(1.0) + self.real).lo;
+        match self.is_steady() || least > 0.0 {
+            true => {
+                let slope = 1.0 / least * UP;
+                self.carried(value, [slope, slope * slope], slope)
+            }
+            false => Self::ANYTHING,
+        }
+    }
+
     fn sinh(self) -> Self {
         self.turning([self.real.sinh(), self.real.cosh()])
     }

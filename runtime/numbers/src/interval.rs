@@ -530,6 +530,14 @@ impl Numbers for Interval {
     }
 
     #[inline]
+    fn log1p(self) -> Self {
+        match self.lo > -1.0 {
+            true => self.increasing(libm::log1p),
+            false => Self::WHOLE,
+        }
+    }
+
+    #[inline]
     fn sinh(self) -> Self {
         self.increasing(libm::sinh)
     }
@@ -647,6 +655,7 @@ pub(crate) mod tests {
         "atan" on -7.0, 7.0 => |x| Numbers::atan(x);
         "exp" on -5.0, 5.0 => |x| Numbers::exp(x);
         "ln" on 0.01, 9.0 => |x| Numbers::ln(x);
+        "log1p" on -0.99, 9.0 => |x| Numbers::log1p(x);
         "sinh" on -4.0, 4.0 => |x| Numbers::sinh(x);
         "cosh" on -4.0, 4.0 => |x| Numbers::cosh(x);
         "tanh" on -4.0, 4.0 => |x| Numbers::tanh(x);

@@ -30,6 +30,7 @@ elementary! {
     atan2(y, x) = atan2, atan2, atan2;
     exp(x) = exp, exp, exp;
     ln(x) = ln, log, log;
+    log1p(x) = ln_1p, log1p, log1p;
     sinh(x) = sinh, sinh, sinh;
     cosh(x) = cosh, cosh, cosh;
     tanh(x) = tanh, tanh, tanh;

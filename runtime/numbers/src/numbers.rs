@@ -175,6 +175,10 @@ pub trait Numbers:
     #[must_use]
     fn ln(self) -> Self;
 
+    /// The natural logarithm of `1 + self`, exact for small numbers.
+    #[must_use]
+    fn log1p(self) -> Self;
+
     /// Hyperbolic sine.
     #[must_use]
     fn sinh(self) -> Self;
@@ -198,7 +202,7 @@ pub trait Numbers:
 #[macro_export]
 macro_rules! functions_of_one_number {
     ($($then:tt)+) => {
-        $($then)+! { sin cos tan asin acos atan exp ln sinh cosh tanh asinh }
+        $($then)+! { sin cos tan asin acos atan exp ln log1p sinh cosh tanh asinh }
     };
 }
 

@@ -117,6 +117,12 @@ smooth! {
         (x.ln(), first, move || -first.square())
     }
 
+    /// `log1p' = 1 / (1 + x)`
+    log1p(x) {
+        let first = (S::of(1.0) + x).reciprocal();
+        (x.log1p(), first, move || -first.square())
+    }
+
     /// `sinh' = cosh`
     sinh(x) {
         let (sine, cosine) = (x.sinh(), x.cosh());

@@ -739,6 +739,30 @@ impl Numbers for TaylorModel {
         )
     }
 
+    fn log1p(self) -> Self {
+        self.function(
+            |c, radius| {
+                let inverse = 1.0 / (1.0 + c);
+                // The sum is rounded before the radius is subtracted.
+                let fourth = match least((1.0 + c) * (1.0 - ROUNDING), radius) {
+                    Some(least) => 0.25 / (least * least * least * least),
+                    None => f64::INFINITY,
+                };
+                Expansion {
+                    terms: [
+                        libm::log1p(c),
+                        inverse,
+                        -0.5 * inverse * inverse,
+                        inverse * inverse * inverse / 3.0,
+                    ],
+                    fourth,
+                }
+            },
+            Rated::log1p,
+            Interval::log1p,
+        )
+    }
+
     fn sinh(self) -> Self {
         let most = self.range().sinh().magnitude();
         self.function(
@@ -899,6 +923,7 @@ mod tests {
         for outside in [
             stretch(-0.1, 0.2).sqrt(),
             stretch(-0.1, 0.2).ln(),
+            stretch(-1.1, -0.8).log1p(),
             stretch(0.9, 1.1).asin(),
             stretch(0.9, 1.1).acos(),
             stretch(1.5, 1.6).tan(),

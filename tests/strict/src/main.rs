@@ -14,7 +14,7 @@ dalembert::model! {
         coordinates { x; y; theta: angle; }
         parameters { m > 0 = 1; I > 0 = 1/5; k > 0 = 2; a > 0 = 1/3; }
         let r2 = x^2 + y^2;
-        let smooth(u) = exp(-u)/5 + ln(1 + u)/7 + tanh(x*y)/9 + sinh(x/3)/9 + cosh(y/2)/9;
+        let smooth(u) = exp(-u)/5 + ln(1 + u)/7 + log1p(u/9)/8 + asinh(x/2)/9 + tanh(x*y)/9 + sinh(x/3)/9 + cosh(y/2)/9;
         let rational = (1 + r2)^(1/3)/6 + (2 + r2)^(2/5)/9 + sqrt(1 + r2)/9 + smooth(r2);
         let circular = atan(x + y)/8 + asin(x/(4 + r2))/9 + acos(y/(4 + r2))/9 + tan(x/(3 + r2))/9 + atan2(y, 3 + r2)/9;
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + a/9*dot(theta)*dot(x)*cos(theta)

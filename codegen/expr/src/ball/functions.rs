@@ -4,6 +4,7 @@
 //! exp x     t = x/2^s, |t| <= 1/256;  sum of t^k/k!, squared s times
 //! sin, cos  t = x/2^s, |t| <= 1/256;  sums of t (-t^2)^k/(2k+1)! and (-t^2)^k/(2k)!;  s doublings of the angle
 //! ln x      y by Newton's method;  ln x - y = ln(x exp(-y)),   |ln(1 + r)| <= 2|r| for |r| <= 1/2
+//! log1p x   ln(1 + x);  for |x| <= 2^-16,  sum of -(-x)^k/k
 //! atan x    y by Newton's method;  atan x - y = atan u,  u = (x cos y - sin y)/(cos y + x sin y),   |atan u| <= |u|
 //! ```
 //!
@@ -22,6 +23,9 @@ const SMALL: i32 = 8;
 /// Numbers of terms of sums in `t^k` and in `t^(2k)`. Omitted terms are below `2^-256`.
 const TERMS: u64 = 22;
 const SQUARES: u64 = 11;
+/// Arguments of `log1p` up to `2^-LITTLE` are summed, with so many terms. Omitted terms are below `2^-256` of the sum.
+const LITTLE: i32 = 16;
+const LITTLE_TERMS: u64 = 17;
 /// Largest absolute value of arguments. Beyond it `exp` gives `None`, and sines and cosines have the bounds -1 and 1.
 const FAR: f64 = 1e6;
 
@@ -89,6 +93,20 @@ impl Ball {
         }
         let rest = self.mul(logarithm.neg().exp()?).sub(one).magnitude();
         (rest <= 0.5).then(|| logarithm.widened(bound::product(2.0, rest)))
+    }
+
+    /// `ln(1 + self)`, to all digits for small arguments; `None` if the ball may contain numbers without a value.
+    pub fn log1p(self) -> Option<Self> {
+        let (one, size) = (Self::integer(1), self.magnitude());
+        if size > bound::power_of_two(-LITTLE) {
+            return one.add(self).ln();
+        }
+        let mut sum = Self::ZERO;
+        for k in (1..=LITTLE_TERMS).rev() {
+            sum = one.divided(k).sub(self.mul(sum));
+        }
+        let omitted = (0..=LITTLE_TERMS).fold(2.0, |term, _| bound::product(term, size));
+        Some(self.mul(sum).widened(omitted))
     }
 
     /// `atan(self)`; `None` if it cannot be enclosed.
@@ -258,9 +276,10 @@ mod tests {
     #[test]
     fn functions_agree_with_those_of_doubles() {
         type Function = (&'static str, fn(Ball) -> Option<Ball>, fn(f64) -> f64);
-        let functions: [Function; 8] = [
+        let functions: [Function; 9] = [
             ("exp", Ball::exp, libm::exp),
             ("ln", Ball::ln, libm::log),
+            ("log1p", Ball::log1p, libm::log1p),
             ("sin", |x| Some(x.sin_cos().0), libm::sin),
             ("cos", |x| Some(x.sin_cos().1), libm::cos),
             ("sinh", |x| Some(x.sinh_cosh()?.0), libm::sinh),
@@ -285,9 +304,10 @@ mod tests {
     #[test]
     fn balls_of_some_size_contain_the_values_inside() {
         let wide = Ball::rational(&Rational::HALF).widened(0.2);
-        let functions: [fn(Ball) -> Option<Ball>; 6] = [
+        let functions: [fn(Ball) -> Option<Ball>; 7] = [
             Ball::exp,
             Ball::ln,
+            |x| x.shifted(-20).log1p(),
             Ball::atan,
             Ball::asin,
             |x| Some(x.sin_cos().0),
@@ -308,6 +328,7 @@ mod tests {
         let around = Ball::ZERO.widened(1e-60);
         assert_eq!(around.ln(), None);
         assert_eq!(Ball::integer(-1).ln(), None);
+        assert_eq!(Ball::integer(-1).log1p(), None);
         assert_eq!(Ball::integer(2).asin(), None);
         assert_eq!(around.atan2(Ball::integer(-1)), None);
         assert_eq!(Ball::integer(10_000_000).exp(), None);

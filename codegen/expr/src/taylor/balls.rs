@@ -207,6 +207,7 @@ fn apply(function: Function, x: Ball) -> Option<Ball> {
         Function::Atan => x.atan(),
         Function::Exp => x.exp(),
         Function::Ln => x.ln(),
+        Function::Log1p => x.log1p(),
         Function::Sinh => x.sinh_cosh().map(|pair| pair.0),
         Function::Cosh => x.sinh_cosh().map(|pair| pair.1),
         Function::Tanh => ratio(x.sinh_cosh()?),
@@ -277,10 +278,11 @@ mod tests {
         }
     }
 
-    const IDENTITIES: [&str; 14] = [
+    const IDENTITIES: [&str; 15] = [
         "sin(x)^2 + cos(x)^2 - 1",
         "exp(x)*exp(y) - exp(x + y)",
         "ln(x^3) - 3*ln(x)",
+        "log1p(x/1000000) - ln(1 + x/1000000)",
         "sqrt(x)^3 - x^(3/2)",
         "(x^2)^(1/3) - exp(2/3*ln(x))",
         "tan(x) - sin(x)/cos(x)",

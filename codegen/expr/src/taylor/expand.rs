@@ -261,7 +261,9 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
         argument: ExprId,
         value: Scalar<P>,
     ) -> Option<Series<P>> {
-        use Function::{Abs, Acos, Asin, Asinh, Atan, Cos, Cosh, Exp, Ln, Sin, Sinh, Tan, Tanh};
+        use Function::{
+            Abs, Acos, Asin, Asinh, Atan, Cos, Cosh, Exp, Ln, Log1p, Sin, Sinh, Tan, Tanh,
+        };
         let jets = self.jets;
         match function {
             Sin | Cos | Tan | Sinh | Cosh | Tanh => self.pair(function, argument),
@@ -269,6 +271,11 @@ impl<P: ExpansionPoint> Expansion<'_, '_, P> {
             Ln => {
                 let u = self.of(argument);
                 jets.integral(&jets.inverse(u)?, u, value)
+            }
+            Log1p => {
+                let u = self.of(argument);
+                let rate = jets.inverse(&jets.add(&self.one(), u))?;
+                jets.integral(&rate, u, value)
             }
             Atan => {
                 let u = self.of(argument);

@@ -297,6 +297,10 @@ fn call(builder: &mut Builder, value: Value, function: Elementary, a: Value) -> 
         Elementary::Tan => integral(one_plus_square(builder, value), false),
         Elementary::Tanh => integral(one_minus_square(builder, value), false),
         Elementary::Ln => quotient(a, false),
+        Elementary::Log1p => {
+            let one = builder.integer(1);
+            quotient(builder.add(one, a), false)
+        }
         Elementary::Atan => quotient(one_plus_square(builder, a), false),
         Elementary::Asinh => {
             let squared = one_plus_square(builder, a);

@@ -130,6 +130,27 @@ pub(super) fn ln(x: Wide) -> Wide {
     LN_2.fused(Wide::plain(f64::from(twos)), logarithm)
 }
 
+/// `ln(1 + x)`. Of a small argument by steps of third order: a sum with 1 would lose the last digits.
+pub(super) fn log1p(x: Wide) -> Wide {
+    /// Below this magnitude, the square of the argument is negligible relative to it: `2^-400`.
+    const NEGLIGIBLE: f64 = f64::from_bits((1023 - 400) << 52);
+    let size = x.nearest().abs();
+    if size < NEGLIGIBLE {
+        return x;
+    }
+    // NOTE: this is also the case of NaN.
+    let is_small = size < SMALL;
+    if !is_small {
+        return ln(ONE + x);
+    }
+    let mut logarithm = Wide::plain(math::log1p(x.nearest()));
+    for _ in 0..STEPS {
+        let power = exp_less_one(logarithm);
+        logarithm = logarithm + (x - power).scaled(2.0) / (x + power + Wide::plain(2.0));
+    }
+    logarithm
+}
+
 /// Least size from which every double is an even integer: `2^53`.
 const EVEN: f64 = 9_007_199_254_740_992.0;
 

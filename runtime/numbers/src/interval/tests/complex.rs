@@ -50,6 +50,17 @@ impl Neg for Complex {
     }
 }
 
+/// Functions that complex numbers lack.
+trait Missing {
+    fn log1p(self) -> Self;
+}
+
+impl Missing for Complex64 {
+    fn log1p(self) -> Self {
+        (Self::ONE + self).ln()
+    }
+}
+
 macro_rules! functions {
     ($($name:ident)+) => {$(
         fn $name(self) -> Self {
