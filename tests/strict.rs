@@ -9,7 +9,8 @@ use dalembert_tests::golden;
 /// A build of the program in `tests/strict`.
 struct Build {
     name: &'static str,
-    profile: &'static str,
+    /// Level of optimisation. The macro, which is never optimised, is compiled once for all levels.
+    level: &'static str,
     /// Target folder, one for each machine, so that a change of the machine does not rebuild the C code.
     target: &'static str,
     /// Flags of the Rust compiler for the machine. The C compiler gets `cpu`.
@@ -19,21 +20,21 @@ struct Build {
 
 const UNOPTIMISED: Build = Build {
     name: "unoptimised",
-    profile: "dev",
+    level: "0",
     target: "outside",
     flags: "",
     cpu: "x86-64",
 };
 const OPTIMISED: Build = Build {
     name: "optimised",
-    profile: "release",
+    level: "3",
     target: "outside",
     flags: "",
     cpu: "x86-64",
 };
 const NATIVE: Build = Build {
     name: "native",
-    profile: "release",
+    level: "3",
     target: "native",
     flags: "-C target-cpu=native",
     cpu: "native",
@@ -56,14 +57,14 @@ impl Build {
                 "build",
                 "--quiet",
                 "--locked",
-                "--profile",
-                self.profile,
+                "--release",
                 "--manifest-path",
             ])
             .arg(folder.join("Cargo.toml"))
             .arg("--target-dir")
             .arg(&target)
             .env_remove("CARGO_TARGET_DIR")
+            .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", self.level)
             .env("RUSTFLAGS", self.flags)
             .env("TARGET_CPU", self.cpu)
             .status()
@@ -73,12 +74,7 @@ impl Build {
             "{}: the program does not build",
             self.name
         );
-        let folder = if self.profile == "dev" {
-            "debug"
-        } else {
-            self.profile
-        };
-        target.join(folder).join("strict")
+        target.join("release").join("strict")
     }
 }
 
