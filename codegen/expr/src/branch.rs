@@ -141,7 +141,14 @@ impl Covered {
     /// Upper bound of the error probability of an answer about `branches`. `accident`: probability of a wrong yes at
     /// one point.
     pub fn error(&self, branches: &Branches, accident: f64) -> f64 {
-        let accidents = self.patterns as f64 * accident.powi(self.each.min(64) as i32);
+        // A chance that is too small for a number is still a chance.
+        let least = if accident > 0.0 {
+            f64::MIN_POSITIVE
+        } else {
+            0.0
+        };
+        let accident = accident.powi(self.each.min(64) as i32).max(least);
+        let accidents = self.patterns as f64 * accident;
         if branches.is_single() {
             return accidents;
         }

@@ -192,9 +192,12 @@ impl Rational {
 
     /// The binary logarithm of the absolute value, to within 1; 0 for 0.
     pub fn log2(&self) -> i64 {
-        match self.is_zero() {
-            true => 0,
-            false => self.numer().bits() as i64 - self.denom().bits() as i64,
+        match &self.0 {
+            Parts::Small(0, _) => 0,
+            Parts::Small(n, d) => {
+                i64::from(d.leading_zeros()) - i64::from(n.unsigned_abs().leading_zeros())
+            }
+            Parts::Big(value) => value.numer().bits() as i64 - value.denom().bits() as i64,
         }
     }
 

@@ -191,10 +191,29 @@ impl fmt::Display for Certificate {
             self.points, self.seed
         )?;
         if self.error > 0.0 {
-            write!(f, ", chance of error below {:.0e}", self.error.max(1e-300))
+            write!(
+                f,
+                ", chance of error below {}",
+                bound(self.error.max(1e-300))
+            )
         } else {
             write!(f, ", no chance of error")
         }
+    }
+}
+
+/// The least number with one digit that is not below a positive number.
+fn bound(value: f64) -> String {
+    let nearest = format!("{value:.0e}");
+    match (nearest.parse::<f64>(), nearest.split_once('e')) {
+        (Ok(number), Some((digit, exponent))) if number < value => match digit {
+            "9" => format!("1e{}", exponent.parse().map_or(0, |power: i32| power + 1)),
+            _ => format!(
+                "{}e{exponent}",
+                digit.parse().map_or(9, |digit: i32| digit + 1)
+            ),
+        },
+        _ => nearest,
     }
 }
 
@@ -239,6 +258,14 @@ pub(super) fn seed_of(name: &str) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bounds_of_errors_are_rounded_up() {
+        assert_eq!(bound(3.4e-17), "4e-17");
+        assert_eq!(bound(3.6e-17), "4e-17");
+        assert_eq!(bound(9.1e-17), "1e-16");
+        assert_eq!(bound(5e-17), "5e-17");
+    }
 
     #[test]
     fn numbers_are_written_with_twelve_digits_and_no_more() {

@@ -7,7 +7,7 @@
 
 use std::cmp::Ordering;
 
-use dalembert_expr::{ExpansionPoint, ExprId, Pool, RangePoint, RealPoint};
+use dalembert_expr::{ExpansionPoint, ExprId, Pool, RangePoint, RealPoint, Verdict as Zero};
 
 use super::bounds::is_never_negative;
 use super::collision::{AtImpact, evidence_at_impact};
@@ -298,6 +298,11 @@ fn without_map(
                     "instantaneous constraints of `{name}` map states on a line to one: volumes become 0"
                 ),
                 0,
+            ))
+        }
+        Unknown::Vanishes if model.pool.zero_test(value) != Zero::Refuted => {
+            Verdict::Undecided(format!(
+                "volumes become 0, and {written} is not known to be different from 0; write `density under {name}: factor = 0;`"
             ))
         }
         Unknown::Vanishes => refuted(

@@ -292,18 +292,23 @@ fn balance(
     coefficient: &Rational,
     factors: &[(ExprId, Rational)],
 ) -> Option<(usize, Rational, Rational)> {
+    const MOST: i64 = 1 << 10;
     let integers = factors.iter().enumerate().filter_map(|(position, factor)| {
         let exponent = factor.1.to_i64()?;
         (exponent.abs() > 1).then_some((position, exponent))
     });
     let (position, exponent) = integers.max_by_key(|(_, exponent)| exponent.abs())?;
     let two = |shift: i64| Rational::from(2).pow_i(i32::try_from(shift).ok()?);
-    let shift = coefficient.log2() / exponent;
-    Some((
-        position,
-        two(shift)?,
-        coefficient * &two(-shift * exponent)?,
-    ))
+    // To the nearest: what is left is at most the square root of the power.
+    let shift = (coefficient.log2() as f64 / exponent as f64).round() as i64;
+    let (mut rest, mut taken) = (coefficient.clone(), -shift * exponent);
+    while taken != 0 {
+        // The length of a power is limited.
+        let part = taken.clamp(-MOST, MOST);
+        rest = &rest * &two(part)?;
+        taken -= part;
+    }
+    Some((position, two(shift)?, rest))
 }
 
 /// Number of factors of a sum up to which shared factors are sought: the time of the search grows with its square.

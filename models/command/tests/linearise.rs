@@ -120,6 +120,25 @@ fn a_pole_on_a_cart_has_its_textbook_matrices() {
     );
 }
 
+/// The spring is at rest at `x = 3`, where the gap of the gate is -2: a motion passes the surface of a reset.
+#[test]
+fn an_equilibrium_may_lie_behind_the_surface_of_a_reset() {
+    const GATE: &str = "
+        Gate {
+            coordinates { x; }
+            lagrangian = dot(x)^2/2 - (x - 3)^2/2;
+            impacts { gate: x <= 1 => reset { dot(x) = dot(x)/2; }; }
+            initial { x = 2.5; dot(x) = 0; until = 1; }
+        }
+    ";
+    let found = document(GATE, "- --trim");
+    let x = found["state"]["x"].as_f64().unwrap();
+    assert!((x - 3.0).abs() < 1e-12, "{x}");
+    let wall = GATE.replace("reset { dot(x) = dot(x)/2; }", "elastic");
+    let refused = linearise(&wall, "- --trim --json -");
+    assert_eq!(refused.exit, Exit::Other, "{}", refused.output);
+}
+
 /// A force holds the pole at an angle while the cart accelerates: `a = g tan(theta)`, `u = (M + m) a`.
 #[test]
 fn only_what_is_free_changes_and_what_moves_may_move() {

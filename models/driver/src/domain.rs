@@ -1,6 +1,7 @@
 //! Test that states lie on the allowed side of the surfaces.
 
 use dalembert::contract::{TaylorField, Variational};
+use dalembert::law::Law;
 use dalembert::numbers::{Numbers, Row};
 use dalembert::state::StateVector;
 use dalembert::variations::Dual;
@@ -29,7 +30,8 @@ pub(crate) fn gaps<S: Instance + Variational>(
     Ok(counted.collect())
 }
 
-/// The first surface behind which a state lies, with its gap. `size` is the size of the state.
+/// The first surface behind which a state lies, with its gap. `size` is the size of the state. States may lie behind a
+/// surface of a reset, which the motion passes.
 ///
 /// # Errors
 /// A [`Fault`] where a gap does not exist.
@@ -40,7 +42,10 @@ pub(crate) fn behind<S: Instance + Variational>(
     size: f64,
 ) -> Result<Option<(usize, f64)>, Fault> {
     let gaps = gaps(system, t, state)?;
-    let mut behind = gaps.into_iter().filter(|(_, gap)| *gap < -ROUNDING * size);
+    let parameters = TaylorField::parameters(system);
+    let is_passed = |surface| system.declared_law(&parameters, surface).0 == Law::Reset;
+    let mut behind =
+        (gaps.into_iter()).filter(|&(surface, gap)| gap < -ROUNDING * size && !is_passed(surface));
     Ok(behind.next())
 }
 
