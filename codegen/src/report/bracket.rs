@@ -107,7 +107,9 @@ fn section(asked: &mut Asked, left: [String; 2], value: ExprId, kind: BracketKin
     let mut items = vec![writer.formula(text, latex, value)];
     let remark = match is_poisson {
         true => "a Poisson bracket: no constraints",
-        false => "an almost-Poisson bracket of functions on D: its Jacobiator need not be 0",
+        false => {
+            "an almost-Poisson bracket of functions on D: its Jacobiator need not be 0; P projects T*Q to D*, A is the linear term of L, and X_0 satisfies the constraints"
+        }
     };
     items.push(Item::Words(remark.to_owned()));
     let (title, equation) = match (kind, is_poisson) {
