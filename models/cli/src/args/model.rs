@@ -25,7 +25,7 @@ pub struct FeedbackArgs {
 /// Treatment of claims.
 #[derive(Debug, Default, Args)]
 pub struct ClaimsArgs {
-    /// Do not examine the claims of a model of a file.
+    /// Do not examine the claims of a model that is read from a file.
     #[arg(long)]
     pub no_claims: bool,
 }
