@@ -50,7 +50,7 @@ pub use rows::RowsArgs;
 pub use search::SearchArgs;
 pub use series::SeriesArgs;
 
-/// Derive, evaluate and simulate mechanical systems that are declared in a file or with `dalembert::model!`.
+/// Derive, evaluate and simulate mechanical systems declared in a file or with `dalembert::model!`.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -278,9 +278,9 @@ pub struct StateArgs {
 /// `on` or `off`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
-    /// Yes.
+    /// Project after each step.
     On,
-    /// No.
+    /// Do not project.
     Off,
 }
 

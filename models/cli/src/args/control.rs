@@ -10,15 +10,15 @@ use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
     "The model declares `inputs` and a `cost { running = ..; terminal = ..; }`. Extremals satisfy the maximum \
-principle: state and costate satisfy Hamilton's equations of the maximised Hamiltonian H*, and both jump at \
-impacts. `derive MODEL --control` prints the equations. The state consists of the coordinates of a first-order \
-model, or of the positions and velocities of a Lagrangian model: x, x_dot.
+principle: state and costate satisfy Hamilton's equations with H*, the Hamiltonian minimised over the inputs, \
+and both jump at impacts. `derive MODEL --control` prints the equations. The state consists of the coordinates \
+of a first-order model, or of the positions and velocities of a Lagrangian model: x, x_dot.
 
 The costate at the start is unknown. At the end, --end fixes components of the state; the costate of each other \
 component is the derivative of the terminal cost. Costates are scanned in --starts directions. Newton's method \
 continues from the costates that come nearest to these conditions, within one sequence of impacts, with exact \
-derivatives across impacts. No search is exhaustive: extremals may be missed. They are listed by cost. Each is \
-extremal among motions with its number of impacts.
+derivatives across impacts. No search is exhaustive: extremals may be missed. The extremals that are found are \
+listed in order of cost. Each is extremal among motions with its number of impacts.
 
 The second-order test gives `minimum` if every neighbouring motion with the same sequence of impacts costs more. \
 It gives `fails` if some of them cost less, as after a focal point, and `open` if the inputs do not control all \
@@ -58,9 +58,9 @@ pub struct ControlArgs {
     /// Time of the end. Default: the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// Search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`. --csv has the
-    /// rows of all values. --plot draws the costs against the values: for each number of impacts a line of the least
-    /// cost, and dots for the other extremals.
+    /// Repeat the search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`.
+    /// --csv has the rows of all values. --plot draws the costs against the values: for each number of impacts a line
+    /// of the least cost, and dots for the other extremals.
     #[arg(long, value_name = "NAME=A..B:COUNT", allow_hyphen_values = true, conflicts_with_all = ["dp", "inputs", "axes"])]
     pub vary: Option<String>,
     /// The search.
@@ -78,8 +78,8 @@ pub struct ControlArgs {
     /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the extremal of least cost as a table: time, state, costate, cost so far, inputs, maximised Hamiltonian.
-    /// Each impact has two rows, one before it and one after it. `-` is the standard output.
+    /// Write the extremal of least cost as a table: time, state, costate, cost so far, inputs, Hamiltonian H*. Each
+    /// impact has two rows, one before it and one after it. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
     /// Number of rows of the table of --inputs, equally spaced in time; rows at impacts are added.

@@ -51,7 +51,7 @@ pub struct LineariseArgs {
     /// The state.
     #[command(flatten)]
     pub state: StateArgs,
-    /// The time, for equations that depend on it.
+    /// Time of the state, for equations that depend on time.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse), default_value = "0")]
     pub at: f64,
     /// Search for an equilibrium first. With names, the search changes only these components of the state and inputs.
@@ -66,8 +66,7 @@ pub struct LineariseArgs {
     /// Components whose rates need not vanish at the equilibrium.
     #[arg(long, value_name = "NAME,..", requires = "trim")]
     pub moving: Option<String>,
-    /// Follow the motion from the state. After each time T, print the state and its derivatives with respect to the
-    /// state one time T earlier and the inputs.
+    /// Follow the motion from the state. After each time T, print the state and the matrices Phi and Gamma; see below.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub every: Option<f64>,
     /// Number of samples of the motion, at multiples of the time --every.

@@ -47,7 +47,7 @@ pub struct ModelArgs {
     /// Claims.
     #[command(flatten)]
     pub claims: ClaimsArgs,
-    /// First mode of the run, for a model with modes. Default: the mode declared first.
+    /// Initial mode, for a model with modes. Default: the mode declared first.
     #[arg(long, value_name = "MODE")]
     pub mode: Option<String>,
 }
