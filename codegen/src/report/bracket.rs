@@ -107,11 +107,13 @@ fn section(asked: &mut Asked, left: [String; 2], value: ExprId, kind: BracketKin
     let mut items = vec![writer.formula(text, latex, value)];
     let remark = match is_poisson {
         true => "a Poisson bracket: no constraints",
-        false => {
-            "an almost-Poisson bracket of functions on D: its Jacobiator need not be 0; P projects T*Q to D*, A is the linear term of L, and X_0 satisfies the constraints"
-        }
+        false => "an almost-Poisson bracket of functions on D: its Jacobiator need not be 0",
     };
     items.push(Item::Words(remark.to_owned()));
+    if !is_poisson && kind == BracketKind::Bracket {
+        let symbols = "P projects momenta to those of velocities in D; A: linear term of L; X_0: a velocity in D";
+        items.push(Item::Words(symbols.to_owned()));
+    }
     let (title, equation) = match (kind, is_poisson) {
         (BracketKind::Jacobiator, _) => ("Jacobiator", JACOBIATOR),
         (BracketKind::Bracket, true) => ("Bracket", POISSON),

@@ -314,7 +314,8 @@ pub trait System: VectorField {
     }
 }
 
-/// Implementation of [`System::carried`]. `system` makes states in the mode of the new state, `from` in that of `state`.
+/// Implementation of [`System::carried`]. `system` makes states in the mode of the new state, `from` in that of
+/// `state`.
 pub(crate) fn carried<S: System + ?Sized>(
     system: &S,
     from: &S,

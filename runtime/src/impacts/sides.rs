@@ -1,5 +1,5 @@
-//! Sides of surfaces: detects that a surface becomes active (its conditions begin to hold) while the motion is behind it,
-//! and decides the side of a motion that is on a surface within rounding.
+//! Sides of surfaces: detects that a surface becomes active (its conditions begin to hold) while the motion is behind
+//! it, and decides the side of a motion that is on a surface within rounding.
 //!
 //! Behind a wall that is not active, the motion is free. Gap and conditions are enclosed along the step. A stretch on
 //! which the gap is not negative, or on which the conditions do not hold, is free; others are halved ([`onset`]).
@@ -168,7 +168,8 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Ends the run if the step was cut at this fraction because a surface became active while the motion was behind it.
+    /// Ends the run if the step was cut at this fraction because a surface became active while the motion was behind
+    /// it.
     pub(super) fn check_behind(&self, part: f64, now: &Moment<'_, Sys>) -> Result<(), Outcome> {
         match self.behind {
             Some(surface) if self.proposed == Some(part) => {

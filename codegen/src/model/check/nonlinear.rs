@@ -1,7 +1,7 @@
 //! Constraints that are not linear in the velocities, whose forces follow Chetaev's rule.
 //!
-//! Declarations that are supported for linear constraints only are refused beside them: frames, impact laws, volumes, and
-//! claims other than conserved quantities and invariant forms.
+//! Declarations that are supported for linear constraints only are refused beside them: frames, impact laws, volumes,
+//! and claims other than conserved quantities and invariant forms.
 
 use super::super::Constraint;
 use super::super::resolve::Resolver;

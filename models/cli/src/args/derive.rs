@@ -47,8 +47,8 @@ pub struct DeriveArgs {
     /// reduced equations. Fields are written as in claims: `partial(x),partial(y)`.
     #[arg(long, value_name = "XI,..", conflicts_with_all = ["bracket", "jacobiator"], allow_hyphen_values = true)]
     pub group: Option<String>,
-    /// Print the maximum principle of a model with a `cost` instead of the equations: the Hamiltonian H*, minimised
-    /// over the inputs, the optimal inputs, the equations of the costate and its jumps at impacts.
+    /// Print the maximum principle of a model with a `cost` instead of the equations: the Hamiltonian H* (minimised
+    /// over the inputs), the optimal inputs, the equations of the costate and its jumps at impacts.
     #[arg(long, conflicts_with_all = ["bracket", "jacobiator", "group"])]
     pub control: bool,
     /// Output format.

@@ -103,8 +103,8 @@ pub struct Taylor<F: TaylorField> {
     next_unit: f64,
     /// Temporary limit of the step length, after a jump and at the start.
     limit: f64,
-    /// Estimate of the error of the last step divided by the allowed error; an upper bound unless the step has the least
-    /// length.
+    /// Estimate of the error of the last step divided by the allowed error; an upper bound unless the step has the
+    /// least length.
     error: f64,
     ends: Ends<F::State>,
     rates: [F::State; 2],

@@ -64,8 +64,8 @@ struct Halves {
     distance: f64,
 }
 
-/// Compares the two halves of the fraction `1/2^class` of the states. The later half is this class, the earlier half all
-/// following classes.
+/// Compares the two halves of the fraction `1/2^class` of the states. The later half is this class, the earlier half
+/// all following classes.
 fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     let later = of(class);
     let mut earlier = vec![0; later.len()];
