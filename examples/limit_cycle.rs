@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("angular velocity before a step {arrival:.12}, exactly {exact:.12}");
     println!("multiplier {:.12}, exactly {kept:.12}", multiplier);
     if (arrival - exact).abs() > 1e-9 || (multiplier - kept).abs() > 1e-9 {
-        return Err("another cycle".into());
+        return Err("the search found another cycle".into());
     }
     Ok(())
 }

@@ -1131,7 +1131,7 @@ def constrained_to_less(model, surface, stated, source):
         extra = [[model.names.compile(item)(state) for item in entry["form"]] for entry in surface["instantaneous"]]
         return len(eliminated([*forms, *extra], model.n)[1]) - m, stated(state)
     found = states(model, source, ranks)
-    return all(rank > 0 and factor == 0 for rank, factor in found), "instantaneous constraints map states on a line to one"
+    return all(rank > 0 and factor == 0 for rank, factor in found), "instantaneous constraints map all states on a line to the same state"
 
 
 def check_kept(model, claim, source):

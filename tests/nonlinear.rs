@@ -439,7 +439,7 @@ fn quantities_are_examined_and_what_needs_linear_constraints_is_refused() {
     assert!(text.contains(open), "{text}");
     let text = refused("claims { assume density: exact; }");
     assert!(
-        text.contains("only conserved quantities and forms are claimed of it"),
+        text.contains("only conserved quantities and invariant forms can be claimed"),
         "{text}"
     );
     let text = refused("scenes { a: volume; }");

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `golden_verdicts.rs`, `reference.rs` | verdicts, frames, obstructions, densities of the reference files |
 //! | `gauge.rs` | symmetries of the equations that change the Lagrangian |
-//! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence on many systems |
+//! | `systems.rs`, `drift.rs`, `topology.rs`, `conditions.rs`, `momentum.rs` | existence of a density on many systems |
 //! | `invariance.rs`, `atoms.rs` | independence of verdicts from the notation; functions and their relations |
 //! | `visible.rs`, `contradicted.rs`, `impacts.rs` | true and false claims of models; impacts |
 //! | `soundness.rs`, `soundness_models.rs`, `proved_means_proved.rs` | nothing is proved by accident |

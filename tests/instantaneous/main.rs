@@ -66,7 +66,7 @@ static RAIL: Text = Text::new(
 );
 
 dalembert::model! {
-    /// A knife edge whose tip sticks to a curved wall along a direction that turns.
+    /// A knife edge. At an impact, its tip sticks to a curved wall in a direction that depends on the state.
     pub Tip {
         coordinates { x; y; theta: angle; z; }
         parameters { m > 0 = 2; I > 0 = 1/3; a > 0 = 1/4; }
@@ -106,7 +106,7 @@ static DEGENERATE: Text = Text::new(
     }",
 );
 
-/// The state after an impact at `t = 0`, by the impact effect of runs.
+/// The state after an impact at `t = 0`, as a run computes it.
 fn struck<S: Driven>(system: &S, law: Law, state: S::State) -> S::State {
     let mut events = EventLog::<_, 4>::new();
     Course::from_state(system, state, 0.0)
@@ -400,7 +400,7 @@ fn claims_about_such_impacts_are_decided() {
         .find(|note| note.contains("density: exact"))
         .expect("a note");
     assert!(
-        volume.contains("of the motion between impacts alone"),
+        volume.contains("for the motion between impacts only"),
         "{volume}"
     );
     assert!(

@@ -1,9 +1,9 @@
 //! Polynomial conditions on parameters under which an obstruction vanishes.
 //!
-//! At a random point modulo a prime, delta (see [`super::obstruction`]) is a rational function of one parameter. A root or
-//! pole that delta has at other configurations as well lies on a hypersurface of parameters over which a density exists.
-//! Such points, for several values of the other parameters, determine the polynomial of low degree that vanishes at all
-//! of them.
+//! At a random point modulo a prime, delta (see [`super::obstruction`]) is a rational function of one parameter. Each
+//! root or pole of delta is a candidate. If a density exists at another configuration with the same parameters, the
+//! point lies on a hypersurface of parameters over which a density exists. Such points, for several values of the other
+//! parameters, determine the polynomial of low degree that vanishes at all of them.
 
 use dalembert_expr::{ExprId, ModularPoint, Rational, SymbolId};
 

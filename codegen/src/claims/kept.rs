@@ -160,7 +160,7 @@ fn of_a_surface(model: &Model, effect: &Effect, sentence: String) -> Witness {
     };
     let help = match model.surfaces[effect.surface].law {
         Law::Transition => format!(
-            "write `density under {name}: factor = ..;`, or state a density in each mode that makes up for it"
+            "write `density under {name}: factor = ..;`, or state in each mode a density that cancels this factor"
         ),
         _ => format!("write `density under {name}: factor = ..;`"),
     };
@@ -191,7 +191,7 @@ pub(super) fn check_factor(
     };
     let help = match density.written {
         None => format!("`{name}` {}", factor(model, surface, &wall)),
-        Some(_) => "the factor is that of the stated density".to_owned(),
+        Some(_) => "write the factor of the volume with the stated density".to_owned(),
     };
     let wording = Wording {
         vanishes: format!("`{name}` multiplies {volume} by {written}"),
@@ -219,7 +219,7 @@ fn up_to_its_sign(
     (value, written): (ExprId, &str),
 ) -> Verdict {
     let open = Verdict::Undecided(format!(
-        "`{name}` multiplies {volume} by {written} up to its sign, and `{written}` may be negative; write its size, `abs(..)`"
+        "`{name}` multiplies {volume} by {written} up to its sign, and `{written}` may be negative; write its absolute value, `abs(..)`"
     ));
     if !may_slide(wall) {
         return open;
@@ -227,8 +227,13 @@ fn up_to_its_sign(
     let question = Negative { value, written };
     let found = evidence_at_impact(model, wall, around.dynamics, &question, around.seed);
     let wording = Wording {
-        differs: format!("`{written}` is negative, and `{name}` multiplies volumes by its size"),
-        help: ["write its size, `abs(..)`".to_owned(), String::new()],
+        differs: format!(
+            "`{written}` is negative, and `{name}` multiplies volumes by its absolute value"
+        ),
+        help: [
+            "write its absolute value, `abs(..)`".to_owned(),
+            String::new(),
+        ],
         ..Wording::default()
     };
     match found.verdict(true, wording, around.seed) {
@@ -295,7 +300,7 @@ fn without_map(
         Unknown::Vanishes if model.pool.is_syntactic_zero(value) => {
             Verdict::Proved(Certificate::without_chance(
                 format!(
-                    "instantaneous constraints of `{name}` map states on a line to one: volumes become 0"
+                    "the instantaneous constraints of `{name}` map all states on a line to the same state: volumes become 0"
                 ),
                 0,
             ))
@@ -307,7 +312,7 @@ fn without_map(
         }
         Unknown::Vanishes => refuted(
             format!(
-                "instantaneous constraints of `{name}` map states on a line to one: volumes become 0, and are not multiplied by {written}"
+                "the instantaneous constraints of `{name}` map all states on a line to the same state: volumes become 0, and are not multiplied by {written}"
             ),
             &format!("write `density under {name}: factor = 0;`"),
         ),
@@ -345,12 +350,12 @@ pub(super) fn qualified(
         (false, true) => format!("impacts do not keep the volume: {failing}"),
         (true, false) => format!("impacts are not known to keep the volume: {open}"),
         (false, false) => {
-            format!("impacts do not keep the volume: {failing}; nor are known to: {open}")
+            format!("impacts do not keep the volume: {failing}; of others it is not known: {open}")
         }
     };
     Certificate {
         shown: format!(
-            "of the motion between impacts alone ({because}): {}",
+            "for the motion between impacts only ({because}): {}",
             certificate.shown
         ),
         ..certificate

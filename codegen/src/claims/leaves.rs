@@ -184,9 +184,9 @@ impl Entered {
     }
 }
 
-/// The verdict on the vectors behind a surface; `None` if nothing is to be proved. If the constraints of the mode
-/// behind it are integrable, that mode may preserve the form on vectors along its leaves only. The surface must then
-/// map vectors along leaves to such vectors, or the mode must preserve the form on all vectors (`keeps_all`).
+/// The verdict on whether the form is also kept behind a surface; `None` if that needs no proof. If the constraints of
+/// the mode behind it are integrable, that mode may preserve the form on vectors along its leaves only. The surface
+/// must then map vectors along leaves to such vectors, or the mode must preserve the form on all vectors (`keeps_all`).
 pub(super) fn check_behind(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -223,10 +223,10 @@ pub(super) fn check_behind(
     }
     let why = match integrable {
         Verdict::Proved(_) => "the motion there is known to keep the form along leaves only",
-        _ => "these are not known to be integrable or not",
+        _ => "it is not known whether these are integrable",
     };
     Some(Verdict::Undecided(format!(
-        "it carries vectors along one leaf across the leaves of the constraints behind it, and {why}"
+        "it is not shown to carry vectors along a leaf to vectors along leaves of the constraints behind it, and {why}"
     )))
 }
 

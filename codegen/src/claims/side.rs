@@ -30,7 +30,7 @@ pub(super) struct Side {
 pub(super) struct Chart<A: Arithmetic> {
     /// The velocities that are coordinates.
     pub(super) independent: Vec<usize>,
-    /// The derivatives of all velocities by these, N rows.
+    /// The derivatives of all velocities with respect to these, N rows.
     pub(super) basis: Vec<Vec<A::Scalar>>,
     /// `det g/det A_dep`, the density of `mu_C` up to its sign.
     pub(super) density: A::Scalar,

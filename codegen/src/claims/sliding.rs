@@ -2,10 +2,10 @@
 //! become 0.
 //!
 //! ```text
-//! J = G+/G-      G- < 0 on the way to the surface; the motion slides where G+ > 0
+//! J = G+/G-      G-, G+: rates of the gap before and behind the surface; the motion slides where G- < 0 and G+ > 0
 //! ```
 //!
-//! Densities do not enter: their signs are not those of the gap rates.
+//! The quotient does not use the densities of the two sides: a density may be negative where the motion crosses.
 
 use std::cmp::Ordering;
 

@@ -1,9 +1,10 @@
 //! Constraint forms, and the terms of `d/dt (eta(qdot) + eta_0)` that do not contain accelerations.
 //!
-//! A constraint `phi(t, q, qdot) = 0` that is nonlinear in the velocities has the form `eta = dphi/dqdot` (Chetaev's
-//! rule). Virtual displacements are the changes of velocity that leave `phi` unchanged to first order, and the
-//! constraint force is `lambda eta`. The time derivative of `phi` is `eta(qddot) + curvature`, as for the other
-//! constraints. The curvature is the derivative of `phi` along the motion at constant velocity.
+//! The one-form of a constraint `phi(t, q, qdot) = 0` that is nonlinear in the velocities is `eta = dphi/dqdot`
+//! (Chetaev's rule). Virtual displacements are the changes of velocity that leave `phi` unchanged to first order, and
+//! the constraint force is `lambda eta`. The time derivative of `phi` is `eta(qddot) + curvature`, as for the other
+//! constraints. Here `curvature` stands for the terms without accelerations, which are the derivative of `phi` along
+//! the motion at constant velocity. It is not the curvature of the constraint distribution.
 
 use dalembert_expr::{ExprId, Function, Node, Pool, Rational, Sign};
 
@@ -22,7 +23,8 @@ pub struct ConstraintForm {
     /// Scale of `residual`: the sum of the absolute values of its terms, with sines and cosines counted as 1. With the
     /// sines themselves, a term like `cos(pi/2) v`, which is 0 up to rounding, would have to vanish to the last digit.
     pub scale: ExprId,
-    /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`.
+    /// `(d_i eta_j) qdot^i qdot^j + (d_i eta_0) qdot^i + (d_t eta_j) qdot^j + d_t eta_0`, or `d_i phi qdot^i + d_t phi`
+    /// if the constraint is nonlinear.
     pub curvature: ExprId,
     /// `eta_j` and `curvature`, divided by the numerical factor that all components have in common. The motion does not
     /// depend on it.

@@ -110,6 +110,10 @@ fn section(asked: &mut Asked, left: [String; 2], value: ExprId, kind: BracketKin
         false => "an almost-Poisson bracket of functions on D: its Jacobiator need not be 0",
     };
     items.push(Item::Words(remark.to_owned()));
+    if !is_poisson && kind == BracketKind::Bracket {
+        let symbols = "P projects momenta to those of velocities in D; A: linear term of L; X_0: a velocity in D";
+        items.push(Item::Words(symbols.to_owned()));
+    }
     let (title, equation) = match (kind, is_poisson) {
         (BracketKind::Jacobiator, _) => ("Jacobiator", JACOBIATOR),
         (BracketKind::Bracket, true) => ("Bracket", POISSON),

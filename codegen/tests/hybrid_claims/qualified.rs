@@ -13,7 +13,7 @@ fn a_density_of_the_motion_alone_is_called_one() {
     let note_of = |law: &str, claim: &str| note(&ball(law), claim);
     let found = note_of("restitution(c)", "density: exact");
     assert!(
-        found.contains("`density: exact` is proved: of the motion between impacts alone"),
+        found.contains("`density: exact` is proved: for the motion between impacts only"),
         "{found}"
     );
     assert!(
@@ -22,11 +22,11 @@ fn a_density_of_the_motion_alone_is_called_one() {
     );
     let found = note_of("elastic", "density: exact");
     assert!(
-        !found.contains("between impacts alone") && found.contains("floor (elastic) keeps it"),
+        !found.contains("between impacts only") && found.contains("floor (elastic) keeps it"),
         "{found}"
     );
     let found = note_of("reset { dot(x) = -k*dot(x); }", "density = 3");
-    assert!(found.contains("of the motion between impacts alone (impacts do not keep the volume: floor does not keep it"), "{found}");
+    assert!(found.contains("for the motion between impacts only (impacts do not keep the volume: floor does not keep it"), "{found}");
     let wall = disk("wall: 1 - x >= 0 => elastic, instantaneous { no_turn: d(phi) = 0; };");
     let found = note(&wall, "density: exact");
     assert!(

@@ -228,12 +228,12 @@ fn transitions_lead_from_leaves_to_leaves() {
     check(
         &step("x*z", "dot(x)"),
         CLAIM,
-        Open("across the leaves of the constraints behind it"),
+        Open("along leaves of the constraints behind it"),
     );
     check(
         &step("x*z", "x - y + 1e-9*dot(x)"),
         CLAIM,
-        Open("across the leaves"),
+        Open("along leaves of the constraints behind"),
     );
     let mixed = "pub Mixed { coordinates { x; y; z; turn; } constraints { roll: dot(y) = x*dot(turn); shelf: dot(z) = 0; }
         lagrangian = (dot(x)^2 + dot(z)^2 + (dot(y) - x*dot(turn))^2 + dot(turn)^2)/2 - z*x; CLAIM }";
@@ -261,7 +261,7 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     check(&step(&wall("x"), "dot(y)", ""), CLAIM, True);
     // The gap of the wall contains z: its impact keeps the form along leaves of the shelf, but not on vectors that
     // change z.
-    let across = Open("across the leaves of the constraints behind it");
+    let across = Open("along leaves of the constraints behind it");
     check(&step(&wall("x + z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + 1e-9*z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + z"), "y", ""), CLAIM, across);
@@ -313,7 +313,7 @@ fn states_of_more_dimensions_may_keep_the_form() {
         held.replace("dot(z)^2)/2", "dot(z)^2)/2 - x*z")
     };
     check(&shelf("3"), CLAIM, True);
-    let across = Open("across the leaves of the constraints behind it");
+    let across = Open("along leaves of the constraints behind it");
     check(&shelf("dot(x)"), CLAIM, across);
     check(&shelf("3 + 1e-9*dot(x)"), CLAIM, across);
     // For constraints that are not linear in the velocities no leaves are known.
@@ -321,7 +321,11 @@ fn states_of_more_dimensions_may_keep_the_form() {
         "y = 0; dot(y) = 1; z = 0; dot(z) = 0;",
         "constraints { speed: dot(y)^2 + dot(z)^2 = 1; }",
     );
-    check(&speed, CLAIM, Open("not known to be integrable or not"));
+    check(
+        &speed,
+        CLAIM,
+        Open("not known whether these are integrable"),
+    );
     // A map to fewer dimensions does not keep the form.
     let narrow = "pub Narrow { coordinates { x; y; } lagrangian = (dot(x)^2 + dot(y)^2)/2;
         modes { free { CLAIM } bound { constraints { shelf: dot(y) = 0; } } } transitions { go: free -> bound when x <= 0; } }";

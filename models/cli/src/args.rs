@@ -50,7 +50,7 @@ pub use rows::RowsArgs;
 pub use search::SearchArgs;
 pub use series::SeriesArgs;
 
-/// Derive, evaluate and simulate mechanical systems declared with `dalembert::model!`.
+/// Derive, evaluate and simulate mechanical systems declared in a file or with `dalembert::model!`.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -177,7 +177,7 @@ pub enum Command {
     /// List misprints in the sources of the models, and compute the printed and the right values.
     #[command(help_template = help::TEMPLATE, before_help = "Example: dalembert errata", after_help = errata::EXAMPLES)]
     Errata(ErrataArgs),
-    /// Run the hard cases and report which of them keep their bounds.
+    /// Run the hard cases and report which of them stay within their error bounds.
     #[command(
         help_template = help::TEMPLATE,
         before_help = "Example: cargo run --release -p dalembert-stability -- stability --section A",
@@ -252,8 +252,8 @@ pub struct ListArgs {
 #[derive(Debug, Args)]
 pub struct StateArgs {
     /// Change the model's initial state by name: `x=..`, `theta.3=..`, `x_dot=..`, `theta_dot.3=..`. The names of the
-    /// language do as well: `theta[3]`, `dot(x)`, `dot(theta[3])`. Values that are not given here or by the model follow
-    /// from the constraints.
+    /// language work too: `theta[3]`, `dot(x)`, `dot(theta[3])`. Values that are given neither here nor by the model
+    /// follow from the constraints.
     #[arg(long, value_name = "NAME=VALUE,..", allow_hyphen_values = true, conflicts_with_all = ["q", "qdot", "p"])]
     pub initial: Vec<String>,
     /// All positions, in the order of the coordinates. Needs --qdot or --p.
@@ -278,9 +278,9 @@ pub struct StateArgs {
 /// `on` or `off`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
-    /// Yes.
+    /// Project after each step.
     On,
-    /// No.
+    /// Do not project.
     Off,
 }
 
@@ -294,7 +294,7 @@ pub enum RestPolicy {
     Contact,
 }
 
-/// Treatment of a law after which the state still approaches the surface.
+/// Treatment of an impact after which the state still approaches the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum PenetrationPolicy {
     /// End the run with the outcome `still_penetrating`.
@@ -318,7 +318,7 @@ pub enum CornerPolicy {
     Descending,
 }
 
-/// Treatment of a transition after which more than one motion is possible.
+/// Treatment of a transition at which both refraction and reflection are possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum SplitPolicy {
     /// Continue with the refracted motion, if it is possible.
@@ -335,13 +335,13 @@ pub struct PolicyArgs {
     /// the start.
     #[arg(long, value_enum, default_value_t)]
     pub rest: RestPolicy,
-    /// Treatment of a law after which the state still approaches the surface.
+    /// Treatment of an impact after which the state still approaches the surface.
     #[arg(long, value_enum, default_value_t)]
     pub penetration: PenetrationPolicy,
     /// Treatment of simultaneous impacts at several surfaces whose order matters.
     #[arg(long, value_enum, default_value_t)]
     pub corner: CornerPolicy,
-    /// Treatment of a transition after which the motion may be refracted or reflected.
+    /// Treatment of a transition at which both refraction and reflection are possible.
     #[arg(long, value_enum, default_value_t)]
     pub split: SplitPolicy,
 }
@@ -448,16 +448,16 @@ pub struct SimulateArgs {
     /// Integrator and end of the run.
     #[command(flatten)]
     pub course: CourseArgs,
-    /// Take inputs from a table with a column `t` and columns of inputs, such as that of `control --inputs`. Two rows at
-    /// one time are a jump. Inputs without a column have the values of --input. Inputs are constant before the first row
-    /// and after the last one.
+    /// Take inputs from a table with a column `t` and columns of inputs, such as the table of `control --inputs`. Two
+    /// rows at the same time make a jump. Inputs without a column have the values of --input. Inputs are constant
+    /// before the first row and after the last one.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["verify", "certify"])]
     pub inputs: Option<PathBuf>,
     /// Interpolation of the inputs between the rows of --inputs.
     #[arg(long, value_enum, requires = "inputs", default_value_t = Between::Cubic)]
     pub between: Between,
     /// Add an output to the model for this run, such as `S = integral(lagrangian)`. The expression has the syntax of
-    /// `outputs` in a model; it cannot name an output. May be repeated.
+    /// `outputs` in a model; it cannot refer to another output. May be repeated.
     #[arg(
         long,
         value_name = "NAME = EXPR",
@@ -485,14 +485,15 @@ pub struct SimulateArgs {
     /// Draw the run: the axes of --axes, else the declared view, else all coordinates against time.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Write a page that plays the same picture as a motion, with a slider for the time. It needs no other file.
+    /// Write a page that shows the same picture as an animation, with a slider for the time. It needs no other file.
     #[arg(long, value_name = "FILE.html", conflicts_with = "certify")]
     pub html: Option<PathBuf>,
-    /// Seconds that the page of --html plays.
+    /// Length of the animation of --html, in seconds.
     #[arg(long, value_name = "S", requires = "html", value_parser = ValueParser::new(scalar::positive), default_value = "10")]
     pub duration: f64,
-    /// Quantities of the picture: one along x, one or more along y. Quantities are `t`, coordinates, velocities `x_dot`,
-    /// momenta `p_x`, `energy`, `energy_error` and outputs. `q`, `qdot`, `p` and `outputs` stand for all of their kind.
+    /// Quantities of the picture: one along x, one or more along y. Quantities are `t`, coordinates, velocities
+    /// `x_dot`, momenta `p_x`, `energy`, `energy_error` and outputs. `q`, `qdot`, `p` and `outputs` stand for all
+    /// coordinates, velocities, momenta and outputs.
     #[arg(long, value_name = "X,Y[,Y..]", requires = "drawn")]
     pub axes: Option<String>,
     /// Width of the picture, in pixels.
@@ -512,7 +513,7 @@ pub struct AccuracyArgs {
     /// Measure only this integrator. May be repeated.
     #[arg(long, value_parser = choice::integrator())]
     pub integrator: Vec<Integrator>,
-    /// Number of timings of each case; the median counts.
+    /// Number of timings of each case. The median is reported.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 5)]
     pub rounds: u32,
     /// Largest time of a run in seconds. An integrator that takes longer is not run at smaller tolerances.

@@ -21,11 +21,11 @@ const CUBIC: usize = 4;
 /// Inputs between two rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Between {
-    /// On the cubic through the two rows on either side, none of them across a jump.
+    /// Cubic through four rows, two on each side where they exist; rows beyond a jump are not used.
     Cubic,
-    /// On a line.
+    /// Line through the rows before and after.
     Linear,
-    /// At the values of the row before.
+    /// Values of the row before.
     Held,
 }
 

@@ -12,7 +12,7 @@ use crate::variation::constant;
 /// Largest distance behind a surface that counts as rounding, as a fraction of the size of the state.
 const ROUNDING: f64 = 1e-9;
 
-/// The surfaces that count at a state, with their gaps.
+/// The active surfaces at a state, those whose conditions hold, with their gaps.
 ///
 /// # Errors
 /// A [`Fault`] where a gap does not exist.

@@ -52,7 +52,7 @@ static DISK_RENAMED: Text = Text::new(
 pub const CASES: &[Case] = &[
     Case {
         id: "E01",
-        title: "lengths scaled by 2^k and times by 2^j, k and j from -40 to 40",
+        title: "lengths scaled by 2^k and times by 2^j, k and j of -40, -10, 10, 40",
         right: "the same run in other units",
         bound: "bit for bit",
         run: Run::Integrators(|setting, report| scaled(setting, report, 2.0, 0.0)),
@@ -78,7 +78,7 @@ pub const CASES: &[Case] = &[
         id: "E04",
         title: "the rolling disk with other names in another order",
         right: "the same run",
-        bound: "1e-11 after ten impacts, which carry on rounding errors",
+        bound: "1e-11 after ten impacts, which amplify rounding errors",
         run: Run::Integrators(renamed),
         ..Case::QUICK
     },
@@ -93,7 +93,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "E06",
         title: "a velocity of 1e160, whose square overflows",
-        right: "no motion in these numbers",
+        right: "the motion cannot be represented in doubles",
         bound: "`non_finite` with a finite state",
         run: Run::Steps(overflow),
         ..Case::QUICK
@@ -101,7 +101,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "E08",
         title: "a ball of period 1e-3 from t = 1e9 on",
-        right: "flights of 1e-3, which a coordinate of constant rate shows",
+        right: "flights of 1e-3, measured by a coordinate that grows at rate 1",
         bound: "1e-12 relative",
         run: Run::Integrators(late_start),
         ..Case::QUICK
@@ -109,8 +109,8 @@ pub const CASES: &[Case] = &[
     Case {
         id: "E09",
         title: "a circle of radius 1e8 with a gap of one unit in the last place",
-        right: "an impact as soon as the gap differs from its rounding error",
-        bound: "P-LOC with the terms R^2 of its gap",
+        right: "an impact as soon as the gap exceeds its rounding error",
+        bound: "P-LOC for a gap whose terms add up to 2",
         run: Run::Steps(large_circle),
         ..Case::QUICK
     },

@@ -314,7 +314,8 @@ pub trait System: VectorField {
     }
 }
 
-/// Implementation of [`System::carried`] for a system that makes states in the mode of this one.
+/// Implementation of [`System::carried`]. `system` makes states in the mode of the new state, `from` in that of
+/// `state`.
 pub(crate) fn carried<S: System + ?Sized>(
     system: &S,
     from: &S,
@@ -342,7 +343,7 @@ pub struct RankDrop {
     pub constraint: usize,
 }
 
-/// The terms of Lagrange and d'Alembert's principle
+/// The terms of the Lagrange-d'Alembert principle
 ///
 /// ```text
 /// d/dt dL/dqdot = f + lambda_a eta^a,   eta^a(qdot) + eta^a_0 = 0,   f = dL/dq + F

@@ -1,7 +1,7 @@
-//! Sides of surfaces: detects that a surface begins to count while the motion is behind it, and decides the side of a
-//! motion that is on a surface within rounding.
+//! Sides of surfaces: detects that a surface becomes active (its conditions begin to hold) while the motion is behind
+//! it, and decides the side of a motion that is on a surface within rounding.
 //!
-//! Behind a wall that does not count, the motion is free. Gap and conditions are enclosed along the step. A stretch on
+//! Behind a wall that is not active, the motion is free. Gap and conditions are enclosed along the step. A stretch on
 //! which the gap is not negative, or on which the conditions do not hold, is free; others are halved ([`onset`]).
 
 use core::cell::RefCell;
@@ -131,9 +131,9 @@ impl<Sys: Impacting> Watch<Sys> {
         counts == Some(false)
     }
 
-    /// Refuses a gap that is negative beyond rounding if the surface counts. Sets a gap that is negative within
-    /// rounding to 0, so that the surface is at hand. A surface that counts by rounding alone does not count yet: a
-    /// ball that lands on a ledge is not inside the wall below.
+    /// Refuses a gap that is negative beyond rounding if the surface is active. Sets a gap that is negative within
+    /// rounding to 0, so that the motion is on the surface. A surface whose conditions hold only within rounding is not
+    /// active yet: a ball that lands on a ledge is not inside the wall below.
     pub(super) fn check_negative(&mut self, now: &mut Moment<'_, Sys>) -> Result<(), Outcome> {
         for surface in 0..self.gaps.count() {
             let gap = self.gaps.as_slice()[surface];
@@ -151,9 +151,9 @@ impl<Sys: Impacting> Watch<Sys> {
         Ok(())
     }
 
-    /// Keeps the side of a passable surface that is met within rounding at the end of the step, without a fall that
-    /// counts. The motion has not crossed it: its gap becomes the smallest number of the side from which the motion
-    /// came.
+    /// Keeps the side of a passable surface that the motion meets within rounding at the end of the step, unless it has
+    /// sunk below the surface beyond rounding. The gap becomes the smallest normal number with the sign of `start`, the
+    /// gap at the start of the step.
     pub(super) fn keep_side<Step: Stepper<Sys>>(
         &mut self,
         surface: usize,
@@ -168,7 +168,8 @@ impl<Sys: Impacting> Watch<Sys> {
         }
     }
 
-    /// Ends the run if the step was cut at this fraction because a surface begins to count behind the motion.
+    /// Ends the run if the step was cut at this fraction because a surface became active while the motion was behind
+    /// it.
     pub(super) fn check_behind(&self, part: f64, now: &Moment<'_, Sys>) -> Result<(), Outcome> {
         match self.behind {
             Some(surface) if self.proposed == Some(part) => {

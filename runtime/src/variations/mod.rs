@@ -124,7 +124,7 @@ impl fmt::Display for Undefined {
         match *self {
             Self::Graze { t, surface } => write!(
                 f,
-                "surface {surface} is grazed at t = {t}, where rounding decides and the motion has no derivative"
+                "surface {surface} is grazed at t = {t}: rounding decides whether it is hit, and the motion has no derivative there"
             ),
             Self::Corner { t, surface } => write!(
                 f,
@@ -132,7 +132,7 @@ impl fmt::Display for Undefined {
             ),
             Self::Held { t, surface } => write!(
                 f,
-                "surface {surface} holds the motion at t = {t} in a way whose derivatives and digits are not known"
+                "surface {surface} holds the motion at t = {t}; derivatives and further digits are not available for this kind of contact"
             ),
             Self::Unlawful { t, surface } => write!(
                 f,
@@ -140,8 +140,8 @@ impl fmt::Display for Undefined {
             ),
             Self::Refracted { t, surface } => write!(
                 f,
-                "transition {surface} changes the Lagrangian at t = {t}, of a mode that is reduced to its constraints: \
-                 what it does is known in doubles alone"
+                "transition {surface} changes the Lagrangian at t = {t}, and the state of one of its modes holds no \
+                 momenta: derivatives and further digits are not available"
             ),
             Self::NotFinite { t } => write!(
                 f,

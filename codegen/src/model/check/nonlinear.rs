@@ -1,7 +1,7 @@
 //! Constraints that are not linear in the velocities, whose forces follow Chetaev's rule.
 //!
-//! Declarations that are supported for linear constraints only are refused beside them: frames, impulses at surfaces,
-//! volumes.
+//! Declarations that are supported for linear constraints only are refused beside them: frames, impact laws, volumes,
+//! and claims other than conserved quantities and invariant forms.
 
 use super::super::Constraint;
 use super::super::resolve::Resolver;
@@ -44,7 +44,8 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint
             Statement::Conserved { .. } | Statement::Symplectic | Statement::Invariant(_)
         );
         if !is_examined {
-            let text = format!("{because}: only conserved quantities and forms are claimed of it");
+            let text =
+                format!("{because}: only conserved quantities and invariant forms can be claimed");
             let at = spec.location(claim.item);
             let help = "claim `conserved: ..;`, `invariant: ..;` or nothing";
             resolver.refuse::<()>(at, text, help);
@@ -60,7 +61,7 @@ pub(super) fn notes(constraints: &[Constraint]) -> impl Iterator<Item = String> 
     nonlinear.map(|constraint| {
         let name = &constraint.name.display;
         format!(
-            "`{name}` is not linear in the velocities: its force is a multiple of its derivative by them (Chetaev's rule)"
+            "`{name}` is not linear in the velocities: its force is a multiple of the derivative of the constraint with respect to the velocities (Chetaev's rule)"
         )
     })
 }

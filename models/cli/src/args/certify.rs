@@ -24,9 +24,9 @@ pub struct CertifyArgs {
         ]
     )]
     pub certify: bool,
-    /// Certify all motions that start with a value in this range: of a coordinate, a velocity `x_dot` (with
-    /// constraints, a quasi-velocity) or a parameter. May be repeated. Ends that are not doubles are rounded outward.
-    /// Values that follow from the constraints are computed at the middle of the ranges.
+    /// Certify all motions for which a coordinate, a velocity `x_dot` (with constraints, a quasi-velocity) or a
+    /// parameter starts in this range. May be repeated. Ends that are not doubles are rounded outward. Values that
+    /// follow from the constraints are computed at the middle of the ranges.
     #[arg(
         long,
         value_name = "NAME=LO..HI",

@@ -25,7 +25,7 @@ pub struct CheckArgs {
     pub certificate: Option<PathBuf>,
     /// Decide the hypotheses of the Poincare-Bendixson theorem for planar hybrid systems by interval arithmetic
     /// instead. For a cycle of modes with one degree of freedom each, the inequalities of their energies are evaluated.
-    /// Exit status 0 if all hypotheses are shown.
+    /// Exit status 0 if all hypotheses are proved.
     #[arg(long, conflicts_with = "certificate")]
     pub bendixson: bool,
     /// Set a parameter, for --bendixson. May be repeated.

@@ -49,9 +49,9 @@ pub fn off_constraint() -> ValueParser {
                 "Refuse them if the residual exceeds 1e-9 of the sum of the absolute values of the terms"
             }
             OffConstraint::Project => {
-                "Replace them by allowed positions close by and the nearest allowed velocity in the metric"
+                "Replace the positions by nearby ones that satisfy the constraints, and the velocity by the nearest allowed one in the metric"
             }
-            OffConstraint::Keep => "Start there; the motion keeps the residual",
+            OffConstraint::Keep => "Start there; the residual persists during the motion",
         };
         (policy, policy.name(), help)
     }))

@@ -9,18 +9,20 @@ use super::{ModelArgs, SearchArgs, SeriesArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
-    "The velocity at the start is unknown. It has as many free components as coordinates must be given at the end: all of
-them without constraints. Coordinates that --from does not name are those of the model's initial state. Angles are not
-reduced: an end that differs by a whole turn is another end.
+    "The velocity at the start is unknown. As many coordinates must be given at the end as this velocity has free \
+components: all of them if there are no constraints. Coordinates that --from does not name are those of the \
+model's initial state. Angles are not reduced: an end that differs by a whole turn is another end.
 
-With one unknown both directions are scanned, and every change of sign of the miss is a bracket. With more unknowns the
-starts of --starts directions are scanned, and Newton's method goes on from those that come nearest, within one
-sequence of impacts. Derivatives across impacts are exact. The scan begins with energies that are estimated from the
-problem, and goes on to faster starts until all of them have too many impacts, or to a large multiple. No search is
-exhaustive: two motions that differ by less than the resolution of the scan may be missed.
+With one unknown, both directions are scanned, and every change of sign of the miss is a bracket. With more \
+unknowns, --starts directions are scanned. Newton's method continues from the starts that come nearest to the \
+end, within one sequence of impacts. Derivatives across impacts are exact. The scan begins with energies that \
+are estimated from the problem. It continues with faster starts until all of them have too many impacts, or up \
+to a large multiple of the first speed. No search is exhaustive: two motions that differ by less than the \
+resolution of the scan may be missed.
 
-An impact at the end time is not counted. At a conjugate point, the determinant of the derivative of the configuration
-with respect to the initial velocity passes through 0: motions with neighbouring velocities meet there.
+An impact at the end time is not counted. At a conjugate point, the determinant of the derivative of the \
+configuration with respect to the initial velocity passes through 0: motions with neighbouring velocities meet \
+there.
 
 Exit status: 0 motions were found, 1 none was found, 2 bad flags or input.
 
@@ -53,7 +55,7 @@ pub struct ConnectArgs {
     /// The search.
     #[command(flatten)]
     pub search: SearchArgs,
-    /// Largest kinetic energy of a start. Default: an estimate from the problem, see below.
+    /// Largest kinetic energy at the start. Default: an estimate from the problem, see below.
     #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub energy: Option<f64>,
     /// Also compute the envelope of the motions: the conjugate points of N starts in each direction. Needs a problem with

@@ -9,24 +9,27 @@ use super::{DynamicArgs, ModelArgs, SearchArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
-    "The model declares `inputs` and a `cost { running = ..; terminal = ..; }`. Extremals satisfy the maximum principle: state and
-costate follow H*, and jump together at impacts. `derive MODEL --control` prints the equations. The state consists of
-the coordinates of a first-order model, or of the positions and velocities of a Lagrangian model: x, x_dot.
+    "The model declares `inputs` and a `cost { running = ..; terminal = ..; }`. Extremals satisfy the maximum \
+principle: state and costate satisfy Hamilton's equations with H*, the Hamiltonian minimised over the inputs, \
+and both jump at impacts. `derive MODEL --control` prints the equations. The state consists of the coordinates \
+of a first-order model, or of the positions and velocities of a Lagrangian model: x, x_dot.
 
-The costate at the start is unknown. At the end, --end fixes components of the state; the costate of each other component is
-the derivative of the terminal cost. Costates are scanned in --starts directions. Newton's method goes on from those that come
-nearest, within one sequence of impacts, with exact derivatives across impacts. No search is exhaustive: extremals may be
-missed. They are listed by cost. Each is extremal among motions with its number of impacts.
+The costate at the start is unknown. At the end, --end fixes components of the state; the costate of each other \
+component is the derivative of the terminal cost. Costates are scanned in --starts directions. Newton's method \
+continues from the costates that come nearest to these conditions, within one sequence of impacts, with exact \
+derivatives across impacts. No search is exhaustive: extremals may be missed. The extremals that are found are \
+listed in order of cost. Each is extremal among motions with its number of impacts.
 
-The second-order test says whether the cost of neighbouring motions with the same sequence of impacts is larger: `minimum`; `fails`
-near a focal point; `open` where inputs do not control all directions of the state.
+The second-order test gives `minimum` if every neighbouring motion with the same sequence of impacts costs more. \
+It gives `fails` if some of them cost less, as after a focal point, and `open` if the inputs do not control all \
+directions of the state.
 
-With --dp the least cost is computed backwards in --steps steps on a grid of the state, for models whose state has two
-components and which have one input. The input is constant in each step; its values are those of its axis and values between
-them. Motions that leave the grid have no cost. A path of least cost is a motion with the best inputs; it is compared with the
-cheapest extremal for --impacts. --csv has a row for each node at the time --at (state, cost, input, number of impacts), --inputs has
-the first path. --plot draws a map of --show with the paths on top or, with --axes, the paths on axes of t, the state, the input
-and cost.
+With --dp, the least cost is computed backwards in --steps steps on a grid of the state, for models with two \
+components of the state and one input. The input is constant in each step; its values are those of its axis and \
+values between them. Motions that leave the grid have no cost. A path of least cost is a motion with the best \
+inputs; it is compared with the cheapest extremal for --impacts. --csv has a row for each node at the time --at: \
+state, cost, input, number of impacts. --inputs has the first path. --plot draws a map of --show with the paths \
+on top. With --axes, it draws the paths on axes of t, the state, the input and cost.
 
 Bounds on inputs and states, constraints, and impact laws without an inverse, such as plastic ones, are refused.
 
@@ -55,9 +58,9 @@ pub struct ControlArgs {
     /// Time of the end. Default: the model's `until`.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub until: Option<f64>,
-    /// Search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`. --csv has the
-    /// rows of all values. --plot draws the costs against the values: for each number of impacts a line of the least
-    /// cost, and dots for the other extremals.
+    /// Repeat the search for every value of a parameter or of a component of the start: `e=0.5..1:11`, `y=-4,0,4`.
+    /// --csv has the rows of all values. --plot draws the costs against the values: for each number of impacts a line
+    /// of the least cost, and dots for the other extremals.
     #[arg(long, value_name = "NAME=A..B:COUNT", allow_hyphen_values = true, conflicts_with_all = ["dp", "inputs", "axes"])]
     pub vary: Option<String>,
     /// The search.
@@ -75,8 +78,8 @@ pub struct ControlArgs {
     /// Write the results as one JSON document. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the extremal of least cost as a table: time, state, costate, cost so far, inputs, H*. An impact has a row
-    /// before it and a row after it. `-` is the standard output.
+    /// Write the extremal of least cost as a table: time, state, costate, cost so far, inputs, Hamiltonian H*. Each
+    /// impact has two rows, one before it and one after it. `-` is the standard output.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
     /// Number of rows of the table of --inputs, equally spaced in time; rows at impacts are added.
@@ -85,8 +88,8 @@ pub struct ControlArgs {
     /// Draw all extremals: state and inputs against time, or the axes of --axes.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Quantities of the picture: one along x, one or more along y. Quantities are those of the state, `costate_x` and so
-    /// on, `cost`, the inputs, `hamiltonian`. Default: t, the state, the inputs
+    /// Quantities of the picture: one along x, one or more along y. Quantities are `t`, the components of the state,
+    /// `costate_x` and so on, `cost`, the inputs and `hamiltonian`. Default: t, the state, the inputs
     #[arg(long, value_name = "X,Y[,Y..]", requires = "plot")]
     pub axes: Option<String>,
     /// Width of the picture, in pixels.

@@ -31,7 +31,8 @@ pub struct DeriveArgs {
     /// Claims.
     #[command(flatten)]
     pub claims: ClaimsArgs,
-    /// Print the bracket of two functions of positions, velocities and momenta, such as `x,momentum(x)`, instead.
+    /// Print the bracket of two functions instead of the equations. The functions depend on positions, velocities and
+    /// momenta: `x,momentum(x)`.
     #[arg(
         long,
         value_name = "F,G",
@@ -39,15 +40,15 @@ pub struct DeriveArgs {
         allow_hyphen_values = true
     )]
     pub bracket: Option<String>,
-    /// Print the Jacobiator of three functions instead.
+    /// Print the Jacobiator of three functions instead of the equations.
     #[arg(long, value_name = "F,G,H", allow_hyphen_values = true)]
     pub jacobiator: Option<String>,
-    /// Print the reduction by symmetries instead: locked inertia, momentum map, connection, curvature, reduced
-    /// equations. Fields are written as in claims: `partial(x),partial(y)`.
+    /// Print the reduction by symmetries instead of the equations: locked inertia, momentum map, connection, curvature,
+    /// reduced equations. Fields are written as in claims: `partial(x),partial(y)`.
     #[arg(long, value_name = "XI,..", conflicts_with_all = ["bracket", "jacobiator"], allow_hyphen_values = true)]
     pub group: Option<String>,
-    /// Print the maximum principle instead, of a model with a `cost`: H*, optimal inputs, the field of the costate, its
-    /// jumps at impacts.
+    /// Print the maximum principle of a model with a `cost` instead of the equations: the Hamiltonian H* (minimised
+    /// over the inputs), the optimal inputs, the equations of the costate and its jumps at impacts.
     #[arg(long, conflicts_with_all = ["bracket", "jacobiator", "group"])]
     pub control: bool,
     /// Output format.

@@ -40,7 +40,7 @@ pub struct DynamicArgs {
         allow_hyphen_values = true
     )]
     pub path: Vec<String>,
-    /// Time of the map and of the rows, rounded to the nearest step. Default: 0.
+    /// Time of the map of --plot and of the rows of --csv, rounded to the nearest step. Default: 0.
     #[arg(long, value_name = "T", requires = "dp", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse))]
     pub at: Option<f64>,
     /// Quantity of the map.

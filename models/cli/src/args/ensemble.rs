@@ -9,11 +9,12 @@ use super::{CourseArgs, RowsArgs, RunArgs};
 use crate::scalar;
 
 /// The end of `ensemble --help`.
-pub const EXAMPLES: &str = "Several --vary make a grid: all combinations of their values, the last one changing fastest. Member k does not
-depend on the number of threads or on the shard. The rows of --csv are in the order of members, with the columns
-`member`, `in.NAME` for varied quantities, `outcome`, `t`, `end.NAME` for the last state, `energy`, `energy_change`,
-`out.NAME`, `impacts.SURFACE`, `contacts`, counters, `reason`. FILE.meta.json beside it identifies the ensemble: model
-with its hash and source, integrator, tolerance, seed, shard. A Parquet file has the same under keys `dalembert.NAME`.
+pub const EXAMPLES: &str = "Several --vary make a grid: all combinations of their values, the last one changing fastest. Member k does not \
+depend on the number of threads or on the shard. The rows of --csv are in the order of members, with the columns \
+`member`, `in.NAME` for varied quantities, `outcome`, `t`, `end.NAME` for the last state, `energy`, \
+`energy_change`, `out.NAME`, `impacts.SURFACE`, `contacts`, counters, `reason`. The file FILE.meta.json beside \
+the table identifies the ensemble: model with its hash and source, integrator, tolerance, seed, shard. A Parquet \
+file has the same entries under keys `dalembert.NAME`.
 
 Exit status: 0 every member reached its end, 1 some member did not, 2 bad flags or input.
 
@@ -42,7 +43,8 @@ pub struct EnsembleArgs {
         allow_hyphen_values = true
     )]
     pub vary: Vec<String>,
-    /// Number of members: the number of values of the range `A..B` that has no count or, with --random, of random draws.
+    /// Number of members. Without --random, it is the count of the one range `A..B` that has none; with --random, it is
+    /// the number of draws.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub members: Option<u64>,
     /// Draw the varied quantities at random, from this seed.
@@ -53,15 +55,15 @@ pub struct EnsembleArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "members"])]
     pub from: Option<PathBuf>,
     /// Add an output to the model for these runs, such as `S = integral(lagrangian)`. The expression has the syntax of
-    /// `outputs` in a model; it cannot name an output. May be repeated.
+    /// `outputs` in a model; it cannot refer to another output. May be repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub output: Vec<String>,
     /// Run only block I of N blocks of members, counted from 1. The rows of all blocks together are those of the whole
     /// ensemble.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
-    /// Merge the files of all shards in place of running them. Rows, sums, density and pictures are those of one run of
-    /// the whole ensemble. Give the flags with which the shards were run.
+    /// Merge the files of all shards instead of running members. Rows, sums, density and pictures are those of one run
+    /// of the whole ensemble. Give the flags with which the shards were run.
     #[arg(long, value_name = "PART.csv", num_args = 1.., conflicts_with_all = ["shard", "resume"])]
     pub merge: Vec<PathBuf>,
     /// Threads and rows.

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 
 /// The end of `errata --help`.
-pub const EXAMPLES: &str = "A printed value is the printed formula at the state of the command below it; the right value is derived from the
-Lagrangian, the constraints and the gaps of the model. The book explains the sources on the page Errata. Exit status: 0
-every printed value differs from the right one, 1 some value could not be computed or agrees.
+pub const EXAMPLES: &str = "A printed value is the formula as the source prints it, evaluated at the state of the command below it. The \
+right value is derived from the Lagrangian, the constraints and the gaps of the model. The book explains the \
+sources on the page Errata. Exit status: 0 every printed value differs from the right one, 1 some value could \
+not be computed or agrees.
 
 More examples:
   dalembert errata --json -";

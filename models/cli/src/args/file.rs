@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{ClaimsArgs, FeedbackArgs, SimulateArgs};
 
-pub const NEW_EXAMPLES: &str = "The command writes pendulum.dal. With --crate it writes the crate pendulum/, with the declaration in
+pub const NEW_EXAMPLES: &str = "The command writes pendulum.dal. With --crate it writes the crate pendulum/, with the declaration in \
 src/pendulum.dal.
 
 More examples:
@@ -19,16 +19,17 @@ More examples:
   dalembert watch pendulum.dal --until 20 --plot pendulum.svg";
 
 pub const BUILD_EXAMPLES: &str =
-    "The crate is a command line over the models of the file. The example writes it to the folder pendulum/. Built with
-`--features inlined`, it has the functions of the models inlined.
+    "The crate is a command line over the models of the file. The example writes it to the folder pendulum/. Built \
+with `--features inlined`, it inlines the functions of the models.
 
 More examples:
   dalembert build pendulum.dal --to fast
   cargo run --release --manifest-path fast/Cargo.toml -- list";
 
 pub const EXPORT_EXAMPLES: &str =
-    "The header is C99, allocates nothing and calls nothing but math.h. It has the rate, velocity, energy, gaps and impacts of the
-model as functions of time, state and parameters. For a model with modes, it has those functions of each mode.
+    "The header is C99, allocates nothing and calls nothing but math.h. It has the rate, velocity, energy, gaps and \
+impacts of the model as functions of time, state and parameters. For a model with modes, it has those functions \
+of each mode.
 
 More examples:
   dalembert export bouncing_ball --c -
@@ -37,7 +38,7 @@ More examples:
 /// `new`
 #[derive(Debug, Args)]
 pub struct NewArgs {
-    /// Name of the model in small letters, digits and `_`. A folder may stand in front of it.
+    /// Name of the model in small letters, digits and `_`. A folder may precede it: `models/pendulum`.
     pub name: PathBuf,
     /// Write a crate that compiles the declaration.
     #[arg(long = "crate")]

@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 /// The end of `gallery --help`.
-pub const EXAMPLES: &str = "Writes index.html, which needs no other file, each picture as NAME.svg, and manifest.json with the
-command, the outcome and the time of each picture. Two runs write the same bytes, except for
-manifest.json and diagrams of measured times. Exit status: 0 every picture was made, 1 some picture
-was not.
+pub const EXAMPLES: &str = "Writes index.html, which needs no other file, each picture as NAME.svg, and manifest.json with the command, the \
+outcome and the time of each picture. Two runs write the same bytes, except for manifest.json and diagrams of \
+measured times. Exit status: 0 every picture was made, 1 some picture was not.
 
 More examples:
   dalembert gallery pictures
@@ -32,8 +31,8 @@ pub struct GalleryArgs {
     /// Print the names and titles of the pictures without drawing them.
     #[arg(long)]
     pub list: bool,
-    /// Write a page that plays the run of each picture of `simulate`, NAME.html, and list these pages on the page of the
-    /// gallery.
+    /// For each picture of `simulate`, write a page NAME.html that plays its run. The page of the gallery lists these
+    /// pages.
     #[arg(long)]
     pub animations: bool,
     /// Draw densities from shorter runs, and leave out diagrams of measured times.

@@ -22,7 +22,7 @@ pub const CHECK: &str = "More examples:
   python3 python/check_certificate.py proofs.json";
 
 pub const SIMULATE: &str =
-    "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. A repeated name takes its last value.
+    "Numbers may be multiples of pi: pi/2, -3*pi/4, 2pi. If a name is repeated, its last value is used.
 
 More examples:
   dalembert simulate rolling_disk
@@ -36,23 +36,24 @@ More examples:
   dalembert simulate bouncing_ball --q 1 --qdot 0 --until 10 --csv ball.csv
   dalembert simulate bouncing_ball --law newton:0.5 --rest contact --until 10";
 
-pub const ACCURACY: &str = "The error is the largest difference of a position from the reference run, at 64 equally spaced times and at the
-end, relative to the largest absolute value of that coordinate (of an angle, at least 1). Times are measured on this
-machine. Exit status: 0, or 1 if no integrator reaches the error of --wanted.
+pub const ACCURACY: &str = "The error is the largest difference of a position from the reference run, at 64 equally spaced times and at the \
+end, relative to the largest absolute value of that coordinate (for an angle, at least 1). Times are measured on \
+this machine. Exit status: 0, or 1 if the reference fails its check or no integrator reaches the error of \
+--wanted.
 
 More examples:
   dalembert accuracy rolling_disk --until 2 --wanted 1e-9
   dalembert accuracy chaplygin_sleigh --integrator dop853 --integrator taylor --plot sleigh.svg";
 
-pub const EVAL: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\" if the model
-depends on time. Numbers may be decimal strings. Output: an array of the same length. A state at which a quantity does
-not exist gives {\"error\": ..} and exit status 1.
+pub const EVAL: &str = "Input: a JSON array of states, {\"q\": [..], \"qdot\": [..]} or {\"q\": [..], \"p\": [..]}, with \"t\" if the \
+model depends on time. Numbers may be decimal strings. Output: an array of the same length. For a state at which \
+a quantity does not exist, the entry is {\"error\": ..} and the exit status is 1.
 
 More examples:
   dalembert eval rolling_disk --set m=2 --newton 0.5 --input states.json";
 
-pub const STABILITY: &str = "Each case has a right answer: a closed form, an exact count or a class of outcome. The cases of dalembert belong to
-the package `dalembert-stability`. Exit status: 0 every case passes or is pending, 1 some case fails.
+pub const STABILITY: &str = "Each case has a right answer: a closed form, an exact count or a class of outcome. The cases of dalembert belong \
+to the package `dalembert-stability`. Exit status: 0 every case passes or is pending, 1 some case fails.
 
 More examples:
   cargo run --release -p dalembert-stability -- stability --section A --integrator dopri5

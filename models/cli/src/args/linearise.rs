@@ -13,24 +13,25 @@ pub(super) const EXAMPLES: &str =
 
   d/dt y = A y + B u,   z = C y + D u
 
-with the derivatives of the equations of motion, exact to rounding. The state is positions and velocities; with constraints,
-positions and quasi-velocities; of a first-order model, its coordinates. Impacts do not enter. A model with modes is linearised
-in the mode that --mode names, as if there were no other.
+with the derivatives of the equations of motion, exact to rounding. The state consists of positions and \
+velocities; with constraints, of positions and quasi-velocities; in a first-order model, of the coordinates. \
+Impacts are left out. A model with modes is linearised in the mode that --mode names, as if there were no other.
 
---trim searches for an equilibrium near the given state by the Levenberg-Marquardt method. It changes all components of the state
-and all inputs, or only the named ones: `--trim=u,theta`. --moving names coordinates that need not rest, such as the position of
-a wheel that rolls steadily.
-An equilibrium is stable if all eigenvalues of A have negative real parts, unstable if one has a positive one.
+--trim searches for an equilibrium near the given state by the Levenberg-Marquardt method. It changes all \
+components of the state and all inputs, or only the named ones: `--trim=u,theta`. --moving names coordinates \
+that need not rest, such as the position of a wheel that rolls steadily. An equilibrium is stable if all \
+eigenvalues of A have negative real parts, unstable if one has a positive real part.
 
---every T follows the motion from that state with constant inputs. It prints the state at t + T as `next`, and the matrices of
+--every T follows the motion from that state with constant inputs. It prints the state at t + T as `next`, and \
+the matrices of
 
   y(t + T) = Phi y(t) + Gamma u
 
-across impacts, with the saltation matrix of each; --samples N goes on for N such times. Along a periodic orbit, whose start and period `orbit` prints, these are the
-matrices of a periodic linear-quadratic regulator.
+across impacts, with the saltation matrix of each impact. --samples N repeats this N times. Along a periodic \
+orbit, whose start and period `orbit` prints, these are the matrices of a periodic linear-quadratic regulator.
 
-Exit status: 0 the equations were linearised, 1 no equilibrium was found or the equations have no derivative there, 2 bad
-flags or input.
+Exit status: 0 the equations were linearised, 1 no equilibrium was found or the equations have no derivative \
+there, 2 bad flags or input.
 
 More examples:
   dalembert linearise double_pendulum --initial theta1=3,theta2=3 --trim
@@ -50,7 +51,7 @@ pub struct LineariseArgs {
     /// The state.
     #[command(flatten)]
     pub state: StateArgs,
-    /// The time, for equations that depend on it.
+    /// Time of the state, for equations that depend on time.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::parse), default_value = "0")]
     pub at: f64,
     /// Search for an equilibrium first. With names, the search changes only these components of the state and inputs.
@@ -65,7 +66,7 @@ pub struct LineariseArgs {
     /// Components whose rates need not vanish at the equilibrium.
     #[arg(long, value_name = "NAME,..", requires = "trim")]
     pub moving: Option<String>,
-    /// Follow the motion from the state, and print how deviations of state and inputs change it after each time T.
+    /// Follow the motion from the state. After each time T, print the state and the matrices Phi and Gamma; see below.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = ValueParser::new(scalar::positive))]
     pub every: Option<f64>,
     /// Number of samples of the motion, at multiples of the time --every.

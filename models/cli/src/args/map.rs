@@ -9,22 +9,26 @@ use super::{CourseArgs, RowsArgs, RunArgs};
 use crate::scalar;
 
 /// The end of `map --help`.
-pub const EXAMPLES: &str = "The first --vary runs along x, the second along y; with one the map is a strip. Every cell is a run from the model's
-initial state, or that of the flags, with the varied quantities set to the values of the cell. Its class is
+pub const EXAMPLES: &str = "The first --vary runs along x, the second along y; with only one, the map is a strip. Every cell is a run from \
+the model's initial state, or from the state that the flags give, with the varied quantities set to the values \
+of the cell. The class of a cell is one of:
 
   failed at once      --fail holds before the first return
   failed              --fail holds later
-  orbit K (period P)  its returns repeat after P of them; orbits are numbered as cells meet them. Where a parameter is
-                      varied every cell has an orbit of its own, and the class is the period alone
+  orbit K (period P)  its returns repeat after P of them; orbits are numbered in the order of
+                      cells. Where a parameter is varied, every cell has an orbit of its own,
+                      and the class is the period alone
   unsettled           it makes all returns, and they do not repeat
   done, zeno, ..      any other outcome of the run
 
-Expressions are those of `outputs` in a model file: coordinates, velocities `dot(x)`, parameters, definitions. --fail is
-evaluated at the start, at every return and after every step of the integrator, which --max-step shortens.
+Expressions have the syntax of `outputs` in a model file: coordinates, velocities `dot(x)`, parameters, \
+definitions. --fail is evaluated at the start, at every return and after every step of the integrator, which \
+--max-step shortens.
 
-Rows of --csv: `member`, `in.NAME` for what is varied, `class`, `outcome`, `returns`, `period`, `orbit` (0 without one),
-`t`, `end.NAME` (the state after the last return, or at the end without returns), `exponent` with --lyapunov, `value` with a
---class that is an expression, `out.NAME` with --output, `contour.K`, `reason`. The rows and the picture do not depend on threads.
+Columns of --csv: `member`, `in.NAME` for varied quantities, `class`, `outcome`, `returns`, `period`, `orbit` (0 \
+without one), `t`, `end.NAME` (the state after the last return, or at the end without returns), `exponent` with \
+--lyapunov, `value` with a --class that is an expression, `out.NAME` with --output, `contour.K`, `reason`. The \
+rows and the picture do not depend on the number of threads.
 
 Exit status: 0 every cell was run, 1 some start was refused, 2 bad flags or input.
 
@@ -42,7 +46,8 @@ pub struct MapArgs {
     /// Integrator and end of all cells.
     #[command(flatten)]
     pub course: CourseArgs,
-    /// Vary a coordinate, a velocity or a parameter over equally spaced values, both ends included; once or twice.
+    /// Vary a coordinate, a velocity or a parameter over equally spaced values, both ends included. Give it once or
+    /// twice.
     #[arg(
         long,
         value_name = "NAME=A..B:COUNT",
@@ -63,8 +68,8 @@ pub struct MapArgs {
     /// Stop a run when this condition holds, and count the run as failed.
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub fail: Option<String>,
-    /// Quantity that the colours show: `end`, the class of the cell; `returns`, their number; `lyapunov`; or an
-    /// expression at the last return. A comparison has two colours.
+    /// Quantity that the colours show: `end`, the class of the cell; `returns`, the number of returns; `lyapunov`, the
+    /// Lyapunov exponent; or an expression at the last return. A comparison has two colours.
     #[arg(
         long,
         value_name = "end|returns|lyapunov|EXPR",
@@ -80,11 +85,12 @@ pub struct MapArgs {
     /// repeated.
     #[arg(long, value_name = "NAME = EXPR", allow_hyphen_values = true)]
     pub output: Vec<String>,
-    /// Longest period of an orbit that is searched for, in returns.
+    /// Longest period of the orbits to search for, in returns.
     #[arg(long, value_name = "N", allow_hyphen_values = true, requires = "returns", value_parser = clap::value_parser!(u32).range(1..=64), default_value_t = 8)]
     pub period: u32,
-    /// Largest difference between returns that repeat, relative to values above 1. Default: 1e-6, or 1000 times --tol if
-    /// that is larger. Cells have the same orbit if their returns differ by at most 1000 times this value.
+    /// Largest difference between returns that count as equal: relative for values above 1, absolute otherwise.
+    /// Default: 1e-6, or 1000 times --tol if that is larger. Cells have the same orbit if their returns differ by at
+    /// most 1000 times this value.
     #[arg(long, value_name = "X", allow_hyphen_values = true, requires = "returns", value_parser = ValueParser::new(scalar::positive))]
     pub near: Option<f64>,
     /// Coordinates and velocities in which returns need not repeat, such as the distance travelled.
@@ -109,7 +115,7 @@ pub struct MapArgs {
     /// Draw the map.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Draw a dot for each cell in the plane of two quantities, in place of the map. Quantities are the varied ones,
+    /// Draw a dot for each cell in the plane of two quantities instead of the map. Quantities are the varied ones,
     /// names of --output, coordinates and velocities at the end, `t`, and columns of the table, such as `end.x` where x
     /// is varied. Colours are those of --class.
     #[arg(

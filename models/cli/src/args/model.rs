@@ -25,7 +25,7 @@ pub struct FeedbackArgs {
 /// Treatment of claims.
 #[derive(Debug, Default, Args)]
 pub struct ClaimsArgs {
-    /// Do not examine the claims of a model of a file.
+    /// Do not examine the claims of a model that is read from a file.
     #[arg(long)]
     pub no_claims: bool,
 }
@@ -47,7 +47,7 @@ pub struct ModelArgs {
     /// Claims.
     #[command(flatten)]
     pub claims: ClaimsArgs,
-    /// First mode of the run, for a model with modes. Default: the mode declared first.
+    /// Initial mode, for a model with modes. Default: the mode declared first.
     #[arg(long, value_name = "MODE")]
     pub mode: Option<String>,
 }

@@ -9,31 +9,33 @@ use super::{ModelArgs, SeriesArgs, StateArgs};
 use crate::scalar;
 
 pub(super) const EXAMPLES: &str =
-    "The section consists of the states that arrive at the surface. Newton's method starts at the first arrival of the
-motion from the given state. The Floquet multipliers are the eigenvalues of the derivative of the return map on the
-section. The direction of the motion is not among them; a conserved energy gives a multiplier 1. For a section that is
-not a wall, declare a surface with the law `reset { }`. Exit status: 0 an orbit was found, 1 none was found, 2 bad
-flags or input.
+    "The section consists of the states that arrive at the surface. Newton's method starts at the first arrival of \
+the motion from the given state. The Floquet multipliers are the eigenvalues of the derivative of the return map \
+on the section. The trivial multiplier 1 along the motion is not among them; a conserved energy gives a \
+multiplier 1. For a section that is not a wall, declare a surface with the law `reset { }`. Exit status: 0 an \
+orbit was found, 1 none was found, 2 bad flags or input.
 
---modulo lets the orbit close up to symmetries: a walker that advances along the slope, a top that precesses. The fields must be
-proved symmetries of the motion, of the surfaces and of their maps. The multipliers are those across the directions of the
-symmetries; a conserved momentum of one gives a multiplier 1.
+--modulo lets the orbit close up to symmetries: a walker that advances along the slope, a top that precesses. \
+The fields must be proved symmetries of the motion, of the surfaces and of their maps. The multipliers exclude \
+the directions of the symmetries; the conserved momentum of a symmetry gives a multiplier 1.
 
---continue follows the orbit that is found over a parameter (pseudo-arclength continuation), through folds, to both ends of the
-range. If the model's value of the parameter lies outside of the range, the orbit is followed to the nearest end first.
-Derivatives in the state and in the parameter are exact across impacts. Bifurcations are located to rounding:
+--continue follows the orbit over a parameter by pseudo-arclength continuation, through folds, to both ends of \
+the range. If the model's value of the parameter lies outside of the range, the orbit is followed to the nearest \
+end first. Derivatives with respect to the state and the parameter are exact across impacts. Bifurcations are \
+located to rounding:
 
   fold            the branch turns back; a multiplier is 1
   flip            a multiplier is -1; orbits of twice the period branch off
   neimark_sacker  two complex multipliers have modulus 1; a torus branches off
   branch_point    a multiplier is 1 without a fold; another branch crosses
 
-A branch may end inside of the range: at a surface that the orbit grazes, where the map is not defined, or where the parameter
-leaves the values of its declaration. What was found before is kept, and the exit status is 0.
+A branch may end inside the range: at a surface that the orbit grazes, where the return map is not defined, or \
+where the parameter leaves the values of its declaration. The points up to there are kept, and the exit status \
+is 0.
 
---across follows each of these bifurcations over a second parameter, at which they bound the regions of stability. A curve ends
-where a parameter leaves its range, and for the same reasons as a branch; that of a neimark_sacker also at a strong resonance,
-where its two multipliers meet.
+--across follows each of these bifurcations over a second parameter. The curves bound the regions of stability. \
+A curve ends where a parameter leaves its range, and for the same reasons as a branch. A curve of Neimark-Sacker \
+bifurcations also ends at a strong resonance, where its two multipliers meet at 1 or -1.
 
 More examples:
   dalembert orbit compass_walker --surface heel --continue gamma=0.001..0.017 --plot gaits.svg --axis omega

@@ -10,8 +10,8 @@ pub struct RowsArgs {
     /// Number of threads. Default: the number that the machine runs in parallel.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Write a row for every run as soon as it is done. `-` is the standard output. An existing file keeps its rows until
-    /// the new ones are complete: until then these are in FILE.new.
+    /// Write a row for every run as soon as it is done. `-` is the standard output. An existing file keeps its rows
+    /// until the new rows are complete. Until then the new rows are in FILE.new.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// Write the same rows as Parquet after the last run (needs a build with the feature `parquet`).

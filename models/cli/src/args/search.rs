@@ -17,7 +17,7 @@ pub struct SearchArgs {
     /// more.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
     pub starts: Option<u32>,
-    /// Seed of these directions.
+    /// Seed of the directions of --starts.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
 }

@@ -67,7 +67,7 @@ impl Map<'_> {
         most.copied().unwrap_or(1.0)
     }
 
-    /// The boxes as the data address of an image.
+    /// The boxes as an image in a data URL.
     fn image(&self, bar: &Bar<'_>) -> Result<String, String> {
         let shade = |value: f64| match value {
             0.0 => 0,

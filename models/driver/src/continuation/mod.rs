@@ -94,7 +94,7 @@ pub struct Member {
     pub after: Point,
     /// Distance between the point of the section and its image.
     pub residual: f64,
-    /// The factors of the symmetries up to which the orbit closes.
+    /// The group element up to which the orbit closes: the flow time of each symmetry.
     pub element: Vec<f64>,
     /// The Floquet multipliers: real and imaginary parts.
     pub multipliers: Vec<[f64; 2]>,

@@ -59,7 +59,7 @@ impl Members {
         }
     }
 
-    /// Number of members.
+    /// Number of members of the ensemble. For a list that is read in part, it counts the members up to its last row.
     pub fn count(&self) -> u64 {
         self.count
     }

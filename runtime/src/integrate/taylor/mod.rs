@@ -103,7 +103,8 @@ pub struct Taylor<F: TaylorField> {
     next_unit: f64,
     /// Temporary limit of the step length, after a jump and at the start.
     limit: f64,
-    /// Upper bound of the error of the last step divided by the allowed error.
+    /// Estimate of the error of the last step divided by the allowed error; an upper bound unless the step has the
+    /// least length.
     error: f64,
     ends: Ends<F::State>,
     rates: [F::State; 2],
@@ -320,7 +321,8 @@ impl<F: TaylorField> Taylor<F> {
         Ok(self.is_motion(theta, &slope))
     }
 
-    /// True if the derivative of the polynomial at the end of a step equals the rate there, within the tolerance.
+    /// True if the derivative of the polynomial at the end of a step equals the rate there, within [`DEFECT`] times the
+    /// allowed error and rounding.
     #[inline(always)]
     fn is_motion(&self, theta: f64, slope: &F::Row<f64>) -> bool {
         let length = theta * self.unit;

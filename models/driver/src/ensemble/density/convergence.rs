@@ -4,8 +4,7 @@
 use super::counts::CLASSES;
 use super::{Counts, Density};
 
-/// Largest accepted relative difference between the size of a part, rounded up to whole states or members, and its
-/// nominal fraction.
+/// Largest accepted relative excess that rounding a fraction of the states or members up to a whole number causes.
 const ROUNDING: f64 = 0.05;
 
 /// Distances between two halves of a fraction of all states.
@@ -65,8 +64,8 @@ struct Halves {
     distance: f64,
 }
 
-/// Compares the counts of a class, the later half of its fraction of the states, with those of all following classes,
-/// the earlier half.
+/// Compares the two halves of the fraction `1/2^class` of the states. The later half is this class, the earlier half
+/// all following classes.
 fn halves<'a>(of: impl Fn(usize) -> &'a [u64], class: usize) -> Halves {
     let later = of(class);
     let mut earlier = vec![0; later.len()];

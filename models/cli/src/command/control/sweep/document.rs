@@ -9,7 +9,7 @@ use super::super::document::{extremal, search, write_task};
 use super::{Member, Sweep};
 use crate::json::{Document, number};
 
-/// Writes the document. The parameters and the start are those of the first value.
+/// Writes the document. The parameters and the start are those of the first value that was not refused.
 pub(super) fn write(output: &mut dyn Write, sweep: &Sweep<'_>) -> io::Result<()> {
     let mut document = Document::of_model(output, sweep.model, sweep.scene)?;
     if let Some((_, finished)) = sweep.made().next() {
