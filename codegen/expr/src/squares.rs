@@ -59,7 +59,7 @@ impl Pool {
         radicands
     }
 
-    /// What must be a square: arguments of roots and logarithms in `order`, without repetition.
+    /// Values that must be squares: arguments of roots and logarithms in `order`, without repetition.
     fn positives(&self, order: &[ExprId]) -> Vec<Positive> {
         let positive = |id: ExprId, shift: u8| Positive { id, shift };
         let radicands = self.radicands(order).into_iter();

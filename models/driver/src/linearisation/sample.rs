@@ -127,7 +127,7 @@ impl<'a, S: Instance + Variational> Plant<'a, S> {
         }
     }
 
-    /// True if a state lies inside its charts and not behind a surface.
+    /// True if a state lies inside its charts and not behind a wall.
     pub fn is_allowed(&self, state: &[f64], inputs: &[f64]) -> bool {
         let Ok(seeded) = self.seeded(self.t, state, inputs, 0) else {
             return false;
