@@ -175,8 +175,16 @@ impl Numbers for Bent {
         self.chain(root, first, || -(four * cubed).inverse())
     }
 
+    /// At a change of the sign the result has a kink: its derivatives are unbounded.
     fn abs(self) -> Self {
-        self.turned(self)
+        match (self.value.lo < 0.0, self.value.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ => Self {
+                value: self.value.abs(),
+                ..Self::ANYTHING
+            },
+        }
     }
 
     fn max(self, other: Self) -> Self {
@@ -191,16 +199,13 @@ impl Numbers for Bent {
         }
     }
 
-    /// At a change of the sign the result has a kink: its derivatives are unbounded.
+    /// At a change of the sign the result jumps: its derivatives are unbounded.
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
             (false, _) => self,
             (_, true) => -self,
             _ => Self {
-                value: self
-                    .value
-                    .turned(sign.value)
-                    .hull(self.value.hull(-self.value)),
+                value: self.value.hull(-self.value),
                 ..Self::ANYTHING
             },
         }

@@ -384,8 +384,14 @@ impl Numbers for ComplexInterval {
         }
     }
 
+    /// The absolute value is not analytic across its kink.
     fn abs(self) -> Self {
-        self.turned(self)
+        match (self.real.lo < 0.0, self.real.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ if self.is_steady() => Self::steady(self.real.abs()),
+            _ => Self::ANYTHING,
+        }
     }
 
     /// The maximum is not analytic across a kink.
@@ -406,7 +412,7 @@ impl Numbers for ComplexInterval {
         match (sign.real.lo < 0.0, sign.real.hi < 0.0) {
             (false, _) => self,
             (_, true) => -self,
-            _ if self.is_steady() && sign.is_steady() => Self::steady(self.real.turned(sign.real)),
+            _ if self.is_steady() && sign.is_steady() => Self::steady(self.real.hull(-self.real)),
             _ => Self::ANYTHING,
         }
     }

@@ -425,7 +425,6 @@ impl Numbers for Interval {
         match (sign.lo < 0.0, sign.hi < 0.0) {
             (false, _) => self,
             (_, true) => -self,
-            _ if self == sign => self.abs(),
             _ => Self::WHOLE,
         }
     }
@@ -665,7 +664,7 @@ pub(crate) mod tests {
         "power" on 0.01, 5.0 => |x| Numbers::power(x, like(x, 0.3));
         "atan2" on -2.0, 2.0 => |x| Numbers::atan2(x - like(x, 3.0), x * x + like(x, 0.5));
         "max" on -2.0, 2.0 => |x| Numbers::max(x, like(x, 0.3) - x);
-        "turned" on -2.0, 2.0 => |x| Numbers::turned(x, x);
+        "turned" on -2.0, 2.0 => |x| Numbers::turned(x * x - like(x, 1.0), x);
         "bump" on -3.0, 3.0 => |x| Numbers::exp(-(x * x) / like(x, 0.01));
         "quotient" on -2.0, 2.0 => |x| (x - like(x, 0.1)) / (like(x, 1.2) + x * x);
         "fused" on -2.0, 2.0 => |x| Numbers::mul_add(x, x - like(x, 1.0), like(x, 0.2));
@@ -714,6 +713,29 @@ pub(crate) mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn different_numbers_with_equal_ranges_are_not_taken_for_one() {
+        let range = Interval::new(-1.0, 1.0);
+        let path = TaylorModel::exact([0.0, 1.0, 0.0, 0.0]);
+        let rated = Rated::steady(range);
+        let bent = Bent::line(range, 2.0);
+        // A number of -1 whose sign is that of 1 stays -1.
+        let turned = [
+            range.turned(range),
+            rated.turned(rated).value,
+            path.turned(path).range(),
+            bent.turned(bent).value,
+            ComplexInterval::steady(range)
+                .turned(ComplexInterval::steady(range))
+                .real,
+        ];
+        for (kind, turned) in turned.into_iter().enumerate() {
+            assert!(turned.lo <= -1.0 && turned.hi >= 1.0, "{kind}: {turned:?}");
+        }
+        let absolute = [range.abs(), rated.abs().value, bent.abs().value];
+        assert!(absolute.iter().all(|values| values.lo == 0.0));
     }
 
     #[test]

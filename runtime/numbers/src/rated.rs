@@ -142,7 +142,14 @@ impl Numbers for Rated {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        self.turned(self)
+        match (self.value.lo < 0.0, self.value.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ => Self {
+                value: self.value.abs(),
+                rate: self.rate.hull(-self.rate),
+            },
+        }
     }
 
     #[inline(always)]
@@ -153,19 +160,14 @@ impl Numbers for Rated {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are
-    /// unbounded.
+    /// Values jump where the sign changes: the rates are unbounded there.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
             (false, _) => self,
             (_, true) => -self,
-            _ if self == sign => Self {
-                value: self.value.abs(),
-                rate: self.rate.hull(-self.rate),
-            },
             _ => Self {
-                value: self.value.turned(sign.value),
+                value: self.value.hull(-self.value),
                 rate: Interval::WHOLE,
             },
         }

@@ -517,7 +517,13 @@ impl Numbers for TaylorModel {
     }
 
     fn abs(self) -> Self {
-        self.turned(self).nonnegative()
+        let range = self.range();
+        let absolute = match (range.lo < 0.0, range.hi < 0.0) {
+            (false, _) => self,
+            (_, true) => -self,
+            _ => self.enclosed(Rated::abs, Interval::abs),
+        };
+        absolute.nonnegative()
     }
 
     fn max(self, other: Self) -> Self {
@@ -535,14 +541,12 @@ impl Numbers for TaylorModel {
         }
     }
 
-    /// `|x|` where `sign` is `x` itself. For other signs, values jump where the sign changes, and the rates are
-    /// unbounded.
+    /// Values jump where the sign changes: the rates are unbounded there.
     fn turned(self, sign: Self) -> Self {
         let range = sign.range();
         match (range.lo < 0.0, range.hi < 0.0) {
             (false, _) => self,
             (_, true) => -self,
-            _ if self == sign => self.enclosed(Rated::abs, Interval::abs),
             _ => Self {
                 slope: f64::INFINITY,
                 ..Self::steady(self.range().hull(-self.range()))
