@@ -7,6 +7,7 @@
 
 use std::process::{Command, ExitCode};
 
+use dalembert::math::larger;
 use dalembert::{Described, Dop853, Effect, Instance, Scene, Simulation, Tolerance};
 use dalembert_benches::table::{Layout, Table};
 use dalembert_benches::timing::is_benchmark;
@@ -218,7 +219,7 @@ fn measure() -> Result<f64, String> {
         if row.name.starts_with("free") {
             free = scene;
         }
-        worst = worst.max((scene / plain - 1.0).abs());
+        worst = larger(worst, (scene / plain - 1.0).abs());
         table.push([
             row.name.to_owned(),
             format!("{impacts:.0}"),

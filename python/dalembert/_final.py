@@ -27,7 +27,7 @@ class Final:
         if unknown:
             accepted = ", ".join([*state, *model.parameters])
             raise RequestError(f"`{unknown[0]}` is no coordinate, velocity or parameter of {model.name}; accepted: {accepted}")
-        if "q" in arguments:
+        if any(name in arguments for name in ("q", "qdot", "p")):
             raise RequestError("q, qdot and p: the start is varied by name; give the rest of it with state=")
         declared = {name: value for name, value in model.initial.items() if name != "until"}
         self._start = declared | dict(arguments.pop("state", None) or {})

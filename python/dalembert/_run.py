@@ -447,7 +447,8 @@ def _column(model: Model, table: _native.Table, name: str) -> np.ndarray:
     ]:
         if name in names:
             return values[:, names.index(name)]
-    accepted = ", ".join(["t", *model.coordinates, *model.velocities, *model.momenta, "energy", *model.outputs])
+    quantities = ["t", *model.coordinates, *model.velocities, *model.momenta, "energy", *model.outputs]
+    accepted = ", ".join([*quantities, "q", "qdot", "p", "outputs"])
     raise KeyError(f"`{name}` is no quantity of {model.name}; accepted: {accepted}")
 
 

@@ -26,7 +26,7 @@ fn follows_the_cosine() {
 
 /// The textbook equations of the double pendulum, evaluated by hand for two horizontal rods.
 #[test]
-fn horizontal_rods_at_rest_fall_as_a_beam_on_a_pivot() -> Result<(), Fault> {
+fn horizontal_rods_at_rest_feel_the_torques_of_gravity() -> Result<(), Fault> {
     let pendulum = shipped("double_pendulum").model();
     let rate = rate(&pendulum, &[FRAC_PI_2, FRAC_PI_2], &[0.0, 0.0])?;
     let rate = rate.as_ref();

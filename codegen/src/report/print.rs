@@ -61,8 +61,9 @@ fn text_matrix(left: &str, rows: &[Vec<[String; 2]>]) -> String {
 }
 
 fn latex(report: &Report) -> String {
-    let mut out =
-        String::from("\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n");
+    let mut out = String::from(
+        "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage{amsmath}\n\\begin{document}\n",
+    );
     out += &format!(
         "\\section*{{{}}}\n{}\n",
         escape(&report.name),

@@ -129,7 +129,7 @@ pub enum CliError {
     },
     /// A file that another run, or another flag of the same run, is writing.
     #[error(
-        "{flag} {}: another run is writing this file; give another file, or wait until that run has ended",
+        "{flag} {}: another flag or another run is writing this file; give another file, or wait until that run has ended",
         path.display()
     )]
     Busy {

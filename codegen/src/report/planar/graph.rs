@@ -229,7 +229,7 @@ fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -
                 _ => return unknown("the surface is no line of one coordinate"),
             }
         }
-        _ => return unknown("the states are not part of a plane"),
+        _ => return unknown("Q.1 is not established"),
     };
     let Some([place, _]) = node.zero_of(gap, across) else {
         return unknown("the surface is no line");
@@ -262,9 +262,7 @@ fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
     match law {
         // Without a map, the state does not change.
         _ if node.is_first_order() => within(Some(Interval::point(1.0))),
-        _ if node.symbols().is_none() => {
-            Slope::Unknown("the states are not part of a plane".to_owned())
-        }
+        _ if node.symbols().is_none() => Slope::Unknown("Q.1 is not established".to_owned()),
         _ if !surface.instantaneous.is_empty() => {
             Slope::Unknown("it has instantaneous constraints".to_owned())
         }

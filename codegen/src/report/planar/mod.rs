@@ -101,7 +101,7 @@ pub fn planar(source: &str, parameters: &[(&str, f64)]) -> Result<Planar, Report
     let plane = graph::plane(&nodes);
     let cascade = match &plane {
         (Decided::Holds, _) => cascade::cascade(&nodes, &edges),
-        _ => Err("the states are not part of a plane".to_owned()),
+        _ => Err("Q.1 is not established".to_owned()),
     };
     let found = [
         plane,

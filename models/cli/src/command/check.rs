@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use crate::Streams;
 use crate::args::{CheckArgs, Format};
 use crate::entry::Entry;
-use crate::error::CliError;
+use crate::error::{CliError, refusal_text};
 use crate::exit::Exit;
 use crate::json::{Document, number};
 use crate::names;
@@ -113,7 +113,7 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     let initial = declared_state(model);
     let failure = match &initial {
         Err(error) => Some(error.to_string()),
-        Ok(origin) => behind_wall(model, origin),
+        Ok(origin) => defect(model, origin),
     };
     checks.push(Check {
         subject: "the initial state is admissible",
@@ -135,8 +135,9 @@ fn checks(model: &dyn AnyModel) -> Vec<Check> {
     checks
 }
 
-/// A message that names a surface with a negative gap at this state, if there is one. The first step of a run reports it.
-fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
+/// The defect of this state for a run: a run from it is refused, or a surface has a negative gap. The first step of a run
+/// reports both.
+fn defect(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
     let settings = Settings {
         form: Form::Global,
         integrator: Integrator::Dop853,
@@ -150,11 +151,15 @@ fn behind_wall(model: &dyn AnyModel, origin: &Origin) -> Option<String> {
         policies: Policies::default(),
         projection: None,
     };
-    let ending = model.simulate(origin, &settings, &mut Silent).ok()?;
+    let description = model.description();
+    let ending = match model.simulate(origin, &settings, &mut Silent) {
+        Ok(ending) => ending,
+        Err(refusal) => return Some(refusal_text(description, &refusal)),
+    };
     let Outcome::StartsInside { surface, gap } = ending.outcome else {
         return None;
     };
-    let name = names::surfaces(model.description()).nth(surface);
+    let name = names::surfaces(description).nth(surface);
     let name = name.unwrap_or_default();
     Some(format!(
         "it lies behind the surface `{name}`: its gap is {gap}"
