@@ -321,7 +321,7 @@ impl<'a> Body<'a> {
         let [a, b] = [a, b].map(|place| self.straight.load(place));
         let mut sum = self.straight.mul(a, b);
         if self.series.is_large {
-            // Same first addition as in `jet::shared_short`.
+            // The first addition is that of `jet::shared_short`.
             let zero = self.straight.number(0.0);
             sum = self.straight.add(zero, sum);
         }
