@@ -110,7 +110,7 @@ pub struct LoadedHeld {
     pub loaded: Loaded,
     /// Number of inputs.
     pub inputs: usize,
-    /// True if nothing between start and end depends on time.
+    /// True if rates, impacts and running cost do not depend on time.
     pub is_autonomous: bool,
 }
 
