@@ -173,8 +173,8 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
 
 #[test]
 fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
-    // On the circle, the form on these vectors is -1 before the impact at x = 0. A law with the coefficient e multiplies
-    // the form by e^2.
+    // On the circle, the form on these vectors is -1 before the impact at x = 0. A law with the coefficient e
+    // multiplies the form by e^2.
     let wall = |law: &str| bead("1", &format!("impacts {{ wall: x >= 0 => {law}; }}"));
     let after = "the form on partial(x), partial(dot(x)) after";
     check(&wall("newton(c)"), CLAIM, Shown(after, -0.25));
@@ -373,7 +373,8 @@ fn constraints_that_are_not_linear_change_the_form() {
         "invariant: (dot(x) - 1)*d(y)",
         False("the motion changes"),
     );
-    // By hand: the coefficient of d(dot(y)) in -2 dot(y) dlambda - 2 lambda d(dot(y)), with lambda = -1/(10 dot(z)) = -0.08.
+    // By hand: the coefficient of d(dot(y)) in -2 dot(y) dlambda - 2 lambda d(dot(y)), with
+    // lambda = -1/(10 dot(z)) = -0.08.
     let machine = "pub Machine { coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - z;
         constraints { machine: dot(x)^2 + dot(y)^2 = 4*dot(z)^2; } CLAIM }";
     let rate = "rate of the form on partial(y), partial(dot(y))";
