@@ -41,7 +41,8 @@ pub fn states(bytes: &[u8]) {
     command(&["eval", "skate"], bytes);
 }
 
-/// Text as the flags of `simulate`, one a line. No file is written, and no run is longer than half a unit of time.
+/// Text as the flags of `simulate`, one flag per line. No file is written, and no run is longer than half a unit of
+/// time.
 pub fn arguments(bytes: &[u8]) {
     const OURS: [&str; 6] = ["--csv", "--html", "--json", "--plot", "--until", "--impacts"];
     let text = String::from_utf8_lossy(bytes);

@@ -129,9 +129,9 @@ fn is_expression(law: &str) -> bool {
 /// The sections of a declaration that a law changes.
 #[derive(Default)]
 struct Sections {
-    /// `inputs { .. }`
+    /// The sections `inputs { .. }`.
     inputs: Vec<Block>,
-    /// `cost { .. }`: the bytes.
+    /// Byte ranges of the sections `cost { .. }`.
     costs: Vec<Range<usize>>,
 }
 
@@ -141,7 +141,7 @@ struct Block {
     entries: Vec<Entry>,
 }
 
-/// `thrust[2];`
+/// An entry such as `thrust[2];`.
 struct Entry {
     name: String,
     bytes: Range<usize>,

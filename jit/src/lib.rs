@@ -63,9 +63,9 @@ pub use source::{Mistake, Refused};
 pub struct Loaded {
     /// The name as it is declared: `RollingDisk`.
     pub name: String,
-    /// The model itself.
+    /// The form of the model itself.
     pub form: Arc<Form>,
-    /// Its scenes, without `all`, which is the model itself.
+    /// Names and forms of its scenes, without `all`, which is the model itself.
     pub scenes: Vec<(String, Arc<Form>)>,
 }
 
@@ -110,7 +110,7 @@ pub struct LoadedHeld {
     pub loaded: Loaded,
     /// Number of inputs.
     pub inputs: usize,
-    /// True if nothing between start and end depends on time.
+    /// True if rates, impacts and running cost do not depend on time.
     pub is_autonomous: bool,
 }
 

@@ -167,7 +167,7 @@ impl Code {
     /// Writes the values of the outputs.
     ///
     /// # Errors
-    /// The guard that does not hold.
+    /// The fault of the first guard that does not hold.
     pub(crate) fn run<L: Numbers>(&self, at: At<'_, L>, values: &mut [L]) -> Result<(), Fault> {
         match &self.velocity {
             None => self.run_with(at, &[], values),

@@ -48,7 +48,7 @@ fn translations_along_a_floor_are_symmetries_with_their_momentum() {
         (vec![1.0, 0.0], vec![vec![0.0; 2]; 2])
     );
     assert!(along.keeps_momentum && along.parameters.is_empty());
-    // Upwards the Lagrangian changes by a constant, but the floor is not invariant.
+    // A vertical translation changes the Lagrangian by a constant only, but it moves the floor.
     refuse(
         &text,
         "partial(y)",
@@ -281,7 +281,7 @@ fn refractions_are_kept_where_both_lagrangians_are() {
         turn,
         &["surface `enter`", "one of its Lagrangians changes"],
     );
-    // Both media are invariant under rotation, but the momenta of one only up to a gauge.
+    // Both Lagrangians are invariant under rotation, the second one only up to a total derivative.
     let charged = lens("kinetic", "2*kinetic + k*x*dot(y)", "x^2 + y^2");
     refuse(
         &charged,

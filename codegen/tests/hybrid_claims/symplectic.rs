@@ -57,7 +57,7 @@ fn maps_and_forces_that_change_the_form_are_refuted_at_a_point() {
         CLAIM,
         Shown("Jacobian", 4.0),
     );
-    // Volume and area in (x, dot(x)) are kept, energy is not.
+    // Both maps keep the volume, and neither keeps the energy. The first also keeps the area in (x, dot(x)).
     check(
         &particle("low: y >= 0 => reset { dot(y) = -dot(y); dot(x) = dot(x)/2; x = 2*x; };"),
         CLAIM,
@@ -173,8 +173,8 @@ fn integrable_constraints_keep_the_form_on_their_leaves() {
 
 #[test]
 fn losses_forces_and_nonintegrable_constraints_change_the_form_on_leaves() {
-    // On the circle, the form on these vectors is -1 before the impact at x = 0. The law multiplies it by its factor of
-    // the area.
+    // On the circle, the form on these vectors is -1 before the impact at x = 0. A law with the coefficient e
+    // multiplies the form by e^2.
     let wall = |law: &str| bead("1", &format!("impacts {{ wall: x >= 0 => {law}; }}"));
     let after = "the form on partial(x), partial(dot(x)) after";
     check(&wall("newton(c)"), CLAIM, Shown(after, -0.25));
@@ -266,13 +266,13 @@ fn modes_that_are_entered_across_leaves_keep_all_of_the_form() {
     check(&step(&wall("x + 1e-9*z"), "dot(y)", ""), CLAIM, across);
     check(&step(&wall("x + z"), "y", ""), CLAIM, across);
     check(&step(&wall("x + z"), "3", ""), CLAIM, True);
-    // Modes that lead to each other.
+    // Each of the two modes leads to the other one.
     let back = "back: far -> near when x >= 1 => reset { dot(s) = 0; };";
     check(&step("", "dot(y)", back), CLAIM, True);
     let changed = "back: far -> near when x >= 1 => reset { y = y + z; dot(s) = 0; };";
     check(&step("", "3", changed), CLAIM, True);
     check(&step("", "dot(y)", changed), CLAIM, across);
-    // A third mode behind them, with a potential near its entrance.
+    // A third mode is entered at y = -1, where its potential and its force vanish.
     let third = |potential: &str, z: &str| {
         let on = "on: far -> third when y <= -1 => reset { dot(z) = 0; };";
         let mode = format!(
@@ -297,7 +297,7 @@ fn states_of_more_dimensions_may_keep_the_form() {
     };
     let still = "y = 0; dot(y) = 0; z = 0; dot(z) = 0;";
     check(&wider(still, ""), CLAIM, True);
-    // By hand: partial(x) goes on as partial(x) + partial(y).
+    // By hand: the saltation matrix maps partial(x) to partial(x) + partial(y).
     let after = "the form on partial(x), partial(dot(x)) after";
     let moving = "y = 0; dot(y) = dot(x); z = 0; dot(z) = 0;";
     check(&wider(moving, ""), CLAIM, Shown(after, -2.0));
@@ -332,8 +332,8 @@ fn states_of_more_dimensions_may_keep_the_form() {
     check(narrow, CLAIM, False("`go`"));
 }
 
-/// Along `dot(x)^2 + dot(y)^2 = v^2` the rate on `partial(y)` and `partial(dot(x))` is `2 g dot(x)/v^2`, from
-/// `lambda = m g dot(y)/(2 v^2)` and `-2 dot(y) dlambda - 2 lambda ddot(y)`.
+/// On `dot(x)^2 + dot(y)^2 = v^2` the rate of the form on `partial(y)` and `partial(dot(x))` is `2 dot(x)/v^2`. It is
+/// the coefficient of `d(dot(x))` in `-2 dot(y) dlambda - 2 lambda d(dot(y))`, with `lambda = dot(y)/(2 v^2)`.
 #[test]
 fn constraints_that_are_not_linear_change_the_form() {
     let speed = |weight: &str, rest: &str| {
@@ -373,7 +373,8 @@ fn constraints_that_are_not_linear_change_the_form() {
         "invariant: (dot(x) - 1)*d(y)",
         False("the motion changes"),
     );
-    // By hand: -2 dot(y) dlambda - 2 lambda with lambda = -m g/(2 (1 + k^2) dot(z)) = -0.08.
+    // By hand: the coefficient of d(dot(y)) in -2 dot(y) dlambda - 2 lambda d(dot(y)), with
+    // lambda = -1/(10 dot(z)) = -0.08.
     let machine = "pub Machine { coordinates { x; y; z; } lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - z;
         constraints { machine: dot(x)^2 + dot(y)^2 = 4*dot(z)^2; } CLAIM }";
     let rate = "rate of the form on partial(y), partial(dot(y))";

@@ -44,7 +44,8 @@ pub(super) fn moving(model: &Model, q: &[f64], velocity: &[f64]) -> Vec<(SymbolI
     state
 }
 
-/// Metric, `A`, constraint forms and their affine parts at a position.
+/// Metric, coefficients of the terms of the Lagrangian that are linear in the velocities, constraint forms and their
+/// affine parts, at a position.
 pub(super) fn matrices(model: &Model, q: &[f64]) -> (Vec<Row>, Row, Vec<Row>, Row) {
     let at = at(model, q);
     let lagrangian = &model.lagrangian;
@@ -63,7 +64,7 @@ pub(super) fn matrices(model: &Model, q: &[f64]) -> (Vec<Row>, Row, Vec<Row>, Ro
     )
 }
 
-/// The velocity projected to D along the constraint forces.
+/// The velocity projected to D, orthogonally in the metric.
 pub(super) fn projected(model: &Model, q: &[f64], mut v: Row) -> Row {
     let (metric, _, forms, affine) = matrices(model, q);
     let duals: Vec<Row> = forms.iter().map(|form| solved(&metric, form)).collect();
@@ -87,7 +88,7 @@ pub(super) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `matrix^{-1} right`, for a positive definite matrix
+/// `matrix^{-1} right`, for a positive definite matrix.
 pub(super) fn solved(matrix: &[Row], right: &[f64]) -> Row {
     let n = right.len();
     let mut rows: Vec<Row> = (matrix.iter().zip(right))

@@ -206,7 +206,7 @@ fn friction_is_told_from_impacts() {
 
 #[test]
 fn a_stated_density_that_impacts_do_not_keep_is_refuted() {
-    // Only the free motion and elastic walls preserve 1/speed^2.
+    // Free motion and elastic impacts preserve the density 1/speed^2; inelastic impacts do not.
     let claims = |law: &str| {
         let model = particle(&format!("wall: x >= 0 => {law};")).replace("d1 = 1/3;", "");
         let claims = "claims { density = 1/(dot(x)^2 + dot(y)^2); volume: kept; }";

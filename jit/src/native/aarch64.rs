@@ -464,7 +464,7 @@ impl Assembly {
             }
             Instruction::Guard(from, bound) => {
                 let bound = self.register(bound, SCRATCH);
-                // NOTE: a comparison with NaN is not "larger". A conditional branch may not reach the exit.
+                // NOTE: a comparison with NaN is not "larger". The exit may be out of reach of a conditional branch.
                 dynasm!(self.ops ; .arch aarch64
                     ; fcmp D(v(from)), D(v(bound))
                     ; b.gt >next

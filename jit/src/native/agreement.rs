@@ -1,4 +1,4 @@
-//! Machine code of the shipped models agrees bit for bit with the machines of `machine.rs` and `series.rs`.
+//! Machine code of eight shipped models agrees bit for bit with the interpreters of `machine.rs` and `series.rs`.
 
 use dalembert::kernels::At;
 use dalembert::numbers::LENGTH;

@@ -37,7 +37,7 @@ struct Body<'a> {
     t: Value,
     velocities: &'a [Value],
     registers: Vec<Option<Value>>,
-    /// Indices of the sines and cosines whose argument needs both.
+    /// Indices of the calls of sine and cosine whose argument needs both functions.
     paired: BTreeSet<usize>,
     /// Places of computed sines and cosines, by argument.
     taken: BTreeMap<Value, Place>,
@@ -183,7 +183,7 @@ fn bound(condition: &Condition) -> (usize, Option<(f64, usize)>) {
     }
 }
 
-/// Indices of the sines and cosines whose argument needs both.
+/// Indices of the calls of sine and cosine whose argument needs both functions.
 fn paired(code: &Code) -> BTreeSet<usize> {
     // Index of the last instruction that wrote each register.
     let mut written = vec![usize::MAX; code.registers];

@@ -16,7 +16,7 @@
 //! `helpers.rs`.
 //!
 //! The code performs the operations of the interpreter of `machine.rs` in the same order, with no other contractions,
-//! so results are equal to the bit. If a guard fails, the interpreter runs again and finds out which.
+//! so results are equal to the bit. If a guard fails, the interpreter evaluates the function again and reports which.
 #![allow(unsafe_code)]
 
 #[cfg(test)]
@@ -66,7 +66,7 @@ pub(crate) struct Native {
     _memory: Arc<ExecutableBuffer>,
 }
 
-/// Numbers that a function reads from the beginning of each argument.
+/// Count of the numbers that a function reads from the beginning of each argument.
 #[derive(Debug, Clone, Copy, Default)]
 struct Extent {
     parameters: usize,
@@ -78,7 +78,7 @@ impl Native {
     /// Writes the values of the outputs.
     ///
     /// # Errors
-    /// The guard that does not hold.
+    /// The fault of the first guard that does not hold.
     ///
     /// # Panics
     /// If a slice is shorter than its extent.
@@ -165,7 +165,7 @@ impl NativeSeries {
     /// Same as [`Series::begin`].
     ///
     /// # Errors
-    /// The guard that does not hold.
+    /// The fault of the first guard that does not hold.
     pub(crate) fn begin(
         &self,
         parameters: &[f64],

@@ -6,7 +6,7 @@ use super::{Entry, assembly::Assembly, registers};
 use dalembert_expr::Function as Elementary;
 use dalembert_numbers::math;
 
-/// Numbers that follow from a seed.
+/// Pseudorandom numbers from a seed.
 pub(super) struct Random(pub(super) u64);
 
 impl Random {

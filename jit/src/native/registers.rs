@@ -275,7 +275,7 @@ impl Allocation {
         register
     }
 
-    /// Same as [`Self::register`], from memory where nothing else reads the value.
+    /// Same as [`Self::register`], but an operand in memory stays there if no other read of the value is left.
     fn operand(&mut self, value: Value) -> Operand {
         match (self.found(value), self.reads[value.index()].len()) {
             (Operand::Register(_), _) | (_, 2..) => Operand::Register(self.register(value)),

@@ -22,7 +22,7 @@ use crate::series::{First, Series, Step};
 /// Pointer arguments of an expansion.
 const PARAMETERS: Base = Base::Argument(0);
 const FIRSTS: Base = Base::Argument(1);
-/// The results at the current order. Before the loop: those of order 1.
+/// The results at the current order; before the loop, at order 1.
 const ROW: Base = Base::Argument(2);
 /// The kept coefficients at order 0.
 const KEPT: Base = Base::Argument(3);
@@ -321,7 +321,7 @@ impl<'a> Body<'a> {
         let [a, b] = [a, b].map(|place| self.straight.load(place));
         let mut sum = self.straight.mul(a, b);
         if self.series.is_large {
-            // Same first addition as in `jet::shared_short`.
+            // The first addition is that of `jet::shared_short`.
             let zero = self.straight.number(0.0);
             sum = self.straight.add(zero, sum);
         }

@@ -430,7 +430,7 @@ impl Assembly {
         dynasm!(self.ops ; .arch x64 ; vmovupd YWORD [Rq(base) + offset], Ry(low));
     }
 
-    /// One or two numbers as the lower half of a vector, with zeros behind.
+    /// Loads one or two numbers into the lower half of a vector, and zeros behind them.
     fn pair(&mut self, to: Register, values: &[Operand]) {
         match values[0] {
             Operand::Register(from) => {

@@ -1,5 +1,5 @@
-//! Grammar of the command line, a public interface. Values are checked where they are used, because only there are the
-//! names of the model known.
+//! Grammar of the command line, a public interface. Names are checked where they are used, because the model is known
+//! only there.
 
 mod certify;
 mod check;

@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 10_000_000;
 /// Number of rows that determine a cubic.
 const CUBIC: usize = 4;
 
-/// Inputs between two rows.
+/// Interpolation of the inputs between two rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Between {
     /// Cubic through four rows, two on each side where they exist; rows beyond a jump are not used.

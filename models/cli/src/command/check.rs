@@ -60,7 +60,7 @@ pub fn run(
     let derived = source.map(report::report).transpose();
     if source.is_some() {
         checks.push(Check {
-            subject: "the declaration can be derived again, its claims included",
+            subject: "the text of the declaration gives equations and verdicts on its claims",
             failure: derived.as_ref().err().map(ToString::to_string),
         });
     }
@@ -280,7 +280,7 @@ fn write_text(
     Ok(())
 }
 
-/// Writes the verdict, the claim as written, and the finding below it.
+/// Writes the verdict and the claim as written, and below them its grounds and remarks.
 fn write_claim(output: &mut dyn Write, scene: &str, finding: &Finding) -> Result<(), CliError> {
     let about = match scene {
         "all" => String::new(),

@@ -192,7 +192,7 @@ struct Held {
     entry: Entry,
     /// Number of inputs.
     inputs: usize,
-    /// True if nothing between start and end depends on time.
+    /// True if the motions over a step do not depend on its start time.
     is_autonomous: bool,
 }
 

@@ -119,7 +119,7 @@ pub fn draw(models: &[Entry], args: &MapArgs) -> Result<Drawn, CliError> {
     )
 }
 
-/// Makes the map and hands it on. `open` opens files once the flags are checked.
+/// Makes the map and passes it to `finish`. `open` opens files once the flags are checked.
 fn make<F, T>(
     models: &[Entry],
     args: &MapArgs,
@@ -446,7 +446,7 @@ fn returns(model: &dyn AnyModel, args: &MapArgs) -> Result<Option<Returns>, CliE
     }))
 }
 
-/// The models. If flags contain expressions, only the model of the map, with the expressions as additional outputs.
+/// All models; or, if flags contain expressions, only the model of the map with the expressions as additional outputs.
 fn extended(models: &[Entry], args: &MapArgs, request: &Request) -> Result<Vec<Entry>, CliError> {
     let value = match &request.colours {
         Colours::Value(watched) => Some(watched),

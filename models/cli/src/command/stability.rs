@@ -90,7 +90,7 @@ fn selected<'a>(suite: &'a [Case], args: &StabilityArgs) -> Result<Vec<&'a Case>
     if suite.is_empty() {
         return Err(CliError::Usage(
             "stability: this command line has no cases; those of dalembert are in the package `dalembert-stability`, cases of your own are \
-             handed over with `Catalogue::of(models![..]).with_suite(cases).run()`",
+             set with `Catalogue::of(models![..]).with_suite(cases).run()`",
         ));
     }
     let mut sections: Vec<&str> = suite.iter().map(Case::section).collect();

@@ -14,7 +14,7 @@ use crate::error::CliError;
 use crate::scalar;
 use crate::sink::is_stdout;
 
-/// Names of the fixed columns of the tables that this command line writes.
+/// Fixed columns of tables that are skipped, because they do not vary a member.
 const OTHERS: [&str; 7] = [
     "t",
     "energy",

@@ -41,7 +41,7 @@ const FIXED: [(&str, RGBColor); 3] = [
 /// Colours of contour lines.
 const LINES: [RGBColor; 4] = [RGBColor(0, 160, 60), style::INK, PALETTE[3], PALETTE[4]];
 
-/// Largest number of classes with colours of their own.
+/// Largest number of classes that are coloured: as many as the palette has room for.
 const MOST: usize = 255;
 
 /// Largest number of orbits whose returns are marked.

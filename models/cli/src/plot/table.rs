@@ -7,8 +7,8 @@ use super::plane::Plane;
 use super::region::{COARSE, FINE, Region};
 use crate::symbols;
 
-/// The search for the boundary of the region starts with a square of half this side, and tries this number of squares,
-/// each twice as large as the one before.
+/// Half the side of the first square in which the boundary of the region is searched for, and number of squares that
+/// are tried. Each has twice the side of the one before.
 const LEAST: f64 = 1e-6;
 const DOUBLINGS: i32 = 60;
 

@@ -10,7 +10,8 @@ const INTERVALS: usize = 12;
 /// Largest number of halvings of an interval.
 const DEPTH: u32 = 8;
 
-/// Number of points beyond which steps are no longer divided. At most about twice as many points are kept.
+/// Number of points beyond which steps are no longer divided. Besides corners, at most about twice as many points are
+/// kept.
 const MANY: usize = 100_000;
 
 /// An interval is halved while the distance of its midpoint from its chord exceeds this fraction of the curve's extent.
