@@ -104,7 +104,7 @@ fn draw_path(
     ink: RGBColor,
 ) -> Result<(), String> {
     for stretch in stretches.iter().filter(|it| it.len() > 1) {
-        plane.path(chart, stretch.iter().copied(), ink)?;
+        plane.path(chart, stretch, ink)?;
     }
     let jumps = stretches.windows(2);
     let jumps = jumps.filter_map(|pair| Some([*pair[0].last()?, *pair[1].first()?]));

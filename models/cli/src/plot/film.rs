@@ -23,8 +23,15 @@ pub fn curve(
     let is_impact = |left: &Mark, right: &Mark| left.corner && right.corner && left.t == right.t;
     let marks = camera.0.points();
     let stretches = marks.chunk_by(|left, right| !is_impact(left, right));
-    let values = |stretch: &[Mark]| stretch.iter().map(|it| it.values.clone()).collect();
-    Ok(stretches.map(values).collect())
+    let is_whole = |mark: &&Mark| mark.values.iter().all(|value| value.is_finite());
+    let whole = |stretch: &[Mark]| {
+        stretch
+            .iter()
+            .filter(is_whole)
+            .map(|it| it.values.clone())
+            .collect()
+    };
+    Ok(stretches.map(whole).collect())
 }
 
 /// Keeps the curve of a run.

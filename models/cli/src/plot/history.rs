@@ -150,28 +150,15 @@ fn draw_panel(area: &Area<'_>, picture: &Picture<'_>, panel: &Panel) -> Result<(
         .map_err(message)?;
     for (index, curve) in curves.enumerate() {
         draw_jumps(&mut chart, picture.trace, curve, style::curve(index))?;
-        for marks in picture.trace.stretches() {
-            let pixels: Vec<[f64; 2]> = marks
-                .iter()
-                .map(|mark| {
-                    let value = mark.values[curve] - y.range[0];
-                    [mark.t * scale[0], value * scale[1]]
-                })
-                .collect();
-            let points: Vec<(f64, f64)> = thinned(&pixels, NEAR)
-                .into_iter()
-                .map(|kept| (marks[kept].t, marks[kept].values[curve]))
-                .collect();
-            // A mode may lack the quantity.
-            let pieces = points.split(|(_, value)| !value.is_finite());
-            let lines = pieces.map(|piece| {
-                PathElement::new(
-                    piece.to_vec(),
-                    style::curve(index).stroke_width(stroke(1.4)),
-                )
-            });
-            chart.draw_series(lines).map_err(message)?;
-        }
+        let stretches = picture.trace.stretches(|mark| [mark.t, mark.values[curve]]);
+        let lines = stretches.iter().map(|points| {
+            let pixel = |[t, value]: &[f64; 2]| [t * scale[0], (value - y.range[0]) * scale[1]];
+            let pixels: Vec<[f64; 2]> = points.iter().map(pixel).collect();
+            let kept = thinned(&pixels, NEAR).into_iter();
+            let kept: Vec<(f64, f64)> = kept.map(|index| points[index].into()).collect();
+            PathElement::new(kept, style::curve(index).stroke_width(stroke(1.4)))
+        });
+        chart.draw_series(lines).map_err(message)?;
     }
     Ok(())
 }

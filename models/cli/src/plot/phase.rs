@@ -45,9 +45,9 @@ pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, St
             for index in ordinates {
                 let point = |values: &[f64]| [values[0], values[index]];
                 let colour = style::curve(index - 1);
-                for stretch in picture.trace.stretches() {
-                    let path = stretch.iter().map(|mark| point(&mark.values));
-                    plane.path(chart, path, colour)?;
+                let stretches = picture.trace.stretches(|mark| point(&mark.values));
+                for stretch in &stretches {
+                    plane.path(chart, stretch, colour)?;
                 }
                 let jumps = picture.trace.jumps();
                 let jumps = jumps.map(|ends| ends.map(|mark| point(&mark.values)));
@@ -59,8 +59,8 @@ pub fn draw(picture: &Picture<'_>, quantities: &[Quantity]) -> Result<String, St
                     (at, style::surface(impact.surface))
                 });
                 plane::dots(chart, impacts, 2.8)?;
-                if let [first, .., last] = marks {
-                    plane::ends(chart, point(&first.values), point(&last.values))?;
+                if let [first, .., last] = stretches.concat().as_slice() {
+                    plane::ends(chart, *first, *last)?;
                 }
             }
             Ok(())

@@ -165,12 +165,11 @@ impl Plane {
     pub fn path(
         &self,
         chart: &mut Chart<'_, '_>,
-        points: impl Iterator<Item = [f64; 2]>,
+        points: &[[f64; 2]],
         colour: RGBColor,
     ) -> Result<(), String> {
         let Window { x, y } = self.window;
         let scale = [self.plot.0 / (x[1] - x[0]), self.plot.1 / (y[1] - y[0])];
-        let points: Vec<[f64; 2]> = points.collect();
         let pixels: Vec<[f64; 2]> = points
             .iter()
             .map(|point| [(point[0] - x[0]) * scale[0], (point[1] - y[0]) * scale[1]])

@@ -21,12 +21,9 @@ use dalembert_driver::padded;
 /// # Errors
 /// An error of the drawing library.
 pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
-    let points: Vec<[f64; 2]> = picture
-        .trace
-        .points()
-        .iter()
-        .map(|mark| [mark.values[0], mark.values[1]])
-        .collect();
+    let at = |mark: &Mark| [mark.values[0], mark.values[1]];
+    let stretches = picture.trace.stretches(at);
+    let points = stretches.concat();
     let path = extent(&points);
     let region = Region::of(picture.model, picture.first, picture.last, path);
     let window = region
@@ -46,9 +43,8 @@ pub fn draw(picture: &Picture<'_>, view: &ViewInfo) -> Result<String, String> {
         |chart| fill_region(chart, &boundary),
         |chart| {
             draw_boundary(chart, &boundary)?;
-            let at = |mark: &Mark| [mark.values[0], mark.values[1]];
-            for stretch in picture.trace.stretches() {
-                plane.path(chart, stretch.iter().map(at), style::PATH)?;
+            for stretch in &stretches {
+                plane.path(chart, stretch, style::PATH)?;
             }
             let jumps = picture.trace.jumps();
             plane::dashes(chart, jumps.map(|ends| ends.map(at)), style::PATH)?;

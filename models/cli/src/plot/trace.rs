@@ -87,7 +87,9 @@ pub struct Mark {
 impl Mark {
     /// True if an impact or a transition changes the values from this point to the next.
     pub(super) fn jumps_to(&self, next: &Self) -> bool {
-        self.corner && next.corner && self.t == next.t && self.values != next.values
+        let mut values = self.values.iter().zip(&next.values);
+        let is_same = |(a, b): (&f64, &f64)| a == b || (a.is_nan() && b.is_nan());
+        self.corner && next.corner && self.t == next.t && !values.all(is_same)
     }
 }
 
@@ -107,14 +109,21 @@ impl Trace {
         &self.source
     }
 
-    /// The points in order of time. All their values are finite.
+    /// The points in order of time. Each has a finite value; values that a point lacks are NaN, such as those of
+    /// coordinates that belong to other modes.
     pub fn points(&self) -> &[Mark] {
         &self.points
     }
 
-    /// The points between jumps.
-    pub fn stretches(&self) -> impl Iterator<Item = &[Mark]> {
-        self.points.chunk_by(|left, right| !left.jumps_to(right))
+    /// The curve with the points `at`, in stretches between jumps and points at which a component is NaN.
+    pub fn stretches(&self, at: impl Fn(&Mark) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+        let mut stretches = Vec::new();
+        for marks in self.points.chunk_by(|left, right| !left.jumps_to(right)) {
+            let points: Vec<[f64; 2]> = marks.iter().map(&at).collect();
+            let pieces = points.split(|point| !point.iter().all(|value| value.is_finite()));
+            stretches.extend(pieces.filter(|piece| !piece.is_empty()).map(<[_]>::to_vec));
+        }
+        stretches
     }
 
     /// Both sides of every jump.
@@ -211,8 +220,11 @@ impl Trace {
         }
     }
 
-    fn push(&mut self, mark: Mark) {
-        if mark.values.iter().all(|value| value.is_finite()) {
+    fn push(&mut self, mut mark: Mark) {
+        for value in mark.values.iter_mut().filter(|value| !value.is_finite()) {
+            *value = f64::NAN;
+        }
+        if mark.values.iter().any(|value| value.is_finite()) {
             self.points.push(mark);
         }
     }
@@ -281,5 +293,31 @@ mod tests {
         let mut trace = Trace::of(Source::Coordinates);
         trace.follow(&Circle);
         assert_eq!(trace.points().len(), INTERVALS + 1);
+    }
+
+    #[test]
+    fn a_value_that_a_mode_lacks_leaves_the_others_drawn() {
+        struct Walk;
+        impl Piece for Walk {
+            fn span(&self) -> (f64, f64) {
+                (0.0, 3.0)
+            }
+
+            fn at(&self, t: f64) -> Point {
+                let foot = if (1.0..=2.0).contains(&t) {
+                    f64::NAN
+                } else {
+                    t
+                };
+                Point {
+                    q: vec![t, foot],
+                    ..Circle.at(t)
+                }
+            }
+        }
+        let mut trace = Trace::of(Source::Coordinates);
+        trace.follow(&Walk);
+        let count = |index: usize| trace.stretches(|mark| [mark.t, mark.values[index]]).len();
+        assert_eq!([count(0), count(1)], [1, 2]);
     }
 }
