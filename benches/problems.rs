@@ -136,7 +136,7 @@ pub const ALL: [Problem; 5] = [
 /// Impacts after which the billiards are compared.
 const IMPACTS: u64 = 20;
 
-/// End time of the billiards, later than their last impact.
+/// End time of the billiards, later than impact [`IMPACTS`].
 const LATE: f64 = 200.0;
 
 /// The disk on the elliptical table, up to impact 20.

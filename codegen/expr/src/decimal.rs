@@ -55,8 +55,8 @@ impl Rational {
     }
 }
 
-/// The exponent of a decimal number. `None` if it has more than four digits: numbers with such exponents exceed
-/// [`MAX_BITS`].
+/// The exponent of a decimal number. `None` if it is not a number of at most four digits. Larger exponents lead to
+/// numbers that exceed [`MAX_BITS`].
 fn parse_exponent(text: &str) -> Option<i64> {
     let digits = text
         .strip_prefix(['+', '-'])
