@@ -34,8 +34,8 @@ pub(super) fn stages(
         let momentum = pool.diff(model.lagrangian.whole, coordinate.qdot);
         bases.push(pool.sub(momentum, *linear));
     }
-    // The constant is needed only with a drift, a linear term or a potential. Otherwise the terms of each degree in the
-    // velocities are separately invariant.
+    // The constant is needed only with a drift, a linear term or a potential. Without these, the terms of each degree in
+    // the velocities solve the equation separately.
     let linear = &model.lagrangian.linear;
     if problem.has_drift(pool)
         || linear.iter().any(|entry| !pool.is_syntactic_zero(*entry))

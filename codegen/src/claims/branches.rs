@@ -1,6 +1,6 @@
 //! Constraints that are not linear in the velocities, solved for one velocity each: `a v^2 + b v + c = 0`.
 //!
-//! The states on D are those of both roots. A sum that vanishes on D vanishes for each choice of roots.
+//! D contains the states of both roots. A sum that vanishes on D vanishes for each choice of roots.
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, Pool, Rational, SymbolId, Verdict as Zero,

@@ -63,7 +63,8 @@ impl Defaults {
         &self.values
     }
 
-    /// The verdict that a quantity changes for indeterminate parameters, where it is conserved at the defaults.
+    /// `generic`, the verdict that a quantity changes for indeterminate parameters, with the remark that the quantity is
+    /// conserved at the defaults.
     pub(super) fn without_change(&self, generic: Verdict) -> Verdict {
         let place = format!("conserved at the declared defaults {}", self.text);
         let remedy = "write these numbers in place of the parameters";

@@ -20,15 +20,15 @@ const WITNESSES: usize = 48;
 const ENCLOSED: usize = 12;
 /// Fraction of its scale that a sum in doubles must exceed before later states are enclosed.
 const VISIBLE: f64 = 1e-10;
-/// Fraction of its scale beyond which a sum in doubles is not rounding. If the sum is not enclosed there, it is not
-/// proved to vanish.
+/// Fraction of its scale beyond which a sum in doubles is more than rounding error. If no enclosure excludes 0 at such a
+/// state, the sum is not proved to vanish.
 const SUSPECT: f64 = 1e-6;
 /// A sum below this part of its scale has lost digits that a message shows.
 const VISIBLE_DIGITS: f64 = 1e-3;
 /// Size below which a computed double may have lost digits to underflow.
 const LEAST: f64 = 1e-200;
 
-/// A sum of terms at states that may vanish identically.
+/// A sum of terms that may vanish at all states.
 pub(super) trait Vanishing {
     /// Expressions to be evaluated.
     fn roots(&self) -> Vec<ExprId>;
@@ -120,7 +120,7 @@ pub(super) struct Wording {
     pub(super) vanishes: String,
     /// Sentence if it does not.
     pub(super) differs: String,
-    /// Advice against a claim that it vanishes, and against one that it does not.
+    /// Advice if the claim that it vanishes is refuted, and if the claim that it does not vanish is refuted.
     pub(super) help: [String; 2],
 }
 

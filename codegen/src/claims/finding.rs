@@ -87,7 +87,7 @@ impl Certificate {
 /// Reason for which a claim fails, with a point at which it can be checked by hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {
-    /// Violated statement, in words.
+    /// Statement that contradicts the claim.
     pub reason: String,
     /// The point, if one is needed.
     pub sample: Option<Sample>,
@@ -117,7 +117,7 @@ impl Finding {
         }
     }
 
-    /// Grounds in words: the certificate, the witness or the reason.
+    /// Grounds as text: the certificate, the witness or the reason.
     pub fn grounds(&self) -> String {
         match &self.verdict {
             Verdict::Proved(certificate) => certificate.to_string(),

@@ -21,13 +21,14 @@ use super::problem::Problem;
 use super::sample::{self, Sample};
 use crate::model::Model;
 
-/// Smallest and largest number of points of the trapezoidal rule, which converges geometrically for periodic functions.
-/// The points are doubled until the growth changes by at most this fraction of the integral of the absolute value.
+/// Smallest and largest number of points of the trapezoidal rule, which converges geometrically for analytic periodic
+/// functions. The number is doubled until the growth changes by at most the fraction [`CONVERGED`] of the integral of
+/// the absolute value.
 const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
-/// Fraction of that integral below which doubles lose some of the printed digits.
+/// Fraction of the integral of the absolute value below which a growth in doubles loses some of the printed digits.
 const CANCELLED: f64 = 1e-2;
-/// Further allowed change of the growth, an absolute one, for loops along which all terms vanish.
+/// Absolute change of the growth that is allowed in addition, for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
 /// Offset of the points, as a fraction of the step.
 const SHIFT: f64 = 0.382;
@@ -101,8 +102,8 @@ impl<'l> Loop<'l> {
         }
     }
 
-    /// Growth with all printed digits, certified to differ from 0. The certificate holds if every symbol of the sample
-    /// has a value next to its own, or a value in its given range.
+    /// Growth with all printed digits, certified to differ from 0. The certificate holds for all values of the symbols
+    /// within their ranges in `ranges`. Symbols without such a range have their values in the sample, up to rounding.
     ///
     /// # Errors
     /// [`Uncertain`] if the growth is not certified.

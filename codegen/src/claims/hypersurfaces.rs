@@ -111,7 +111,7 @@ impl Search<'_> {
         Some(Some((related, points)))
     }
 
-    /// Points over which a density exists: a base with the parameter at a root of delta.
+    /// Points over which a density exists: a base with the parameter at a root or pole of delta.
     fn roots(&self, seed: u64, trials: &mut usize) -> Option<Vec<ModularPoint>> {
         let Some((base, delta)) = self.column.base(seed) else {
             return Some(Vec::new());

@@ -193,7 +193,8 @@ fn dependent(model: &Model, question: &Lie<'_>, functions: &[Named<'_>]) -> Witn
     }
 }
 
-/// Factors, the largest of them 1, with which rows add up to 0; `None` if they are independent.
+/// Factors with which the rows add up to 0, scaled so that the largest absolute value is 1. `None` if the rows are
+/// independent.
 fn relation(rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     /// Fraction of the size of a row below which its remainder counts as rounding.
     const ROUNDING: f64 = 1e-9;
