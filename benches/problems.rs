@@ -74,7 +74,7 @@ impl Method {
     }
 }
 
-/// Settings of a solution of a problem.
+/// Settings with which a problem is solved.
 #[derive(Debug, Clone, Copy)]
 pub struct Manner {
     /// The integrator.
@@ -85,7 +85,7 @@ pub struct Manner {
     pub times: u32,
 }
 
-/// A solution.
+/// Result of solving a problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Solved {
     /// End of the run.

@@ -44,7 +44,7 @@ fn halves<const N: usize>(state: &impl StateVector) -> ([f64; N], [f64; N]) {
     (theta, p)
 }
 
-/// The state with these halves.
+/// A state or its rate, from its two halves.
 #[inline(always)]
 fn join<const N: usize, S: StateVector>(first: [f64; N], second: [f64; N]) -> S {
     let mut state = S::zeros(2 * N);

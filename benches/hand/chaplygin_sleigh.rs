@@ -4,7 +4,7 @@ use dalembert_models::ChaplyginSleigh;
 
 use super::number::{Number, parameters};
 
-/// Mass, moment of inertia, distance of the centre of mass.
+/// Mass, moment of inertia, and distance of the centre of mass from the blade.
 #[inline(always)]
 fn body<T: Number>(sleigh: &ChaplyginSleigh) -> [T; 3] {
     parameters([sleigh.m, sleigh.I, sleigh.a])

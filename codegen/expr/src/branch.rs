@@ -160,7 +160,8 @@ impl Covered {
 
 impl SamplePoints {
     /// Asks the question `holds` at `each` points of every branch, and stops at the first no. The question may set
-    /// values of the point. It answers `None` at a point without a value. `None` if a branch cannot be reached.
+    /// values of the point, and answers `None` at a point without a value. The result is `None` if a branch cannot be
+    /// reached.
     pub fn cover(
         &mut self,
         pool: &Pool,

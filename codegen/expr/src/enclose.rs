@@ -251,7 +251,8 @@ impl Search<'_> {
         self.pool.enclose(&self.order, domain)[self.id.index()]
     }
 
-    /// The range, from the ends of every direction in which the expression is monotone.
+    /// The range of the expression. In each symbol in which the expression is monotone, only the ends of the symbol's
+    /// range are used.
     fn range_by_ends(&self, domain: &Domain) -> Option<Interval> {
         let ranges = self.pool.enclose(&self.all, domain);
         let (mut low, mut high) = (domain.clone(), domain.clone());

@@ -41,7 +41,8 @@ impl Pool {
         results.get(id)
     }
 
-    /// A sum. If terms over one denominator add up to a multiple of one of its factors, that factor is cancelled.
+    /// The sum of `summands`. If terms over one denominator add up to a multiple of one of its factors, that factor is
+    /// cancelled.
     fn over_denominators(&mut self, summands: &[(Rational, ExprId)]) -> ExprId {
         let mut terms = Vec::new();
         let mut groups: Vec<(Factors, Vec<(Rational, ExprId)>)> = Vec::new();

@@ -63,7 +63,7 @@ impl Factors {
         });
     }
 
-    /// One entry per base, in order of base.
+    /// Merges the entries of equal base, and sorts them by base.
     fn merge(&mut self) {
         self.entries.sort_by_key(|entry| entry.base);
         self.entries.dedup_by(|entry, total| {

@@ -17,8 +17,8 @@ pub struct RankReport {
     pub independent_rows: Vec<usize>,
     /// Every other row, with the earlier independent rows that it is a combination of; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
-    /// Pivot column of each independent row, in the same order: the first in which the row is not 0 after the earlier
-    /// independent rows were eliminated from it.
+    /// Pivot column of each independent row, in the same order: the first column in which the row is not 0 after the
+    /// earlier independent rows were eliminated from it.
     pub pivot_columns: Vec<usize>,
     /// True if the independence is certain. It is uncertain if the entries could not be evaluated. If they contain
     /// roots, absolute values, or functions whose relations are hidden from residues, it is certain only if values in

@@ -42,8 +42,8 @@ const REAL_POINTS: usize = 64;
 const REAL_WITNESSES: usize = 3;
 /// Scales of the real points, used in turn.
 const SCALES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 8.0, 64.0];
-/// A value is clearly different from 0 above this multiple of its magnitude before cancellation, about 1e9 times the
-/// rounding error.
+/// A value is clearly different from 0 if it exceeds this multiple of its magnitude before cancellation. The multiple is
+/// about 1e9 times the rounding error.
 pub(crate) const CLEAR: f64 = 1e-6;
 /// Largest number of distinct subexpressions of a tested expression.
 const MAX_NODES: usize = 1 << 20;

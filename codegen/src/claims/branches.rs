@@ -94,7 +94,7 @@ impl Branch {
         }
     }
 
-    /// Sets the velocity of a point to the root; `None` where there is none.
+    /// Sets the velocity of a point to the root of the branch; `None` where the root does not exist.
     pub(super) fn settle<P: ExpansionPoint>(&self, pool: &Pool, point: &mut P) -> Option<()> {
         let field = point.field();
         let values = point.values(pool, &pool.reachable(&self.coefficients))?;

@@ -54,7 +54,7 @@ const TRIALS: (usize, usize) = (16, 400);
 const WORK: f64 = 1.5e8;
 /// Number of trials of a scan for a density on all of Q. Each of them looks for the density.
 const GLOBAL_TRIALS: usize = 48;
-/// Number of singular points after which a model counts as degenerate. The second one is for models with roots, which
+/// Number of singular points after which a model counts as degenerate: without roots in the model, and with roots, which
 /// have no value at half of the points.
 const ATTEMPTS: (usize, usize) = (4, 128);
 

@@ -197,8 +197,8 @@ impl Search<'_> {
         })
     }
 
-    /// The factor for all parameters. Its coefficients are numbers if these are small, otherwise polynomials in the
-    /// parameters.
+    /// The factor for all parameters. Its coefficients are small rational numbers if such numbers suffice, otherwise
+    /// polynomials in the parameters.
     pub(super) fn reconstruct(
         &self,
         model: &mut Model,
@@ -286,8 +286,8 @@ impl Search<'_> {
         }
         primes.sort_unstable();
         primes.dedup();
-        // The degree is bounded as for a density of the configuration. The motion adds as much to the degree as `c`
-        // does.
+        // The bound is that for a density of the configuration, doubled: the rates along the motion have degrees as
+        // large as that of `c`.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
         let error = covered.error(&branches, degree / 2f64.powi(60));

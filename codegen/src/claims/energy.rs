@@ -5,9 +5,10 @@
 //! ```
 //!
 //! G is the gap rate, and c depends on the law. The change is not positive for c between 0 and 2. A projection onto
-//! linear constraints does not increase the energy, and a refraction keeps it. All other maps are examined as functions
-//! of the state: the energies are equal, their difference is a quadratic form without positive entries, or a state with
-//! more energy is found.
+//! linear constraints does not increase the energy, and a refraction keeps it. For all other maps, the two energies are
+//! compared as functions of the state. The claim is proved if they are equal, or if their difference is a function of
+//! the positions plus a diagonal quadratic form of the velocities and neither is positive anywhere. It is refuted by a
+//! state at which the energy grows.
 //! J. Cortes and A. M. Vinogradov (2006), Theorem 5.7.
 
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};

@@ -35,7 +35,7 @@ const SHIFT: f64 = 0.382;
 /// Number of cells of the first enclosure, and number of enclosures after which the question stays open.
 const CELLS: usize = 32;
 const ENCLOSURES: usize = 1024;
-/// Orders of the series in cells. The second one is for growths that are small relative to the variation of `G`.
+/// Orders of the series in cells. The second order is tried where the growth is small relative to the variation of `G`.
 const ORDERS: [usize; 2] = [2, 8];
 /// Number of monomials beyond which a series is not computed.
 const MONOMIALS: usize = 2000;
@@ -312,7 +312,7 @@ impl<'l> Loop<'l> {
         Cell { ends, part }
     }
 
-    /// True if the velocity-linear part, the potential and the forces have values all over a box.
+    /// True if the velocity-linear part, the potential and the forces have values everywhere in a box.
     fn is_defined(&self, place: &EnclosedPoint) -> bool {
         let values = place.clone().values(&self.model.pool, &self.defined);
         values.is_some_and(|values| {

@@ -157,12 +157,13 @@ impl Search<'_> {
         point.value(symbol, self.column.pool.symbol_assumption(symbol))
     }
 
-    /// Parameters that cannot change alone without loss of the density, and the one whose roots are sought.
+    /// Parameters that a condition relates: those whose change alone destroys the density, and the one whose roots are
+    /// sought.
     fn related(&self, point: &ModularPoint, seed: u64) -> Vec<SymbolId> {
         let field = point.modulus();
         let cannot_change = |symbol: &SymbolId| {
             let mut changed = point.clone();
-            // A square factor keeps positive values positive.
+            // Positive values are squares modulo the prime. The factor is a square, so the product is one, too.
             changed.set(
                 *symbol,
                 field.mul(self.value(point, *symbol), field.integer(9)),

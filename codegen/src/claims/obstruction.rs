@@ -137,7 +137,7 @@ fn obstruction_at(
     question.enclosed::<BallPoint>(REMAINDER_OF_BALLS)
 }
 
-/// A hull with an obstruction, and a point to show it at.
+/// A hull with an obstruction, and the point at which the obstruction is computed.
 struct Question<'q> {
     model: &'q Model,
     problem: &'q Problem,

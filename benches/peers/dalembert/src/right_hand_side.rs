@@ -12,7 +12,7 @@ use crate::{Plan, State};
 /// Number of states that are evaluated in turn.
 const STATES: usize = 64;
 
-/// Evaluations in one timing, multiplied by the number of links.
+/// Number of evaluations in one timing, times the number of links.
 const EVALUATIONS: usize = 1 << 17;
 
 const GRAVITY: f64 = 9.81;
