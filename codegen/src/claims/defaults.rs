@@ -98,7 +98,7 @@ impl Defaults {
     }
 }
 
-/// The verdict on a claim of existence that is proved for indeterminate parameters.
+/// The verdict on a claim of existence, or on `density: none`, that is proved for indeterminate parameters.
 pub(super) fn existence_at_defaults(
     model: &mut Model,
     problem: &Problem,
@@ -141,8 +141,8 @@ pub(super) fn absence_at_defaults(
     ))
 }
 
-/// The verdict on a model without density because its forces are not linear in the velocities: undecided unless the
-/// defaults show it, too.
+/// The verdict that no density exists because the divergence of the forces is not linear in the velocities. It is
+/// undecided unless the divergence is not linear at the defaults, too.
 pub(super) fn curvature_at_defaults(
     model: &mut Model,
     problem: &Problem,
@@ -168,7 +168,8 @@ pub(super) fn curvature_at_defaults(
     }
 }
 
-/// True if an obstruction remains at the defaults, or if the closed form holds there as well.
+/// True if the claim is easily seen to hold at the defaults: an obstruction remains there, or the closed form is a
+/// density there as well.
 fn is_evident(
     model: &mut Model,
     declared: &Problem,

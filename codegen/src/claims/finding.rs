@@ -49,7 +49,7 @@ pub enum Verdict {
 pub struct Certificate {
     /// Proved statement, a sentence.
     pub shown: String,
-    /// Random points at which it was tested.
+    /// Number of random points at which it was tested.
     pub points: usize,
     /// The primes of these points.
     pub primes: Vec<u64>,
@@ -230,7 +230,7 @@ impl fmt::Display for Witness {
     }
 }
 
-/// Twelve digits, for comparison by hand.
+/// Twelve significant digits, for comparison by hand. Decimal notation omits zeros at the end.
 pub(crate) fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -374,9 +374,9 @@ impl AtImpact for Change<'_> {
         Some(vec![square(after), field.neg(square(before))])
     }
 
-    /// True if the motion crosses the surface: sliding motion is examined in [`super::sliding`]. Where the motion may
-    /// slide, the answer is certain if the Jacobian is positive, or if its sign is unknown but the volume before is not
-    /// 0.
+    /// True if terms with a sum other than 0 prove that the volume changes. Where the motion may slide, they do if the
+    /// Jacobian is positive, because the motion then crosses the surface. If the sign of the Jacobian is unknown, they
+    /// do if the volume before is not 0, because sliding maps it to 0. [`super::sliding`] examines motion that slides.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         if !may_slide(self.wall) {
             return true;

@@ -2,9 +2,9 @@
 //! involution, with differentials that are independent at almost all states.
 //!
 //! Without constraints, forces and dependence on time, these are the hypotheses of the theorem of Liouville and Arnold.
-//! A surface that keeps each function keeps their common level sets (W. Clark, thesis, VIII.6). Otherwise the claim
-//! says no more than the listed properties: forces do not enter the bracket, and with constraints the bracket is almost
-//! Poisson.
+//! A surface that keeps each function keeps their common level sets (W. Clark, thesis, VIII.6). With constraints, forces
+//! or dependence on time, the claim says no more than the listed properties: forces do not enter the bracket, and with
+//! constraints the bracket is almost Poisson.
 
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity};
 

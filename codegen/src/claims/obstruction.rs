@@ -28,7 +28,7 @@ pub struct Obstruction {
     pub relation: Vec<(String, f64)>,
     /// Demand of the bracket on the derivative of `G`, minus that of the combination.
     pub delta: f64,
-    /// Size of the terms of `delta`.
+    /// Largest entry of the elements plus the sizes of the terms of `delta`, for comparison with rounding errors.
     pub scale: f64,
     /// True if the obstruction is proved, by an enclosure of `delta` or by residues alone.
     pub is_certain: bool,
@@ -149,7 +149,8 @@ struct Question<'q> {
 struct Parts<S> {
     /// Elements of the hull. The demand is the last entry of each.
     elements: Vec<Vec<S>>,
-    /// The basis of the elements before the bracket: index, and coefficient of the bracket in it.
+    /// Indices of the elements of the hull's basis that come before the bracket, with their coefficients in the
+    /// combination.
     relation: Vec<(usize, S)>,
     /// Remainder: the bracket minus the combination.
     rest: Vec<S>,
