@@ -15,7 +15,7 @@ use dalembert_models::{Chain16, DoublePendulum, RollingDisk};
 
 /// Measurements of one expansion.
 struct Expansion {
-    /// Milliseconds.
+    /// Time in milliseconds.
     time: f64,
     /// Operations of the generated rate.
     operations: usize,
@@ -160,7 +160,7 @@ impl UserCrate {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("user_crate");
         let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
         fs::create_dir_all(folder.join("src")).expect("a writable folder");
-        // With the versions of the workspace nothing has to be fetched.
+        // The lock file of the workspace names versions that are downloaded already.
         fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).expect("a lock file");
         let manifest = format!(
             "[workspace]\n[package]\nname = \"user_crate\"\nedition = \"2024\"\n\

@@ -1,7 +1,7 @@
 //! Cost of each effect of a scene, in instructions. A scene must cost as much as a model that declares nothing else.
 //!
-//! `valgrind --tool=callgrind` counts the instructions, so that the figures repeat on a busy machine. The program runs
-//! itself under `valgrind`, once for each count.
+//! `valgrind --tool=callgrind` counts the instructions, so that the numbers are reproducible even on a busy machine.
+//! The program runs itself under `valgrind`, once for each count.
 //!
 //! `cargo bench --package dalembert-benches --bench effects [-- --csv]`
 
@@ -49,7 +49,8 @@ blade!(
     }
 );
 blade!(Free, forces {} impacts {} scenes {});
-// Every row has a type of its own, as scenes do, because inlining depends on the number of calls of a function.
+// Inlining depends on the number of calls of a function, so most rows have a type of their own, as scenes do. `Free`
+// and `TwoSurfaces` serve two rows each, and `Blade` serves the row `everything`.
 blade!(Kept, forces {} impacts {} scenes {});
 blade!(Measured, forces {} impacts {} scenes {});
 blade!(Slowed, forces { drag: -c*dot(x)*d(x) - c*dot(y)*d(y); } impacts {} scenes {});
@@ -104,8 +105,9 @@ macro_rules! row {
 /// Squared radius of a table on which the blade often meets the border.
 const SMALL: f64 = 4.0;
 
-/// All rows. The row `free, global form` has no effects on either side, since the model in global form would project
-/// and the scene would not.
+/// All rows. A row whose name begins with `free` is the reference of the rows after it. In the row `free, global form`
+/// neither side has effects: the declared effects of a model in global form include projection on the constraints,
+/// those of the scene do not.
 fn rows() -> [Row; 9] {
     [
         row!("free", blade::Free::default(), Free::default()),
@@ -153,7 +155,7 @@ fn rows() -> [Row; 9] {
 /// Numbers of steps of the two counted runs. The count of the short run is subtracted from that of the long one.
 const STEPS: [u64; 2] = [100, 1100];
 
-/// Counts of `valgrind`.
+/// Counts of one run under `valgrind`.
 #[derive(Debug, Clone, Copy)]
 struct Counted {
     instructions: u64,
@@ -193,7 +195,7 @@ fn count(row: usize, kind: &str, steps: u64) -> Result<Counted, String> {
     }
 }
 
-/// Instructions for each accepted step, and impacts for each thousand.
+/// Instructions per accepted step, and impacts per thousand accepted steps.
 fn per_step(row: usize, kind: &str) -> Result<[f64; 2], String> {
     let [few, many] = STEPS.map(|steps| count(row, kind, steps));
     let (few, many) = (few?, many?);

@@ -1,6 +1,6 @@
 //! The generated functions with the signatures of the handwritten ones: from a state to the result.
 //!
-//! All panic on a fault. The states that are compared and timed have none.
+//! Every function panics if the model returns a fault. No state that is compared or timed leads to one.
 
 use dalembert::{Impacting, System, VectorField};
 

@@ -320,7 +320,7 @@ fn flight<S: System, E: Effect<S> + Clone>(
 
 /// Cost of one impact in a run: the difference between the times of `one impact` and `none`. It includes event
 /// location, the impact, the restart and its steps. The table of `none` is so large that there is no impact. The run
-/// `not watched` has no surfaces.
+/// `not watched` has no effects, and therefore no event search.
 fn located(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("flight/point_billiard");
     let point = PointBilliard::default();

@@ -10,5 +10,5 @@ pub mod problems;
 pub mod table;
 pub mod timing;
 
-/// The state of a system: `q`, then `p`.
+/// The state of a system: `(q, p)`, or `(q, u)` for a model that runs on D.
 pub type State<S> = <S as dalembert::VectorField>::State;

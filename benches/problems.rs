@@ -74,7 +74,7 @@ impl Method {
     }
 }
 
-/// Settings of a solution of a problem.
+/// Settings with which a problem is solved.
 #[derive(Debug, Clone, Copy)]
 pub struct Manner {
     /// The integrator.
@@ -85,7 +85,7 @@ pub struct Manner {
     pub times: u32,
 }
 
-/// A solution.
+/// Result of solving a problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Solved {
     /// End of the run.
@@ -136,7 +136,7 @@ pub const ALL: [Problem; 5] = [
 /// Impacts after which the billiards are compared.
 const IMPACTS: u64 = 20;
 
-/// End time of the billiards, later than their last impact.
+/// End time of the billiards, later than impact [`IMPACTS`].
 const LATE: f64 = 200.0;
 
 /// The disk on the elliptical table, up to impact 20.

@@ -1,4 +1,6 @@
-"""Copies the prose of files into a folder, line for line: Markdown without code, comments of Rust and Python without code in them.
+"""Copies the prose of files into a folder, line for line: Markdown, and comments of Rust and Python on lines of their own.
+
+Code inside the prose becomes a placeholder.
 
     prose.py FOLDER FILE..
 """

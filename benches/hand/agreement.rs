@@ -13,7 +13,7 @@ fn states<S: Described>(system: &S) -> Vec<State<S>> {
     sampling::states(system, 200, 1)
 }
 
-/// The largest absolute component, each component divided by its unit.
+/// The largest absolute value of a component in its unit.
 fn largest(components: &[f64], units: &[f64]) -> f64 {
     let measured = components
         .iter()

@@ -4,7 +4,7 @@ use dalembert_models::HolonomicBeadOnEllipses;
 
 use super::number::{Number, parameters};
 
-/// Half the gradient of the ellipse's equation.
+/// Normal of the ellipse: half the gradient of `x^2/a^2 + y^2/b^2`.
 #[inline(always)]
 fn normal<T: Number>(bead: &HolonomicBeadOnEllipses, [x, y]: [T; 2]) -> [T; 2] {
     let [a, b] = parameters::<T, _>([bead.A, bead.B]);

@@ -44,7 +44,7 @@ fn halves<const N: usize>(state: &impl StateVector) -> ([f64; N], [f64; N]) {
     (theta, p)
 }
 
-/// The state with these halves.
+/// A state or its rate, from its two halves.
 #[inline(always)]
 fn join<const N: usize, S: StateVector>(first: [f64; N], second: [f64; N]) -> S {
     let mut state = S::zeros(2 * N);
@@ -163,11 +163,12 @@ fn total<T: Number, const N: usize>(rods: Rods<T>, cos: &[T; N], p: &[T; N], ome
     kinetic.times(0.5) - rods.m * rods.g * rods.l * drop
 }
 
-/// Velocities and the inertia carried by each link, in two passes over the chain.
+/// Angular velocities of the links, and for each link `i` the momentum `P_i` of all bobs from it down, in two passes.
 ///
-/// Let `P_i` be the momentum of all bobs from link `i` down. Then `p_i = l t_i.P_i` with `t_i = (cos, sin)` along the
-/// motion of the link. The pass from the last link up finds `P_i = A_i v_{i-1} + b_i`, where the symmetric matrix `A_i`
-/// is the inertia that the bob above feels. The pass from the first link down finds the velocities one by one.
+/// `p_i = l t_i.P_i`, where `t_i = (cos theta_i, sin theta_i)` is the direction in which bob `i` moves about the bob
+/// above. The pass from the last link up finds `P_i = A_i v_{i-1} + b_i`. Here `v_{i-1}` is the velocity of the bob
+/// above, and the symmetric matrix `A_i` is the inertia that it feels. The pass from the first link down finds the
+/// velocities one by one.
 #[inline(always)]
 fn link_by_link<const N: usize>(
     rods: Rods<f64>,
@@ -175,7 +176,8 @@ fn link_by_link<const N: usize>(
     cos: &[f64; N],
     p: &[f64; N],
 ) -> ([f64; N], [[f64; 2]; N]) {
-    // These are B t, 1/(t.B t) and p/l - t.b, where B = m + A_{i+1} is the inertia of link i and all below it.
+    // For link i: B t, 1/(t.B t) and p/l - t.b, where B = m + A_{i+1} is the inertia of bob i and all links below it,
+    // and b = b_{i+1}.
     let (mut carried, mut inverse, mut excess) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
     let (mut matrices, mut offsets) = ([[0.0; 3]; N], [[0.0; 2]; N]);
     let (mut a, mut b) = ([0.0; 3], [0.0; 2]);

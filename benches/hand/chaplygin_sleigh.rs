@@ -4,13 +4,13 @@ use dalembert_models::ChaplyginSleigh;
 
 use super::number::{Number, parameters};
 
-/// Mass, moment of inertia, distance of the centre of mass.
+/// Mass, moment of inertia, and distance of the centre of mass from the blade.
 #[inline(always)]
 fn body<T: Number>(sleigh: &ChaplyginSleigh) -> [T; 3] {
     parameters([sleigh.m, sleigh.I, sleigh.a])
 }
 
-/// `g^{-1} r`, from `theta = (r_theta + a (r_x sin - r_y cos))/I`.
+/// `g^{-1} r`. Its component of theta is `(r_theta + a (r_x sin - r_y cos))/I`. No `r_theta` stands for 0.
 #[inline(always)]
 fn raise<T: Number>(
     [m, i, a]: [T; 3],
@@ -24,7 +24,8 @@ fn raise<T: Number>(
     [r_x * light + swing * sin, r_y * light - swing * cos, theta]
 }
 
-/// Hamilton's equations with the multiplier from `m^{11} lambda = -(W.(f - gdot qdot) + gamma)`.
+/// Hamilton's equations with the multiplier from `m^{11} lambda = -(W.(f - gdot qdot) + gamma)`. Here
+/// `W = g^{-1} eta`, `m^{11} = eta(W)`, `f = dL/dq`, and `gamma` is the rate of `eta(qdot)` at constant velocity.
 #[inline(always)]
 pub fn rate<T: Number>(
     sleigh: &ChaplyginSleigh,
@@ -82,8 +83,8 @@ pub fn energy<T: Number>(sleigh: &ChaplyginSleigh, [_, _, theta, p_x, p_y, p_the
     ((p_x * p_x + p_y * p_y) / m + moment * moment / i).times(0.5)
 }
 
-/// The gradient of the gap of a tip (0 front, 1 back) in the frame of D, along the blade and turning, and sine and
-/// cosine of the angle.
+/// The derivatives of the gap of a tip (0 front, 1 back) along the frame of D, whose fields move the sleigh along its
+/// blade and turn it. Also sine and cosine of the angle.
 #[inline(always)]
 fn tip_gradient<T: Number>(
     sleigh: &ChaplyginSleigh,

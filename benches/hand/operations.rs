@@ -20,9 +20,9 @@ use super::{
 /// Largest ratio of operations of a generated function to those of the handwritten one, except for [`LARGER`].
 const MOST: f64 = 1.1;
 
-/// Larger ratios. Generated code computes the reciprocal of a mass before it multiplies by it. It adds an impulse to
-/// the state where a handwritten impact changes a sign. It keeps factors that may vanish. Integrable constraints have
-/// no frame.
+/// Larger ratios. Generated code computes the reciprocal of a mass and multiplies by it. It adds an impulse to the
+/// state where a handwritten impact changes a sign. It does not cancel common factors that may vanish. A model with
+/// integrable constraints runs in global form, without a frame.
 const LARGER: [(&str, f64); 6] = [
     ("bouncing_ball (q, p) rate", 1.34),
     ("bouncing_ball (q, p) impact", 3.0),

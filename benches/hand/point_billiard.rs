@@ -19,7 +19,7 @@ pub fn energy<T: Number>(point: &PointBilliard, [_, _, p_x, p_y]: [T; 4]) -> T {
     ((p_x * p_x + p_y * p_y) / m).times(0.5)
 }
 
-/// Specular reflection at the normal `n` of the ellipse.
+/// Specular reflection at the ellipse, whose normal is `n` (not normalised).
 #[inline(always)]
 pub fn impact<T: Number>(point: &PointBilliard, [x, y, p_x, p_y]: [T; 4]) -> [T; 4] {
     let [a, b] = parameters::<T, _>([point.ta, point.tb]);

@@ -68,8 +68,8 @@ pub fn energy<T: Number>(disk: &RollingDisk, [_, _, _, _, p_x, p_y, p_theta, p_p
     (slide + p_theta * p_theta / i + p_phi * p_phi / j).times(0.5)
 }
 
-/// The gradient of the gap of an edge (0 leading, 1 trailing) in the frame of D, along rolling and turning, and sine
-/// and cosine of the direction.
+/// The derivatives of the gap of an edge (0 leading, 1 trailing) along the frame of D, whose fields roll the disk and
+/// turn it. Also sine and cosine of the direction.
 #[inline(always)]
 fn edge_gradient<T: Number>(
     disk: &RollingDisk,

@@ -6,7 +6,7 @@ from pathlib import Path
 REFERENCE = json.loads((Path(__file__).resolve().parent / "reference.json").read_text())
 IMPACT = 20
 BOUNCES, GRAVITY, RESTITUTION = 1000, 9.81, 0.9
-# Largest error of the time of a right bounce, in seconds.
+# A bounce is correct if the error of its time is at most this, in seconds.
 RIGHT = 1e-9
 
 
@@ -62,7 +62,7 @@ def right_bounces(line):
 
 
 def cost(line, seconds):
-    """The cost that is compared: microseconds for a simulated second, a trajectory or a bounce."""
+    """The cost that is compared: microseconds per simulated second, per trajectory (W5, W5r) or per bounce (W4)."""
     if line["work"] in ("W5", "W5r"):
         return seconds * 1e6 / line["n"]
     if line["work"] == "W4":

@@ -11,7 +11,7 @@ OURS = ("dalembert-taylor", "dalembert-abreast", "dalembert-dop853")
 
 @dataclass
 class Limit:
-    """Limit for the ratio of our time for one workload to the time of the others for another, over decades of the error."""
+    """Limit for the ratio of our time for `work` to the time of the other peers for `other`, at errors of 10**decade."""
 
     work: str
     other: str
@@ -35,7 +35,7 @@ ACCUMULATION_ERROR = 1e-9
 
 
 def front(points):
-    """The points that no other point beats in both error and cost, the largest error first."""
+    """The Pareto front of errors and costs, the largest error first."""
     kept = []
     for size, cost in sorted(points, key=lambda point: (point[0], point[1])):
         if not kept or cost < kept[-1][1]:
@@ -58,7 +58,7 @@ def cost_at(points, size):
 
 
 def fastest(found, size, names):
-    """Cost and name of the cheapest peer that reaches an error; None twice if there is none."""
+    """Cost and name of the cheapest peer that reaches an error; both are None if no peer reaches it."""
     costs = [(cost_at(found[name], size), name) for name in names if name in found]
     costs = [pair for pair in costs if pair[0] is not None]
     return min(costs, default=(None, None))

@@ -16,7 +16,7 @@ REPETITIONS = {"W1": 30, "W1r": 30, "W2": 50, "W2b": 30, "W3": 10, "W3b": 7, "W4
 
 
 class Peer:
-    """A program, the workloads it knows, and its slowness, by which the repetitions are divided."""
+    """A program, the workloads it knows, and its slowness. The number of repetitions is divided by the slowness."""
 
     def __init__(self, name, works, command, slowness=1):
         self.name, self.works, self.command, self.slowness = name, works, command, slowness
@@ -64,7 +64,7 @@ def chain(environment, python):
 
 
 def run(environment, work, count):
-    """Runs all rounds of a workload: in each, every peer has its turn."""
+    """Runs all rounds of a workload. In each round, every peer that takes part runs once."""
     measured = {}
     for number in range(count):
         for peer in peers(environment):

@@ -39,7 +39,7 @@ ROUNDS = 5
 
 
 def timed(command):
-    """Output of a command and the processor time that it took. The output is `None` if the command fails."""
+    """Output of a command and its processor time in user mode. The output is `None` if the command fails."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     taken = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before

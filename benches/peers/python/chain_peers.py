@@ -1,7 +1,7 @@
 """W3b: the right-hand side of the chain of N unit masses on unit rods, by hand and from code generators.
 
-python chain_peers.py W3b REPETITIONS FOLDER prints one line of JSON for each peer and N. FOLDER keeps what is
-generated and compiled.
+python chain_peers.py W3b REPETITIONS FOLDER prints one line of JSON for each peer and N. Generated and compiled files
+stay in FOLDER.
 """
 
 import ctypes

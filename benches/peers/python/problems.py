@@ -9,7 +9,7 @@ TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
 ENSEMBLE_TOLERANCES = (1e-3, 1e-4, 1e-6, 1e-9, 1e-12)
 TRAJECTORIES = 10_000
 SAMPLES = 10
-PART = 80  # Trajectories that are timed together: so few that other programs disturb some repetitions, but not all.
+PART = 80  # Trajectories that are timed together, so briefly that other programs leave some repetitions undisturbed.
 
 M, R, I, J = 0.0025, 0.01, 1.25e-7, 6.25e-8
 A, B = 0.15, 0.20

@@ -1,4 +1,4 @@
-"""Solutions of the workloads with 34 digits, printed as JSON: `python reference.py > ../reference.json`, some minutes.
+"""Solutions of the workloads with 34 digits, printed as JSON. `python reference.py > ../reference.json` takes minutes.
 
 W1 and W5: arcs of circles between impacts, roots of the gaps with 60 digits. W2: speed, spin and angle in closed form,
 x and y by quadrature. W2b: the same between impacts, Newton's method on the gaps. W3: Taylor series of heyoka with 160

@@ -1,5 +1,5 @@
-//! `Actuated`: inputs that the caller supplies. `Powered`: the power of each named force and of every other cause that
-//! changes the energy.
+//! `Actuated`: inputs that the caller supplies. `Powered`: the powers that change the energy, those of the named forces
+//! one by one.
 
 use dalembert_codegen::model::Model;
 use proc_macro2::TokenStream;
@@ -42,7 +42,7 @@ pub(super) fn emit_actuated_type(
     }
 }
 
-/// `impl Powered`, if forces are declared.
+/// `impl Powered`, if forces are declared and the model is not first-order.
 pub(super) fn emit_powered(context: &Context<'_>) -> TokenStream {
     let Some(powers) = &context.form.program.powers else {
         return TokenStream::new();

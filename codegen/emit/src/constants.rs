@@ -1,4 +1,4 @@
-//! Tables as constant expressions. A table that shares fields with another one is written as its differences from it.
+//! Tables as constant expressions. Fields that are equal in another table refer to the constant of that table.
 
 use dalembert_numbers::Held;
 use dalembert_numbers::description::{

@@ -236,7 +236,8 @@ impl<'a> Writer<'a> {
         self.statements.extend(statement);
     }
 
-    /// The tokens of a value. Tokens with a single reader are moved: cloning dominates the run time for long functions.
+    /// The tokens of a value. Tokens with a single reader are moved: clones would dominate the run time for long
+    /// functions.
     fn tokens_of(&mut self, value: Value) -> TokenStream {
         let tokens = &mut self.pieces[value.index()].tokens;
         match self.uses[value.index()] {
@@ -287,7 +288,7 @@ impl<'a> Writer<'a> {
                 let (tokens, size) = self.operand(*a, Binding::Product);
                 Piece {
                     tokens: joined([quote!(-), tokens]),
-                    // A negated product stands without parentheses, and is a product then.
+                    // A negated product is written without parentheses, so the result binds like a product.
                     binding: match binding {
                         Binding::Product => Binding::Product,
                         _ => Binding::Unary,
@@ -297,7 +298,7 @@ impl<'a> Writer<'a> {
             }
             Op::Add(a, b) => self.binary(*a, *b, quote!(+), Binding::Sum),
             Op::Sub(a, b) => self.binary(*a, *b, quote!(-), Binding::Sum),
-            // The square of an interval is never negative. Its product with itself may be.
+            // The square of an interval has no negative numbers; the product with itself may have some.
             Op::Mul(a, b) if a == b => self.call("square", &[*a]),
             Op::Mul(a, b) => self.binary(*a, *b, quote!(*), Binding::Product),
             Op::Div(a, b) => self.binary(*a, *b, quote!(/), Binding::Product),

@@ -1,8 +1,8 @@
 //! `Kernels`: every function of a program, emitted once over `L: Numbers`.
 //!
-//! The functions of a form are the methods of a unit struct. Functions that are equal in the base are inherited: the
-//! base of the global form is that of its model or scene, the base of a scene is the model. A function that equals an
-//! earlier function in another place calls that function.
+//! The functions of a form are the methods of a unit struct. A form inherits the functions that are equal in its base.
+//! The base of a form of a scene is the same form of the model. The base of a model's global form is its reduced form.
+//! A function that equals an earlier function in another place calls that function.
 
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;

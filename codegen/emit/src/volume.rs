@@ -1,4 +1,4 @@
-//! `Divergence` and `InvariantVolume`: density form, divergence of the motion, and its invariant volume.
+//! `InvariantVolume`: the invariant volume that was proved for a model.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -41,8 +41,8 @@ pub(super) fn emit_invariant_volume(context: &Context<'_>) -> TokenStream {
     }
 }
 
-/// Implementation for a type that wraps the model. It delegates to the model, because the volume depends on the
-/// configuration only.
+/// Implementation for a global form that wraps a reduced model or scene. It delegates to the reduced form, because the
+/// volume depends on the configuration only.
 fn emit_delegated_volume(context: &Context<'_>) -> TokenStream {
     let (type_name, model) = (&context.names.type_name, &context.names.model_type);
     let attributes = super::attributes();

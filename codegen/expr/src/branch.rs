@@ -8,7 +8,8 @@
 //! A root `sqrt(u)` of a `u` that is no square needs no cases: both roots are conjugate. If a product of radicands is a
 //! square `w^2`, the product of their roots is `w` or `-w`, whichever is a square modulo the prime. This branch is
 //! hidden: no sign pattern shows it. Every independent relation between the signs of the radicands doubles the number
-//! of hidden branches. Each pattern is sampled often enough to meet all of them, except with a stated probability.
+//! of hidden branches. Each pattern is sampled often enough to meet all hidden branches, except with a stated
+//! probability.
 
 use std::collections::BTreeMap;
 
@@ -125,7 +126,7 @@ impl Branches {
         }
     }
 
-    /// Number of points for each pattern at which every hidden branch is met, except with probability `2^-BITS` each.
+    /// Number of points for each pattern, such that each hidden branch is missed with probability `2^-BITS` at most.
     fn points(&self) -> usize {
         match self.hidden {
             0 => 0,
@@ -141,7 +142,7 @@ impl Covered {
     /// Upper bound of the error probability of an answer about `branches`. `accident`: probability of a wrong yes at
     /// one point.
     pub fn error(&self, branches: &Branches, accident: f64) -> f64 {
-        // A chance that is too small for a number is still a chance.
+        // A positive probability must not underflow to 0.
         let least = if accident > 0.0 {
             f64::MIN_POSITIVE
         } else {
@@ -159,7 +160,8 @@ impl Covered {
 
 impl SamplePoints {
     /// Asks the question `holds` at `each` points of every branch, and stops at the first no. The question may set
-    /// values of the point. It answers `None` at a point without a value. `None` if a branch cannot be reached.
+    /// values of the point, and answers `None` at a point without a value. The result is `None` if a branch cannot be
+    /// reached.
     pub fn cover(
         &mut self,
         pool: &Pool,

@@ -55,8 +55,8 @@ impl Rational {
     }
 }
 
-/// The exponent of a decimal number. `None` if it has more than four digits: numbers with such exponents exceed
-/// [`MAX_BITS`].
+/// The exponent of a decimal number. `None` if it is not a number of at most four digits. Larger exponents lead to
+/// numbers that exceed [`MAX_BITS`].
 fn parse_exponent(text: &str) -> Option<i64> {
     let digits = text
         .strip_prefix(['+', '-'])
@@ -75,7 +75,7 @@ fn decimal_digits(whole: &str, fraction: &str) -> Option<BigInt> {
     let well_formed = whole.starts_with(|c: char| c.is_ascii_digit())
         && (fraction.is_empty() || fraction.starts_with(|c: char| c.is_ascii_digit()))
         && digits.bytes().all(|b| b.is_ascii_digit());
-    // log2(10) > 3, so a number with more significant digits exceeds `MAX_BITS`.
+    // log2(10) > 3, so an integer of more than `MAX_BITS / 3` digits has more than `MAX_BITS` bits.
     if !well_formed || digits.len() as u64 > MAX_BITS / 3 {
         return None;
     }

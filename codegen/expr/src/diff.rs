@@ -40,7 +40,8 @@ impl Pool {
         (position as usize).checked_sub(1).map(ExprId::from_index)
     }
 
-    /// The derivative of an operand. It is in the cache, since operands come before their users, unless it is 0.
+    /// The derivative of an operand. Operands come before their users, so it is in the cache unless the operand does not
+    /// depend on the symbol.
     fn derivative_of(&self, id: ExprId, symbol: SymbolId) -> ExprId {
         self.known_derivative(id, symbol).unwrap_or(self.zero())
     }

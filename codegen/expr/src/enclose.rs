@@ -1,8 +1,9 @@
 //! Proofs that an expression has no zero in a box. Intervals enclose it on parts of the box until all are decided.
 //!
-//! A box may be unbounded. Boxes are halved in the variable `x/(1+|x|)`, in which the whole line has length 2. Where a
-//! derivative keeps its sign, the values at both ends in its direction bound the expression. Horner's rule decides
-//! polynomials far out, where terms that are enclosed one by one seem to cancel.
+//! A box may be unbounded. Boxes are halved in the variable `x/(1+|x|)`, in which the whole line has length 2. Where
+//! the derivative by a symbol keeps its sign, the values at both ends of the range of this symbol bound the expression.
+//! Horner's rule decides the signs of polynomials at large arguments, where terms that are enclosed one by one seem to
+//! cancel.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul};
@@ -250,7 +251,8 @@ impl Search<'_> {
         self.pool.enclose(&self.order, domain)[self.id.index()]
     }
 
-    /// The range, from the ends of every direction in which the expression is monotone.
+    /// The range of the expression. In each symbol in which the expression is monotone, only the ends of the symbol's
+    /// range are used.
     fn range_by_ends(&self, domain: &Domain) -> Option<Interval> {
         let ranges = self.pool.enclose(&self.all, domain);
         let (mut low, mut high) = (domain.clone(), domain.clone());

@@ -67,7 +67,7 @@ macro_rules! functions {
                 }
             }
 
-            /// The value in double precision; NaN outside of the domain.
+            /// The value in double precision; NaN or infinite outside of the domain.
             pub fn value(self, x: f64) -> f64 {
                 match self {
                     $(Self::$variant => x.$name(),)*

@@ -1,8 +1,8 @@
 //! Simplification that drops parts which only restrict the domain: the term `0*x` is left out, and `x^2*x^-1` becomes
 //! `x`.
 //!
-//! The result equals the expression wherever that has a value, and may have a value elsewhere. It serves printed
-//! formulas, valid at almost all states. Emitted code never uses it.
+//! The result equals the expression wherever the expression has a value, and may have a value elsewhere. It serves
+//! printed formulas, which hold at almost all states. Emitted code never uses it.
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
@@ -41,7 +41,8 @@ impl Pool {
         results.get(id)
     }
 
-    /// A sum. If terms over one denominator add up to a multiple of one of its factors, that factor is cancelled.
+    /// The sum of `summands`. If terms over one denominator add up to a multiple of one of its factors, that factor is
+    /// cancelled.
     fn over_denominators(&mut self, summands: &[(Rational, ExprId)]) -> ExprId {
         let mut terms = Vec::new();
         let mut groups: Vec<(Factors, Vec<(Rational, ExprId)>)> = Vec::new();

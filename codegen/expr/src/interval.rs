@@ -154,8 +154,8 @@ impl Interval {
 
     /// Range of a sine wave `f` with its maximum at `crest`.
     fn wave(self, f: fn(f64) -> f64, crest: f64) -> Self {
-        // Intervals of nearly a full period have the whole range. Shorter ones contain an extreme value if it is inside
-        // the interval, widened by a margin for the rounding of `place` and of multiples of 2 pi.
+        // An interval of nearly a full period gives the whole range. On a shorter one, an extreme value is assumed if
+        // its place lies in the interval widened by a margin, for the rounding of `place` and of multiples of 2 pi.
         if self.magnitude() > FAR || self.hi - self.lo > 6.2 {
             return Self::new(-1.0, 1.0);
         }

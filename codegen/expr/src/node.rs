@@ -57,7 +57,8 @@ pub enum Node {
     ///
     /// Terms are in order of id, each once, and are no numbers. A coefficient is 0 only to keep the domain of its
     /// term. A sum of two or more summands has coefficients without common factor and a positive first
-    /// coefficient; a multiple of it is the sum of that one term. See [`Pool::add`](crate::Pool::add).
+    /// coefficient. A multiple of such a sum is a `Sum` with this sum as its only term. See
+    /// [`Pool::add`](crate::Pool::add).
     Sum {
         /// The numeric summand.
         constant: Rational,

@@ -104,8 +104,9 @@ impl ModularPoint {
         }
     }
 
-    /// Replaces the value `x` of a symbol by `twelfths pi/12 + x`, or by `twelfths pi/12 - x` if `is_reflected`.
-    /// Updates its sine and cosine, and for `-x` its exponential, accordingly.
+    /// Replaces the value `x` of a symbol by `twelfths pi/12 + x`, or by `twelfths pi/12 - x` if `is_reflected`. The
+    /// sine and cosine of the new value follow from those of `x`. If the new value is `-x`, its exponential is the
+    /// reciprocal.
     ///
     /// # Errors
     /// If the point's denominator does not divide `twelfths`: the shift of the base angle is then no multiple of

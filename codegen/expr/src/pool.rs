@@ -54,8 +54,8 @@ impl Pool {
         Self::with_budget(u64::MAX)
     }
 
-    /// A pool with a budget of steps. Making an expression costs one step, plus one for each operand and one for each
-    /// word of its numbers.
+    /// A pool with a budget of steps. Making an expression costs one step, plus one for each operand and one for every
+    /// full 64 bits of each of its numbers.
     pub fn with_budget(budget: u64) -> Self {
         let mut pool = Self {
             symbols: Vec::new(),

@@ -1,8 +1,9 @@
 //! Constructors of products and powers: `product of base^exponent` in the normal form of [`Node::Product`].
 //!
-//! Exponents of one base are added. The demands of the single powers on the base are recorded besides the sum: `x^-1`
-//! demands that `x` is not 0, `x^(1/2)` that it is not negative. If the power with the summed exponent demands less,
-//! and the base is not known to comply, a guard keeps the domain; see [`Pool::settle`].
+//! Exponents of one base are added. The demands of the single powers on the base are recorded beside the sum of the
+//! exponents: `x^-1` demands that `x` is not 0, `x^(1/2)` that `x` is not negative. If the power with the summed
+//! exponent demands less, and the base is not known to meet the demands, a guard keeps the domain; see
+//! [`Pool::settle`].
 
 use crate::node::{ExprId, Node};
 use crate::pool::Pool;
@@ -62,7 +63,7 @@ impl Factors {
         });
     }
 
-    /// One entry per base, in order of base.
+    /// Merges the entries of equal base, and sorts them by base.
     fn merge(&mut self) {
         self.entries.sort_by_key(|entry| entry.base);
         self.entries.dedup_by(|entry, total| {

@@ -16,7 +16,7 @@ pub struct Profile {
     /// Common denominator of the coefficients inside sin, cos and exp; `None` if there is no small one.
     pub denominator: Option<i64>,
     /// Bound for the degrees of numerators and denominators as polynomials in the drawn residues, times
-    /// `Squares::odds`. Divided by the prime, it bounds the chance of an accidental zero.
+    /// `Squares::odds`. Divided by the prime, it bounds the probability of an accidental zero.
     pub degree: f64,
 }
 
@@ -79,8 +79,8 @@ impl Pool {
             let exact_turn =
                 (coefficient * &Rational::from(12)).is_integer() && residue == Residue::Circular;
             if *term == self.pi() && exact_turn {
-                // NOTE: only sqrt(2) and sqrt(3) enter. Field automorphisms change the sign of each by itself, so
-                // either choice of a root is right.
+                // NOTE: only sqrt(2) and sqrt(3) enter. Field automorphisms change their signs independently of each
+                // other, so either choice of each root is right.
                 continue;
             }
             profile.denominator = common(profile.denominator, coefficient);

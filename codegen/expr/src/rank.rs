@@ -1,7 +1,7 @@
 //! The generic rank of a matrix of expressions, by elimination modulo primes at random points.
 //!
-//! The rank at a point never exceeds the generic rank, so the largest of a few points is taken. At one point it is too
-//! small with a probability of at most `degree / p`.
+//! The rank at a point never exceeds the generic rank, so the largest rank at a few points is taken. At one point the
+//! rank is too small with probability `d/p` at most, where `d` is the degree of a nonzero minor of the generic rank.
 
 use crate::field::Modulus;
 use crate::node::ExprId;
@@ -17,11 +17,12 @@ pub struct RankReport {
     pub independent_rows: Vec<usize>,
     /// Every other row, with the earlier independent rows that it is a combination of; a row of zeros has none.
     pub dependencies: Vec<(usize, Vec<usize>)>,
-    /// Pivot column of each independent row, in the same order: the first in which the row is not 0 after the earlier
-    /// independent rows were eliminated from it.
+    /// Pivot column of each independent row, in the same order: the first column in which the row is not 0 after the
+    /// earlier independent rows were eliminated from it.
     pub pivot_columns: Vec<usize>,
-    /// True if the independence is certain. It is not certain if the entries could not be evaluated, or if they contain
-    /// functions whose relations are hidden from residues, and values in double precision do not confirm the rank.
+    /// True if the independence is certain. It is uncertain if the entries could not be evaluated. If they contain
+    /// roots, absolute values, or functions whose relations are hidden from residues, it is certain only if values in
+    /// double precision confirm the rank.
     pub decided: bool,
 }
 

@@ -184,9 +184,9 @@ impl Pool {
         }
     }
 
-    /// True if a subexpression is a constant whose form shows that it has no real value: a negative power of 0, a root
-    /// of a negative number, `ln` of a number that is not positive, `log1p` of one that is not above -1, `asin` or
-    /// `acos` outside `[-1, 1]`.
+    /// True if the form of a subexpression shows that it has no real value: a negative power of 0, a root of a negative
+    /// expression, `ln` of an expression that is nowhere positive, `log1p` of one that is nowhere above -1, `asin` or
+    /// `acos` of a number outside `[-1, 1]`.
     pub fn is_undefined_constant(&self, id: ExprId) -> bool {
         self.reachable(&[id])
             .into_iter()

@@ -123,8 +123,8 @@ impl Pool {
         None
     }
 
-    /// `f(u) g(v) +- f'(u) g'(v)` as a sign and one sine or cosine, where `f` and `f'` are complements. Plus if
-    /// `alike`.
+    /// `f(u) g(v) +- f'(u) g'(v)` as a sign and one sine or cosine, where `f'` and `g'` are the complements of `f` and
+    /// `g`. The sign between the products is plus if `alike`.
     fn wave_of_two_angles(&mut self, cross: &Cross, alike: bool) -> (Rational, ExprId) {
         let [u, v] = cross.arguments;
         let signed = |positive| {

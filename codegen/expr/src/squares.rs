@@ -96,9 +96,9 @@ impl Squares {
         }
     }
 
-    /// Factor by which the chance of an accidental zero exceeds `degree / p`. In a step of `k` arguments, the roots
-    /// multiply the degree by `2^k` and reduce the number of points by `2^k`. An expression that has not vanished
-    /// identically in one step may do so in the next, so the chances of all steps are added.
+    /// Factor by which the probability of an accidental zero exceeds `degree / p`. In a step of `k` arguments, the roots
+    /// multiply the degree by `2^k` and divide the number of points by `2^k`. An expression that is not identically 0
+    /// after one step may be so after the next, so the probabilities of all steps are added.
     pub(crate) fn odds(pool: &Pool, order: &[ExprId]) -> f64 {
         let positives = pool.positives(order);
         let of_step = |count: usize| 4f64.powi(count.min(MOST_ARGUMENTS) as i32);

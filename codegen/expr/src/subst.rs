@@ -29,7 +29,7 @@ impl Pool {
     }
 
     /// Copies expressions of the pool `from` into this pool. `replacements` maps symbols of `from` to expressions of
-    /// this pool. `None` if a symbol of the roots is not in it.
+    /// this pool. `None` if it lacks a symbol that occurs in `roots`.
     pub fn import(
         &mut self,
         from: &Pool,

@@ -91,7 +91,7 @@ impl Pool {
         self.build_sum(linear)
     }
 
-    /// Adds `scale * id` to `linear`; operands of sums one by one.
+    /// Adds `scale * id` to `linear`; if `id` is a sum, adds its summands one by one.
     fn splice(&self, linear: &mut Linear, scale: &Rational, id: ExprId) {
         match self.node(id) {
             Node::Number(value) => linear.constant = &linear.constant + &(scale * value),

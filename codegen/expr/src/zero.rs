@@ -1,9 +1,9 @@
 //! Zero tests of expressions, with three answers.
 //!
 //! The decision is made by values at random points modulo primes; see [`Pool::modular_eval`].
-//! - 0 at enough points: [`Verdict::Proved`]. The chance of an accidental zero is `degree / p` per point (Schwartz,
-//!   Zippel), and is kept below 2^-60 in all. Where roots or absolute values occur, all their branches are tested; see
-//!   [`crate::branch`]. With too many branches the answer stays open.
+//! - 0 at enough points: [`Verdict::Proved`]. The probability of an accidental zero is at most `degree / p` per point
+//!   (Schwartz, Zippel); there are enough points to make it less than 2^-60 in all. Where roots or absolute values
+//!   occur, all their branches are tested; see [`crate::branch`]. With too many branches the answer stays open.
 //! - not 0 at one point: [`Verdict::Refuted`] for rational functions of symbols, sin, cos, exp. This case involves no
 //!   probability. With other functions, the atoms may satisfy relations that do not hold modulo the prime, or the
 //!   branches may differ from the real ones. Then values in double precision must be clearly different from 0.
@@ -31,7 +31,8 @@ pub enum Verdict {
 /// Minimum and maximum number of points drawn for one value: each independent root rejects half of them. The maximum
 /// applies to small expressions.
 const DRAWS: (usize, usize) = (64, 1024);
-/// Largest number of nodes that are evaluated for one value. It limits the number of draws between these bounds.
+/// Largest number of nodes that are evaluated for one value. It limits the number of draws, within the bounds of
+/// [`DRAWS`].
 const DRAW_WORK: usize = 1 << 18;
 /// Number of real points that are tried.
 const REAL_DRAWS: u64 = 96;
@@ -41,14 +42,14 @@ const REAL_POINTS: usize = 64;
 const REAL_WITNESSES: usize = 3;
 /// Scales of the real points, used in turn.
 const SCALES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 8.0, 64.0];
-/// A value is clearly different from 0 above this multiple of its magnitude before cancellation, about 1e9 times the
-/// rounding error.
+/// A value is clearly different from 0 if it exceeds this multiple of its magnitude before cancellation. The multiple is
+/// about 1e9 times the rounding error.
 pub(crate) const CLEAR: f64 = 1e-6;
 /// Largest number of distinct subexpressions of a tested expression.
 const MAX_NODES: usize = 1 << 20;
 
 impl Pool {
-    /// Tests if an expression is 0 for all values of its symbols that satisfy their assumptions.
+    /// Tests if an expression is 0 wherever it is defined, for all values of its symbols that satisfy their assumptions.
     pub fn zero_test(&self, id: ExprId) -> Verdict {
         if self.is_syntactic_zero(id) {
             return Verdict::Proved;

@@ -203,7 +203,7 @@ fn constructors_keep_values_and_domains() {
                     );
                     compared += 1;
                 }
-                // Beyond that size a denominator is 0 up to rounding.
+                // A larger value may come from a denominator that is 0 up to rounding.
                 (None, Some(b)) if b.abs() < 1e6 => panic!(
                     "{} at {point:?} is {b}, as written undefined",
                     pool.text(id)
@@ -214,6 +214,6 @@ fn constructors_keep_values_and_domains() {
         }
     }
     assert!(compared > 20_000);
-    // The rewrites of roots may narrow the domain, rarely.
+    // Rewrites of roots may narrow the domain in rare cases.
     assert!(narrowed * 1000 < compared);
 }

@@ -34,8 +34,8 @@ fn contradicts(sign: Sign, value: f64) -> bool {
         || sign.is_nonpositive() && value > 0.0
 }
 
-/// Calls `check` with every function of a positive and a negative multiple of a symbol of every assumption, and the
-/// values of the symbol and of the argument.
+/// Calls `check` with the pool, a function, its call at a multiple of a symbol, and values of the symbol and of the
+/// argument. All functions, assumptions on the symbol and signs of the multiple occur.
 fn for_each_call(mut check: impl FnMut(&Pool, Function, ExprId, f64, f64)) {
     for function in Function::ALL {
         for assumption in [

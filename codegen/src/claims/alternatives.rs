@@ -37,8 +37,8 @@ pub(super) fn alternatives(
     remarks
 }
 
-/// Result of the scan in words; `None` if there was nothing to scan. If a local density exists, the scan looked for one
-/// on all of Q.
+/// Result of the scan as text; `None` if there was nothing to scan. If a local density exists, the scan was for a
+/// density on all of Q.
 fn conditions(model: &Model, scan: &Scan, is_local: bool) -> Option<String> {
     let what = match is_local {
         true => "a density on all of Q",

@@ -34,8 +34,8 @@ pub(super) fn stages(
         let momentum = pool.diff(model.lagrangian.whole, coordinate.qdot);
         bases.push(pool.sub(momentum, *linear));
     }
-    // The constant is needed only with a drift, a linear term or a potential. Otherwise the terms of each degree in the
-    // velocities are separately invariant.
+    // The constant is needed only with a drift, a linear term or a potential. Without these, the terms of each degree in
+    // the velocities solve the equation separately.
     let linear = &model.lagrangian.linear;
     if problem.has_drift(pool)
         || linear.iter().any(|entry| !pool.is_syntactic_zero(*entry))
@@ -107,8 +107,8 @@ pub(super) fn parameter_monomials(pool: &mut Pool, parameters: &[SymbolId]) -> V
 /// Monomials of some symbols up to a degree, ordered by degree: 1, the symbols, their products, and so on.
 pub(super) fn monomials(pool: &mut Pool, symbols: &[SymbolId], degree: usize) -> Vec<ExprId> {
     let mut all = vec![pool.one()];
-    // The monomials of one degree, each with the index of its last symbol. Only this symbol and later ones are
-    // multiplied to it, so that no monomial appears twice.
+    // The monomials of one degree, each with the index of its last symbol. It is multiplied only by this symbol and
+    // later ones, so that no monomial appears twice.
     let mut last = vec![(pool.one(), 0)];
     for _ in 0..degree {
         let mut next = Vec::new();

@@ -1,6 +1,6 @@
 //! Constraints that are not linear in the velocities, solved for one velocity each: `a v^2 + b v + c = 0`.
 //!
-//! The states on D are those of both roots. A sum that vanishes on D vanishes for each choice of roots.
+//! D contains the states of both roots. A sum that vanishes on D vanishes for each choice of roots.
 
 use dalembert_expr::{
     Arithmetic, ExpansionPoint, ExprId, Pool, Rational, SymbolId, Verdict as Zero,
@@ -94,7 +94,7 @@ impl Branch {
         }
     }
 
-    /// Sets the velocity of a point to the root; `None` where there is none.
+    /// Sets the velocity of a point to the root of the branch; `None` where the root does not exist.
     pub(super) fn settle<P: ExpansionPoint>(&self, pool: &Pool, point: &mut P) -> Option<()> {
         let field = point.field();
         let values = point.values(pool, &pool.reachable(&self.coefficients))?;

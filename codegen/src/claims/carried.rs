@@ -5,10 +5,10 @@
 //! v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)      w+(v+_1, .., v+_k) = w(v_1, .., v_k)
 //! ```
 //!
-//! `dDelta` is the derivative of the impact map; X and X+ are the motions before and after. X has time rate 1, the
-//! vectors have time rate 0. On vectors along the surface the condition is the pullback by the map. With X as one of
-//! the vectors it is the specular condition (W. Clark, thesis, VII.3). At a transition X+ and w+ belong to the entered
-//! mode.
+//! `dDelta` is the derivative of the impact map; X and X+ are the motions before and after, w and w+ the form. X has
+//! time rate 1, the vectors have time rate 0. On vectors tangent to the surface, the condition is that w is the pullback
+//! of w+ by the map. With X as one of the vectors it is the specular condition (W. Clark, thesis, VII.3). At a
+//! transition X+ and w+ belong to the entered mode.
 
 use std::cmp::Ordering;
 

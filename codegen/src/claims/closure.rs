@@ -79,7 +79,7 @@ impl Echelon {
     }
 }
 
-/// End of the closure of a hull.
+/// Condition that ends the closure of a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Until {
     /// No bracket leads out of the hull.

@@ -179,7 +179,7 @@ impl<Q: AtImpact> Vanishing for Collision<'_, Q> {
     }
 
     fn balance(&self, _: &Model, terms: &[f64]) -> Vec<(String, f64)> {
-        // The difference of equal values is rounding error alone.
+        // The difference of equal values is only rounding error.
         let mut shown = self.question.shown(terms, terms.iter().sum());
         shown.retain(|(name, _)| name != DIFFERENCE);
         shown

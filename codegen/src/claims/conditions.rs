@@ -42,7 +42,7 @@ pub enum Equation {
 pub struct Scan {
     /// Conditions under which a density exists, simple ones first.
     pub found: Vec<Condition>,
-    /// Number of rank tests that were made and of values of obstructions that were computed.
+    /// Number of rank tests made, plus the number of values of obstructions computed.
     pub trials: usize,
     /// True if all conditions were tried; else the scan was cut off.
     pub is_complete: bool,
@@ -50,18 +50,18 @@ pub struct Scan {
 
 /// Smallest and largest number of trials of a scan.
 const TRIALS: (usize, usize) = (16, 400);
-/// Number of products of coefficients that a scan may compute. A build without optimisation takes about a second.
+/// Number of products of coefficients that a scan may compute. They take about a second without optimisation.
 const WORK: f64 = 1.5e8;
 /// Number of trials of a scan for a density on all of Q. Each of them looks for the density.
 const GLOBAL_TRIALS: usize = 48;
-/// Number of singular points after which a model counts as degenerate. The second one is for models with roots, which
+/// Number of singular points after which a model counts as degenerate: without roots in the model, and with roots, which
 /// have no value at half of the points.
 const ATTEMPTS: (usize, usize) = (4, 128);
 
 /// Conditions on parameters for a density that does not exist for indeterminate parameters. For a model without a local
-/// density, these are conditions under which a local one exists. For a model with a local density, they are conditions
-/// under which it exists on all of Q. `exactness` is the decision for indeterminate parameters. `seed` determines the
-/// random points.
+/// density, these are conditions under which a local density exists. For a model with a local density, they are
+/// conditions under which a density exists on all of Q. `exactness` is the decision for indeterminate parameters. `seed`
+/// determines the random points.
 ///
 /// # Errors
 /// [`Undecided`], if there are no sample points.

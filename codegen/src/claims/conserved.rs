@@ -97,7 +97,7 @@ fn change_at_defaults(
     }
 }
 
-/// Description of places where a quantity may jump along a motion; `None` if it does not.
+/// Description of places where a quantity may jump along a motion; `None` if it cannot jump.
 pub(super) fn jump(
     model: &mut Model,
     dynamics: &Dynamics,

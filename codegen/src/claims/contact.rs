@@ -5,10 +5,10 @@
 //! hdot+ = 0 and hddot < 0                   the motion is held: qddot + c W with hddot = 0,    W = -(qdot+ - qdot-)/hdot-
 //! ```
 //!
-//! `hddot` belongs to the free motion. Which case holds can be decided at a state where both are enclosed away from 0,
-//! but not for all states at once. The rate `hdot+` is 0 after `impact_plastic` and `newton(0)`. After `restitution(0)`
-//! it is 0 unless constraints are affine: this law stops the velocity across the surface, and leaves the rate
-//! prescribed by affine constraints.
+//! In the conditions, `hddot` is that of the free motion; `c` gives the held motion `hddot = 0`. The case can be decided
+//! at a single state, where the enclosure of the rate that decides excludes 0, but not for all states at once. The rate
+//! `hdot+` is 0 after `impact_plastic` and `newton(0)`. After `restitution(0)` it is 0 unless constraints are affine:
+//! this law stops the velocity across the surface, and leaves the rate prescribed by affine constraints.
 
 use std::cmp::Ordering;
 
@@ -55,7 +55,7 @@ impl Contact {
         held.into_iter().map(of).collect()
     }
 
-    /// Description of the motion, to be appended to that of the surface.
+    /// Description of the motion, to be appended to the description of the surface.
     pub(super) fn text(&self) -> &'static str {
         match self.is_held {
             true => "; the motion behind it is held",

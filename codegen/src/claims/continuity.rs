@@ -10,7 +10,7 @@ use dalembert_expr::{ExprId, Function, Node, Pool, Singularity};
 
 use crate::model::Model;
 
-/// A place where `value` may jump, in words; `None` if it cannot jump. `is_constant` tells whether an expression is
+/// A place where `value` may jump, as text; `None` if it cannot jump. `is_constant` is true for expressions that are
 /// constant along every motion. The motion has no equations where one of `singular` is 0.
 pub(super) fn possible_jump(
     model: &mut Model,

@@ -49,7 +49,7 @@ pub(super) fn contraction<P: ExpansionPoint>(
 pub(super) enum Dependence {
     /// Linear in the velocities, plus a constant.
     Linear,
-    /// Not linear. Holds a state, and the values of `P` there and one and two steps further, which show it.
+    /// Not linear. Holds a state, and the values of `P` there and one and two steps further, which are not equidistant.
     Curved(Sample, Vec<(String, f64)>),
     /// Neither is shown.
     Unknown,

@@ -1,9 +1,9 @@
 //! Consequences of an invariant volume, with their hypotheses, and of a volume that is not invariant.
 //!
 //! If the volume is smooth and each impulse vanishes with the gap rate, impacts accumulate for almost no start (W.
-//! Clark, thesis, Theorem VII.17). If energy levels are compact as well, almost every start comes back arbitrarily near
-//! (Theorem VII.21). They are compact if the energy is conserved and surfaces bound all coordinates that are not
-//! angles.
+//! Clark, thesis, Theorem VII.17). If moreover the energy is conserved and its levels are compact, almost every motion
+//! comes back arbitrarily near to its start (Theorem VII.21). The levels are compact where surfaces bound all
+//! coordinates that are not angles, the metric is positive and the potential finite.
 
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity, SymbolId, Verdict as Zero};
 
@@ -14,7 +14,7 @@ use super::hybrid::{Density, Effect, Surroundings};
 use super::impact::{Wanted, changes_at};
 use crate::model::{Beside, Law, Model, Topology};
 
-/// The consequences in words, given that the volume of a density is kept.
+/// The consequences as text, given that the volume of a density is kept.
 pub(super) fn corollaries(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -117,7 +117,7 @@ fn impulses_vanish(model: &Model) -> bool {
     })
 }
 
-/// True if nothing of the declaration depends on time.
+/// True if neither the motion nor a gap depends on time.
 fn is_autonomous(model: &Model, around: &Surroundings<'_>) -> bool {
     let gaps = model.surfaces.iter().map(|surface| surface.gap);
     let mut roots = around.dynamics.roots();
@@ -175,8 +175,8 @@ fn bounded(model: &mut Model) -> Option<Vec<String>> {
         .then_some(names)
 }
 
-/// The coordinates that `gap >= 0` bounds, each with flags for a lower and an upper bound. The gap is quadratic in them
-/// with negative coefficients and without mixed terms, or linear in a single one.
+/// The coordinates that `gap >= 0` bounds, each with flags for a lower and an upper bound. None are found unless the gap
+/// is quadratic in the coordinates, with negative coefficients and without mixed terms, or linear in a single one.
 fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, bool, bool)> {
     let used = (0..lines.len()).filter(|i| pool.depends_on(gap, lines[*i]));
     let used: Vec<usize> = used.collect();
@@ -211,7 +211,7 @@ fn confined(pool: &mut Pool, gap: ExprId, lines: &[SymbolId]) -> Vec<(usize, boo
     used.into_iter().map(|i| (i, true, true)).collect()
 }
 
-/// True if an expression consists of numbers and of symbols with an assumption, which are parameters.
+/// True if all symbols of an expression have an assumption. Such symbols are parameters.
 fn is_parameter(pool: &Pool, id: ExprId) -> bool {
     let assumed =
         |symbol: &SymbolId| pool.symbol_assumption(*symbol) != dalembert_expr::Assumption::None;

@@ -30,7 +30,7 @@ use crate::model::Model;
 const EXPONENTS: [(i64, i64); 5] = [(-1, 1), (-2, 1), (-1, 2), (1, 1), (2, 1)];
 /// Exponents `k` of `det m`.
 const MASS_EXPONENTS: [(i64, i64); 3] = [(0, 1), (1, 2), (1, 1)];
-/// Largest number of terms for which all exponents are tried. For more terms only the first is tried.
+/// Largest number of terms for which all exponents `s` are tried. For more terms only the first `s` is tried.
 const FEW: usize = 80;
 /// Largest number of unknowns of a search with coefficients that depend on parameters.
 const UNKNOWNS: usize = 160;
@@ -197,8 +197,8 @@ impl Search<'_> {
         })
     }
 
-    /// The factor for all parameters. Its coefficients are numbers if these are small, otherwise polynomials in the
-    /// parameters.
+    /// The factor for all parameters. Its coefficients are small rational numbers if such numbers suffice, otherwise
+    /// polynomials in the parameters.
     pub(super) fn reconstruct(
         &self,
         model: &mut Model,
@@ -255,8 +255,8 @@ impl Search<'_> {
         symbols.filter(occurs).collect()
     }
 
-    /// The certificate of a factor that solves the equation at fresh points and does not vanish at all of them. `None`
-    /// if it fails.
+    /// The certificate of a factor that solves the equation at fresh points. `None` if the factor does not solve it at
+    /// one of them, or is 0 at all of them.
     pub(super) fn certify(
         &self,
         pool: &Pool,
@@ -286,8 +286,8 @@ impl Search<'_> {
         }
         primes.sort_unstable();
         primes.dedup();
-        // The degree is bounded as for a density of the configuration. The motion adds as much to the degree as `c`
-        // does.
+        // The bound is that for a density of the configuration, doubled: the rates along the motion have degrees as
+        // large as that of `c`.
         let sizes = (self.problem.coordinates + self.problem.forms.len()) as f64;
         let degree = 128.0 * sizes.powi(3) * profile.degree.max(1.0);
         let error = covered.error(&branches, degree / 2f64.powi(60));

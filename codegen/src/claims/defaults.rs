@@ -63,7 +63,8 @@ impl Defaults {
         &self.values
     }
 
-    /// The verdict that a quantity changes for indeterminate parameters, where it is conserved at the defaults.
+    /// `generic`, the verdict that a quantity changes for indeterminate parameters, with the remark that the quantity is
+    /// conserved at the defaults.
     pub(super) fn without_change(&self, generic: Verdict) -> Verdict {
         let place = format!("conserved at the declared defaults {}", self.text);
         let remedy = "write these numbers in place of the parameters";
@@ -97,7 +98,7 @@ impl Defaults {
     }
 }
 
-/// The verdict on a claim of existence that is proved for indeterminate parameters.
+/// The verdict on a claim of existence, or on `density: none`, that is proved for indeterminate parameters.
 pub(super) fn existence_at_defaults(
     model: &mut Model,
     problem: &Problem,
@@ -140,8 +141,8 @@ pub(super) fn absence_at_defaults(
     ))
 }
 
-/// The verdict on a model without density because its forces are not linear in the velocities: undecided unless the
-/// defaults show it, too.
+/// The verdict that no density exists because the divergence of the forces is not linear in the velocities. It is
+/// undecided unless the divergence is not linear at the defaults, too.
 pub(super) fn curvature_at_defaults(
     model: &mut Model,
     problem: &Problem,
@@ -167,7 +168,8 @@ pub(super) fn curvature_at_defaults(
     }
 }
 
-/// True if an obstruction remains at the defaults, or if the closed form holds there as well.
+/// True if the claim is easily seen to hold at the defaults: an obstruction remains there, or the closed form is a
+/// density there as well.
 fn is_evident(
     model: &mut Model,
     declared: &Problem,

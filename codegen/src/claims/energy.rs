@@ -4,9 +4,11 @@
 //! walls that stand still, linear constraints   H+ - H- = -(2 - c) c G^2/(2 dh(pi_D grad h)),  G+ = (1 - c) G
 //! ```
 //!
-//! The change is not positive for c between 0 and 2. A projection onto linear constraints takes energy away, and a
-//! refraction keeps it. All other maps are examined as functions of the state: the energies are equal, their difference
-//! is a quadratic form without positive entries, or a state with more energy is found.
+//! G is the gap rate, and c depends on the law. The change is not positive for c between 0 and 2. A projection onto
+//! linear constraints does not increase the energy, and a refraction keeps it. For all other maps, the two energies are
+//! compared as functions of the state. The claim is proved if they are equal, or if their difference is a function of
+//! the positions plus a diagonal quadratic form of the velocities and neither is positive anywhere. It is refuted by a
+//! state at which the energy grows.
 //! J. Cortes and A. M. Vinogradov (2006), Theorem 5.7.
 
 use dalembert_expr::{ExprId, Pool, Sign, SymbolId, Verdict as Zero};
@@ -119,8 +121,8 @@ fn known(
     }
 }
 
-/// True if the change of the energy is a constant plus a diagonal quadratic form of the velocities, and neither is
-/// positive anywhere.
+/// True if the change of the energy is a function of the positions plus a diagonal quadratic form of the velocities, and
+/// neither is positive anywhere.
 fn is_never_positive_gain(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -174,8 +176,8 @@ fn is_never_positive_gain(
     })
 }
 
-/// The constant and the second derivatives of a function that is a constant plus multiples of squares of velocities;
-/// `None` for other functions.
+/// The value at rest, and the second derivatives by each velocity, of a function that depends on velocities only through
+/// multiples of their squares; `None` for other functions.
 fn diagonal(pool: &mut Pool, gain: ExprId, velocities: &[SymbolId]) -> Option<Vec<ExprId>> {
     let zero = pool.zero();
     let at_rest: Vec<_> = velocities

@@ -68,7 +68,8 @@ pub(crate) fn check_equivariance(
     Ok(keeps_momentum(model, &around, field))
 }
 
-/// One sentence for each surface of a first-order system without modes.
+/// One sentence for each surface of a first-order system. For a model with modes, the one sentence that transitions are
+/// not examined.
 pub(super) fn symmetry_at_surfaces(
     model: &mut Model,
     around: &Surroundings<'_>,

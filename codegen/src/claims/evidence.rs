@@ -20,15 +20,15 @@ const WITNESSES: usize = 48;
 const ENCLOSED: usize = 12;
 /// Fraction of its scale that a sum in doubles must exceed before later states are enclosed.
 const VISIBLE: f64 = 1e-10;
-/// Fraction of its scale beyond which a sum in doubles is not rounding. If the sum is not enclosed there, it is not
-/// proved to vanish.
+/// Fraction of its scale beyond which a sum in doubles is more than rounding error. If no enclosure excludes 0 at such a
+/// state, the sum is not proved to vanish.
 const SUSPECT: f64 = 1e-6;
-/// A sum below this part of its scale has lost digits that a message shows.
+/// Fraction of its scale below which a sum in doubles has lost digits that a message shows.
 const VISIBLE_DIGITS: f64 = 1e-3;
 /// Size below which a computed double may have lost digits to underflow.
 const LEAST: f64 = 1e-200;
 
-/// A sum of terms at states that may vanish identically.
+/// A sum of terms that may vanish at all states.
 pub(super) trait Vanishing {
     /// Expressions to be evaluated.
     fn roots(&self) -> Vec<ExprId>;
@@ -99,7 +99,7 @@ pub(super) struct Evidence {
     pub(super) points: usize,
     /// The primes.
     pub(super) primes: Vec<u64>,
-    /// A bound of the chance of error.
+    /// An upper bound of the probability of error.
     pub(super) error: f64,
     /// A certified real state at which a reader can follow that terms cancel.
     pub(super) balance: Option<(Sample, Vec<(String, f64)>)>,
@@ -120,7 +120,7 @@ pub(super) struct Wording {
     pub(super) vanishes: String,
     /// Sentence if it does not.
     pub(super) differs: String,
-    /// Advice against a claim that it vanishes, and against one that it does not.
+    /// Advice if the claim that it vanishes is refuted, and if the claim that it does not vanish is refuted.
     pub(super) help: [String; 2],
 }
 
@@ -306,9 +306,9 @@ struct Real {
     is_suspect: bool,
 }
 
-/// Bound of the chance of an accidental zero: the degree of a rate over the prime (Schwartz, Zippel). The saddle system
-/// of acceleration and multipliers has N + M rows, and the numerators and denominators of its entries have at most the
-/// degree d of the profile. A rate has degree below `64 (2 N + M)^3 d`.
+/// Upper bound of the probability of an accidental zero: the degree of a rate, divided by the prime (Schwartz, Zippel).
+/// The saddle system of acceleration and multipliers has N + M rows, and the numerators and denominators of its entries
+/// have at most the degree d of the profile. A rate has degree below `64 (2 N + M)^3 d`.
 fn chance_of_accident(model: &Model, degree: f64) -> f64 {
     let sizes = (2 * model.coordinates.len() + model.constraints.len()) as f64;
     let degree = 64.0 * sizes.powi(3) * degree.max(1.0);

@@ -416,8 +416,8 @@ fn on_leaves(
         .unwrap_or(Global::Undecided(reason))
 }
 
-/// True if regular candidates give a density for each value of the parameters. The dependence of the coefficients on
-/// the parameters need not be of one of the forms tried.
+/// True if regular candidates give a density at random values of the parameters, and so at almost all. The dependence of
+/// the coefficients on the parameters need not have one of the forms tried.
 fn exists_for_each_parameter(
     model: &Model,
     problem: &Problem,

@@ -458,8 +458,8 @@ impl<'e> Examiner<'e> {
         defaults.confirmed(generic, declared)
     }
 
-    /// The defaults, and with them the expression and the motion. `None` if there are no defaults, or if `generic` is
-    /// not a proof.
+    /// The defaults, with the expression and the motion at the defaults. `None` if there are no defaults, or if
+    /// `generic` is not a proof.
     fn at_defaults(
         &mut self,
         value: ExprId,
@@ -477,7 +477,7 @@ impl<'e> Examiner<'e> {
         Some((defaults, value, dynamics))
     }
 
-    /// Suggestions for a model without a density, in words.
+    /// Suggestions for a model without a density, as text.
     fn alternatives(&mut self, exactness: &Exactness) -> Vec<String> {
         alternatives::alternatives(
             self.model,

@@ -1,9 +1,9 @@
 //! Values of one parameter at which an obstruction may vanish: rational roots and poles of delta.
 //!
 //! At a point modulo a prime, with all other parameters fixed, delta (see [`super::obstruction`]) is a rational
-//! function of the parameter. A few of its values determine it. A root or a pole that is a small fraction is no
-//! accident of a random point. It is only a candidate: other obstructions may remain, or the model may be degenerate
-//! there.
+//! function of the parameter. A few of its values determine it. At a random point, a root or a pole is hardly ever a
+//! small fraction by accident. Such a fraction is only a candidate: other obstructions may remain, or the model may be
+//! degenerate there.
 
 use dalembert_expr::{ExprId, ModularPoint, Node, Pool, Rational, SymbolId};
 
@@ -20,9 +20,9 @@ const VALUES: [usize; 4] = [8, 16, 32, 48];
 /// Number of values beyond the number of coefficients. They check the interpolation.
 const SURPLUS: usize = 2;
 
-/// Small fractions at which delta has a root or a pole as a function of `parameter`; empty if delta is not a rational
-/// function of it, or one of too high a degree. `trials` is the number of values that may still be computed; `None` if
-/// it is too small.
+/// Small fractions at which delta has a root or a pole as a function of `parameter`. The list is empty if delta is not
+/// a rational function of `parameter`, or if its degree is too high. `trials` is the number of values that may still be
+/// computed; `None` if it is too small.
 pub(super) fn exceptional_values(
     pool: &Pool,
     problem: &Problem,
@@ -123,8 +123,8 @@ impl Column<'_> {
         Some(None)
     }
 
-    /// Demand of the obstructing element minus the demand of the combination of other elements that equals it as a
-    /// vector field.
+    /// Demand of the obstructing element minus the demand of the combination of other elements that has the same vector
+    /// field.
     fn delta(&self, point: &mut ModularPoint) -> Option<u64> {
         let field = point.modulus();
         let hull = &self.local.hull;

@@ -273,7 +273,7 @@ impl Tangents {
     }
 
     /// Sets the dependent components of vectors, at indices `first + j`, so that the residuals vanish along them.
-    /// `lacking`: residuals along the vectors before, one row per residual.
+    /// `lacking`: residuals along the vectors while these components are 0, one row per residual.
     fn complete<A: Arithmetic>(
         &self,
         field: A,

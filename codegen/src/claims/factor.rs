@@ -60,7 +60,7 @@ pub(super) fn closed_form(model: &mut Model, passage: &Passage) -> Option<ExprId
     (!pool.depends_on_any(factor, &symbols)).then_some(factor)
 }
 
-/// A factor in words, without its sign.
+/// A factor as text, without its sign.
 pub(super) fn size_text(pool: &Pool, factor: ExprId) -> String {
     match pool.sign(factor) {
         Sign::Positive | Sign::NonNegative => factor_text(pool, factor),

@@ -49,7 +49,7 @@ pub enum Verdict {
 pub struct Certificate {
     /// Proved statement, a sentence.
     pub shown: String,
-    /// Random points at which it was tested.
+    /// Number of random points at which it was tested.
     pub points: usize,
     /// The primes of these points.
     pub primes: Vec<u64>,
@@ -87,7 +87,7 @@ impl Certificate {
 /// Reason for which a claim fails, with a point at which it can be checked by hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Witness {
-    /// Violated statement, in words.
+    /// Statement that contradicts the claim.
     pub reason: String,
     /// The point, if one is needed.
     pub sample: Option<Sample>,
@@ -117,7 +117,7 @@ impl Finding {
         }
     }
 
-    /// Grounds in words: the certificate, the witness or the reason.
+    /// Grounds as text: the certificate, the witness or the reason.
     pub fn grounds(&self) -> String {
         match &self.verdict {
             Verdict::Proved(certificate) => certificate.to_string(),
@@ -230,7 +230,7 @@ impl fmt::Display for Witness {
     }
 }
 
-/// Twelve digits, for comparison by hand.
+/// Twelve significant digits, for comparison by hand. Decimal notation omits zeros at the end.
 pub(crate) fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -151,9 +151,9 @@ const PIVOT: f64 = 1e-9;
 
 /// Greedy choice of columns with an invertible minor, from the last column to the first.
 ///
-/// NOTE: every choice with an invertible minor is valid. This one is documented as the order of the volume. Coordinates
-/// that place a body are mostly declared first, and coordinates of its shape last; an angle of a wheel often has no
-/// constant coefficient.
+/// NOTE: every choice with an invertible minor is valid; the documentation of the invariant volume names this one. It
+/// tends to keep the coordinates that place a body independent, because these are mostly declared first. It may take
+/// a wheel angle, although its coefficients are often not constant.
 pub(super) fn choose_dependent<A: Arithmetic>(
     jets: &Jets<'_, A>,
     forms: &Matrix<A>,

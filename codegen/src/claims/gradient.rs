@@ -1,6 +1,6 @@
 //! Gradient of the logarithm of a density without closed form, as a list of arithmetic steps: the covector `beta` with
-//! `beta(Z) = c` for elements `(Z, c)` of the hull whose vectors span. Its line integrals are the logarithm of the
-//! density.
+//! `beta(Z) = c` for elements `(Z, c)` of the hull whose vectors span the tangent space. The line integrals of `beta`
+//! are the logarithm of the density.
 
 use std::cell::RefCell;
 
@@ -24,7 +24,7 @@ pub struct Gradient {
     pub demands: Vec<Step>,
 }
 
-/// The integral of a gradient along the line from a configuration.
+/// The integral of a gradient along straight lines from one configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Integral {
     /// The gradient.

@@ -21,20 +21,21 @@ use super::problem::Problem;
 use super::sample::{self, Sample};
 use crate::model::Model;
 
-/// Smallest and largest number of points of the trapezoidal rule, which converges geometrically for periodic functions.
-/// The points are doubled until the growth changes by at most this fraction of the integral of the absolute value.
+/// Smallest and largest number of points of the trapezoidal rule, which converges geometrically for analytic periodic
+/// functions. The number is doubled until the growth changes by at most the fraction [`CONVERGED`] of the integral of
+/// the absolute value.
 const POINTS: (usize, usize) = (32, 1024);
 const CONVERGED: f64 = 1e-10;
-/// Fraction of that integral below which doubles lose some of the printed digits.
+/// Fraction of the integral of the absolute value below which a growth in doubles loses some of the printed digits.
 const CANCELLED: f64 = 1e-2;
-/// Further allowed change of the growth, an absolute one, for loops along which all terms vanish.
+/// Absolute change of the growth that is allowed in addition, for loops along which all terms vanish.
 const ROUNDING: f64 = 1e-12;
 /// Offset of the points, as a fraction of the step.
 const SHIFT: f64 = 0.382;
 /// Number of cells of the first enclosure, and number of enclosures after which the question stays open.
 const CELLS: usize = 32;
 const ENCLOSURES: usize = 1024;
-/// Orders of the series in cells. The second one is for growths that are small relative to the variation of `G`.
+/// Orders of the series in cells. The second order is tried where the growth is small relative to the variation of `G`.
 const ORDERS: [usize; 2] = [2, 8];
 /// Number of monomials beyond which a series is not computed.
 const MONOMIALS: usize = 2000;
@@ -101,8 +102,8 @@ impl<'l> Loop<'l> {
         }
     }
 
-    /// Growth with all printed digits, certified to differ from 0. The certificate holds if every symbol of the sample
-    /// has a value next to its own, or a value in its given range.
+    /// Growth with all printed digits, certified to differ from 0. The certificate holds for all values of the symbols
+    /// within their ranges in `ranges`. Symbols without such a range have their values in the sample, up to rounding.
     ///
     /// # Errors
     /// [`Uncertain`] if the growth is not certified.
@@ -311,7 +312,7 @@ impl<'l> Loop<'l> {
         Cell { ends, part }
     }
 
-    /// True if the velocity-linear part, the potential and the forces have values all over a box.
+    /// True if the velocity-linear part, the potential and the forces have values everywhere in a box.
     fn is_defined(&self, place: &EnclosedPoint) -> bool {
         let values = place.clone().values(&self.model.pool, &self.defined);
         values.is_some_and(|values| {

@@ -38,7 +38,7 @@ pub(super) struct Effect {
     pub(super) surface: usize,
     /// The verdict on the claim that it keeps the volume, with a state where it does not.
     pub(super) verdict: Verdict,
-    /// The effect in words.
+    /// The effect as text.
     pub(super) text: String,
 }
 
@@ -66,7 +66,7 @@ impl Effect {
 pub(super) struct Surroundings<'s> {
     pub(super) derivation: &'s Derivation,
     pub(super) dynamics: &'s Dynamics,
-    /// The modes of the whole, in order.
+    /// All modes of the model, in order; empty for a model without modes.
     pub(super) others: &'s [&'s Model],
     pub(super) seed: u64,
 }
@@ -243,7 +243,7 @@ fn keeps_mu_c(mode: &Model, seed: u64) -> bool {
     found.is_some_and(|(potential, _)| potential.terms.is_empty())
 }
 
-/// The effect of a law on `mu_C`, in words.
+/// The effect of a law on `mu_C`, as text.
 pub(super) fn factor(model: &mut Model, surface: usize, wall: &Wall) -> String {
     const RHO: &str = "rho = dh(pi_D grad h)/dh(grad h)";
     const RATES: &str = "where G- and G+ are the gap rates before and after";
@@ -374,9 +374,9 @@ impl AtImpact for Change<'_> {
         Some(vec![square(after), field.neg(square(before))])
     }
 
-    /// True if the motion crosses the surface: sliding motion is examined in [`super::sliding`]. Where the motion may
-    /// slide, the answer is certain if the Jacobian is positive, or if its sign is unknown but the volume before is not
-    /// 0.
+    /// True if terms with a sum other than 0 prove that the volume changes. Where the motion may slide, they do if the
+    /// Jacobian is positive, because the motion then crosses the surface. If the sign of the Jacobian is unknown, they
+    /// do if the volume before is not 0, because sliding maps it to 0. [`super::sliding`] examines motion that slides.
     fn is_certain<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         if !may_slide(self.wall) {
             return true;

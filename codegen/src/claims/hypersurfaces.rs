@@ -111,7 +111,7 @@ impl Search<'_> {
         Some(Some((related, points)))
     }
 
-    /// Points over which a density exists: a base with the parameter at a root of delta.
+    /// Points over which a density exists: a base with the parameter at a root or pole of delta.
     fn roots(&self, seed: u64, trials: &mut usize) -> Option<Vec<ModularPoint>> {
         let Some((base, delta)) = self.column.base(seed) else {
             return Some(Vec::new());
@@ -157,12 +157,13 @@ impl Search<'_> {
         point.value(symbol, self.column.pool.symbol_assumption(symbol))
     }
 
-    /// Parameters that cannot change alone without loss of the density, and the one whose roots are sought.
+    /// Parameters that a condition relates: those whose change alone destroys the density, and the one whose roots are
+    /// sought.
     fn related(&self, point: &ModularPoint, seed: u64) -> Vec<SymbolId> {
         let field = point.modulus();
         let cannot_change = |symbol: &SymbolId| {
             let mut changed = point.clone();
-            // A square factor keeps positive values positive.
+            // Positive values are squares modulo the prime. The factor is a square, so the product is one, too.
             changed.set(
                 *symbol,
                 field.mul(self.value(point, *symbol), field.integer(9)),

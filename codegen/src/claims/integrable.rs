@@ -2,9 +2,9 @@
 //! involution, with differentials that are independent at almost all states.
 //!
 //! Without constraints, forces and dependence on time, these are the hypotheses of the theorem of Liouville and Arnold.
-//! A surface that keeps each function keeps their common level sets (W. Clark, thesis, VIII.6). Otherwise the claim
-//! says no more than the listed properties: forces do not enter the bracket, and with constraints the bracket is almost
-//! Poisson.
+//! A surface that keeps each function keeps their common level sets (W. Clark, thesis, VIII.6). With constraints, forces
+//! or dependence on time, the claim says no more than the listed properties: forces do not enter the bracket, and with
+//! constraints the bracket is almost Poisson.
 
 use dalembert_expr::{ExprId, Node, Pool, Sign, Singularity};
 
@@ -193,7 +193,8 @@ fn dependent(model: &Model, question: &Lie<'_>, functions: &[Named<'_>]) -> Witn
     }
 }
 
-/// Factors, the largest of them 1, with which rows add up to 0; `None` if they are independent.
+/// Factors with which the rows add up to 0, scaled so that the largest absolute value is 1. `None` if the rows are
+/// independent.
 fn relation(rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     /// Fraction of the size of a row below which its remainder counts as rounding.
     const ROUNDING: f64 = 1e-9;

@@ -95,7 +95,7 @@ pub(super) fn check_on_parts(
             return refuted;
         }
     }
-    // A form that is 0 on some parts of D is a claim about the others.
+    // A claim on a form that is 0 on some parts of D still states something about the other parts.
     match nothing.len() == parts.len() {
         true => nothing.swap_remove(0),
         false => together.verdict(),
@@ -227,7 +227,7 @@ pub(super) fn kept_by_motion(
     verdict
 }
 
-/// A place where the form may jump along a motion, in words.
+/// A place where the form may jump along a motion, as text.
 fn discontinuities(
     model: &mut Model,
     around: &Surroundings<'_>,
@@ -357,7 +357,8 @@ enum After {
     Law,
     /// Free or held motion.
     Contact(Contact),
-    /// Either motion: for vectors along the wall, the law alone decides.
+    /// Either motion. The form is evaluated only on vectors of velocities: they are tangent to the wall, so that their
+    /// images depend on the law but not on the motion.
     Any,
 }
 

@@ -13,7 +13,7 @@ use super::together::Together;
 use crate::mechanics::bracket::{FunctionOnD, derive_bracket};
 use crate::model::{Model, StatedFunction};
 
-/// Largest length of the text of a bracket in a message. Of longer ones only the value is given.
+/// Largest length of the text of a bracket in a message. For a longer bracket the message gives only the value.
 const READABLE: usize = 120;
 
 /// The verdict on `involution: f, g, ..`.

@@ -209,8 +209,8 @@ pub(super) fn check_factor(
     }
 }
 
-/// The verdict on a factor with the right absolute value and a sign that may be negative. At a transition between
-/// fields the factor itself is known, and a state shows the sign.
+/// The verdict on a factor with the right absolute value that may be negative. At a transition between first-order modes
+/// the sign of the factor is known too, and a state shows that the claimed factor is negative.
 fn up_to_its_sign(
     model: &Model,
     around: &Surroundings<'_>,

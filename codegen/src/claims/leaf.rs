@@ -67,8 +67,8 @@ fn regular_there(model: &Model, problem: &Problem, sample: &Sample, seed: u64) -
     decide_local_in(&model.pool, problem, &frame.dependent, seed).ok()
 }
 
-/// A configuration near a simple zero of a function, and an interval of one coordinate that contains the zero if all
-/// others have these values.
+/// A configuration near a simple zero of a function, and an interval of one coordinate. The interval contains the zero
+/// if all other coordinates have the values of the configuration.
 fn zero_of(model: &mut Model, problem: &Problem, id: ExprId) -> Option<(Sample, Domain)> {
     let domain = domain(model, id);
     let slopes: Vec<ExprId> = domain

@@ -185,7 +185,7 @@ impl Entered {
 }
 
 /// The verdict on whether the form is also kept behind a surface; `None` if that needs no proof. If the constraints of
-/// the mode behind it are integrable, that mode may preserve the form on vectors along its leaves only. The surface
+/// the mode behind it are integrable, that mode may preserve the form only on vectors along its leaves. The surface
 /// must then map vectors along leaves to such vectors, or the mode must preserve the form on all vectors (`keeps_all`).
 pub(super) fn check_behind(
     model: &mut Model,

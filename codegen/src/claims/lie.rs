@@ -13,7 +13,7 @@ use super::evidence::{Vanishing, in_arguments};
 use super::expansion::{Expansions, Part, Products, Tangents, accelerations, inner};
 use crate::model::{ExteriorForm, Model, Wedge};
 
-/// A question about a form at all states.
+/// The question whether a form, or its derivative along the motion, vanishes at all states.
 pub(super) struct Lie<'l> {
     dynamics: &'l Dynamics,
     tangents: &'l Tangents,
@@ -27,7 +27,7 @@ pub(super) struct Lie<'l> {
 }
 
 impl<'l> Lie<'l> {
-    /// The derivative of a form that is written out.
+    /// The question about the derivative of a form, in which energy, momenta and rates are written out.
     pub(super) fn of(
         model: &mut Model,
         dynamics: &'l Dynamics,

@@ -6,10 +6,10 @@
 //! | `linear.rs`, `frame.rs`, `closure.rs` | the frame of D as series, and its hull under brackets |
 //! | `exactness.rs` | existence of a local density |
 //! | `potential.rs`, `fit.rs`, `global.rs`, `growth.rs`, `reflection.rs`, `regularity.rs`, `smoothness.rs`, `leaf.rs` | the density in closed form; its periods and its regularity |
-//! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume as it is lowered, with a density in closed form or an integral for it |
+//! | `volume.rs`, `gradient.rs`, `trace.rs` | the volume as it is lowered, with a density in closed form or as an integral |
 //! | `momentum.rs`, `darboux.rs`, `ansatz.rs`, `elimination.rs` | densities that depend on velocities |
 //! | `conditions.rs`, `exceptional.rs`, `hypersurfaces.rs`, `polynomial.rs` | conditions on parameters under which a density exists |
-//! | `alternatives.rs` | conditions and densities that depend on velocities, in words |
+//! | `alternatives.rs` | conditions, and densities that depend on velocities, as text |
 //! | `defaults.rs` | claims at the declared values of parameters |
 //! | `geometry.rs`, `dynamics.rs`, `branches.rs` | frame and theta, and the motion on D, at a point |
 //! | `evidence.rs`, `continuity.rs` | evidence that a quantity vanishes at all states; places where a quantity may jump |
@@ -24,7 +24,7 @@
 //! | `together.rs` | several proofs that are needed together |
 //! | `corollaries.rs` | consequences of an invariant volume |
 //! | `obstruction.rs`, `sample.rs` | points for a check by hand |
-//! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts in words |
+//! | `examine.rs`, `finding.rs`, `undecided.rs` | all claims of a model in turn; verdicts as text |
 //!
 //! Decisions are taken modulo 61-bit primes at random points. A search in double precision finds points that may prove
 //! a statement. Such a point counts only if an enclosure confirms it.

@@ -53,9 +53,9 @@ impl MomentumDensity {
     }
 }
 
-/// A density that depends on velocities, for a model without a density of the configuration alone on all of Q; `None`
-/// if no density of the forms tried exists. `exactness`: the decision about densities of the configuration. `seed`
-/// determines the random points.
+/// A density that depends on velocities, for a model without a density of the configuration on all of Q; `None` if no
+/// density of the forms tried exists. `exactness`: the decision about densities of the configuration. `seed` determines
+/// the random points.
 ///
 /// # Errors
 /// [`Undecided`], if there are no sample points.

@@ -1,6 +1,6 @@
 //! Obstruction to a density, in real numbers. The *demand* of a vector field is the derivative of `G` along it that a
-//! density requires. An obstruction is a bracket that is a combination of others as a vector field, while its demand
-//! differs from the same combination of their demands.
+//! density requires. An obstruction is a bracket that is, as a vector field, a combination of other elements of the
+//! hull, while its demand differs from the same combination of the demands of these elements.
 
 use dalembert_expr::{
     Arithmetic, BallPoint, EnclosedPoint, ExpansionPoint, JetSpace, Jets, Pool, RangePoint,
@@ -28,7 +28,7 @@ pub struct Obstruction {
     pub relation: Vec<(String, f64)>,
     /// Demand of the bracket on the derivative of `G`, minus that of the combination.
     pub delta: f64,
-    /// Size of the terms of `delta`.
+    /// Largest entry of the elements plus the sizes of the terms of `delta`, for comparison with rounding errors.
     pub scale: f64,
     /// True if the obstruction is proved, by an enclosure of `delta` or by residues alone.
     pub is_certain: bool,
@@ -36,8 +36,8 @@ pub struct Obstruction {
 
 /// Largest number of points that are tried.
 const ATTEMPTS: usize = 64;
-/// Spaces of series with more monomials than this are first evaluated in doubles, or in intervals of doubles where
-/// residues are no proof. Both are faster than balls.
+/// If series have more monomials than this, the obstruction is first evaluated in doubles, or in intervals of doubles
+/// where residues are no proof. Both are faster than balls.
 const LARGE: usize = 200;
 /// Smallest ratio of `delta` to its scale at which doubles are used.
 const CLEAR_IN_DOUBLES: f64 = 1e-4;
@@ -51,7 +51,8 @@ const LEAST_PIVOT: f64 = 1e-9;
 
 /// The obstruction at the first real point that shows one; `None` if no point tried shows one. If the hull does not
 /// span all components, combinations of its elements are known only on the branches that were sampled modulo primes.
-/// For a density with roots, every point at which the bracket is such a combination must then show the obstruction.
+/// For a model with roots or absolute values, every point at which the bracket is such a combination must then show the
+/// obstruction.
 pub fn find_obstruction(model: &Model, problem: &Problem, local: &Local) -> Option<Obstruction> {
     let roots = problem.roots();
     let spans = local.rank == problem.components();
@@ -136,7 +137,7 @@ fn obstruction_at(
     question.enclosed::<BallPoint>(REMAINDER_OF_BALLS)
 }
 
-/// A hull with an obstruction, and a point to show it at.
+/// A hull with an obstruction, and the point at which the obstruction is computed.
 struct Question<'q> {
     model: &'q Model,
     problem: &'q Problem,
@@ -148,7 +149,8 @@ struct Question<'q> {
 struct Parts<S> {
     /// Elements of the hull. The demand is the last entry of each.
     elements: Vec<Vec<S>>,
-    /// The basis of the elements before the bracket: index, and coefficient of the bracket in it.
+    /// Indices of the elements of the hull's basis that come before the bracket, with their coefficients in the
+    /// combination.
     relation: Vec<(usize, S)>,
     /// Remainder: the bracket minus the combination.
     rest: Vec<S>,
@@ -324,8 +326,8 @@ pub(super) fn elements_at<P: ExpansionPoint>(
     Some(elements.iter().map(values).collect())
 }
 
-/// Elements of a hull at a point, as series; the demand is the last entry of each. Their order is that of `jets` minus
-/// the depth of the hull.
+/// Elements of a hull at a point, as series; the demand is the last entry of each. They are valid up to the order of
+/// `jets` minus the depth of the hull.
 pub(super) fn elements_in<P: ExpansionPoint>(
     pool: &Pool,
     problem: &Problem,

@@ -33,9 +33,9 @@ pub(super) struct Passage {
     /// The mode that is entered, at the positions after the passage. Its expressions contain the velocities after the
     /// passage if these are declared, otherwise the velocities of the point.
     pub(super) after: Side,
-    /// Positions after it.
+    /// Positions after the passage.
     pub(super) positions: Vec<ExprId>,
-    /// Velocities after it.
+    /// Velocities after the passage.
     pub(super) velocities: Velocities,
     /// The derivatives of the positions by the coordinates.
     slopes: Vec<Vec<ExprId>>,
@@ -71,9 +71,9 @@ pub(super) enum Velocities {
 /// Reasons why the change of a volume is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Open {
-    /// The dimensions of the states before and after it differ: they have no common volume.
+    /// The states before and after the passage have different dimensions, and therefore no common volume.
     Dimensions(usize, usize),
-    /// Positions after it depend on velocities.
+    /// Positions after the passage depend on velocities.
     Positions,
     /// The dimensions agree, but the numbers of coordinates differ.
     Coordinates,
@@ -263,8 +263,8 @@ impl Passage {
     }
 
     /// A quantity, which may name `energy` and momenta, in the mode that is entered, at the state after the passage. If
-    /// the velocities after it are computed, it is a function of the velocities of the point. `None` if that mode lacks
-    /// it.
+    /// the velocities after the passage are computed, the result is a function of the velocities of the point. `None` if
+    /// the entered mode lacks the quantity.
     pub(super) fn quantity_after(
         &self,
         model: &mut Model,
@@ -302,7 +302,7 @@ impl Passage {
         matches!(self.velocities, Velocities::Refracted)
     }
 
-    /// True if the velocities after it are computed, not written out as expressions.
+    /// True if the velocities after the passage are computed at a point, not written out as expressions.
     pub(super) fn computes_velocities(&self) -> bool {
         matches!(self.velocities, Velocities::Nearest | Velocities::Refracted)
     }
@@ -318,7 +318,7 @@ impl Passage {
         self.is_kept && self.before.rates.is_some()
     }
 
-    /// The expressions on which the velocities after it depend.
+    /// The expressions on which the velocities after the passage depend.
     pub(super) fn velocity_roots(&self) -> Vec<ExprId> {
         let of_metric = |side: &Side| side.metric.iter().flatten().copied().collect::<Vec<_>>();
         match &self.velocities {
@@ -356,7 +356,7 @@ impl Passage {
         roots
     }
 
-    /// The velocities after it; `None` at a singular point.
+    /// The velocities after the passage; `None` at a singular point.
     pub(super) fn velocities_after<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -382,7 +382,7 @@ impl Passage {
         Some(after.iter().map(|series| jets.value(series)).collect())
     }
 
-    /// The velocities after it as series, given the series of expressions and of the velocities before it.
+    /// The velocities after the passage as series, given the series of expressions and of the velocities before it.
     pub(super) fn velocities_along<P: ExpansionPoint>(
         &self,
         jets: &Jets<'_, P::Field>,
@@ -443,8 +443,8 @@ impl Passage {
         Some((0..n).map(row).collect())
     }
 
-    /// The factor of `mu_C`; `None` at a singular point, or if the change is not known. Its sign is that of the ratio
-    /// of the gap rates where the state stays; otherwise the sign has no meaning.
+    /// The factor of `mu_C`; `None` at a singular point, or if the change is not known. Where the state stays, the sign
+    /// is the sign of the ratio of the gap rates. Otherwise it has no meaning.
     pub(super) fn jacobian<P: ExpansionPoint>(
         &self,
         model: &Model,

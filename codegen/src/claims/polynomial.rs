@@ -190,7 +190,7 @@ mod tests {
                 (x, FIELD.mul(value(FIELD, &above, x), inverse))
             })
             .collect();
-        // Three coefficients and four.
+        // The numerator has three coefficients, the denominator four, and two values serve as a check.
         assert_eq!(rational_function(FIELD, &values[..8], 2), None);
         let (n, d) = rational_function(FIELD, &values[..9], 2).expect("a function");
         assert_eq!(roots(FIELD, &n), roots(FIELD, &above));

@@ -59,7 +59,7 @@ pub(super) enum Allowed {
     Regular,
     /// Single-valued terms.
     SingleValued,
-    /// All of them.
+    /// All terms, angles included.
     All,
 }
 

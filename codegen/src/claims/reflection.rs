@@ -16,7 +16,7 @@ use super::obstruction::elements_at;
 use super::problem::Problem;
 use crate::model::{Model, Topology};
 
-/// Points at which an identity must hold, without roots and with them.
+/// Numbers of points at which an identity must hold, without roots and with them.
 const POINTS: (usize, usize) = (3, 64);
 /// Largest number of maps that are tried.
 const MAPS: usize = 64;

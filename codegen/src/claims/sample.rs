@@ -16,7 +16,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The point as an expansion takes it.
+    /// The point at which expressions are expanded.
     pub(super) fn point(&self) -> RealPoint {
         let mut point = RealPoint::default();
         for (symbol, (_, value)) in self.symbols.iter().zip(&self.values) {
@@ -105,7 +105,8 @@ const HUNDREDTHS: [i32; 16] = [
 /// Allowed relative error of a root computed in doubles.
 const ROUNDING: f64 = 1e-12;
 
-/// Number of attempts in which parameters have their declared defaults, unless these are 0.
+/// Number of attempts in which parameters have their declared defaults. A default of 0 is used in the first attempt
+/// only.
 const DECLARED: usize = 8;
 /// Number of attempts with coordinates between -1 and 1. Later attempts multiply coordinates on lines by one of the
 /// scales, because roots and logarithms may be defined only far from 0.
@@ -114,8 +115,8 @@ const SCALES: [f64; 4] = [1.0, 8.0, 64.0, 1.0 / 8.0];
 /// Number of samples without a real state after which the search ends.
 pub(super) const ATTEMPTS: usize = 64;
 
-/// Sample number `attempt` for the symbols that `uses` accepts, time included. Parameters have their defaults where
-/// these are declared.
+/// Sample number `attempt` for the symbols that `uses` accepts, time included. In the first [`DECLARED`] samples,
+/// parameters have their declared defaults.
 pub(super) fn sample(model: &Model, attempt: usize, uses: impl Fn(SymbolId) -> bool) -> Sample {
     let mut sample = Sample::default();
     let mut drawn = attempt * 5;
@@ -192,7 +193,7 @@ pub(super) fn move_between_knots(
         let middles = knots.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
         let mut places: Vec<f64> = middles.collect();
         places.extend([first - 0.5, last + 0.5]);
-        // The stride has no small divisors, so that every combination of places occurs in some attempt.
+        // The stride differs between coordinates and shifts with the attempts, so that places are combined in many ways.
         let place = places[(attempt * (2 * i + 1) + attempt / (7 + i)) % places.len()];
         sample.set(coordinate.q, place);
     }

@@ -223,8 +223,8 @@ pub(super) fn named_in(model: &Model, entered: &mut Model, quantity: ExprId) -> 
     Some(explicit(entered, there))
 }
 
-/// Expressions of another mode as expressions of this mode, with that mode at the state with these positions and
-/// velocities. `None` if they contain a symbol that this mode lacks.
+/// Expressions of another mode, at the state with these positions and velocities, as expressions of this mode. `None`
+/// if the other mode has a parameter that this mode lacks, or if an expression contains another unknown symbol.
 pub(super) fn imported(
     model: &mut Model,
     entered: &Model,
@@ -235,8 +235,8 @@ pub(super) fn imported(
     model.pool.import(&entered.pool, expressions, &replacements)
 }
 
-/// The symbols of a mode with the expressions of this model that replace them. The mode is at the state with these
-/// positions and velocities.
+/// The symbols of a mode at the state with these positions and velocities, with the expressions of this model that
+/// replace them. `None` if this model lacks a parameter of the mode.
 fn replacements(
     model: &mut Model,
     entered: &Model,

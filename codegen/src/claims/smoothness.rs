@@ -10,7 +10,7 @@ use super::problem::Problem;
 use super::regularity::{determinant, is_never_zero};
 use crate::model::Model;
 
-/// Reason why it stays open for a declaration that is not smooth if `G` is single-valued.
+/// Reason to leave the answer open for a declaration that is not smooth: `G` may not be single-valued.
 pub(super) const HOLES: &str = "G was found in no closed form, and G may grow along loops around configurations where the declaration is singular";
 
 /// Number of points of each branch.

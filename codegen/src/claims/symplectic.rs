@@ -1,7 +1,7 @@
 //! `symplectic`: decides whether the motion and all events at surfaces preserve `dp_i ^ dq^i`.
 //!
 //! ```text
-//! motion        L_X (dp_i dq^i) = d(F_i dq^i) + d(lambda_a eta^a)
+//! motion        L_X (dp_i ^ dq^i) = d(F_i dq^i) + d(lambda_a eta^a)
 //! surfaces      the form has the same values on vectors before h = 0 and on their images behind it, see `carried.rs`
 //! ```
 //!

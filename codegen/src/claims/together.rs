@@ -14,7 +14,7 @@ impl Together {
         Self { all, open: None }
     }
 
-    /// Adds a verdict. Returns a refutation.
+    /// Adds a verdict. Returns it if it is a refutation.
     pub fn add(&mut self, verdict: Verdict) -> Option<Verdict> {
         match verdict {
             Verdict::Proved(part) => self.all.rest_on(&part),

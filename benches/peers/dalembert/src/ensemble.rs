@@ -15,7 +15,8 @@ const TRAJECTORIES: usize = 10_000;
 /// Number of trajectories whose ends are compared one by one.
 const SAMPLES: usize = 10;
 
-/// Number of trajectories that are timed together: so few that other programs disturb some repetitions, but not all.
+/// Number of trajectories that are timed together. The time is so short that other programs leave some repetitions
+/// undisturbed.
 const PART: usize = 400;
 
 /// Measures W5. There is no W5r: the generator reduces the disk itself.

@@ -1,6 +1,6 @@
 //! The systems of the workloads, with Lagrangians, constraints and surfaces, but without claims. The sleigh declares a
-//! frame, since its constraint determines no coordinate velocity at every angle. The generator finds the frame of the
-//! disk.
+//! frame, since its constraint can be solved for neither `dot(x)` nor `dot(y)` at all angles. The generator finds the
+//! frame of the disk.
 
 dalembert::model! {
     /// A vertical disk that rolls on an elliptical table.

@@ -12,12 +12,12 @@ use crate::{Plan, State};
 /// Number of states that are evaluated in turn.
 const STATES: usize = 64;
 
-/// Evaluations in one timing, multiplied by the number of links.
+/// Number of evaluations in one timing, times the number of links.
 const EVALUATIONS: usize = 1 << 17;
 
 const GRAVITY: f64 = 9.81;
 
-/// Measures both forms at every size.
+/// Measures both declarations of the chain at every size.
 pub fn chains(plan: &Plan) {
     angles(&Angles2::default(), plan);
     angles(&Angles4::default(), plan);
@@ -45,7 +45,7 @@ fn motions(links: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
 }
 
 /// `sum_j (N - max(i, j)) (cos(theta_i - theta_j) a_j + sin(theta_i - theta_j) omega_j^2) + (N - i) g sin(theta_i)`
-/// with indices from 0, and the sum of the absolute values of its terms. It vanishes if `a` are the angular
+/// with indices from 0, and the sum of the absolute values of its terms. The first sum vanishes if `a` are the angular
 /// accelerations.
 fn residual(theta: &[f64], omega: &[f64], a: &[f64], i: usize) -> (f64, f64) {
     let weight = (theta.len() - i) as f64 * GRAVITY * theta[i].sin();

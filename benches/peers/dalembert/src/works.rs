@@ -1,4 +1,4 @@
-//! The tasks that consist of one run each. `benches/peers/README.md` defines them.
+//! The workloads that consist of one run each. `benches/peers/README.md` defines them.
 
 use dalembert::{Scene, System, VectorField};
 

@@ -1,4 +1,5 @@
-//! Storage of the coefficients of all orders, and the sums over their products that are computed side by side.
+//! Storage of the coefficients of all orders, and the sums over their products that are computed side by side. The
+//! coefficients of one value are its history; a weighted history has each coefficient times its order.
 //!
 //! A sum over `a_j b_(k-j)` with `0 < j < k` needs no coefficient of order `k`: all such sums of an order can be
 //! computed at its beginning, in any sequence. They are therefore computed side by side. Row `k` of the storage holds
@@ -53,7 +54,7 @@ impl Block {
         self.factors[0].len()
     }
 
-    /// Places of the coefficients of each factor in a row, and the local with the newest of them.
+    /// For each factor, the place of its coefficients in a row and the local that holds the newest ones.
     fn places(&self) -> impl Iterator<Item = (Literal, Ident)> + '_ {
         (0..self.factors.len()).map(|i| {
             let place = self.place + i * self.width;

@@ -100,8 +100,9 @@ struct Expansion {
 
 impl Expansion {
     fn of(jet: &Jet, context: &Context<'_>) -> Self {
-        // The first pass finds the coefficients to store. In a small expansion, statements depend on the final layout
-        // of all of them, so they are written a second time. In a large one, every coefficient keeps its first place.
+        // The first pass finds the coefficients to store. The statements of a small expansion depend on the final
+        // layout, so they are written a second time. In a large expansion, a coefficient keeps the place that it first
+        // gets.
         let mut writer = Writer::of(jet, context);
         let mut orders = writer.orders();
         if !writer.is_large() {

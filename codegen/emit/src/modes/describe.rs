@@ -76,7 +76,7 @@ pub(super) fn emit_scene(whole: &Whole<'_>) -> TokenStream {
             quote!(::dalembert::Impacts::declared(self)),
         )
     });
-    // Where a mode is entered, projection begins after the transition.
+    // Impacts come first, so that projection in a mode that is entered begins after the transition.
     let (effects, values): (Vec<_>, Vec<_>) = impacts.into_iter().chain(projection).unzip();
     quote! {
         #attributes

@@ -1,5 +1,5 @@
 //! Code of a model with modes: a type for each mode, as for scenes, and a type for the whole, which calls the kernels
-//! of the present mode.
+//! of the current mode.
 
 mod describe;
 mod types;

@@ -8,7 +8,7 @@ use crate::indices::emit_entries;
 use crate::{doc, parameters, scene};
 use dalembert_codegen::model;
 
-/// The struct, and `Default` when every parameter has one.
+/// The struct, and its `Default` if every parameter has a default.
 pub(super) fn emit_struct(whole: &Whole<'_>) -> TokenStream {
     let model = whole.model();
     let type_name = whole.type_name();

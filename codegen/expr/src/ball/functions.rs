@@ -23,7 +23,8 @@ const SMALL: i32 = 8;
 /// Numbers of terms of sums in `t^k` and in `t^(2k)`. Omitted terms are below `2^-256`.
 const TERMS: u64 = 22;
 const SQUARES: u64 = 11;
-/// Arguments of `log1p` up to `2^-LITTLE` are summed, with so many terms. Omitted terms are below `2^-256` of the sum.
+/// The series of `log1p` is summed for arguments up to `2^-LITTLE`, with `LITTLE_TERMS` terms. Omitted terms are below
+/// `2^-256` of the sum.
 const LITTLE: i32 = 16;
 const LITTLE_TERMS: u64 = 17;
 /// Largest absolute value of arguments. Beyond it `exp` gives `None`, and sines and cosines have the bounds -1 and 1.
@@ -119,7 +120,7 @@ impl Ball {
         if !start.is_finite() {
             return None;
         }
-        // `u`, if the angles differ by less than a quarter turn.
+        // `u`; `None` unless the angles certainly differ by less than a quarter turn.
         let rest = |tangent: Self, angle: Self| {
             let (sine, cosine) = angle.sin_cos();
             let below = cosine.add(tangent.mul(sine));

@@ -215,7 +215,7 @@ impl Ball {
     }
 
     /// `self^exponent`: by multiplications for integers, by square roots for halves, else by the logarithm. `None` if a
-    /// number in the ball may have no power.
+    /// number in the ball may have no power, or if an integer exponent is too large.
     pub fn power(self, exponent: &Rational) -> Option<Self> {
         match exponent.to_small() {
             Some((n, 1)) => self.integer_power(n),

@@ -104,7 +104,7 @@ impl Wide {
 
     /// Upper bound of the absolute value.
     pub(super) fn at_most(&self) -> f64 {
-        // What `leading` calls below its range is less than 2^53 times 2^-1023.
+        // A number below the range of `leading` is less than 2^53 times 2^-1023.
         self.leading(1, f64::INFINITY, power_of_two(-970))
     }
 
@@ -287,7 +287,7 @@ fn normalised(is_negative: bool, mut mantissa: [u64; WORDS], mut exponent: i32) 
     }
 }
 
-/// The mantissa shifted to the right. True if a bit that was 1 is lost.
+/// The mantissa shifted to the right, and true if a bit that was 1 is lost.
 fn shifted_right(mantissa: &[u64; WORDS], shift: i32) -> ([u64; WORDS], bool) {
     if shift >= BITS {
         return ([0; WORDS], *mantissa != [0; WORDS]);
@@ -315,7 +315,7 @@ fn shifted_right(mantissa: &[u64; WORDS], shift: i32) -> ([u64; WORDS], bool) {
     (result, is_cut)
 }
 
-/// The sum modulo `2^256`. True if there is a carry.
+/// The sum modulo `2^256`, and true if there is a carry.
 fn added(a: &[u64; WORDS], b: &[u64; WORDS]) -> ([u64; WORDS], bool) {
     let mut sum = [0; WORDS];
     let mut carry = false;

@@ -34,7 +34,7 @@ pub(super) enum Layout {
 /// Coefficient and powers of `coefficient * product of base^exponent`.
 type Term = (Rational, Vec<(ExprId, Rational)>);
 
-/// Base of a factor: an expression, or what remains of a sum after its common factors are taken out.
+/// Base of a factor: an expression, or a sum whose common factors were taken out.
 enum Base {
     Expression(ExprId),
     Sum(Vec<Term>),

@@ -26,7 +26,7 @@ pub trait Arithmetic: Copy {
     fn sub(self, a: Self::Scalar, b: Self::Scalar) -> Self::Scalar;
     /// `a b`
     fn mul(self, a: Self::Scalar, b: Self::Scalar) -> Self::Scalar;
-    /// `1 / a`; `None` for 0.
+    /// `1 / a`; `None` if `a` is 0 or, for ranges, contains 0.
     fn inv(self, a: Self::Scalar) -> Option<Self::Scalar>;
     /// Pivot quality: 0 for a number that must not be a pivot, largest for the best pivot.
     fn size(self, a: Self::Scalar) -> f64;

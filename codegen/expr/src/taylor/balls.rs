@@ -47,7 +47,8 @@ impl Arithmetic for Balls {
         a.is_zero()
     }
 
-    /// The smallest absolute value in the ball. It is 0 for a ball that contains 0, which therefore is never a pivot.
+    /// Lower bound of the absolute values in the ball. It is 0 for a ball that contains 0, which therefore is never a
+    /// pivot.
     fn size(self, a: Ball) -> f64 {
         a.mignitude()
     }
@@ -263,7 +264,7 @@ mod tests {
                 let (Some(range), Some(value)) = (range, apply(function, Ball::double(x))) else {
                     continue;
                 };
-                // The ball of the value is too wide to compare, such as that of the sine of a large angle.
+                // Some balls are too wide to compare, for example sines of large angles.
                 if value.radius() > 0.5 {
                     continue;
                 }

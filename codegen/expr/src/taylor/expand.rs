@@ -153,9 +153,10 @@ impl ExpansionPoint for RealPoint {
 }
 
 impl Pool {
-    /// The Taylor series of `roots` in `variables` at a point, in the order of `roots`. `None` if one has none there.
+    /// The Taylor series of `roots` in `variables` at a point, in the order of `roots`. `None` if one of `roots` has no
+    /// series there.
     ///
-    /// A series needs smoothness besides a value: there is none at the end of a domain, such as `sqrt(x)` at 0.
+    /// An expression may have a value but no series, as `sqrt(x)` at 0, the end of its domain.
     pub fn taylor<P: ExpansionPoint>(
         &self,
         roots: &[ExprId],

@@ -36,7 +36,8 @@ impl JetSpace {
             raised: Vec::new(),
             rows: Vec::new(),
         };
-        // The highest variable of each monomial; the next degree raises variables from there on, so each comes once.
+        // The highest variable of each monomial. A monomial is multiplied only by this variable and later ones, so that
+        // every product comes once.
         let mut highest = vec![0];
         for degree in 1..=order {
             for i in space.starts[degree - 1]..space.starts[degree] {
