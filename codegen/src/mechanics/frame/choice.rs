@@ -19,7 +19,8 @@ enum Dependent {
     Pair(usize, usize),
 }
 
-/// Quasi-velocities: the velocities of coordinates that stay independent, and one velocity along each pair.
+/// Quasi-velocities: the velocities of coordinates that stay independent, and for each pair the velocity along its
+/// constraint.
 pub(super) fn choose(
     model: &mut Model,
     constraints: &[ConstraintForm],

@@ -44,9 +44,9 @@ pub struct Frame {
 /// `u = alpha(qdot)`
 #[derive(Debug)]
 pub struct QuasiVelocity {
-    /// Name: as declared, or `x_dot` for the velocity of `x`.
+    /// Name: as declared, `x_dot` for the velocity of `x`, or `along_k` for a velocity along the constraint `k`.
     pub name: String,
-    /// The coordinate whose velocity it is, if there is one.
+    /// The coordinate whose velocity was chosen; `None` for a declared one-form and for a velocity along a constraint.
     pub coordinate: Option<usize>,
     /// `alpha_j`, N entries.
     pub form: Vec<ExprId>,
