@@ -199,12 +199,15 @@ fn refusals_name_what_is_missing() {
     };
     for (functions, expected) in [
         ("x", "2 functions are needed, found 1"),
-        (" ", "nothing is given"),
-        ("x; y", "`;` does not separate what is given"),
+        (" ", "the list is empty"),
+        ("x; y", "`;` does not separate the entries of a list"),
         ("x, y, z", "unknown name `z`"),
         ("x, x", "`x` twice"),
         ("x, momentum(y) +", "expected"),
-        ("x, momentum(y); y", "`;` does not separate what is given"),
+        (
+            "x, momentum(y); y",
+            "`;` does not separate the entries of a list",
+        ),
         ("x, }", "not a sequence of tokens"),
     ] {
         let text = refused(&disk(""), None, functions);

@@ -491,10 +491,10 @@ fn groups_are_printed_and_refused_with_the_reason() {
             "[partial(x), partial(phi) - y*partial(x) + x*partial(y)] is no combination of the fields",
         ),
         ("partial(x),", "expected an expression"),
-        ("", "nothing is given"),
+        ("", "the list is empty"),
         (
             "partial(x); partial(y)",
-            "`;` does not separate what is given",
+            "`;` does not separate the entries of a list",
         ),
         ("dot(x)*partial(x)", "is not a vector field"),
     ] {
