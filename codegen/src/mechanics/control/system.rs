@@ -53,7 +53,7 @@ pub(super) enum Back {
 pub(super) fn of(model: &mut Model) -> Result<System, Uncontrolled> {
     if let Some(constraint) = model.constraints.first() {
         let text = format!(
-            "the maximum principle of a model with constraints is not derived, and `{}` is one",
+            "no maximum principle is derived for a model with constraints, such as `{}`",
             constraint.name.display
         );
         let help = "use coordinates in which there is none";
