@@ -63,8 +63,8 @@ pub struct Reduction {
     pub constrained: Matrix,
     /// `<p, e_i>` on D
     pub momenta_on_d: Vec<ExprId>,
-    /// Rates of `momenta_on_d` along the motion; `None` if constraints are affine, or if the metric, the terms linear in
-    /// the velocities, the constraints or the fields depend on time.
+    /// Rates of `momenta_on_d` along the motion; `None` if constraints are affine, or if the metric, the terms linear
+    /// in the velocities, the constraints or the fields depend on time.
     pub rates: Option<Vec<ExprId>>,
     /// Forms `A^a`; `None` unless the orbits and D together span all directions.
     pub connection: Option<Matrix>,

@@ -56,8 +56,8 @@ fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
 }
 
 /// True if `expr` is written as a polynomial in `symbols` and has at most this degree, by its structure or because its
-/// derivative of order `degree + 1` along a general direction is zero. An expression that is not written as a polynomial
-/// may have no value where the symbols are 0, and its coefficients cannot be computed there.
+/// derivative of order `degree + 1` along a general direction is zero. An expression that is not written as a
+/// polynomial may have no value where the symbols are 0, and its coefficients cannot be computed there.
 pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], degree: u32) -> bool {
     match degree_bound(pool, expr, symbols) {
         None => return false,

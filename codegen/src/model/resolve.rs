@@ -263,8 +263,8 @@ impl<'s> Resolver<'s> {
         self.add_bounded(at, &values?)
     }
 
-    /// The sum of values, as by [`Resolver::add`]. If its numbers may become long, the terms are added in portions, up to
-    /// the first number that is too long.
+    /// The sum of values, as by [`Resolver::add`]. If its numbers may become long, the terms are added in portions, up
+    /// to the first number that is too long.
     fn add_bounded(&mut self, at: Location, values: &[Value]) -> Option<Value> {
         let bits = values.iter().map(|value| self.pool.number_bits(value.expr));
         if bits.sum::<u64>() <= NUMBER_BITS {
@@ -288,7 +288,8 @@ impl<'s> Resolver<'s> {
         Some(())
     }
 
-    /// The sum of values. Its level is the sum of the levels, if all are known; the level of a constant term `c` is `c*t`.
+    /// The sum of values. Its level is the sum of the levels, if all are known; the level of a constant term `c` is
+    /// `c*t`.
     pub(super) fn add(&mut self, values: &[Value]) -> Value {
         let exprs: Vec<ExprId> = values.iter().map(|value| value.expr).collect();
         Value {

@@ -19,8 +19,8 @@ pub struct Transition {
     pub keeps_lagrangian: bool,
 }
 
-/// The state with which a mode is entered: expressions of the state before the transition, of parameters and of time, in
-/// the order of the coordinates of the mode that is entered.
+/// The state with which a mode is entered: expressions of the state before the transition, of parameters and of time,
+/// in the order of the coordinates of the mode that is entered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Map {
     /// Names of these coordinates.

@@ -388,7 +388,7 @@ pub struct Constrained {
     pub multipliers: Function,
     /// `(t, q, qdot) -> residuals, scales`
     pub residuals: Function,
-    /// `(t, q) -> eta` (M rows of N, row-major), then `eta_0`; `(t, q, qdot)` if a constraint is nonlinear in velocities
+    /// `(t, q) -> eta` (M rows of N, row-major), then `eta_0`. With constraints nonlinear in velocities: `(t, q, qdot)`
     pub forms: Function,
     /// Functions that project a state in global form to D.
     pub return_to_constraints: Option<Return>,

@@ -148,8 +148,8 @@ pub const OTHERWISE: &str = "otherwise";
 /// `=> LAW, instantaneous { .. }`.
 pub const INSTANTANEOUS: &str = "instantaneous";
 
-/// Extras of a scene besides named forces and surfaces. `projection` is the projection onto the constraints after steps,
-/// `volume` stands for density form, divergence and invariant volume.
+/// Extras of a scene besides named forces and surfaces. `projection` is the projection onto the constraints after
+/// steps, `volume` stands for density form, divergence and invariant volume.
 pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 
 /// Name of the scene with everything that was declared: the model itself.

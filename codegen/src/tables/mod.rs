@@ -40,8 +40,8 @@ pub struct FormOf<'a> {
 }
 
 impl<'a> FormOf<'a> {
-    /// The forms of a model, of a scene or of a mode: first the form in which it is run, then the global form if that is
-    /// a different one.
+    /// The forms of a model, of a scene or of a mode: first the form in which it is run, then the global form if that
+    /// is a different one.
     pub fn all(compiled: &'a Compiled, scenes: &'a [Scene]) -> Vec<Self> {
         let Compiled {
             model,

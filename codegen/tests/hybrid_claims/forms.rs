@@ -247,9 +247,9 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// A particle with `g = 2` is stopped by a floor, which holds it, or by a ceiling, from which it falls again. The values
-/// follow by hand from `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`: the impact maps states by `Delta`, and the
-/// motion has the rates `X` before and `X+` after it.
+/// A particle with `g = 2` is stopped by a floor, which holds it, or by a ceiling, from which it falls again. The
+/// values follow by hand from `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`: the impact maps states by `Delta`, and
+/// the motion has the rates `X` before and `X+` after it.
 #[test]
 fn forms_change_behind_laws_that_stop_the_motion() {
     let stop = |surface: &str| {

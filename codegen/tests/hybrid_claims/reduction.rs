@@ -421,7 +421,7 @@ fn jumps_of_momenta_at_a_straight_wall_agree_with_known_velocities() {
     }
 }
 
-/// Each law multiplies the gap rate by a number: `newton(e)` by `-e`, here -0.5, `impact_plastic` by 0, `elastic` by -1.
+/// Factors of the gap rate: `newton(e)` multiplies it by `-e`, here -0.5, `impact_plastic` by 0 and `elastic` by -1.
 #[test]
 fn laws_have_their_impulses() {
     for (law, expected) in [

@@ -237,8 +237,8 @@ fn product_sign(pool: &Pool, first: ExprId, second: ExprId) -> f64 {
     signs.next().unwrap_or(0.0)
 }
 
-/// Values of symbols at a generic point. Their sizes are about 1 for the first seeds and about 1000 for later ones, with
-/// both signs.
+/// Values of symbols at a generic point. Their sizes are about 1 for the first seeds and about 1000 for later ones,
+/// with both signs.
 fn generic(symbol: SymbolId, seed: u32) -> f64 {
     let steps = symbol.index() as f64 + 1.618_033_988_749_895 * f64::from(seed);
     let size = 0.3 + (steps * 0.618_033_988_749_894_9).fract();

@@ -49,8 +49,8 @@ fn residuals(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `eta` row by row, then `eta_0`. Constraints that are not linear in the velocities have forms that depend on the given
-/// velocities.
+/// `eta` row by row, then `eta_0`. Constraints that are not linear in the velocities have forms that depend on the
+/// given velocities.
 fn forms(model: &Model, derivation: &Derivation) -> Function {
     let arguments = match model.is_nonlinear() {
         true => Arguments::Velocities,

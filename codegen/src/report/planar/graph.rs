@@ -252,8 +252,8 @@ fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -
     }
 }
 
-/// The absolute value of the derivative for an impulsive law. In a mode with one coordinate, the law multiplies velocity
-/// and gap rate by the same factor.
+/// The absolute value of the derivative for an impulsive law. In a mode with one coordinate, the law multiplies
+/// velocity and gap rate by the same factor.
 fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
     let within = |range: Option<Interval>| match range {
         Some(range) => Slope::Within(range),
