@@ -14,8 +14,8 @@ pub enum Undecided {
     Stateless,
     /// The constraints are not linear in the velocities.
     Nonlinear,
-    /// Brackets of vector fields in D up to this depth did not close the involutive hull of D. Deeper ones are out of
-    /// reach.
+    /// Brackets of vector fields in D up to this depth did not close the involutive hull of D. Deeper brackets are not
+    /// computed.
     Depth(usize),
     /// The divergence of the forces is not known to be linear in the velocities.
     Forces,

@@ -275,7 +275,7 @@ pub struct Program {
     /// Functions of the reduced form.
     pub reduced: Option<Reduced>,
     /// Derived quantities at a state, by name. The global form has all of them, also for states off the constraints.
-    /// The reduced form has those of the frame.
+    /// The reduced form has only quantities of the frame.
     pub geometry: recipes::Geometry,
     /// Functions of constraints.
     pub constrained: Option<Constrained>,

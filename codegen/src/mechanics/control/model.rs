@@ -67,7 +67,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The first-order model, in the pool of the other model.
+    /// The first-order model. It takes over the pool of `model`, which holds its expressions.
     pub fn assembled(self, mut model: Model) -> Model {
         let item = item_of(&model);
         let coordinates = coordinates(&mut model, self.components, item);

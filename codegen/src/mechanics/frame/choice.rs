@@ -1,4 +1,4 @@
-//! A frame that is regular at every configuration, found from the constraint forms alone.
+//! A frame that is regular at every configuration, found from the coefficients of the constraint forms.
 //!
 //! A velocity can be made dependent if it occurs in only one of the constraints still to be solved, with a coefficient
 //! that is never zero. Otherwise a pair of velocities that occur in only one constraint is used, if the sum of the

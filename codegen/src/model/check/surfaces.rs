@@ -202,8 +202,8 @@ pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second:
         && count_both_ways(&resolver.pool, first, second)
 }
 
-/// True if two surfaces with resets or transitions, equal up to a constant factor, have opposite orientation: one acts
-/// on falling motions, the other on rising ones.
+/// True if two surfaces with resets or transitions, equal up to a constant factor, have opposite orientation: the first
+/// acts where its gap falls, the second where the first gap rises.
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
     let passes = |surface: &Surface| matches!(surface.law, Law::Reset | Law::Transition);
     let are_resets = passes(first) && passes(second);

@@ -1,7 +1,8 @@
 //! Functions of the invariant volume `exp(G) mu_C = exp(G) det g / |det A_dep| dq dv_ind`.
 //!
-//! Logarithms of determinants are sums over a factorisation: `ln det g` is the sum of the logarithms of the pivots of
-//! `L D L^T`, and `ln det m^{ab}` that of the squared norms of the orthogonalised constraint columns.
+//! Logarithms of determinants are sums of logarithms over a factorisation. The terms of `ln det g` are the logarithms
+//! of the pivots of `L D L^T`. The terms of `ln det m^{ab}` are the logarithms of the squared norms of the
+//! orthogonalised constraint columns.
 
 use dalembert_expr::{ExprId, Function as Elementary, Rational};
 
