@@ -9,9 +9,9 @@
 //! a = Xdot u + Xdot_0:  alpha(a) = -alphadot(qdot),  eta(a) = -curvature
 //! ```
 //!
-//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form covers the same systems:
-//! affine constraints, time, forces, velocity-linear terms. The system of `alpha` and `eta` is never inverted
-//! symbolically: [`plan`] gives the order in which it is solved.
+//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form covers the same
+//! systems: affine constraints, dependence on time, forces, velocity-linear terms. The system of `alpha` and `eta` is
+//! never inverted symbolically: [`plan`] gives the order in which it is solved.
 
 mod axis;
 mod choice;
