@@ -53,7 +53,7 @@ pub struct Diagnostics {
     errors: Vec<Diagnostic>,
 }
 
-/// An error: its places with their texts, and the state that refutes the claim it is about.
+/// An error: its places with their texts. If it is about a refuted claim, also the state that refutes it.
 #[derive(Debug)]
 pub struct Diagnostic {
     places: Vec<(Location, String)>,

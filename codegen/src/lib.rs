@@ -160,7 +160,7 @@ pub struct CompiledHeld {
     pub compiled: Compiled,
     /// Number of inputs.
     pub inputs: usize,
-    /// True if nothing between start and end depends on time.
+    /// True if motion, impacts and running cost do not depend on time. The terminal cost may.
     pub is_autonomous: bool,
 }
 
@@ -338,7 +338,7 @@ mod tests {
             claims { density: none; }
         }";
 
-    /// Every stage ends and reports it, wherever the algebra is given up.
+    /// Wherever the algebra is given up, the current stage ends and reports that.
     #[test]
     fn algebra_may_be_given_up_anywhere() {
         let compile = |steps| {

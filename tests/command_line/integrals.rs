@@ -179,7 +179,7 @@ fn flags_add_outputs() {
         ("a,b = x", "a word"),
         (
             "W = 1 + integral(x)",
-            "an integral along a run is a whole output",
+            "an integral along a run must be the whole output",
         ),
         ("W = integral(z)", "unknown name `z`"),
         ("W > x", "NAME = EXPR"),

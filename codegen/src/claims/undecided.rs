@@ -1,4 +1,4 @@
-//! Reasons for which a question stays open, in words.
+//! Reasons for which a claim stays undecided, with their messages.
 
 use std::fmt;
 
@@ -14,7 +14,8 @@ pub enum Undecided {
     Stateless,
     /// The constraints are not linear in the velocities.
     Nonlinear,
-    /// Brackets up to this depth did not close the hull, and deeper ones are out of reach.
+    /// Brackets of vector fields in D up to this depth did not close the involutive hull of D. Deeper brackets are not
+    /// computed.
     Depth(usize),
     /// The divergence of the forces is not known to be linear in the velocities.
     Forces,
@@ -24,7 +25,7 @@ pub enum Undecided {
     Branches,
     /// Residues are 0, but the chance that they are 0 by accident is too large.
     Chance,
-    /// These parts may be related in ways that residues do not show.
+    /// Identities between these subexpressions may exist that residues modulo primes do not show.
     Relations(Vec<String>),
 }
 

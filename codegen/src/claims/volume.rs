@@ -1,7 +1,7 @@
 //! The invariant volume `exp(G) mu_C` of a model, in a form that can be lowered.
 //!
 //! `mu_C = det g / |det A_dep| dq dv_ind`: `A_dep` are the columns of the constraint forms that belong to the
-//! dependent velocities. `mu_C` does not depend on their choice (up to a constant), its coordinates do.
+//! dependent velocities. Another choice of dependent velocities changes the coordinates of `mu_C`, but not `mu_C`.
 
 use dalembert_expr::{ExprId, Function, JetSpace, Jets, Node, Pool, Rational};
 
@@ -32,8 +32,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// The invariant volume that `exactness` established, in closed form or as an integral; `None` if none exists, or
-    /// if its gradient cannot be solved for. `seed` determines the random points.
+    /// The invariant volume that `exactness` established, in closed form or as an integral; `None` if the gradient of
+    /// `G` cannot be solved for. `seed` determines the random points.
     pub fn found(
         model: &Model,
         derivation: &Derivation,
@@ -95,8 +95,9 @@ impl Volume {
     }
 }
 
-/// Dependent velocities that are determined by the others at every state; `None` if the forms show none; the
-/// coordinates of the volume are then singular at some states, for a wheel where it points along an axis.
+/// Dependent velocities that are determined by the others at every state; `None` if the constraint forms show no such
+/// choice. The coordinates of the volume may then be singular at some states: those of a rolling wheel are singular
+/// where it rolls along an axis.
 fn nowhere_singular(model: &Model, derivation: &Derivation) -> Option<Vec<usize>> {
     let pairs = regular_minor(&model.pool, &derivation.constraints)?;
     let mut dependent: Vec<usize> = pairs.into_iter().map(|(_, column)| column).collect();
@@ -173,7 +174,7 @@ mod tests {
                 Term::Logarithm(argument) => (argument, false),
                 _ => panic!("{term:?}"),
             };
-            // exp(10 y) alone would be infinite.
+            // exp(10 y) overflows at y = 100.
             let value = |symbol| if symbol == symbols[0] { 0.7 } else { 100.0 };
             let values = pool.eval(&[coefficient, argument], &value);
             let term_value = if is_plain {

@@ -9,12 +9,13 @@
 //! totally plastic          eps = -rho G/dh(pi_D grad h)
 //! ```
 //!
-//! Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous constraints come before the law
-//! ([`super::focusing`]).
+//! `pi_D` is the projection onto the velocities that the constraints allow, orthogonal in the metric; `G` is the gap
+//! rate before the impact. Resets and transitions ([`super::passage`]) have maps of their own. Instantaneous
+//! constraints are imposed before the law is applied ([`super::focusing`]).
 //!
 //! The Jacobian with respect to `mu_C` is the determinant of the map in a fibre of D* times the ratio of the fluxes
-//! through the surface, `-G+/G-`. The determinant is `-G+/G-` too, except for `elastic` and `restitution e` with affine
-//! constraints, where it is e (1 for `elastic`).
+//! through the surface, `-G+/G-`, where `G-` and `G+` are the gap rates before and after the impact. The determinant is
+//! `-G+/G-` too, except for `elastic` and `restitution e` with affine constraints, where it is e (1 for `elastic`).
 
 use std::cmp::Ordering;
 
@@ -37,8 +38,8 @@ const STEPS: usize = 4;
 /// An impact surface with the expressions of its map.
 #[derive(Debug)]
 pub(super) struct Wall {
-    /// Metric (`N N`), forms of the constraints and of the K instantaneous constraints (`(M + K) N`), dh (N), psi_0 (K),
-    /// d_t h, coefficient.
+    /// Expressions of the map, with N coordinates, M constraints and K instantaneous constraints: metric (`N N`), forms
+    /// of all constraints (`(M + K) N`), dh (N), affine terms of the instantaneous constraints (K), d_t h, coefficient.
     pub(super) roots: Vec<ExprId>,
     law: Law,
     /// The map of a reset or of a transition.
@@ -51,12 +52,12 @@ pub(super) struct Wall {
     rate: ExprId,
     coordinates: Vec<SymbolId>,
     velocities: Vec<SymbolId>,
-    /// Numbers of constraints, M and K.
+    /// Numbers of constraints and of instantaneous constraints, M and K.
     constraints: [usize; 2],
     /// Margins of the conditions of this surface, then of the surfaces that must not count. A condition holds where its
     /// margin is positive.
     margins: Vec<ExprId>,
-    /// Number of margins of the wall, and numbers of margins of each other surface that must not count.
+    /// Number of margins of the wall, and the number for each other surface that must not count.
     lists: (usize, Vec<usize>),
     polynomials: Vec<Polynomial>,
 }
@@ -66,13 +67,13 @@ pub(super) struct Wall {
 pub(super) enum Place {
     /// Anywhere: the map is a formula that makes sense off the surface too.
     Anywhere,
-    /// The position is on the surface: the first root of an equation of degree 2.
+    /// On the surface: the first root of the gap, a polynomial of degree 1 or 2 in a coordinate.
     First,
-    /// The position is on the surface: the second root, which may be on another component.
+    /// On the surface: the second root, which may be on another component. With degree 1 it is the first root.
     Second,
 }
 
-/// Number of margins of the surface itself, and numbers of margins of each surface that must not count.
+/// Number of margins of the surface itself, and the number for each other surface that must not count.
 fn lists(surface: &Surface) -> (usize, Vec<usize>) {
     let others = match &surface.beside {
         Beside::Otherwise(others) => others.iter().map(Vec::len).collect(),
@@ -83,7 +84,8 @@ fn lists(surface: &Surface) -> (usize, Vec<usize>) {
 }
 
 impl Wall {
-    /// The surface of an index; a transition leads into one of the modes `others`, in order.
+    /// The surface of index `surface`. `others` are the modes of the model, in order; a transition leads into one of
+    /// them.
     pub(super) fn of(
         model: &mut Model,
         derivation: &Derivation,
@@ -139,7 +141,7 @@ impl Wall {
         }
     }
 
-    /// The same surface with the law of a reflection.
+    /// The same surface with the law `elastic`.
     pub(super) fn reflecting(model: &mut Model, derivation: &Derivation, surface: usize) -> Self {
         let mut wall = Self::of(model, derivation, surface, &[]);
         wall.law = Law::Elastic;
@@ -149,7 +151,7 @@ impl Wall {
         wall
     }
 
-    /// The velocities after an impact with the point's velocities; `None` at a singular point.
+    /// The velocities after an impact. The velocities before it are those of the point. `None` at a singular point.
     pub(super) fn after<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -178,7 +180,7 @@ impl Wall {
         found.try_into().ok()
     }
 
-    /// Values at a point of series built from the velocities there.
+    /// Values of the series that `made` builds from the series of expressions and velocities at a point.
     fn at_point<P: ExpansionPoint>(
         &self,
         model: &Model,
@@ -283,7 +285,7 @@ impl Wall {
         (rate < 0.0 && self.counts(&margins)).then_some((sample, point))
     }
 
-    /// True if the surface counts where its margins are on these sides of 0.
+    /// True if the surface counts where its margins compare with 0 in this way; `None` if the comparison is unknown.
     fn counts(&self, margins: &[Option<Ordering>]) -> bool {
         let (listed, mut rest) = margins.split_at(self.lists.0);
         listed.iter().all(|side| *side == Some(Ordering::Greater))
@@ -300,9 +302,9 @@ impl Wall {
         self.polynomials.iter().find_map(solved)
     }
 
-    /// True if a coordinate for which the gap is solved occurs in the argument of a function. Residues of the function
-    /// are drawn for an argument that is not on the surface. An expression that vanishes for any argument vanishes on
-    /// the surface; the residues of other expressions prove nothing.
+    /// True if a coordinate for which the gap is solved occurs in the argument of a function. The residue of the
+    /// function is drawn at random for an argument that is not on the surface. An expression that vanishes for any
+    /// argument vanishes on the surface; the residues of other expressions prove nothing.
     pub(super) fn hides(&self, pool: &Pool, roots: &[ExprId]) -> bool {
         let solved: Vec<SymbolId> = self
             .polynomials
@@ -357,9 +359,9 @@ impl Wall {
         })
     }
 
-    /// Replaces a coordinate of a point near the surface, the one in which the gap is steepest, by a range that
-    /// contains a root of the gap: the gap has values on the whole range, and different signs at its ends. `None` if
-    /// that is not certain.
+    /// Replaces the coordinate in which the gap is steepest, at a point near the surface, by a range that contains a
+    /// root of the gap. The gap has values on the whole range, and different signs at its ends. `None` if that is not
+    /// certain.
     pub(super) fn enclose<P: RangePoint>(&self, model: &Model, point: &mut P) -> Option<()> {
         let mut roots = vec![self.gap];
         roots.extend(&self.slope);
@@ -390,7 +392,7 @@ impl Wall {
         (signs[0] != signs[1]).then_some(())
     }
 
-    /// True if a state approaches the surface where it counts, on all of its ranges.
+    /// True if all states in the ranges of the point approach the surface, and it counts at all of them.
     pub(super) fn is_met<P: RangePoint>(&self, model: &Model, point: &mut P) -> bool {
         let mut roots = vec![self.gap_rate];
         roots.extend(&self.margins);
@@ -439,8 +441,8 @@ struct Polynomial {
 
 /// The coordinates in which a gap is a polynomial of degree 1 or 2 whose leading coefficient is 0 nowhere.
 ///
-/// NOTE: every component of the surface then depends on the coordinate, and a root leads to each. `x*y` has no such
-/// coordinate: solving for `x` misses the component `y = 0`.
+/// NOTE: every component of the surface is then reached by solving for the coordinate. `x*y` has no such coordinate:
+/// solving for `x` misses the component `y = 0`.
 fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<Polynomial> {
     let mut found = Vec::new();
     let mut moving = coordinates.to_vec();
@@ -453,7 +455,7 @@ fn polynomials(model: &mut Model, gap: ExprId, coordinates: &[SymbolId]) -> Vec<
         let is_zero = |id: ExprId, pool: &Pool| pool.zero_test(id) == Zero::Proved;
         let is_linear = is_zero(second, pool);
         let leading = if is_linear { first } else { second };
-        // A function of the parameters alone is no factor that could vanish on a component.
+        // A factor that contains only parameters vanishes on no component.
         let is_unit = !pool.depends_on_any(leading, &moving)
             || (pool.sign(leading).is_nonzero() && pool.is_finite(leading));
         if is_zero(third, pool) && !is_zero(leading, pool) && is_unit {

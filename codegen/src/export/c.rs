@@ -22,8 +22,8 @@ fn write(text: &mut String, parts: &[Part]) -> fmt::Result {
 
 const PREAMBLE: &str = "\
 /* Written by dalembert. Every function returns 0, or a number that says why its results do not exist:
-   1 the metric is not positive definite, 2 constraints depend on each other, 3 quasi-velocities do,
-   4 a surface is singular or tangent to the constraints. Results are written to `out`, which may be `s`.
+   1 the metric is not positive definite, 2 the constraints are dependent, 3 the quasi-velocities are
+   dependent, 4 a surface is singular or tangent to the constraints. `out` receives the results; it may be `s`.
    Arguments: the time `t`, the state `s` or positions `q` and velocities `v`, the parameters `k`. */
 #include <math.h>
 ";
@@ -55,7 +55,7 @@ fn write_part(text: &mut String, part: &Part) -> fmt::Result {
         let defaults: Vec<String> = defaults.collect();
         writeln!(
             text,
-            "/* {}; inputs are 0 and parameters without default NAN. */",
+            "/* {}; inputs default to 0, parameters without a default to NAN. */",
             names.join(", ")
         )?;
         let list = defaults.join(", ");

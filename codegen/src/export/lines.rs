@@ -1,4 +1,4 @@
-//! A function as lines. All other languages are written from this single walk over its operations.
+//! The operations of a function as a list of lines. The texts in all other languages are written from these lines.
 
 use dalembert_expr::Function as Elementary;
 
@@ -132,7 +132,7 @@ impl Lines {
     }
 }
 
-/// The place of an argument; `None` for rates, excesses and multipliers.
+/// The operand that stands for an input; `None` for rates, excesses and multipliers.
 fn place(input: Input, n: usize) -> Option<Operand> {
     match input {
         Input::Time => Some(Operand::Time),

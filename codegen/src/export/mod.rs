@@ -64,11 +64,12 @@ pub struct Routine {
     pub lines: Lines,
 }
 
-/// Exports the model of a declaration, one of its scenes, or all of its modes. Claims are not examined. `source` is the
-/// text of the declaration.
+/// Exports the model of a declaration, or its scene `scene`. A model with modes gives one part for each mode, or for
+/// the mode `scene`. Claims are not examined. `source` is the text of the declaration.
 ///
 /// # Errors
-/// [`ReportError`] for a text that does not declare a valid model. `Ok(None)` if there is no scene of this name.
+/// [`ReportError`] for a text that does not declare a valid model. `Ok(None)` if there is no scene or mode of this
+/// name.
 pub fn export(source: &str, scene: Option<&str>) -> Result<Option<Vec<Part>>, ReportError> {
     match declaration(source)?.without_claims() {
         Declaration::Model(spec) => {

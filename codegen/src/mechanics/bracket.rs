@@ -4,7 +4,7 @@
 //! {f, g} = {f o P, g o P} on D      P the projection of momenta to D along the constraint forces, p - A -> pi_D^*(p - A)
 //! ```
 //!
-//! In a frame X_i of D with `qdot = X_0 + X_i u^i` and `mu_i = <p - A, X_i>`:
+//! `A` is the one-form in `p = g qdot + A`. In a frame X_i of D with `qdot = X_0 + X_i u^i` and `mu_i = <p - A, X_i>`:
 //!
 //! ```text
 //! {q^k, mu_j}  = X_j^k,   {q^k, q^l} = 0,   {mu_i, mu_j} = dA(X_i, X_j) - g(qdot, [X_i, X_j])
@@ -33,7 +33,7 @@ pub enum NoBracket {
     TooLarge,
     /// The constraints depend on each other.
     Dependent,
-    /// The constraints were neither proved to be independent nor to be dependent.
+    /// The constraints were proved neither independent nor dependent.
     Undecided,
 }
 
@@ -155,8 +155,8 @@ pub fn derive_bracket(model: &mut Model, derivation: &Derivation) -> Result<Brac
 }
 
 impl Bracket {
-    /// The bracket with values for momenta and energy. Where their derivatives are known, no linear system is solved
-    /// for them.
+    /// Adds momenta and energy as functions on D. Their derivatives with respect to `mu` are known in two cases: unit
+    /// vectors for momenta without constraints, and `u` for the energy if all constraints are linear.
     fn with_names(mut self, model: &mut Model) -> Self {
         let is_free = model.constraints.is_empty();
         let is_linear = (model.constraints.iter())
@@ -313,7 +313,8 @@ pub(crate) fn exterior(
     pool.sub(first, second)
 }
 
-/// A frame of D: that of the reduced motion, or one of independent velocities that is regular at almost all states.
+/// A frame of D: that of the reduced motion. If its expressions are not available, a frame of independent velocities
+/// that is regular at almost all states, converted to the quasi-velocities of the model if possible.
 pub(crate) fn frame_of_d(
     model: &mut Model,
     derivation: &Derivation,
@@ -339,8 +340,8 @@ pub(crate) fn frame_of_d(
     Ok(turned.unwrap_or(velocities))
 }
 
-/// Converts a frame of velocities to the declared quasi-velocities. `None` if these are velocities, or cannot be solved
-/// for.
+/// Converts a frame of velocities to the quasi-velocities of `frame`. `None` if all of these are velocities of
+/// coordinates, or if the velocities cannot be solved for.
 fn turned(model: &mut Model, known: &FrameOfD, frame: &Frame) -> Option<FrameOfD> {
     if frame.quasi.iter().all(|quasi| quasi.coordinate.is_some()) {
         return None;

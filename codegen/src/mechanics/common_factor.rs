@@ -16,7 +16,7 @@ pub(super) fn factored(pool: &mut Pool, sum: ExprId) -> ExprId {
     pool.mul(common, rest)
 }
 
-/// The integer powers that are factors of all nonzero entries, and the entries divided by them.
+/// The product of the positive integer powers that divide all nonzero entries, and the entries divided by it.
 pub(super) fn without_common_factor(pool: &mut Pool, vector: &[ExprId]) -> (ExprId, Vec<ExprId>) {
     let mut common: Option<Factors> = None;
     for &entry in vector
@@ -150,7 +150,7 @@ mod tests {
         let regular = without_regular_factor(&mut pool, &vector);
         let texts: Vec<String> = regular.iter().map(|&entry| pool.text(entry)).collect();
         assert_eq!(texts, ["r*x^2", "0", "x*y"]);
-        // Numbers are entries like any others.
+        // A number has no factor in common with `y/2`.
         let (minus, half) = (pool.int(-1), pool.scale(&Rational::HALF, y));
         assert_eq!(
             without_common_factor(&mut pool, &[minus, half]).1,

@@ -6,6 +6,7 @@
 //!           + tr(dF/dqdot . pi_D g^{-1})
 //! ```
 //!
+//! `W^a = g^{-1} eta^a` are the vectors of the constraint forms, and `m_ab` is the inverse of the matrix `eta^a(W^b)`.
 //! The expression of theta in brackets uses `d_k W^a = g^{-1}(d_k eta^a - (d_k g) W^a)`, so that no inverse is
 //! differentiated. W. Clark, thesis, Definition V.23; the divergence has no factor n (docs/conventions.md).
 

@@ -18,7 +18,7 @@ pub struct FactorRow {
     pub pivot: ExprId,
 }
 
-/// The rows. `None` for a row without couplings, which equals that of `g`, and for a row that would grow.
+/// One entry for each row of `g`: `None` if the row of `L` has no entries below the diagonal, or if it would grow.
 pub(super) fn derive_factors(pool: &mut Pool, metric: &[Vec<ExprId>]) -> Vec<Option<FactorRow>> {
     if metric.len() > COORDINATES {
         return vec![None; metric.len()];
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn what_elimination_takes_away_again_is_written_out() {
+    fn rows_that_elimination_simplifies_are_written_out() {
         let body = factors(
             "pub Body {
                 coordinates { x; y; theta: angle; }
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn what_grows_is_left_to_numbers() {
+    fn rows_that_grow_are_factorised_numerically() {
         let pendulum = factors(
             "pub Pendulum {
                 coordinates { a: angle; b: angle; }

@@ -59,8 +59,8 @@ fn cancel(pool: &mut Pool, a: ExprId, b: ExprId) -> bool {
     pool.zero_test(difference) == Verdict::Proved
 }
 
-/// `d_k L` and `d/dt dL/dqdot^k` at fixed velocity, each of `L` as written or of its expanded metric: the pair with the
-/// fewest parts.
+/// `d_k L` and `d/dt dL/dqdot^k` at fixed velocity. Each is derived from `L` as written and from its expanded form; the
+/// pair with the fewest subexpressions is returned.
 fn gradient_and_drift(model: &mut Model, coordinates: &Coordinates) -> (Vec<ExprId>, Vec<ExprId>) {
     let whole = model.lagrangian.whole;
     let written = (

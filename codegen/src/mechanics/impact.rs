@@ -43,7 +43,7 @@ pub struct SurfaceForm {
     pub curvature: ExprId,
     /// Functions whose signs decide where the surface counts, see [`Surface::margins`](crate::model::Surface::margins).
     pub margins: Vec<ExprId>,
-    /// The constraints that hold during an impact only.
+    /// The instantaneous constraints of the surface.
     pub instantaneous: Vec<InstantaneousForm>,
     /// Direction of `dh` without common factors that are never zero; `None` for a moving wall.
     pub ray: Option<Vec<ExprId>>,
@@ -103,7 +103,7 @@ fn derive_instantaneous(
     declared.into_iter().map(derive).collect()
 }
 
-/// `X^T dh`; `None` where a component of `X` in it is not written out, or if the result is too long.
+/// `X^T dh`; `None` if a component of `X` that it contains is not written out, or if the result is too long.
 fn restricted(pool: &mut Pool, frame: &Frame, form: &[ExprId]) -> Option<Vec<ExprId>> {
     let fields = &frame.invariant.as_ref()?.written;
     let mut entries = Vec::with_capacity(fields.len());

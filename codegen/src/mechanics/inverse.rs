@@ -1,5 +1,5 @@
-//! Inverses and determinants of small matrices as explicit expressions. They are computed by minors, and products of
-//! sums are multiplied out.
+//! Inverses and determinants of small matrices as explicit expressions. They are computed from minors, in which
+//! products of sums are multiplied out.
 
 use dalembert_expr::{ExprId, Pool, Verdict};
 
@@ -8,7 +8,7 @@ use super::common_factor::factored;
 /// Rows of expressions.
 pub(crate) type Matrix = Vec<Vec<ExprId>>;
 
-/// Larger blocks of a matrix are not inverted by minors.
+/// Largest size of a block that is inverted by minors.
 const LARGEST_BLOCK: usize = 4;
 
 /// An expression multiplied out and simplified. It has the same value at almost all states.
@@ -45,7 +45,8 @@ pub(crate) fn inverse(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix>
     inverse_by(pool, matrix, |_, determinant| determinant)
 }
 
-/// The inverse with determinants written as products of common factors. Factors that are never zero cancel.
+/// The inverse with determinants that have the common factors of their terms taken out. Factors that are never zero
+/// cancel.
 pub(crate) fn inverse_in_factors(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Option<Matrix> {
     inverse_by(pool, matrix, factored)
 }
@@ -174,7 +175,7 @@ pub(crate) fn independent_minor(
     pool: &mut Pool,
     rows: &[Vec<ExprId>],
 ) -> Result<(Vec<usize>, Vec<usize>), NoMinor> {
-    /// Number of rows beyond which no determinant is written out.
+    /// Largest number of independent rows.
     const LARGEST: usize = 6;
     let (mut chosen, mut columns) = (Vec::new(), Vec::new());
     let width = rows.first().map_or(0, Vec::len);

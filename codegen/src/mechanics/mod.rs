@@ -1,4 +1,4 @@
-//! Stage 3, derive: from a checked model to the expressions of its equations. Pure mathematics, no tokens, no spans.
+//! Stage 3, derive: from a checked model to the expressions of its equations. It knows neither tokens nor spans.
 //!
 //! With `L = 1/2 qdot^T g qdot + A.qdot - V`, constraints `eta^a(qdot) + eta^a_0 = 0` and forces `F`:
 //!
@@ -46,13 +46,13 @@ pub use metric::MetricDerivatives;
 /// The expressions from which every emitted function is built, in the pool of the model.
 #[derive(Debug)]
 pub struct Derivation {
-    /// Rows of the factors of the metric that are known in simple terms.
+    /// Rows of the factorisation of the metric that are known as expressions.
     pub factors: Vec<Option<FactorRow>>,
     /// Momenta, forces and drift.
     pub field: FieldTerms,
     /// Constraint forms with their curvature terms.
     pub constraints: Vec<ConstraintForm>,
-    /// True if constraints that are linear in the velocities are not known to be independent at every state.
+    /// True if all constraints are linear in the velocities, and were not proved to stay independent along a motion.
     pub can_lose_rank: bool,
     /// True if the rates may have features that are narrow compared with the length of a step.
     pub can_be_narrow: bool,
@@ -65,7 +65,7 @@ pub struct Derivation {
 }
 
 impl Derivation {
-    /// The constraints that are integrable with a known function.
+    /// Indices of the constraints that are integrable with a known function.
     pub fn levelled(&self) -> impl Iterator<Item = usize> {
         self.constraints
             .iter()
@@ -80,7 +80,7 @@ impl Derivation {
 pub struct Entry<const RANK: usize> {
     /// The indices.
     pub index: [usize; RANK],
-    /// The component, not the zero node.
+    /// The component. It is never the zero node.
     pub value: ExprId,
 }
 

@@ -4,11 +4,11 @@
 
 use dalembert_expr::{ExprId, Function, Node, Pool, SymbolId};
 
-/// Highest degree of a product that changes about as steadily as its factors. The 16th power of a sine is a bump a tenth
-/// as long as its period.
+/// Highest degree of a product that changes about as steadily as its factors. The 16th power of a sine has bumps that
+/// are a tenth as long as the period of the sine.
 const MOST_FACTORS: i64 = 12;
 
-/// True unless the expressions consist of polynomials of low degree, sines and cosines of the varying symbols.
+/// True unless the expressions consist of sums, products of low degree, sines and cosines of the varying symbols.
 pub(super) fn can_be_narrow(pool: &Pool, expressions: &[ExprId], varying: &[SymbolId]) -> bool {
     let varies = |id: ExprId| pool.depends_on_any(id, varying);
     let is_narrow = |id: &ExprId| match pool.node(*id) {

@@ -1,9 +1,9 @@
 //! Proofs that the constraint forms are linearly independent at every state.
 //!
-//! Each step of the proof leaves fewer forms, which are independent at every state iff the former ones are. A form is
-//! removed if it has columns of its own whose entries never vanish together. A form with an entry that is never zero is
-//! eliminated from the others. For the remaining forms the squares of all minors are added: the forms are independent
-//! where the sum is positive (Cauchy and Binet).
+//! Each step of the proof leaves fewer forms. They are independent at every state iff the forms before the step are. A
+//! form is removed if, in the columns in which all other forms are 0, its entries never vanish together. A form with an
+//! entry that is never zero is eliminated from the others. For the remaining forms the squares of all minors are added:
+//! the forms are independent where the sum is positive (Cauchy and Binet).
 //!
 //! A form that is the differential of a function may vanish at states that no motion reaches; see [`keeps_off`].
 
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_drop_is_never_proved() {
+    fn ranks_that_can_drop_are_not_proved_constant() {
         for constraints in [
             "k: d(x) = 0; l: d(x) + y*d(z) = 0;",
             "k: d(x) = 0; l: d(x) + y^2*d(z) = 0;",

@@ -63,7 +63,8 @@ pub struct Reduction {
     pub constrained: Matrix,
     /// `<p, e_i>` on D
     pub momenta_on_d: Vec<ExprId>,
-    /// Rates of `momenta_on_d` along the motion; `None` if constraints are affine or the model depends on time.
+    /// Rates of `momenta_on_d` along the motion; `None` if constraints are affine, or if the metric, the terms linear
+    /// in the velocities, the constraints or the fields depend on time.
     pub rates: Option<Vec<ExprId>>,
     /// Forms `A^a`; `None` unless the orbits and D together span all directions.
     pub connection: Option<Matrix>,
@@ -153,7 +154,8 @@ pub fn derive_reduction(
     })
 }
 
-/// Combinations of fields that all forms annihilate. True if the forms are independent on the fields.
+/// A basis of the combinations of fields that all forms annihilate. The second value is true if the forms are
+/// independent on the span of the fields.
 fn kernel(
     pool: &mut Pool,
     forms: &[Vec<ExprId>],
@@ -260,8 +262,8 @@ fn momenta_of(model: &mut Model, bracket: &Bracket, sections: &[Vec<ExprId>]) ->
         .collect()
 }
 
-/// The sum of the forces on D; `None` if constraints are affine, or if the equations depend on time. The bracket does
-/// not give the motion in these cases.
+/// The sum of the forces on D; `None` if constraints are affine, or if the metric, the terms linear in the velocities,
+/// the constraints or the fields depend on time. The bracket does not give the motion in these cases.
 fn forces_on_d(
     model: &mut Model,
     bracket: &Bracket,

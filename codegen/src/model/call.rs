@@ -80,7 +80,7 @@ impl<'s> Resolver<'s> {
         match name.text.as_str() {
             "dot" | "d" => self.derivative(at, name, arguments, scope),
             INTEGRAL => {
-                let text = "an integral along a run is a whole output";
+                let text = "an integral along a run must be the whole output";
                 let help = "write `outputs { S: integral(..); }`, with one expression";
                 self.refuse(name.at, text, help)
             }
@@ -197,7 +197,8 @@ impl<'s> Resolver<'s> {
         })
     }
 
-    /// True if an expression contains a value that may differ between uses, and be constant in only some of them.
+    /// True if an expression contains a name that may stand for different values in different uses. It may then be
+    /// constant in one use and depend on coordinates in another.
     fn mentions_local(&self, scalar: &Scalar, scope: &Scope) -> bool {
         let within = |part: &Scalar| self.mentions_local(part, scope);
         match &scalar.kind {
@@ -333,7 +334,7 @@ impl<'s> Resolver<'s> {
         self.refuse(scalar.at, text, &help)
     }
 
-    /// The index of the coordinate that a resolved expression is.
+    /// The index of a coordinate, if the resolved expression is just this coordinate.
     pub(super) fn coordinate_index(&self, expr: ExprId) -> Option<usize> {
         match self.pool.node(expr) {
             Node::Symbol(symbol) => self.symbols.coordinate_of(*symbol),

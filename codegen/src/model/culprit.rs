@@ -1,4 +1,4 @@
-//! Origin of a fault of an expression: the smallest written part that has it.
+//! Search for the smallest written part of an expression that has the fault of the whole.
 
 use dalembert_expr::{ExprId, Pool, SymbolId};
 

@@ -165,7 +165,7 @@ impl<'s> Resolver<'s> {
         self.definitions.insert(&name.text, Definition::Faulty);
     }
 
-    /// The value of a definition that is used by its name alone.
+    /// The value of a definition that is used without arguments or an index.
     pub(super) fn definition(&mut self, name: &str, at: Location) -> Option<Value> {
         match self.definitions.get(name) {
             Some(Definition::Value(value)) => Some(*value),

@@ -55,9 +55,9 @@ fn power_degree(base: u32, exponent: &Rational) -> Option<u32> {
     base.checked_mul(exponent)
 }
 
-/// True if `expr` is written as a polynomial in `symbols` and has at most this degree: by its structure, or because its
-/// derivative of the next order along a general direction is zero. An expression that is not written as a polynomial
-/// may have no value where the symbols are 0, so that its coefficients cannot be read off there.
+/// True if `expr` is written as a polynomial in `symbols` and has at most this degree, by its structure or because its
+/// derivative of order `degree + 1` along a general direction is zero. An expression that is not written as a
+/// polynomial may have no value where the symbols are 0, and its coefficients cannot be computed there.
 pub(super) fn has_degree(pool: &mut Pool, expr: ExprId, symbols: &[SymbolId], degree: u32) -> bool {
     match degree_bound(pool, expr, symbols) {
         None => return false,
@@ -90,7 +90,8 @@ pub(super) fn without_hidden_zero(pool: &Pool, expr: ExprId) -> ExprId {
     }
 }
 
-/// True if an expression has a value wherever `others` have values: each part that may be undefined is a part of them.
+/// True if an expression has a value wherever `others` have values: each of its subexpressions that may be undefined is
+/// also a subexpression of `others`.
 pub(super) fn is_defined_with(pool: &Pool, expr: ExprId, others: &[ExprId]) -> bool {
     let known = pool.reachable(others);
     let is_known = |id: &ExprId| known.binary_search(id).is_ok();

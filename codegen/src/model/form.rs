@@ -129,7 +129,7 @@ impl Resolver<'_> {
         )
     }
 
-    /// `df` of an equation of positions `f = 0`.
+    /// The one-form `df` of a holonomic constraint `f = 0`.
     fn position_form(&mut self, equation: &Equation, f: ExprId) -> Option<OneForm> {
         let at = equation.left.at.to(equation.right.at);
         if mentions_rate(&equation.left) || mentions_rate(&equation.right) {
@@ -161,7 +161,7 @@ impl Resolver<'_> {
         self.refuse(at, text, "write `dot(x) = R*dot(theta)`")
     }
 
-    /// The form of virtual displacements of `phi = 0`, `eta = dphi/dqdot`, with `eta_0 = phi - eta(qdot)`.
+    /// The one-form of `phi = 0` by Chetaev's rule, `eta = dphi/dqdot`, with `eta_0 = phi - eta(qdot)`.
     fn chetaev_form(&mut self, phi: ExprId, velocities: &[SymbolId]) -> OneForm {
         let pool = &mut self.pool;
         let form: Vec<ExprId> = (velocities.iter())

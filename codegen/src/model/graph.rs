@@ -77,7 +77,7 @@ impl ModeGraph {
 
 impl ModeGraph {
     /// Pairs of transitions between first-order modes that cross the same surface in opposite directions and keep the
-    /// state. The gap of the second, as written, is the negative of that of the first.
+    /// state. The gaps of a pair, as written, differ in their sign.
     pub fn opposites(&self) -> impl Iterator<Item = [usize; 2]> {
         let leaving = |index: usize| {
             let mode = &self.modes[index];
@@ -469,7 +469,7 @@ fn check_surfaces(declared: &spec::Modes, graph: &ModeGraph) -> Result<(), Diagn
                 let declared = &mode.model.surfaces[surface];
                 let name = &declared.name.display;
                 let text = format!(
-                    "the surface `{name}` is another one in `{}`",
+                    "the surface `{name}` differs from the one in `{}`",
                     other.scene.name
                 );
                 let at = written.spec.location(declared.item);

@@ -22,7 +22,7 @@ pub enum Law {
     TotallyPlastic,
     /// `reset { .. }`: the map is [`Surface::reset`](super::Surface::reset).
     Reset,
-    /// `stop`: the motion ends there.
+    /// `stop`: the motion ends at the surface.
     Stop,
     /// Not a law that can be written. The surface leads to another mode; see
     /// [`Surface::transition`](super::Surface::transition).
@@ -60,7 +60,7 @@ impl Law {
         }
     }
 
-    /// True if the motion goes on behind a surface with this law.
+    /// True if the motion goes on after an impact with this law.
     pub fn goes_on(self) -> bool {
         self != Self::Stop
     }
@@ -138,7 +138,7 @@ impl Reset {
 }
 
 impl Model {
-    /// Indices of the surfaces behind which the motion goes on. Claims about impacts refer to these surfaces.
+    /// Indices of the surfaces at which the motion does not end. Claims about impacts refer to these surfaces.
     pub fn acting_surfaces(&self) -> Vec<usize> {
         let acts = |surface: &usize| self.surfaces[*surface].law.goes_on();
         (0..self.surfaces.len()).filter(acts).collect()

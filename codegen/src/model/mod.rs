@@ -1,8 +1,9 @@
 //! Stage 2, check: resolves every name of a declaration and checks every rule of the language. Nothing is derived yet.
 //!
-//! A [`Model`] is only created by [`check()`]. It therefore satisfies all rules of the language: the Lagrangian is
-//! natural, the metric is not degenerate, the constraints are independent, the surfaces can be reached. Indices follow
-//! the order of declaration: `i, j, k` coordinates, `a, b` constraints, `s` surfaces.
+//! A [`Model`] comes from [`check()`], or is derived from such a model. It satisfies all rules of the language: the
+//! Lagrangian is natural, the metric is not singular everywhere, the constraints are independent at some state, the
+//! surfaces can be reached. Indices follow the order of declaration: `i, j, k` for coordinates, `a, b` for constraints,
+//! `s` for surfaces.
 
 mod call;
 mod check;
@@ -223,7 +224,7 @@ pub struct Constraint {
     pub name: Name,
     /// Lines of its doc comment.
     pub documentation: Vec<String>,
-    /// `eta`, N entries: left side minus right side, as written.
+    /// `eta`, N entries, of the left side minus the right side.
     pub form: Vec<ExprId>,
     /// `eta_0`
     pub affine: ExprId,
@@ -352,7 +353,7 @@ pub struct Surface {
 /// The declared initial condition. All values are expressions of the parameters.
 #[derive(Debug, Clone, Default)]
 pub struct Initial {
-    /// Positions by coordinate. `None` means 0.
+    /// Positions by coordinate. `None` means 0, or the value that holonomic constraints determine.
     pub q: Vec<Option<ExprId>>,
     /// Velocities by coordinate. `None` means that the velocity is determined by the constraints and the given
     /// velocities.
@@ -450,7 +451,7 @@ pub enum Statement {
     },
     /// The motion and every event at a surface preserve the symplectic form.
     Symplectic,
-    /// The energy after an impact at the surface of this index is at most that before it.
+    /// An impact at the surface of this index does not increase the energy.
     EnergyNotIncreasing(usize),
 }
 

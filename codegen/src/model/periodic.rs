@@ -34,7 +34,7 @@ impl Resolver<'_> {
         });
     }
 
-    /// Same as [`Resolver::check_periodic`], for the derivatives of an expression by some symbols.
+    /// Same as [`Resolver::check_periodic`], for the derivatives of an expression with respect to `symbols`.
     pub(super) fn check_periodic_derivatives(
         &mut self,
         written: &[&Scalar],
@@ -134,7 +134,7 @@ fn parent_of<'a>(whole: &'a Scalar, part: &Scalar) -> Option<&'a Scalar> {
         .find_map(|candidate| parent_of(candidate, part))
 }
 
-/// Members of `angles` that occur other than as integer multiples inside of `sin`, `cos` or `tan`.
+/// Members of `angles` with an occurrence that is not an integer multiple inside of `sin`, `cos` or `tan`.
 fn bare_symbols(pool: &Pool, expr: ExprId, angles: &[SymbolId]) -> Vec<SymbolId> {
     let mut bare = Vec::new();
     if !pool.depends_on_any(expr, angles) {

@@ -1,6 +1,6 @@
 //! Bounds of an expression of the parameters, from their assumptions: interval arithmetic in double precision.
 //!
-//! `[low, high]` contains every value up to rounding. Where a parameter occurs twice, it may contain more.
+//! `[low, high]` contains every value up to rounding. It may be too wide if a parameter occurs more than once.
 
 use dalembert_expr::{Course, ExprId, Function, Node, Pool, Rational, SymbolId};
 

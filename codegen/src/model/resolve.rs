@@ -91,7 +91,7 @@ pub(super) struct Resolver<'s> {
     pub(super) multipliers: BTreeMap<String, SymbolId>,
     /// Derived quantities that may be named in the present section.
     pub(super) derived_names: DerivedNames,
-    /// The coordinate vector fields `partial(x)`, where they may be named.
+    /// The coordinate vector fields `partial(x)` while a claim of symmetry is resolved; otherwise empty.
     pub(super) partials: Vec<SymbolId>,
     /// The Lagrangian, once resolved.
     pub(super) lagrangian: Option<ExprId>,
@@ -263,8 +263,8 @@ impl<'s> Resolver<'s> {
         self.add_bounded(at, &values?)
     }
 
-    /// The sum of values, as by [`Resolver::add`]. Where its numbers may become long, it is added in portions and stops
-    /// at the first number that is too long.
+    /// The sum of values, as by [`Resolver::add`]. If its numbers may become long, the terms are added in portions, up
+    /// to the first number that is too long.
     fn add_bounded(&mut self, at: Location, values: &[Value]) -> Option<Value> {
         let bits = values.iter().map(|value| self.pool.number_bits(value.expr));
         if bits.sum::<u64>() <= NUMBER_BITS {
@@ -288,7 +288,8 @@ impl<'s> Resolver<'s> {
         Some(())
     }
 
-    /// The sum of values. Its level is known if the level of every term is; a constant `c` counts as `dot(c*t)`.
+    /// The sum of values. Its level is the sum of the levels, if all are known; the level of a constant term `c` is
+    /// `c*t`.
     pub(super) fn add(&mut self, values: &[Value]) -> Value {
         let exprs: Vec<ExprId> = values.iter().map(|value| value.expr).collect();
         Value {

@@ -30,7 +30,8 @@ pub struct Parts {
     pub extras: Extras,
 }
 
-/// Extras of a scene besides forces and surfaces. The model itself has all of them.
+/// Optional parts of the generated code besides forces and surfaces. The model itself has all that are defined for it:
+/// a first-order system only `variations`, a model with a nonlinear constraint no `volume`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Extras {
     /// The projection onto the constraints after steps.
@@ -42,7 +43,7 @@ pub struct Extras {
 }
 
 impl Extras {
-    /// Extras of the model itself.
+    /// All extras.
     pub const ALL: Self = Self {
         projection: true,
         volume: true,
@@ -81,7 +82,7 @@ impl Model {
         }
     }
 
-    /// Forces, surfaces and extras of a scene, in words.
+    /// A text that lists forces, surfaces and extras of a scene: `motion with drag and floor`.
     pub fn used(&self, parts: &Parts) -> String {
         let forces = parts.forces.iter().map(|force| &self.forces[*force].name);
         let surfaces = parts

@@ -118,7 +118,7 @@ impl Symbols {
         inputs.map(|input| input.symbol).collect()
     }
 
-    /// Index of the coordinate with this symbol. Coordinates and time are the directions of a total time derivative.
+    /// Index of the coordinate with this symbol.
     pub(super) fn coordinate_of(&self, symbol: SymbolId) -> Option<usize> {
         self.coordinates
             .iter()

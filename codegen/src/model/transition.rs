@@ -13,14 +13,14 @@ pub struct Transition {
     pub mode: String,
     /// The declared state with which it is entered. `None` if mechanics determines this state.
     pub map: Option<Map>,
-    /// True if the surface counts from both sides: the opposite of its gap belongs to a transition of the same mode.
+    /// True if the surface counts from both sides, because another transition of the same mode has the opposite gap.
     pub has_no_side: bool,
     /// True if both modes have the same Lagrangian, so that only constraints and forces change.
     pub keeps_lagrangian: bool,
 }
 
-/// The state with which a mode is entered: expressions of the state that is left, of parameters and of time, in the
-/// order of the coordinates of the mode that is entered.
+/// The state with which a mode is entered: expressions of the state before the transition, of parameters and of time,
+/// in the order of the coordinates of the mode that is entered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Map {
     /// Names of these coordinates.

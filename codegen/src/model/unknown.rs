@@ -1,4 +1,4 @@
-//! Advice on undeclared names: misspelt, copied from a paper, or in the notation of another language.
+//! Advice on undeclared names: names that are misspelt, copied from a paper, or in the notation of another language.
 
 use super::latex::greek_name;
 use super::resolve::{DerivedNames, Resolver, Scope, Value};

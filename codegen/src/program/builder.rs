@@ -232,7 +232,7 @@ impl Builder {
         self.push(Op::Sqrt(a))
     }
 
-    /// A constant power that is neither an integer nor a half.
+    /// A constant power whose exponent is no multiple of 1/2.
     pub fn power(&mut self, a: Value, exponent: Rational) -> Value {
         self.push(Op::Power(a, exponent))
     }
@@ -260,7 +260,7 @@ impl Builder {
         }
     }
 
-    /// Adds an operation of a finished function. `values`: the values of that function's operations in this builder.
+    /// Adds an operation of a finished function. `values` has the values in this builder of that function's operations.
     pub fn replay_one(&mut self, op: &Op, values: &[Value]) -> Value {
         self.push(op.clone().with_operands(|value| values[value.index()]))
     }

@@ -195,7 +195,7 @@ impl<'a> Kernel<'a> {
         )
     }
 
-    /// `|det|` of a block: the entry, or the root of the product of squared norms.
+    /// `|det|` of a block: the absolute value of its only entry, or the root of the product of squared norms.
     pub(super) fn block_determinant(&mut self, block: &Block) -> Value {
         match &block.solve {
             Solve::Entry => {

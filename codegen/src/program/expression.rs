@@ -213,7 +213,7 @@ impl<'a> Expressions<'a> {
         (coefficient, product)
     }
 
-    /// Parameters are multiplied, and divided, first: products then share the factors that depend on parameters alone.
+    /// Parameters are multiplied and divided first: products then share the part that depends only on parameters.
     fn lower_product(&self, builder: &mut Builder, factors: &[(ExprId, Rational)]) -> Value {
         let mut ordered: Vec<&(ExprId, Rational)> = factors.iter().collect();
         let is_symbol = |base| matches!(self.pool.node(base), Node::Symbol(_));
@@ -287,7 +287,7 @@ fn is_extreme(number: &Rational) -> bool {
 }
 
 /// The position of the power whose base takes over most of a coefficient, the power of two that multiplies the base, and
-/// the coefficient that is left; `None` without an integer power above the first.
+/// the coefficient that is left; `None` if no factor has an integer exponent of absolute value 2 or more.
 fn balance(
     coefficient: &Rational,
     factors: &[(ExprId, Rational)],
@@ -299,7 +299,7 @@ fn balance(
     });
     let (position, exponent) = integers.max_by_key(|(_, exponent)| exponent.abs())?;
     let two = |shift: i64| Rational::from(2).pow_i(i32::try_from(shift).ok()?);
-    // To the nearest: what is left is at most the square root of the power.
+    // With the nearest shift, the coefficient that is left is between about `2^(-n/2)` and `2^(n/2)`, `n = |exponent|`.
     let shift = (coefficient.log2() as f64 / exponent as f64).round() as i64;
     let (mut rest, mut taken) = (coefficient.clone(), -shift * exponent);
     while taken != 0 {
@@ -311,7 +311,8 @@ fn balance(
     Some((position, two(shift)?, rest))
 }
 
-/// Number of factors of a sum up to which shared factors are sought: the time of the search grows with its square.
+/// Largest number of factors in a sum for which shared factors are sought. The time of the search grows with the square
+/// of this number.
 const SEARCHED: usize = 1 << 13;
 
 /// The base that occurs with a positive integer exponent in the most terms, at least two.

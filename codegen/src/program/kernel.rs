@@ -116,7 +116,7 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Omits the guards of surfaces. The function then gives NaN where an impulse does not exist.
+    /// Omits the guards of instantaneous constraints. The function then gives NaN where these are dependent.
     #[must_use]
     pub fn without_surface_guards(self) -> Self {
         Self {

@@ -5,8 +5,8 @@ use dalembert_numbers::Kernel;
 use super::{Constrained, Form, Function, Impacting, Program};
 
 impl Program {
-    /// Every function with its name, except the power series. For a first-order system, functions without a meaning
-    /// there, such as the energy, are left out.
+    /// Every function with its name, except the power series. Functions without a meaning for a first-order system,
+    /// such as the energy, are left out there.
     pub fn kernels(&self) -> Vec<(Kernel, &Function)> {
         // The velocity comes first, because other functions use it.
         let mut kernels = vec![

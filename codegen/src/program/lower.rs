@@ -23,7 +23,7 @@ impl Lowered {
         self.global.as_ref().unwrap_or(&self.main)
     }
 
-    /// The length of the longest function.
+    /// Number of operations of the longest function.
     pub fn longest(&self) -> usize {
         self.main.longest().max(self.global().longest())
     }

@@ -2,9 +2,10 @@
 //!
 //! In a long chain each constraint meets two others. Then `m` is tridiagonal and its factorisation takes O(M)
 //! operations, whereas orthogonal columns fill up. In return the condition number of the forms enters squared, so every
-//! pivot has a guard. `d_a/m^{aa}` is the squared sine of the angle between a form and the forms eliminated before it,
-//! and its reciprocal bounds the growth of rounding errors there. Below [`Guard::LEAST_PIVOT_RATIO`] the function ends
-//! with `SingularConstraint`, where orthogonalisation would still work.
+//! pivot has a guard. The ratio of a pivot to its diagonal entry `m^{aa}` is the squared sine of the angle between a
+//! form and the forms eliminated before it. Its reciprocal bounds the growth of rounding errors at this pivot. Below
+//! [`Guard::LEAST_PIVOT_RATIO`] the function ends with `SingularConstraint`, although orthogonalisation would still
+//! work.
 //!
 //! Constraints are eliminated in minimum-degree order (Tinney and Walker, Proc. IEEE 55 (1967)).
 

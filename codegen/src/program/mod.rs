@@ -86,7 +86,7 @@ pub enum Op {
     Div(Value, Value),
     /// Square root.
     Sqrt(Value),
-    /// `a` to a constant power that is neither an integer nor a half.
+    /// `a` to a constant power whose exponent is no multiple of 1/2.
     Power(Value, Rational),
     /// An elementary function.
     Call(Elementary, Value),
@@ -106,8 +106,10 @@ pub enum Guard {
         /// The pivot.
         value: Value,
     },
-    /// `squared > least * reference`; the fault is `SingularConstraint`. Both are squared norms of a constraint form:
-    /// after and before projection orthogonal to the earlier forms. Without `reference` the condition is `squared > 0`.
+    /// `squared > LEAST_SQUARED_RATIO * reference`; the fault is `SingularConstraint`. Both are squared norms of a
+    /// constraint form: after and before projection orthogonal to the earlier forms. Where the forms of a block have
+    /// factors that may vanish, they are the squares of a factor and of its bound. Without `reference` the condition is
+    /// `squared > 0`.
     Constraint {
         /// Index of the constraint.
         constraint: usize,
@@ -116,8 +118,8 @@ pub enum Guard {
         /// Squared norm before projection; `None` if independence is proved.
         reference: Option<Value>,
     },
-    /// `pivot > least * diagonal`; the fault is `SingularConstraint`. The two values are a pivot of the constraint mass
-    /// matrix and its diagonal entry.
+    /// `pivot > LEAST_PIVOT_RATIO * diagonal`; the fault is `SingularConstraint`. The two values are a pivot of the
+    /// constraint mass matrix and its diagonal entry.
     Mass {
         /// Index of the constraint.
         constraint: usize,
@@ -273,7 +275,7 @@ pub struct Program {
     /// Functions of the reduced form.
     pub reduced: Option<Reduced>,
     /// Derived quantities at a state, by name. The global form has all of them, also for states off the constraints.
-    /// The reduced form has those of the frame.
+    /// The reduced form has only quantities of the frame.
     pub geometry: recipes::Geometry,
     /// Functions of constraints.
     pub constrained: Option<Constrained>,
@@ -359,7 +361,7 @@ pub struct Reduced {
     pub momentum: Function,
     /// `(t, q, qdot) -> u`
     pub quasi: Function,
-    /// `(t, q, p) -> u` of the velocity on D nearest to that of `p`
+    /// `(t, q, p) -> u` of the velocity on D nearest to the velocity of `p`
     pub nearest_momenta: Function,
     /// `(t, q, qdot) -> u` of the velocity on D nearest to `qdot`
     pub nearest_velocities: Function,
@@ -386,7 +388,7 @@ pub struct Constrained {
     pub multipliers: Function,
     /// `(t, q, qdot) -> residuals, scales`
     pub residuals: Function,
-    /// `(t, q) -> eta` (M rows of N, row-major), then `eta_0`
+    /// `(t, q) -> eta` (M rows of N, row-major), then `eta_0`. With constraints nonlinear in velocities: `(t, q, qdot)`
     pub forms: Function,
     /// Functions that project a state in global form to D.
     pub return_to_constraints: Option<Return>,
@@ -510,12 +512,13 @@ pub struct Impacting {
     pub gap_responses: Function,
     /// Per surface: `(t, q) -> margins of its conditions`; `None` without conditions.
     pub conditions: Vec<Option<Function>>,
-    /// Per surface: `(t, s) -> size, share, direction` of the impulse of its law; `None` for a reset.
+    /// Per surface: `(t, s) -> size, share, direction`. By its law, the impulse is `size * direction` and removes this
+    /// share of the gap rate. `None` for a law that is no impulse.
     pub blows: Vec<Option<Function>>,
     /// Per surface:
     /// `(t, s) -> gap_rate, constrained_rate, surface_rate, constrained_compliance, free_compliance, direction`
     pub contacts: Vec<Function>,
-    /// Per surface: coefficient of its law, a function of the parameters.
+    /// Per surface: coefficient of its law, a function of the parameters; `None` for a law without a coefficient.
     pub coefficients: Vec<Option<Function>>,
     /// Per surface: `(t, s) -> q, qdot` after the law `reset`; `None` for other laws.
     pub resets: Vec<Option<Function>>,

@@ -1,7 +1,7 @@
 //! Dead code elimination: keeps the operations that outputs and guards need, in the order of construction.
 //!
-//! The order of construction follows the derivation (position, velocity, factors, solve), which reads well. In it every
-//! operand precedes the operations that use it.
+//! The order of construction follows the derivation (position, velocity, factors, solve), which reads well. In this
+//! order every operand precedes the operations that use it.
 
 use super::{Guard, Op, Value};
 

@@ -3,7 +3,7 @@
 
 use super::{Function, Op, Value};
 
-/// A rule that a function breaks; a defect of the lowering, never of a model.
+/// A rule that a function breaks. This is a defect of the lowering, never of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Malformed {
     /// The operation of this number reads a value that is not defined before it, or a guard.

@@ -338,7 +338,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The density that the claims of the model or mode state.
+    /// The density of the first claim `density = ..` about the model or mode.
     fn stated(&self) -> Tree {
         let mut claims = self
             .model

@@ -11,8 +11,8 @@ use crate::spec::Declaration;
 use crate::tables::text_of;
 use dalembert_expr::ExprId;
 
-/// The maximum principle of a model with a cost, or of one of its scenes. `source`: the declaration. `part`: name of
-/// the scene; `None` for the model.
+/// The maximum principle of a model with a cost, or of one of its scenes. `source` is the declaration, `part` the name
+/// of the scene; `None` stands for the model.
 ///
 /// # Errors
 /// [`ReportError`]: a declaration that is refused, or that has no maximum principle.

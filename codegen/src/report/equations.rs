@@ -244,7 +244,7 @@ impl Writer<'_> {
                 ));
             }
             if is_otherwise {
-                let text = format!("{name} counts where no other surface of this gap does");
+                let text = format!("{name} counts where no other surface with this gap counts");
                 items.push(Item::Words(text));
             }
             items.extend(self.reset(s, &name, &subscript));

@@ -402,11 +402,11 @@ impl Group<'_> {
             .collect();
         let text = match names.is_empty() {
             true => {
-                "the group moves every coordinate: the quasi-velocities are a system of their own"
+                "the group moves every coordinate: the equations of the quasi-velocities are a closed system"
                     .to_owned()
             }
             false => format!(
-                "{} and the quasi-velocities are a system of their own",
+                "the equations of {} and the quasi-velocities are a closed system",
                 names.join(", ")
             ),
         };

@@ -1,4 +1,4 @@
-//! Derivation for a reader: the emitted expressions, as text and LaTeX.
+//! Reports of a derivation: the emitted expressions, as text and LaTeX.
 //!
 //! A report prints the emitted code: every expression here is lowered as it stands, after collection of `cos^2 + sin^2`
 //! and common factors. The density form, brackets and reductions are written out for the reader only.
@@ -8,7 +8,7 @@
 //! | `mod.rs` | the types of a report, and its order |
 //! | `equations.rs` | declaration, Lagrangian, motion, constraints, surfaces, outputs |
 //! | `frame.rs` | the motion reduced to D |
-//! | `request.rs`, `bracket.rs`, `group.rs` | requests in the words of a claim: brackets of functions, reduction by a group |
+//! | `request.rs`, `bracket.rs`, `group.rs` | requests in the syntax of claims: brackets of functions, reduction by a group |
 //! | `control.rs` | the maximum principle of a model with a cost |
 //! | `modulo.rs` | symmetries for orbits that close up to a group |
 //! | `planar` | hypotheses of the Poincare-Bendixson theorem |
@@ -50,7 +50,7 @@ use crate::spec::{self, Declaration, Modes};
 use crate::tables::text_of;
 use crate::{Compiled, CompiledModes, compile_modes, compile_spec, read};
 
-/// A derivation in words and formulas.
+/// A derivation as lines of text and formulas.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// The name in snake case, of the model or of the scene.
@@ -59,11 +59,11 @@ pub struct Report {
     pub documentation: String,
     /// The parts, in the order of the derivation.
     pub sections: Vec<Section>,
-    /// The verdicts on its claims, in order.
+    /// The verdicts on the claims of the model, in order.
     pub findings: Vec<Finding>,
     /// Certificate of the claims, with the grounds of their verdicts.
     pub certificate: Tree,
-    /// Reports of its scenes, in order.
+    /// Reports of the scenes or modes, in order.
     pub scenes: Vec<Report>,
 }
 
@@ -72,7 +72,7 @@ pub struct Report {
 pub struct Section {
     /// Title.
     pub title: &'static str,
-    /// The equation it is about, as text and as LaTeX; empty if there is none.
+    /// The equation of the section, as text and as LaTeX; empty if there is none.
     pub equation: [&'static str; 2],
     /// Lines.
     pub items: Vec<Item>,

@@ -25,7 +25,7 @@ pub struct Symmetry {
     pub constant: Vec<f64>,
     /// Names of the parameters that the field depends on.
     pub parameters: Vec<String>,
-    /// True if its momentum is proved to be conserved, also at surfaces.
+    /// True if the momentum of the field is proved to be conserved, also at surfaces.
     pub keeps_momentum: bool,
 }
 
@@ -113,8 +113,8 @@ fn parts(list: &str) -> Vec<String> {
     parts.iter().map(|part| part.trim().to_owned()).collect()
 }
 
-/// A claim of symmetry. Of the field's terms it keeps those that name only the given coordinates, or all terms if
-/// `coordinates` is empty. `None` if no term is left.
+/// A claim of symmetry with those terms of a field whose `partial(..)` name only the given coordinates, or with all
+/// terms if `coordinates` is empty. `None` if no term is left.
 fn claim(field: &str, coordinates: &[String]) -> Option<String> {
     let kept = match (field.parse(), coordinates) {
         (Ok(tokens), [_, ..]) => restricted(tokens, coordinates),

@@ -1,4 +1,4 @@
-//! Requests for derivations about functions or fields. A request has the form of claims, which name them.
+//! Requests for derivations about functions or fields. A request consists of claims that name the functions or fields.
 
 use dalembert_expr::ExprId;
 use proc_macro2::{Span, TokenStream};
@@ -104,8 +104,8 @@ impl Asked {
     /// [`ReportError`] with the mistake.
     pub(super) fn check_list(list: &str, example: &str) -> Result<(), ReportError> {
         let text = match list.trim() {
-            "" => "nothing is given",
-            list if list.contains(';') => "`;` does not separate what is given",
+            "" => "the list is empty",
+            list if list.contains(';') => "`;` does not separate the entries of a list",
             _ => return Ok(()),
         };
         let help = format!("write a list with commas: `{example}`");
@@ -165,7 +165,10 @@ impl Whole {
         let declared = match super::declaration(source)?.without_claims() {
             Declaration::Modes(modes) if part.is_none() => modes,
             Declaration::Modes(_) => {
-                return Err(Asked::refusal("one mode is no whole", "leave out --scene"));
+                return Err(Asked::refusal(
+                    "symmetries are proved for all modes together",
+                    "leave out --scene",
+                ));
             }
             Declaration::Model(_) => {
                 let claims: Vec<String> = fields(&[]).into_iter().flatten().collect();

@@ -110,7 +110,7 @@ impl Spec {
         ItemId(u32::try_from(self.items.len() - 1).unwrap_or(u32::MAX))
     }
 
-    /// Location of a declaration. For an id of another model: that of the model's name.
+    /// Location of a declaration; the location of the model's name if no declaration has this id.
     pub fn location(&self, item: ItemId) -> Location {
         self.items
             .get(item.0 as usize)
@@ -400,7 +400,7 @@ pub struct Surface {
     pub gap: Comparison,
     /// Conditions under which the surface counts.
     pub conditions: Vec<Comparison>,
-    /// True for `otherwise`: the surface counts where no other surface of the same gap does.
+    /// True for `otherwise`: the surface counts where no other surface with the same gap counts.
     pub is_otherwise: bool,
     /// Law; `None` means elastic.
     pub law: Option<Law>,

@@ -141,15 +141,15 @@ pub const INTEGRAL: &str = "integral";
 /// The Lagrangian: its declaration, and its name in `outputs`.
 pub const LAGRANGIAN: &str = "lagrangian";
 
-/// The word that replaces `when`: the surface counts where no other surface of the same gap does.
+/// The word that replaces `when`: the surface counts where no other surface with the same gap counts.
 pub const OTHERWISE: &str = "otherwise";
 
 /// The word before constraints that hold only at impacts on a surface and in contact with it:
 /// `=> LAW, instantaneous { .. }`.
 pub const INSTANTANEOUS: &str = "instantaneous";
 
-/// Extras of a scene besides named forces and surfaces: the projection to the constraints after steps, density form,
-/// divergence and invariant volume, and variations.
+/// Extras of a scene besides named forces and surfaces. `projection` is the projection onto the constraints after
+/// steps, `volume` stands for density form, divergence and invariant volume.
 pub const EXTRAS: [&str; 3] = ["projection", "volume", "variations"];
 
 /// Name of the scene with everything that was declared: the model itself.

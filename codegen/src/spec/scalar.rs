@@ -128,7 +128,7 @@ impl Cursor<'_> {
         self.bump();
         self.exponents += 1;
         if self.exponents > NESTING {
-            let text = format!("more than {NESTING} exponents above each other");
+            let text = format!("exponents are nested more than {NESTING} deep");
             return Err(self.refuse(self.last(), text, "name the inner parts with `let`"));
         }
         let exponent = self.unary()?;

@@ -143,7 +143,7 @@ impl FormOf<'_> {
         self.program.impacting.is_some() && is_free && is_steady
     }
 
-    /// The constraint of each level. Empty unless a constraint is an equation of positions, which makes its level 0.
+    /// The constraint of each level. Empty unless a constraint is holonomic as declared: its level is then 0.
     fn declared_levels(&self) -> impl Iterator<Item = Level> {
         let functions = self.program.constrained.as_ref();
         let are_declared = functions.is_some_and(|constraints| constraints.level_scales.is_some());

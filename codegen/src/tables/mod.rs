@@ -5,7 +5,7 @@
 //! | `form.rs` | sizes, conditions and laws of a form |
 //! | `description.rs` | self-description of a model |
 //! | `names.rs` | names, of which the program keeps one copy each |
-//! | `modes.rs` | both for a model with modes, and the place of each mode's quantities among those of the model |
+//! | `modes.rs` | tables and self-description of a model with modes, with the indices of each mode's quantities in the model |
 //!
 //! `emit` writes the data down as constants; an interpreter of declarations uses them directly.
 // NOTE: tables own their data, except names. Names are interned (`names.rs`), because errors carry them.
@@ -40,7 +40,8 @@ pub struct FormOf<'a> {
 }
 
 impl<'a> FormOf<'a> {
-    /// The forms of a model, of a scene or of a mode: its own, then the global form if that is another one.
+    /// The forms of a model, of a scene or of a mode: first the form in which it is run, then the global form if that
+    /// is a different one.
     pub fn all(compiled: &'a Compiled, scenes: &'a [Scene]) -> Vec<Self> {
         let Compiled {
             model,

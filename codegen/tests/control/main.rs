@@ -238,7 +238,7 @@ fn the_optimal_input_of_the_ball_is_minus_its_costate() {
 }
 
 #[test]
-fn extremals_are_canonical_and_impacts_keep_the_energy() {
+fn extremals_are_canonical_and_satisfy_the_jump_conditions() {
     for law in ["elastic", "restitution(e)", "newton(e)"] {
         let source = CURVED.replace("LAW", law);
         let (state, costate) = ([2.1, 0.6, 0.4, -0.7], [0.3, -0.8, 1.2, 0.5]);

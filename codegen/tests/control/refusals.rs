@@ -45,7 +45,7 @@ fn constraints_are_refused() {
         &particle(&format!(
             "constraints {{ c: «dot(x)» = (2 + x^2)*dot(y); }} forces {{ f: u*d(x); }} {COST}"
         )),
-        "the maximum principle of a model with constraints is not derived, and `c` is one",
+        "no maximum principle is derived for a model with constraints, such as `c`",
     );
 }
 

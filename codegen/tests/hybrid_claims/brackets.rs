@@ -72,8 +72,8 @@ impl Case {
         value(&self.model, function, &state)
     }
 
-    /// `f_q g_p - f_p g_q` by central differences. The functions are evaluated at the velocities in D that belong to
-    /// momenta.
+    /// `f_q g_p - f_p g_q` by central differences. The functions are evaluated at the velocity in D that belongs to the
+    /// momentum.
     fn by_differences(&self, [f, g]: [ExprId; 2], q: &[f64], p: &[f64]) -> f64 {
         let slope = |function: ExprId, i: usize, of_momentum: bool| {
             let [ahead, behind] = [STEP, -STEP].map(|step| {
@@ -189,7 +189,7 @@ fn brackets_are_printed_in_velocities() {
 }
 
 #[test]
-fn refusals_name_what_is_missing() {
+fn refusals_name_the_mistake() {
     let refused = |source: &str, part: Option<&str>, functions: &str| {
         let source = source.replace("CLAIM", "");
         match bracket(&source, part, functions, BracketKind::Bracket) {
@@ -199,12 +199,15 @@ fn refusals_name_what_is_missing() {
     };
     for (functions, expected) in [
         ("x", "2 functions are needed, found 1"),
-        (" ", "nothing is given"),
-        ("x; y", "`;` does not separate what is given"),
+        (" ", "the list is empty"),
+        ("x; y", "`;` does not separate the entries of a list"),
         ("x, y, z", "unknown name `z`"),
         ("x, x", "`x` twice"),
         ("x, momentum(y) +", "expected"),
-        ("x, momentum(y); y", "`;` does not separate what is given"),
+        (
+            "x, momentum(y); y",
+            "`;` does not separate the entries of a list",
+        ),
         ("x, }", "not a sequence of tokens"),
     ] {
         let text = refused(&disk(""), None, functions);

@@ -12,7 +12,7 @@ use dalembert_numbers::math::larger;
 /// A form of degree 2, as a function of two vectors.
 type Form<'f> = &'f dyn Fn(&[f64], &[f64]) -> f64;
 
-/// `sum over i of dp_i ^ dq_i` for states `(q.., v..)` with the metric `m` times the identity
+/// `sum over i of dp_i ^ dq_i` for states `(q.., v..)` with the metric `m` times the identity.
 fn symplectic(m: f64) -> impl Fn(&[f64], &[f64]) -> f64 {
     move |v, w| {
         let n = v.len() / 2;
@@ -76,7 +76,7 @@ fn a_refraction_carries_the_symplectic_form() {
     );
 }
 
-/// The wall at `x = 3` adds twice the height to the velocity along it. At the state that the verdict shows, the form on
+/// The wall at `x = 3` adds `2 y` to the velocity along the wall. At the state that the verdict shows, the form on
 /// `partial(x), partial(y)` becomes 7.24.
 #[test]
 fn a_push_along_a_wall_changes_the_symplectic_form() {
@@ -107,7 +107,7 @@ fn a_push_along_a_wall_changes_the_symplectic_form() {
     );
 }
 
-/// W. Clark, thesis, Example IX.9 with corrected sign: `dv+ = -dv - (2 g/v-) dx`
+/// W. Clark, thesis, Example IX.9 with corrected sign: `dv+ = -dv - (2 g/v-) dx`.
 #[test]
 fn a_ball_that_falls_earlier_is_slower_for_longer() {
     let falls = |z: &[f64]| vec![z[1], -1.0];

@@ -1,6 +1,7 @@
-//! `conserved: e`, `not conserved: e`, the same under impulses and resets, and `symmetry: X` of Lagrangian systems.
+//! Tests of the claims `conserved: e` and `not conserved: e`, about the motion and under impulses and resets, and of
+//! `symmetry: X`, in Lagrangian systems.
 //!
-//! Refutations show the state x = 0.36, y = -0.53, dot(x) = 0.5, dot(y) = -0.75, or one at a wall.
+//! Refutations show the state x = 0.36, y = -0.53, dot(x) = 0.5, dot(y) = -0.75, or a state at a wall.
 
 use crate::Expected::{self, Barred, False, Shown, True};
 use crate::check;
@@ -12,7 +13,7 @@ const ROUND: &str = "pub Round { coordinates { x; y; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 - (x^2 + y^2)^2; CLAIM }";
 const CHARGED: &str = "pub Charged { coordinates { x; y; } parameters { b > 0 = 3; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2 + b*x*dot(y); CLAIM }";
-/// A wall with the normal `(1, 2)`, and a wall that changes velocities and moves the particle along itself.
+/// A wall with the normal `(1, 2)`, and a wall whose reset changes velocities and moves the particle along the wall.
 const WALLS: &str = "pub Walls { coordinates { x; y; } parameters { a > 0 = 5/4; }
     lagrangian = (dot(x)^2 + dot(y)^2)/2; impacts { wall: x + 2*y >= 0;
     left: x >= 0 => reset { dot(x) = -a*dot(x); dot(y) = dot(y)/a; y = y + 1; }; } CLAIM }";
@@ -93,7 +94,8 @@ fn quantities_along_the_motion() {
     }
 }
 
-/// A conserved quantity has no counterexample. The message shows a state at which the parts of its rate cancel.
+/// `not conserved: e` is refuted without a counterexample, by a proof that `e` is conserved. The message shows a state
+/// at which the parts of its rate cancel.
 #[test]
 fn parts_that_cancel_are_shown() {
     // The parts are g dot(y) and -g dot(y) with g = 2. A rotation and an impact follow.
@@ -193,7 +195,8 @@ fn quantities_under_impulses_and_resets() {
     );
 }
 
-/// The momentum of a field of D that depends on the position (W. Clark, thesis, 5.2), and its change at a wall.
+/// The momentum of the field of D along which the disk rolls (W. Clark, thesis, 5.2) is conserved. The wall at `x = 1`
+/// changes it.
 #[test]
 fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
     let along = |factor: &str| {
@@ -217,7 +220,7 @@ fn momenta_of_sections_of_d_are_conserved_by_the_disk() {
         &format!("not conserved under wall: {}", along("1")),
         True,
     );
-    // A wall that bounds `phi` alone keeps the momentum.
+    // A wall whose gap depends on `phi` only keeps the momentum.
     let stop = disk("stop: 1/2 - cos(phi) >= 0;");
     check(
         &stop,

@@ -1,4 +1,4 @@
-//! Consequences of `volume: kept`.
+//! Tests of the remarks in proofs of `volume: kept`: impacts rarely accumulate, and the motion is recurrent.
 
 use dalembert_codegen::claims::Verdict;
 
@@ -8,7 +8,7 @@ use crate::systems::{ball, disk, field, particle};
 const RARE: &str = "impacts accumulate for almost no start";
 const RECURRENT: &str = "almost every start comes back arbitrarily near";
 
-/// Checks which consequences a proof of `volume: kept` has.
+/// Checks whether the proof of `volume: kept` has the remarks `RARE` and `RECURRENT`, in this order.
 #[track_caller]
 fn check(declaration: &str, claims: &str, expected: [bool; 2]) {
     let source = declaration.replace("CLAIM", &format!("claims {{ {claims} }}"));
@@ -71,7 +71,7 @@ fn unbounded_motion_is_not_reported_as_recurrent() {
 }
 
 #[test]
-fn energy_that_changes_excludes_the_argument() {
+fn motion_whose_energy_changes_is_not_reported_as_recurrent() {
     check(
         &particle("wall: 1 + sin(t)/2 - x^2 - y^2 >= 0;"),
         KEPT,
@@ -84,7 +84,7 @@ fn energy_that_changes_excludes_the_argument() {
 }
 
 #[test]
-fn maps_that_are_not_the_identity_at_their_ends_and_rough_densities_have_none() {
+fn jumps_at_grazing_and_rough_densities_have_no_remarks() {
     check(
         &particle("left: x >= 0 => reset { dot(x) = -dot(x); y = y + 1; };"),
         KEPT,

@@ -7,7 +7,7 @@ use crate::Expected::{self, Barred, False, Shown, True};
 use crate::check;
 use crate::systems::{disk, grooves, particle};
 
-/// A particle whose vertical velocity is a multiple of that along x.
+/// A particle whose vertical velocity is a multiple of its velocity along x.
 fn slope(of: &str) -> String {
     format!(
         "pub Slope {{ coordinates {{ x; y; z; }} lagrangian = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2;
@@ -24,7 +24,8 @@ fn sleigh(arm: &str) -> String {
     )
 }
 
-/// A screw with a pitch that depends on the angle: `G` grows by minus the integral of the pitch.
+/// A screw with a pitch that depends on the angle. The logarithm `G` of its density grows by minus the integral of the
+/// pitch.
 fn screw(pitch: &str) -> String {
     format!(
         "pub Screw {{ coordinates {{ phi: angle; x; z; }} parameters {{ b > 0 = 1; k > 0 = 1/2; }}
@@ -41,7 +42,7 @@ fn pulled(by: &str) -> String {
     )
 }
 
-/// A particle on a ring and a line, whose motion along the line loses speed as it goes round.
+/// A point on a ring and a point on a line. As the first goes round, the force changes the speed of the second.
 fn ring(loss: &str) -> String {
     format!(
         "pub Ring {{ coordinates {{ x: angle; y; }} lagrangian = (dot(x)^2 + dot(y)^2)/2;
@@ -102,7 +103,7 @@ fn without_density() -> Vec<(String, Expected)> {
     ]
 }
 
-/// Systems whose density grows on a turn, with the growth of `G`.
+/// Systems with local densities `exp(G)`, and the growth of `G` in one turn of the angle.
 fn with_growth() -> Vec<(String, f64)> {
     let turn = 2.0 * std::f64::consts::PI;
     vec![

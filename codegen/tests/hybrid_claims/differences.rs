@@ -1,6 +1,6 @@
 //! Volume factors by finite differences. A Runge-Kutta method follows a motion through an impact. Central differences
-//! give the derivative of its end with respect to its start. The factor is the determinant of that derivative times the
-//! ratio of the densities at both ends.
+//! give the derivative of the motion's end with respect to its start. The factor is the absolute value of the
+//! determinant of this derivative, times the density at the end over the density at the start.
 //!
 //! The generator is used for the verdict only.
 
@@ -17,7 +17,7 @@ pub(super) struct Hybrid<'h> {
     pub(super) gap: &'h dyn Fn(&[f64]) -> f64,
     pub(super) map: &'h dyn Fn(&[f64]) -> State,
     pub(super) after: &'h dyn Fn(&[f64]) -> State,
-    /// Densities of the volumes in the coordinates of the state.
+    /// Densities of the volumes before and after the impact, in the coordinates of the state.
     pub(super) densities: [Density<'h>; 2],
 }
 
@@ -56,7 +56,7 @@ impl Hybrid<'_> {
         run(self.after, &(self.map)(&hit), time - t1)
     }
 
-    /// Derivatives of the end with respect to the components of the start.
+    /// Derivatives of the motion's end with respect to the components of its start.
     pub(super) fn columns(&self, start: &[f64], time: f64) -> Vec<State> {
         let n = start.len();
         (0..n)
@@ -133,8 +133,8 @@ fn a_strip_that_multiplies_velocities() {
     );
 }
 
-/// The reset stretches positions by `3 + 3 x^2` and multiplies the normal velocity by 0.7, which scales the flux
-/// through the surface by 0.7 as well.
+/// The reset stretches positions by `3 + 3 x^2` and multiplies the normal velocity by 0.7. So the flux through the
+/// surface is multiplied by 0.7, too.
 #[test]
 fn a_reset_that_moves_the_position() {
     let free = |z: &[f64]| vec![z[2], z[3], 0.0, -1.0];

@@ -160,7 +160,7 @@ fn maps_between_states_of_other_dimensions_have_no_factor() {
 }
 
 #[test]
-fn what_is_not_known_stays_open() {
+fn undecided_factors_stay_open() {
     let depends = particle("low: y >= 0 => reset { dot(y) = -dot(y); x = x + dot(x); };");
     check(
         &depends,

@@ -38,7 +38,7 @@ fn forms_that_the_motion_keeps_are_proved() {
     check(&forced("x^3*d(x)"), "invariant: d(momentum(x)*d(x))", True);
     check(QUARTIC, "invariant: d(energy)", True);
     check(QUARTIC, "invariant: energy^2*d(x)^d(dot(x))", True);
-    // The volume shrinks at the rate c, and the factor grows at this rate.
+    // The volume shrinks at the rate c, and exp(c*t) grows at this rate.
     check(
         &forced("-c*dot(x)*d(x)"),
         "invariant: exp(c*t)*d(x)^d(dot(x))",
@@ -111,7 +111,7 @@ fn impacts_that_keep_forms_are_proved() {
         "invariant: d(dot(x)^2)^d(dot(y))",
         True,
     );
-    // Example 5 of the paper: alpha^2 beta = 1.
+    // The reset multiplies dot(x) by -alpha and dot(y) by beta, with alpha^2 beta = 1.
     check(
         &particle("left: x >= 0 => reset { dot(x) = -5/4*dot(x); dot(y) = 16/25*dot(y); };"),
         SPACE,
@@ -247,8 +247,9 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// A particle with `g = 2` is stopped by a surface: by a floor, which holds it, or by a ceiling, below which it falls
-/// again. The values follow by hand from `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`.
+/// A particle with `g = 2` is stopped by a floor, which holds it, or by a ceiling, from which it falls again. The
+/// values follow by hand from `v+ = dDelta(v) + (X+ - dDelta(X)) dh(v)/dh(X)`: the impact maps states by `Delta`, and
+/// the motion has the rates `X` before and `X+` after it.
 #[test]
 fn forms_change_behind_laws_that_stop_the_motion() {
     let stop = |surface: &str| {
@@ -257,14 +258,14 @@ fn forms_change_behind_laws_that_stop_the_motion() {
         )
     };
     let [floor, ceiling] = ["y >= 0 => impact_plastic", "y <= 0 => newton(0)"].map(stop);
-    // On vectors along the surface only the law matters.
+    // On vectors along the surface, with dh(v) = 0, only the law matters.
     let along = "the form on partial(dot(y)) after";
     for held in [&floor, &ceiling] {
         check(held, "invariant: d(momentum(y) + 2*t)", Shown(along, 0.0));
         check(held, "invariant: d(dot(y)^2/2 + 2*y)", Shown(along, 0.0));
     }
-    // partial(y) becomes 0 under the force of the floor, and -1.6 partial(dot(y)) below the ceiling, where X has dot(y)
-    // = 1.25.
+    // On the floor, partial(y) becomes 0. Below the ceiling, which is met at dot(y) = 1.25, it becomes
+    // -1.6 partial(dot(y)).
     let fallen = "invariant: d(momentum(y))^d(y)";
     check(&floor, fallen, False("the motion behind it is held"));
     check(
@@ -274,7 +275,7 @@ fn forms_change_behind_laws_that_stop_the_motion() {
     );
     let fall = "invariant: exp(y + dot(y)^2/4)*d(dot(y)^2/4 + y)^d(x - t*dot(x))";
     check(&floor, fall, False("`stop` changes"));
-    // Without constraints this law is elastic. With constraints the motion may leave the surface.
+    // Without constraints, `nonholonomic_plastic` is elastic. With constraints, the motion may leave the surface.
     let elastic = stop("y >= 0 => nonholonomic_plastic");
     check(&elastic, "invariant: d(momentum(x))", True);
     check(&elastic, "invariant: d(x - t*dot(x))", True);

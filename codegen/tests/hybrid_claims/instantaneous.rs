@@ -1,5 +1,5 @@
-//! Tests of forms and quantities across impacts with instantaneous constraints. The projection onto these precedes the
-//! law.
+//! Tests of forms and quantities across impacts with instantaneous constraints. The velocity is projected onto these
+//! constraints before the law acts.
 
 use crate::Expected::{False, Open, Shown, True};
 use crate::check;
@@ -19,7 +19,7 @@ const ROLLER: &str = "pub Roller { coordinates { x; y; theta; } parameters { k >
     impacts { wall: x >= 0 => elastic, instantaneous { no_slip: dot(y) = dot(theta); }; } CLAIM }";
 
 #[test]
-fn what_the_projection_leaves_is_proved() {
+fn forms_and_quantities_that_the_projection_keeps_are_proved() {
     check(
         &wall("elastic", "dot(y) = 0"),
         "invariant: d(momentum(x))^d(x)",
@@ -59,7 +59,7 @@ fn what_the_projection_leaves_is_proved() {
 }
 
 #[test]
-fn what_it_takes_is_refuted_at_a_point() {
+fn forms_and_quantities_that_the_projection_changes_are_refuted_at_a_point() {
     check(
         &wall("elastic", "dot(y) = 0"),
         "invariant: d(momentum(y))^d(y)",
@@ -102,8 +102,8 @@ fn what_it_takes_is_refuted_at_a_point() {
         "conserved under wall: momentum(y) + (1 + 1e-9)*momentum(theta)",
         False("difference"),
     );
-    // By hand, the value is (4/9 + 8/9) 2/3: free fall changes only dot(y), and an impact hands 2/3 of this change on
-    // to the common velocity.
+    // By hand, the value is (4/9 + 8/9) 2/3. Free fall changes only dot(y), and 2/3 of this change passes to the common
+    // velocity after the impact.
     check(
         ROLLER,
         "invariant: d(dot(y))^d(dot(theta))",
@@ -111,8 +111,8 @@ fn what_it_takes_is_refuted_at_a_point() {
     );
 }
 
-/// `dot(y)` and `dot(theta)` become their mean with weights 1 and k. Finite differences of runs through the wall
-/// confirm it.
+/// `dot(y)` and `dot(theta)` become their mean with the weights 1 and k. The value that the verdict shows is compared
+/// with finite differences of runs through the wall.
 #[test]
 fn vectors_are_carried_as_differences_carry_them() {
     let falls = |z: &[f64]| vec![z[3], z[4], z[5], 0.0, -1.0, 0.0];

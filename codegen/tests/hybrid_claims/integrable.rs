@@ -1,4 +1,4 @@
-//! `integrable: f, g, ..`.
+//! Tests of the claim `integrable: f, g, ..`.
 
 use dalembert_codegen::claims::Verdict;
 
@@ -83,7 +83,7 @@ fn systems_with_functions_that_change_are_refuted() {
         "integrable: momentum(theta), x - R*cos(phi)",
         False("changes along the motion"),
     );
-    // x - R sin(phi) dot(theta)/dot(phi) is the middle of the circle that the disk rolls on.
+    // x - R sin(phi) dot(theta)/dot(phi) is the x-coordinate of the centre of the circle that the disk rolls on.
     check(
         &disk(""),
         "integrable: momentum(phi), x - R*sin(phi)*dot(theta)/dot(phi)",
@@ -93,7 +93,7 @@ fn systems_with_functions_that_change_are_refuted() {
 
 #[test]
 fn functions_with_kinks_are_left_open() {
-    // Both are constant on half of the states.
+    // Both are 0 where energy <= 1/2.
     for stated in [
         "abs(energy - 1/2) + energy - 1/2",
         "sqrt((energy - 1/2)^2) + energy - 1/2",
@@ -179,9 +179,9 @@ fn near_misses_are_refuted() {
     );
 }
 
-/// One function alone is told in the singular.
+/// The certificate for a single function is a sentence in the singular.
 #[test]
-fn one_function_is_told_in_the_singular() {
+fn the_certificate_for_one_function_is_in_the_singular() {
     for (claim, told) in [
         (
             "integrable: energy",

@@ -8,10 +8,10 @@
 //! | `instantaneous.rs` | forms and quantities after instantaneous constraints |
 //! | `shipped.rs` | the shipped models |
 //! | `brackets.rs`, `involution.rs`, `integrable.rs` | brackets by differences and as they are printed; claims about functions |
-//! | `reduction.rs` | reduction by groups: equations against the full motion, connections and jumps against their definitions |
+//! | `reduction.rs` | reduction by groups: equations are compared with the full motion, connections and jumps with their definitions |
 //! | `values.rs` | numbers of a model at a state |
 //! | `corollaries.rs` | accumulation of impacts and recurrence, where a volume is kept |
-//! | `symmetries.rs` | symmetries of motion, surfaces and their maps together; of first-order systems |
+//! | `symmetries.rs` | symmetries of the motion, the surfaces and their maps together, also in first-order systems |
 //! | `qualified.rs`, `momenta.rs` | remarks on impacts in proofs of densities, and in proofs of symmetries on their momenta |
 //! | `stops.rs` | surfaces at which the motion ends |
 //! | `numbers.rs` | numbers of the sources: returns of a walker, an impact off D, the matrix of a ball |
@@ -55,7 +55,7 @@ enum Expected {
     False(&'static str),
     /// Refuted by a reason that needs no state, with this in it.
     Barred(&'static str),
-    /// Refuted with a value of this name, which is this number.
+    /// Refuted at a state, with this number as the value of this name.
     Shown(&'static str, f64),
     /// Open, with this in the reason.
     Open(&'static str),
@@ -126,14 +126,14 @@ fn check(declaration: &str, claim: &str, expected: Expected) {
     }
 }
 
-/// A model in one piece, with its equations.
+/// A model without modes, with its equations.
 ///
 /// # Panics
 /// If it is refused.
 fn derived(source: &str) -> (model::Model, Derivation) {
     let spec::Declaration::Model(spec) = read(source.parse().expect("tokens")).expect("syntax")
     else {
-        panic!("no model in one piece");
+        panic!("a model with modes");
     };
     let mut model = model::check(&spec).expect("a model");
     let derivation = mechanics::derive(&mut model);

@@ -1,5 +1,5 @@
-//! Numbers printed in the sources. Differences of motions through impacts check them, and claims prove them at all
-//! states.
+//! Numbers printed in the sources. They are compared with finite differences of motions through impacts. Claims prove
+//! the formulas behind them at all states.
 
 use dalembert_texts::TEXTS;
 
@@ -8,7 +8,8 @@ use crate::check;
 use crate::differences::{Hybrid, State, assert_close, determinant, one};
 use crate::systems::ball;
 
-/// Parameters of the walker: mass against inertia, falling against friction, slope, half the angle between the legs.
+/// Parameters of the walker: `mu` (mass against inertia), `eps` (falling against friction), the slope `alpha`, and half
+/// the angle between the legs, `delta`.
 const WALKER: [f64; 4] = [2.5, 0.5, 0.4, 0.4];
 
 /// Rates of the dimensionless walker, with the integral of their divergence as a fourth component.
@@ -35,7 +36,7 @@ fn step(z: &[f64]) -> State {
     ]
 }
 
-/// Maps `(xi, eta)` after a step to `(xi, eta)` after the next one. The third entry is the integral of the divergence.
+/// Maps `(xi, eta)` after a step to `(xi, eta)` after the next step. The third entry is the integral of the divergence.
 fn walked(xi: f64, eta: f64) -> [f64; 3] {
     let hold = |z: &[f64]| vec![0.0; z.len()];
     let stride = Hybrid {
@@ -49,10 +50,11 @@ fn walked(xi: f64, eta: f64) -> [f64; 3] {
     [end[1], end[2], end[3]]
 }
 
-/// The derivative of the return at its fixed point has the determinant `cos(2 delta)^2 exp(integral of the divergence)`.
+/// The derivative of the return map at its fixed point has the determinant `cos(2 delta)^2 exp(integral of the
+/// divergence)`.
 #[test]
 fn returns_of_the_walker_shrink_by_step_and_motion() {
-    // The fixed point with 30 digits, and its multipliers.
+    // The fixed point and its multipliers, computed with 30 digits.
     let (xi, eta) = (-0.902_057_449_429_909_7, 0.991_308_369_223_558_5);
     let multipliers = [0.520_683_714_448_936_2, 0.007_382_316_653_128_13];
     let there = walked(xi, eta);
@@ -85,8 +87,8 @@ fn returns_of_the_walker_shrink_by_step_and_motion() {
     check(&kept, &format!("{claim} + 1e-9"), False("Jacobian"));
 }
 
-/// A disk off its constraints: a first-order system of positions and momenta. Constraint forces keep `P(W^a)`, off D
-/// too. An elastic impact adds `-2 dh(pi_D qdot)/dh(pi_D grad h)` times `pi_D^* dh`.
+/// A disk whose velocity need not satisfy the constraints: a first-order system of positions and momenta. Constraint
+/// forces keep `P(W^a)`, off D too. An elastic impact adds `-2 dh(pi_D qdot)/dh(pi_D grad h)` times `pi_D^* dh` to `p`.
 const DISK_OFF_D: &str = "pub DiskOffD {
     coordinates { x; y; theta; phi; px; py; ptheta; pphi; }
     parameters { m > 0 = 7/5; R > 0 = 3/8; I > 0 = 2/9; J > 0 = 1/7; hx = -3/4; hy = -1/3; }
@@ -107,8 +109,9 @@ const DISK_OFF_D: &str = "pub DiskOffD {
         ptheta = ptheta + eps*slope*I/mass; pphi = pphi + eps*turn;
     }; } CLAIM }";
 
-/// `(h_x, h_y)` of the disk at phi = 0.6, from two components: the last one of grad h, `R/J (h_y cos - h_x sin)`, and
-/// the second one of pi_D grad h, `R^2/(2 (I + m R^2)) (h_y (1 - cos 2 phi) + h_x sin 2 phi)`.
+/// `(h_x, h_y)` of the disk at phi = 0.6, from two known components: the last one of grad h,
+/// `R/J (h_y cos phi - h_x sin phi)`, and the second one of pi_D grad h,
+/// `R^2/(2 (I + m R^2)) (h_y (1 - cos 2 phi) + h_x sin 2 phi)`.
 fn gradient_of_rim() -> [f64; 2] {
     let [m, radius, inertia, j] = [7.0 / 5.0, 3.0 / 8.0, 2.0 / 9.0, 1.0 / 7.0_f64];
     let mass = inertia + m * radius * radius;
@@ -122,8 +125,8 @@ fn gradient_of_rim() -> [f64; 2] {
 /// W. Clark, thesis, (7.11): off D an elastic impact multiplies `omega^n` by
 /// `(2 dh(pi_D qdot) - dh(qdot))/dh(qdot)`. On D that is 1.
 ///
-/// The claim proves the formula for all states. Differences of motions check its value at one state, whose gradient is
-/// solved from known components and whose momenta are decimals of one digit.
+/// The claim proves the formula for all states. Its value at one state is compared with differences of motions. The
+/// gradient of `h` at this state is computed from known components.
 #[test]
 fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
     let claim = |factor: &str| format!("density under wall: factor = {factor}");
@@ -135,7 +138,7 @@ fn an_elastic_impact_off_d_does_not_keep_the_liouville_volume() {
     );
     check(DISK_OFF_D, &claim("1"), False("Jacobian"));
     check(DISK_OFF_D, "density = 1", True);
-    // p = (1.2, -0.2, 0.4, 0.1) at phi = 0.6, with the gradient that known components of grad h and pi_D grad h give.
+    // p = (1.2, -0.2, 0.4, 0.1) at phi = 0.6.
     let [m, radius, inertia, j] = [7.0 / 5.0, 3.0 / 8.0, 2.0 / 9.0, 1.0 / 7.0];
     let [hx, hy] = gradient_of_rim();
     let slopes = move |phi: f64| {

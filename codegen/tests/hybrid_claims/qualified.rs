@@ -1,4 +1,4 @@
-//! Verdicts on densities of models whose impacts do not keep the volume.
+//! Tests of the words about impacts in verdicts on densities.
 
 use crate::findings;
 use crate::systems::{ball, disk};
@@ -9,7 +9,7 @@ fn note(declaration: &str, claim: &str) -> String {
 }
 
 #[test]
-fn a_density_of_the_motion_alone_is_called_one() {
+fn a_density_of_the_motion_between_impacts_only_is_called_so() {
     let note_of = |law: &str, claim: &str| note(&ball(law), claim);
     let found = note_of("restitution(c)", "density: exact");
     assert!(
@@ -48,7 +48,7 @@ fn a_step_that_moves_the_state_has_its_factor_in_closed_form() {
 }
 
 #[test]
-fn impacts_that_contract_do_not_exclude_that_they_accumulate() {
+fn accumulation_is_not_excluded_where_impacts_contract_the_volume() {
     let open = "accumulation of impacts is not excluded";
     let says = |law: &str, claim: &str| note(&ball(law), claim).contains(open);
     for claim in ["density: exact", "density under floor: factor = c^2"] {

@@ -1,4 +1,5 @@
-//! Tests of the claim `conserved under TRANSITION: e`.
+//! Tests of the claims `conserved under s: e` and `not conserved under s: e` about transitions `s`, and about resets
+//! whose maps have several branches.
 
 use crate::Expected::{Barred, False, Shown, True};
 use crate::check;
@@ -104,8 +105,8 @@ fn quantities_that_a_transition_changes_are_refuted_at_a_state() {
     );
 }
 
-/// Where the step of the potential is too high, an elastic reflection reverses the normal momentum and keeps the
-/// energy.
+/// Where the step of the potential is too high, the particle is reflected. The reflection reverses the normal momentum
+/// and keeps the energy.
 #[test]
 fn reflections_count_too() {
     let same = media("(dot(x)^2 + dot(y)^2)/2", "(dot(x)^2 + dot(y)^2)/2 - V*y^2");
@@ -113,7 +114,7 @@ fn reflections_count_too() {
     check(&same, &kept("rightward", "x*momentum(y)"), True);
 }
 
-/// The maps keep `dot(y)` on one side of `dot(y) = 0` only.
+/// The maps keep `dot(y)` only where `dot(y) >= 0`.
 #[test]
 fn all_branches_of_resets_are_examined() {
     for map in ["abs(dot(y))", "sqrt(dot(y)^2)"] {

@@ -1,5 +1,5 @@
-//! Reduction by groups of symmetries: reduced equations against the full motion, connections and jumps against their
-//! definitions.
+//! Tests of the reduction by groups of symmetries. Reduced equations are compared with the full motion, connections and
+//! jumps with their definitions.
 
 use dalembert_codegen::claims::Dynamics;
 use dalembert_codegen::mechanics::reduction::{Reduction, derive_reduction};
@@ -21,7 +21,7 @@ const SLEIGH: &str = "pub Sleigh { coordinates { x; y; theta: angle; } parameter
     lagrangian = m/2*(dot(x)^2 + dot(y)^2) + (I + m*a^2)/2*dot(theta)^2 + a*m*dot(theta)*(dot(y)*cos(theta) - dot(x)*sin(theta));
     constraints { blade: dot(y)*cos(theta) = dot(x)*sin(theta); } CLAIM }";
 
-/// A snakeboard: a rotor that turns by psi, and wheels that turn by phi.
+/// A snakeboard: its rotor turns by the angle psi, and its wheels are steered by the angle phi.
 const SNAKEBOARD: &str = "pub Snakeboard { coordinates { x; y; theta: angle; psi: angle; phi in (-1.5, 1.5); }
     parameters { m > 0 = 6; l > 0 = 1/5; c > 0 = 1/10; J > 0 = 1/60; K > 0 = 1/25; }
     lagrangian = m/2*(dot(x)^2 + dot(y)^2) + c/2*dot(theta)^2 + J/2*(dot(theta) + dot(psi))^2 + K*(dot(theta)^2 + dot(phi)^2);
@@ -43,7 +43,7 @@ pub(super) const BALL: &str = "pub Ball { coordinates { x; y; phi: angle; theta 
         oz: d(psi) + cos(theta)*d(phi);
     } CLAIM }";
 
-/// A cart with a pendulum, pulled by friction.
+/// A cart with a pendulum, slowed by friction.
 const CART: &str = "pub Cart { coordinates { x; theta: angle; } parameters { M > 0 = 2; l > 0 = 3/4; c > 0 = 1/5; }
     lagrangian = (M + 1)/2*dot(x)^2 + l*cos(theta)*dot(x)*dot(theta) + l^2/2*dot(theta)^2 + l*cos(theta);
     forces { drag: -c*dot(x)*d(x); } CLAIM }";
@@ -162,7 +162,7 @@ impl Case {
 }
 
 #[test]
-fn reduced_equations_have_the_shape_of_the_full_motion() {
+fn reduced_motions_are_those_of_the_full_equations() {
     let wall = disk("");
     for (declaration, group, start) in [
         (
@@ -199,7 +199,7 @@ fn reduced_equations_have_the_shape_of_the_full_motion() {
 }
 
 #[test]
-fn momenta_have_their_rates_along_the_motion() {
+fn rates_of_momenta_agree_with_differences_along_the_motion() {
     const H: f64 = 1e-4;
     for (declaration, group, start) in [
         (SLEIGH, PLANE, vec![0.2, -0.1, 0.6, 1.2, 0.8, -0.9]),
@@ -265,7 +265,7 @@ fn horizontal(case: &Case, q: &[f64], v: &[f64]) -> Row {
 }
 
 #[test]
-fn connections_and_curvatures_are_what_defines_them() {
+fn connections_and_curvatures_satisfy_their_definitions() {
     const H: f64 = 1e-5;
     let wall = disk("");
     for (declaration, group, q) in [
@@ -344,9 +344,10 @@ fn connections_and_curvatures_are_what_defines_them() {
     }
 }
 
-/// An elastic impact of the disk in W. Clark's thesis, 6.4, on the elliptic table. The values have 18 digits.
+/// An elastic impact of the disk in W. Clark's thesis, 6.4, on the elliptic table. The velocities before and after it
+/// are known to 16 digits or more.
 #[test]
-fn momenta_jump_at_impacts_as_they_do() {
+fn jumps_of_momenta_on_an_elliptic_table_agree_with_known_velocities() {
     let source = "pub Disk { coordinates { x; y; theta: angle; phi: angle; }
         parameters { m > 0 = 1/400; R > 0 = 1/100; I > 0 = 1/8000000; J > 0 = 1/16000000; }
         lagrangian = m/2*(dot(x)^2 + dot(y)^2) + I/2*dot(theta)^2 + J/2*dot(phi)^2;
@@ -389,10 +390,10 @@ fn momenta_jump_at_impacts_as_they_do() {
     assert_eq!(start.len(), 2);
 }
 
-/// An elastic impact at a wall with these slopes, from `dot(theta) = 3`, `dot(phi) = -3/4`. The second momentum in
-/// (6.27) and (6.28) of W. Clark's thesis is wrong. The values here come from the impulse in 30 digits.
+/// An elastic impact at a straight wall, from `dot(theta) = 3`, `dot(phi) = -3/4`. The second momentum in (6.27) and
+/// (6.28) of W. Clark's thesis is wrong. The values here come from the impulse, computed with 30 digits.
 #[test]
-fn a_disk_turns_at_a_wall_with_right_momenta() {
+fn jumps_of_momenta_at_a_straight_wall_agree_with_known_velocities() {
     let wall = "wall: 1 - 0.771650550527029756*(x + R*cos(phi)) - 0.301545095525314786*(y + R*sin(phi)) >= 0;";
     let case = case(&disk(wall), ROLLING);
     let (radius, inertia, inertia_phi) = (3.0 / 8.0, 2.0 / 9.0, 1.0 / 7.0);
@@ -420,7 +421,7 @@ fn a_disk_turns_at_a_wall_with_right_momenta() {
     }
 }
 
-/// Effect of each law on the gap rate: it is multiplied by `1 - c`, with `c = 1 + e`, 1 or 2.
+/// Factors of the gap rate: `newton(e)` multiplies it by `-e`, here -0.5, `impact_plastic` by 0 and `elastic` by -1.
 #[test]
 fn laws_have_their_impulses() {
     for (law, expected) in [
@@ -491,10 +492,10 @@ fn groups_are_printed_and_refused_with_the_reason() {
             "[partial(x), partial(phi) - y*partial(x) + x*partial(y)] is no combination of the fields",
         ),
         ("partial(x),", "expected an expression"),
-        ("", "nothing is given"),
+        ("", "the list is empty"),
         (
             "partial(x); partial(y)",
-            "`;` does not separate what is given",
+            "`;` does not separate the entries of a list",
         ),
         ("dot(x)*partial(x)", "is not a vector field"),
     ] {

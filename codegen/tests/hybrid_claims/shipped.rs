@@ -33,7 +33,7 @@ pub(super) fn claiming(text: &str, claims: &str) -> String {
 enum Kind {
     /// A first-order system, which has no symplectic form.
     FirstOrder,
-    /// Without constraints and forces, with elastic impacts and refractions alone.
+    /// Without constraints and forces. All impacts are elastic, and all transitions are refractions.
     Elastic,
     /// With forces, or with maps that are not elastic.
     Changed,
@@ -74,10 +74,10 @@ fn kind(modes: &[Model]) -> Kind {
     }
 }
 
-/// Models whose constraints hold the positions on leaves, on which the form is kept.
+/// Models whose constraints keep the positions on a leaf. The form is kept on each leaf.
 const ON_LEAVES: [&str; 2] = ["holonomic_bead_on_ellipses", "two_wheels_rod"];
 
-/// A walker whose steps carry vectors from one leaf to several.
+/// A walker whose steps map vectors along a leaf to vectors across leaves.
 const ACROSS_LEAVES: &str = "spring_mass_walker";
 
 #[test]

@@ -1,4 +1,5 @@
-//! Surfaces with the law `stop`. Claims do not refer to them; claims about other surfaces and the motion are unchanged.
+//! Tests of surfaces with the law `stop`. Claims cannot name them. Verdicts on claims about the motion and about other
+//! surfaces are those of the model without them.
 
 use crate::Expected::{False, True};
 use crate::check;

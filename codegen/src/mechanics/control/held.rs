@@ -3,6 +3,9 @@
 //! ```text
 //! xdot = f(t, x, u),  udot = 0,  Jdot = l(t, x, u)            x+ = Delta(t, x)
 //! ```
+//!
+//! `x` is the state of the model, `u` are its inputs, `J` is the running cost so far, and `Delta` is the map of an
+//! impact.
 
 use dalembert_expr::ExprId;
 
@@ -19,14 +22,14 @@ pub struct Held {
     pub model: Model,
     /// Number of inputs.
     pub inputs: usize,
-    /// True if nothing between start and end depends on time.
+    /// True if motion, impacts and running cost do not depend on time. The terminal cost may.
     pub is_autonomous: bool,
 }
 
 /// Makes the first-order model of a checked model with a cost.
 ///
 /// # Errors
-/// Names the first declaration that rules it out.
+/// The first declaration that prevents it.
 pub fn held_model(mut model: Model) -> Result<Held, Uncontrolled> {
     let Some(cost_of) = model.cost else {
         return Err(Uncontrolled::without_cost(&model));

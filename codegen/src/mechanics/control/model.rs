@@ -20,8 +20,8 @@ const COST: &str = "cost";
 
 /// The first-order model of the extremals of `model`, whose pool holds their expressions. Its coordinates are the
 /// state, the costate and the cost so far; its surfaces are those of the model. Its outputs are the optimal inputs,
-/// `H*`, the terminal cost, its gradient by the state, the rows of its second derivative, and the minors that are
-/// positive where the optimal inputs are a minimum.
+/// `H*`, the terminal cost, its gradient with respect to the state, the rows of its second derivative, and the minors
+/// that are positive where the optimal inputs are a minimum.
 pub fn extremal_model(mut model: Model, extremals: &Extremals) -> Model {
     let item = item_of(&model);
     let components = extremals.components.iter();
@@ -67,7 +67,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The first-order model, in the pool of the other model.
+    /// The first-order model. It takes over the pool of `model`, which holds its expressions.
     pub fn assembled(self, mut model: Model) -> Model {
         let item = item_of(&model);
         let coordinates = coordinates(&mut model, self.components, item);

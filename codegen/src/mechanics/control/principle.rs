@@ -1,4 +1,5 @@
-//! `H = p.f + l` is quadratic in the inputs: `u* = -R^{-1}(d_u l + p.d_u f)` at `u = 0`, with `R = d_u^2 l`.
+//! `H = p.f + l` is quadratic in the inputs, so `u* = -R^{-1}(d_u l + p.d_u f)`, with the derivatives at `u = 0` and
+//! `R = d_u^2 l`.
 
 use dalembert_expr::{Assumption, ExprId, Pool, SymbolId, Verdict};
 

@@ -1,5 +1,5 @@
 //! A model as a first-order system: `xdot = f(t, x, u)` and `x+ = Delta(t, x)`. The state of a Lagrangian model is
-//! `(q, qdot)`, with `qddot = g^{-1}(f - drift)`.
+//! `(q, qdot)`, with `qddot = g^{-1}(force - drift)` (`mechanics/field.rs`).
 
 use dalembert_expr::{ExprId, Pool, SymbolId, Verdict};
 
@@ -30,7 +30,7 @@ pub(super) struct Impact {
     pub form_rate: ExprId,
     /// `Delta`
     pub map: Vec<ExprId>,
-    /// `w . dDelta^{-1}` of a covector `w`.
+    /// The map `w -> w . Delta_*^{-1}` of covectors.
     pub back: Back,
 }
 
@@ -53,7 +53,7 @@ pub(super) enum Back {
 pub(super) fn of(model: &mut Model) -> Result<System, Uncontrolled> {
     if let Some(constraint) = model.constraints.first() {
         let text = format!(
-            "the maximum principle of a model with constraints is not derived, and `{}` is one",
+            "no maximum principle is derived for a model with constraints, such as `{}`",
             constraint.name.display
         );
         let help = "use coordinates in which there is none";
@@ -123,7 +123,7 @@ fn of_lagrangian(model: &mut Model) -> Result<System, Uncontrolled> {
     })
 }
 
-/// `g^{-1}(f - drift)`
+/// `g^{-1}(force - drift)`
 fn accelerations(model: &mut Model, derivation: &Derivation, cometric: &Matrix) -> Vec<ExprId> {
     let field = &derivation.field;
     let pool = &mut model.pool;

@@ -1,8 +1,8 @@
-//! Orthogonal rows or columns of a block.
+//! Orthogonal rows or columns of a block of the constraint forms.
 //!
-//! Write each column as `c = f d`, with `f` the common factor of its entries. Then `c . r / (c . c)` is
-//! `d . r / (f d . d)`. The block is singular exactly where a factor is 0, and no division is by the square of a
-//! factor.
+//! Write each column as `c = f d`, with `f` the common factor of its entries. The component of a right-hand side `r`
+//! along it, `c . r / (c . c)`, is `d . r / (f d . d)`. The block is singular exactly where a factor is 0, and no
+//! division is by the square of a factor.
 
 use dalembert_expr::{ExprId, Pool, Verdict};
 

@@ -1,4 +1,4 @@
-//! A frame that is regular at every configuration, found from the constraint forms alone.
+//! A frame that is regular at every configuration, found from the coefficients of the constraint forms.
 //!
 //! A velocity can be made dependent if it occurs in only one of the constraints still to be solved, with a coefficient
 //! that is never zero. Otherwise a pair of velocities that occur in only one constraint is used, if the sum of the
@@ -19,7 +19,8 @@ enum Dependent {
     Pair(usize, usize),
 }
 
-/// Quasi-velocities: the velocities of coordinates that stay independent, and one velocity along each pair.
+/// Quasi-velocities: the velocities of coordinates that stay independent, and for each pair the velocity along its
+/// constraint.
 pub(super) fn choose(
     model: &mut Model,
     constraints: &[ConstraintForm],

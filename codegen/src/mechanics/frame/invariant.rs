@@ -13,8 +13,8 @@ use crate::mechanics::common_factor::factored;
 use crate::mechanics::{ConstraintForm, Coordinates, FieldTerms};
 use crate::model::{Model, Topology};
 
-/// Expressions with the coordinates removed on which they do not depend. `None` if an expression depends on all
-/// coordinates in it, or was not proved to be independent of one.
+/// Expressions without the coordinates on which they do not depend. `None` if an expression depends on all coordinates
+/// that occur in it, or if its independence was not proved.
 #[derive(Debug)]
 pub struct Invariant {
     /// Symbols of the quasi-velocities.
@@ -227,8 +227,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// `sum / (factor * squared)` of an axis: coefficient of a vector along the axis, from its product with the
-    /// entries.
+    /// `sum / (factor * squared)` of an axis: the coefficient of a vector along the axis, where `sum` is the product of
+    /// the vector with the entries of the axis.
     fn over(&mut self, sum: ExprId, axis: &Axis) -> ExprId {
         let powers = [(sum, 1), (axis.factor, -1), (axis.squared, -1)];
         let powers = powers.map(|(base, exponent)| (base, Rational::from(exponent)));
@@ -285,8 +285,8 @@ impl<'a> Search<'a> {
         pool.sum(&terms)
     }
 
-    /// The expression with the coordinates on which it does not depend at the base configuration. `None` if it depends
-    /// on all coordinates in it, or was not proved to be independent of one.
+    /// Sets the coordinates on which the expression does not depend to their values at the base configuration. `None`
+    /// if it depends on all coordinates that occur in it, or if its independence was not proved.
     fn fixed(&mut self, expression: ExprId) -> Option<ExprId> {
         let pool = &self.model.pool;
         let occurs = |(symbol, _): &&(SymbolId, ExprId)| pool.depends_on(expression, *symbol);
@@ -320,7 +320,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// True if the expression is nearly unchanged at all sample points when one coordinate has another value.
+    /// True if, at all sample points, the expression nearly keeps its value when `coordinate` changes.
     fn may_be_idle(&self, expression: ExprId, coordinate: SymbolId) -> bool {
         (0..SAMPLES).all(|sample| {
             let moved = |symbol| match symbol == coordinate {

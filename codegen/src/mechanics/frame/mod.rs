@@ -9,9 +9,9 @@
 //! a = Xdot u + Xdot_0:  alpha(a) = -alphadot(qdot),  eta(a) = -curvature
 //! ```
 //!
-//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form covers the same systems:
-//! affine constraints, time, forces, velocity-linear terms. The system of `alpha` and `eta` is never inverted
-//! symbolically: [`plan`] gives the order in which it is solved.
+//! `f`, `gdot qdot + Adot` and `curvature` are those of the global form, so that the reduced form covers the same
+//! systems: affine constraints, dependence on time, forces, velocity-linear terms. The system of `alpha` and `eta` is
+//! never inverted symbolically: [`plan`] gives the order in which it is solved.
 
 mod axis;
 mod choice;
@@ -44,9 +44,9 @@ pub struct Frame {
 /// `u = alpha(qdot)`
 #[derive(Debug)]
 pub struct QuasiVelocity {
-    /// Name: as declared, or `x_dot` for the velocity of `x`.
+    /// Name: as declared, `x_dot` for the velocity of `x`, or `along_k` for a velocity along the constraint `k`.
     pub name: String,
-    /// The coordinate whose velocity it is, if there is one.
+    /// The coordinate whose velocity was chosen; `None` for a declared one-form and for a velocity along a constraint.
     pub coordinate: Option<usize>,
     /// `alpha_j`, N entries.
     pub form: Vec<ExprId>,

@@ -1,8 +1,8 @@
 //! Order in which the coframe `(alpha, eta)` is solved for the velocities, block by block.
 //!
-//! A row with one column left gives its velocity first. A column with one row left is solved last. The remaining rows
-//! and columns fall into connected blocks. A block with orthogonal rows or columns is solved by products, any other by
-//! orthogonalisation in the emitted code.
+//! A row with one column left is solved first, and a column with one row left is solved last, if their entry is never
+//! zero. The remaining rows and columns fall into connected blocks. A block with orthogonal rows or columns is solved
+//! by products, any other by orthogonalisation in the emitted code.
 
 use dalembert_expr::{ExprId, Pool};
 

@@ -1,4 +1,4 @@
-//! Bounds of the velocities at unit quasi-velocities: the natural units of the positions that they move.
+//! Bounds of the coordinate velocities at unit quasi-velocities: the natural units of the coordinates.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -45,7 +45,7 @@ pub(super) fn position_units(
         .collect()
 }
 
-/// `(right + sum |entry| bound) / |pivot|` of a row, if that is a positive function of the parameters.
+/// `(right + sum |entry| bound) / |pivot|` of a row, if this quotient is a positive function of the parameters.
 fn entry(
     model: &mut Model,
     form: &[ExprId],

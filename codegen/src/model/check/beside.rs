@@ -1,5 +1,5 @@
-//! Several surfaces with one gap: `otherwise`, and transitions whose conditions may leave a motion without a
-//! transition.
+//! Surfaces with the same gap: resolves `otherwise`, and marks transitions whose conditions may leave a motion without
+//! a transition.
 
 use dalembert_expr::Pool;
 
@@ -52,7 +52,8 @@ pub(super) fn resolve(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
     }
 }
 
-/// Remarks on pairs of surfaces that leave out exactly the points between them.
+/// Notes on pairs of surfaces with the same gap whose opposite strict conditions both exclude the edge between their
+/// regions.
 pub(super) fn notes(resolver: &Resolver<'_>, surfaces: &[Surface]) -> Vec<String> {
     let mut pool = resolver.pool.clone();
     let mut notes = Vec::new();

@@ -25,7 +25,7 @@ type Powers = Vec<(ExprId, Rational)>;
 enum Candidate {
     /// `p f(e) - p`
     Call(Function, ExprId),
-    /// `root - p`, with `p` a multiple of a summand, or a number.
+    /// `root - p`, with `p` the product of a number and a summand; `None` for the summand 1.
     Root {
         root: ExprId,
         radicand: ExprId,
@@ -33,7 +33,7 @@ enum Candidate {
     },
 }
 
-/// Remarks on all expressions that are evaluated along a run; one for each difference.
+/// Notes on the Lagrangian, constraints, forces, gaps and outputs; one for each difference.
 pub(super) fn notes(
     resolver: &Resolver<'_>,
     lagrangian: &Lagrangian,
@@ -154,7 +154,7 @@ fn powers(pool: &Pool, term: ExprId) -> Powers {
     }
 }
 
-/// True if the function is 1 where its argument is 0, and has another form of its difference from 1.
+/// True if the function is 1 where its argument is 0, and its difference from 1 has a form without cancellation.
 fn is_one_at_zero(function: Function) -> bool {
     matches!(function, Function::Cos | Function::Cosh | Function::Exp)
 }

@@ -300,7 +300,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// True if a scene uses the surface that a claim about it names; reports an error otherwise.
+    /// True if the scene of a claim uses the surface that the claim names; reports an error otherwise.
     fn check_surface_of(
         &mut self,
         claim: &spec::Claim,
@@ -335,7 +335,7 @@ impl Resolver<'_> {
         let found = all.position(|surface| surface.name.display == *display || is_member(surface));
         if let Some(surface) = found.filter(|found| !surfaces[*found].law.goes_on()) {
             let name = &surfaces[surface].name.display;
-            let text = format!("the motion ends at `{name}`: no claim speaks of what follows");
+            let text = format!("the motion ends at `{name}`: there is no state after it");
             return self.refuse(declared.name.at, text, "leave it out");
         }
         found.or_else(|| {

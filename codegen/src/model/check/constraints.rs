@@ -9,7 +9,7 @@ use super::names::Names;
 use crate::diagnostics::{Location, listed};
 use crate::spec::Equation;
 
-/// All constraints, families expanded; and the symbols of their multipliers.
+/// All constraints, families expanded. Also makes the symbols of their multipliers.
 pub(super) fn resolve(resolver: &mut Resolver<'_>) -> Vec<Constraint> {
     let spec = resolver.spec;
     let mut constraints: Vec<Constraint> = Vec::new();

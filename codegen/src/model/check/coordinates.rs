@@ -99,8 +99,8 @@ impl<'s> Resolver<'s> {
         }
     }
 
-    /// Number of members of a declared family: `None` if it is not a family, 1 if its size is wrong, so that the names
-    /// of its members are still known. `present` members of all kinds were declared before.
+    /// Number of members of a declared family; `None` for a single name. A family whose size is wrong gets one member,
+    /// so that its name is still known. `present` is the number of members that were declared before.
     pub(super) fn family_size(
         &mut self,
         declared: &Declared,

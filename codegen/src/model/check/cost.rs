@@ -1,5 +1,5 @@
-//! The cost that optimal inputs minimise. It must be quadratic in the inputs and grow with each combination of them:
-//! the optimal input is then unique at every state and costate.
+//! The cost that optimal inputs minimise. It must be quadratic and strictly convex in the inputs: the optimal input is
+//! then unique at every state and costate.
 
 use dalembert_expr::{ExprId, Sign, Verdict};
 
@@ -98,9 +98,9 @@ impl Resolver<'_> {
         self.refuse(written.at, text, help)
     }
 
-    /// True if the second derivatives with respect to some two inputs have a determinant that is known to be negative:
-    /// the cost then falls along a combination of both. Larger determinants, and signs that depend on parameters, are
-    /// checked when a control begins.
+    /// True if the second derivatives with respect to a pair of inputs have a determinant that is known to be negative:
+    /// the cost is then concave along a combination of both. Larger determinants, and signs that depend on parameters,
+    /// are checked when a control begins.
     fn has_negative_minor(&mut self, rows: &[Vec<ExprId>]) -> bool {
         let pairs = (0..rows.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
         let pool = &mut self.pool;
@@ -113,7 +113,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The second derivatives by the inputs.
+/// The second derivatives with respect to the inputs.
 fn second_derivatives(resolver: &mut Resolver<'_>, running: ExprId) -> Vec<Vec<ExprId>> {
     let inputs = resolver.symbols.inputs();
     let pool = &mut resolver.pool;

@@ -1,7 +1,7 @@
 //! First-order systems: the rate of every coordinate in place of a Lagrangian.
 //!
-//! Refuses declarations that belong to mechanics: constraints, forces and frames, impulses at surfaces, assignments to
-//! velocities.
+//! Refuses declarations that belong to mechanics: constraints, forces, frames, impulses at surfaces, assignments to
+//! velocities, projection and volume in scenes, and claims about energy, brackets or the existence of a density.
 
 use dalembert_expr::{ExprId, Pool};
 
@@ -88,7 +88,7 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
             .help("keep one of the two")
             .also(at, "the Lagrangian is here");
     }
-    let rates = "say what it does in the rates of `field`";
+    let rates = "write its effect into the rates of `field`";
     let entries = [
         (
             "constraints",
@@ -123,7 +123,10 @@ pub(super) fn check_alone(resolver: &mut Resolver<'_>) {
             | Statement::Symmetry(_)
             | Statement::Invariant(_)
             | Statement::Factor { .. } => continue,
-            Statement::Existence(_) => ("density that is looked for", "state one: `density = ..;`"),
+            Statement::Existence(_) => (
+                "claim on the existence of a density",
+                "state one: `density = ..;`",
+            ),
             Statement::Involution(_) | Statement::Integrable(_) => {
                 ("bracket", "write `conserved: ..;` for each function")
             }

@@ -129,7 +129,7 @@ impl Resolver<'_> {
         )
     }
 
-    /// True if a value may lie in the set of a coordinate; always true for values that depend on parameters.
+    /// True if a value may lie in the interval of a coordinate. Always true for values that depend on parameters.
     fn is_in_chart(&self, topology: Topology, value: ExprId) -> bool {
         let Topology::Interval { low, high } = topology else {
             return true;

@@ -1,5 +1,5 @@
-//! Constraints that hold only at an impact: one-forms like all constraints, independent of the permanent ones and of
-//! the surface.
+//! Instantaneous constraints hold at an impact and during the contact after it. Their one-forms must be independent of
+//! the permanent constraints and of the differential of the gap.
 
 use dalembert_expr::ExprId;
 
@@ -46,7 +46,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Refuses instantaneous constraints that follow from others, and those that determine the impact completely.
+/// Refuses instantaneous constraints that follow from others, and those that determine the gap rate.
 pub(super) fn check_independent(
     resolver: &mut Resolver<'_>,
     surfaces: &[Surface],

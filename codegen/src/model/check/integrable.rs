@@ -1,8 +1,8 @@
 //! Remarks on constraints that are integrable but not declared as such.
 //!
-//! `omega = eta + eta_0 dt` on Q x R is closed if `d omega = 0` and integrable if `omega ^ d omega = 0` (a single
-//! form; Frobenius). Both are only remarked on: a constraint is kept on position level only if it is written as `d(f)`
-//! or as an equation of positions.
+//! `omega = eta + eta_0 dt` on Q x R is closed if `d omega = 0`, and a single form is integrable if
+//! `omega ^ d omega = 0` (Frobenius). Both only lead to remarks: a constraint is kept on position level only if it is
+//! written as `d(f)` or as an equation of positions.
 
 use dalembert_expr::{ExprId, Pool, SymbolId, Verdict};
 
@@ -10,7 +10,7 @@ use super::super::Constraint;
 use super::super::degree::is_zero;
 use super::super::resolve::Resolver;
 
-/// Number of entries beyond which a form is not examined: the number of conditions grows with the cube.
+/// Number of entries beyond which a form is not examined. The number of conditions grows with its cube.
 const LARGEST_SUPPORT: usize = 12;
 
 /// Remarks on all constraints without a level.

@@ -78,7 +78,7 @@ pub(crate) fn check_within(spec: &Spec, steps: u64) -> Result<Model, Diagnostics
     check_mode(spec, &[], steps)
 }
 
-/// Same as [`check()`], for one mode of a hybrid model. `modes`: data of all modes.
+/// Same as [`check()`], for one mode of a hybrid model. `modes` has the data of all modes.
 pub(in crate::model) fn check_mode(
     spec: &Spec,
     modes: &[Peer],
@@ -125,7 +125,7 @@ pub(in crate::model) fn check_mode(
     Ok(model(resolver, lagrangian, parts))
 }
 
-/// Data of a mode for the check of other modes. Its errors are reported when it is checked itself.
+/// Data of a mode for the check of other modes. Errors in the mode are reported when the mode itself is checked.
 pub(in crate::model) fn peer(name: &str, spec: &Spec) -> Peer {
     let mut resolver = Resolver::new(spec, STEPS);
     resolver.constants();

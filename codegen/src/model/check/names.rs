@@ -48,8 +48,8 @@ impl Names {
             .also(*at, format!("`{}` first declared here", first.display));
     }
 
-    /// Refuses families that lack a member before their last. Members may stand in any order, with other entries
-    /// between them.
+    /// Refuses families in which a member before the last is missing. Members may stand in any order, with other
+    /// entries between them.
     pub(super) fn check_families(&self, resolver: &mut Resolver<'_>) {
         // An entry that was refused may be the one that is missing.
         if resolver.diagnostics.len() > self.errors {

@@ -7,7 +7,7 @@ use super::super::Constraint;
 use super::super::resolve::Resolver;
 use crate::spec::{Declared, RESET, STOP, Statement};
 
-/// Refuses declarations that such constraints leave undefined.
+/// Refuses declarations that are supported for linear constraints only.
 pub(super) fn check_alone(resolver: &mut Resolver<'_>, constraints: &[Constraint]) {
     let Some(first) = constraints
         .iter()

@@ -1,4 +1,4 @@
-//! Resets after which the motion continues through their surface.
+//! Notes on resets after which the motion continues through the surface.
 
 use dalembert_expr::{ExprId, Pool};
 

@@ -1,11 +1,11 @@
 //! Regular surfaces: `dh` does not vanish where `h` does, so that a gap changes its sign at its surface.
 //!
 //! Besides gaps without zeros, three kinds of gaps are refused: powers with an exponent of at least 2; gaps whose
-//! structure shows that they are never negative or never positive, so that 0 is an extremum, where the gradient
-//! vanishes if it exists; and polynomials of positions with a repeated factor. Straight lines reveal a repeated factor:
-//! the restriction of `h` to a general line has a multiple root at every zero of the factor. Points and directions are
-//! rational, so that each line is decided exactly. Repeated factors on all lines by accident are practically
-//! impossible.
+//! structure shows that they are never negative or never positive, so that 0 is their extreme value and the gradient,
+//! if it exists, vanishes there; and polynomials of positions with a repeated factor. Straight lines reveal a repeated
+//! factor: the restriction of `h` to a general line has a multiple root at every zero of the factor. Points and
+//! directions are rational, so that each line is decided exactly. A polynomial without a repeated factor practically
+//! never has multiple roots on all lines.
 
 use dalembert_expr::{ExprId, Node, Pool, Rational, Sign, SymbolId};
 
@@ -155,7 +155,7 @@ impl Line {
         Some(line)
     }
 
-    /// Lets the line end at the parameter `at`, if it is longer on that side of the point.
+    /// Lets the line end at the parameter `at`, if it extends beyond `at`.
     fn shorten(&mut self, at: &Rational) {
         let [low, high] = &mut self.ends;
         if at.is_negative() {

@@ -9,7 +9,7 @@ use crate::diagnostics::Location;
 use crate::spec::{Assignment, AssignmentTarget, Law, RESET};
 
 impl Resolver<'_> {
-    /// The map of a law, if it is a reset; the outer `None` if it was refused.
+    /// The map of a law that is a reset, `Some(None)` for any other law, `None` if the map was refused.
     pub(super) fn reset(&mut self, law: Option<&Law>, scope: &Scope) -> Option<Option<Reset>> {
         let Some(law) = law.filter(|law| law.name.text == RESET) else {
             return Some(None);

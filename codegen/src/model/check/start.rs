@@ -10,8 +10,8 @@ use crate::spec::InitialTarget;
 /// Relative size below which a sum may be rounding.
 const MARGIN: f64 = 1e-9;
 
-/// Refuses a start behind a wall or off the constraints, at the defaults of the parameters. Values that do not follow
-/// from declared ones are left to the caller, as are parameters without defaults.
+/// Refuses a start behind a wall or off the constraints, at the defaults of the parameters. It passes over gaps and
+/// residuals whose values depend on parameters without defaults, or on values that are known at run time only.
 pub(super) fn check(
     resolver: &mut Resolver<'_>,
     initial: &Initial,
@@ -99,7 +99,7 @@ impl<'a, 'b> Start<'a, 'b> {
                 .all(|other| other.iter().any(|condition| has_sign(condition, -1.0)))
     }
 
-    /// Constraints that declared positions and velocities alone violate.
+    /// Constraints that the declared positions and velocities violate.
     fn off_constraints(&mut self, constraints: &[Constraint]) -> Vec<Refused> {
         let off = constraints.iter().filter_map(|constraint| {
             let residual = self.residual(constraint)?;

@@ -190,20 +190,20 @@ pub(super) fn check_distinct(resolver: &mut Resolver<'_>, surfaces: &[Surface]) 
     }
 }
 
-/// True if a surface counts where others do not. Its relation to surfaces with the same gap is checked elsewhere.
+/// True if a surface is declared with `otherwise`. Its relation to surfaces with the same gap is checked elsewhere.
 fn is_otherwise(surface: &Surface) -> bool {
     matches!(surface.beside, Beside::Otherwise(_))
 }
 
-/// True if a transition has the opposite gap of another, under the same conditions.
+/// True if the gaps of two transitions have opposite signs, under the same conditions.
 pub(super) fn are_opposite(resolver: &mut Resolver<'_>, first: &Surface, second: &Surface) -> bool {
     first.conditions == second.conditions
         && is_proportional(resolver, first.gap, second.gap)
         && count_both_ways(&resolver.pool, first, second)
 }
 
-/// True if two surfaces with resets or transitions, equal up to a constant factor, have opposite orientation: one acts
-/// on falling motions, the other on rising ones.
+/// True if two surfaces with resets or transitions, equal up to a constant factor, have opposite orientation: the first
+/// acts where its gap falls, the second where the first gap rises.
 fn count_both_ways(pool: &Pool, first: &Surface, second: &Surface) -> bool {
     let passes = |surface: &Surface| matches!(surface.law, Law::Reset | Law::Transition);
     let are_resets = passes(first) && passes(second);
@@ -223,7 +223,8 @@ pub(super) fn have_same_gap(
 /// Number of points at which proportional gaps are evaluated.
 const POINTS: u32 = 64;
 
-/// The sign of the product of two proportional gaps, at the first of some points where it has one; 0 if it has none.
+/// The sign of the product of two proportional gaps, at the first of some points where neither is 0 or undefined; 0 if
+/// there is no such point.
 fn product_sign(pool: &Pool, first: ExprId, second: ExprId) -> f64 {
     if first == second {
         return 1.0;
@@ -236,8 +237,8 @@ fn product_sign(pool: &Pool, first: ExprId, second: ExprId) -> f64 {
     signs.next().unwrap_or(0.0)
 }
 
-/// Coordinates of a generic point, at which no declaration is special: of size 1 first, of sizes up to 1000 later, and of
-/// both signs.
+/// Values of symbols at a generic point. Their sizes are about 1 for the first seeds and about 1000 for later ones,
+/// with both signs.
 fn generic(symbol: SymbolId, seed: u32) -> f64 {
     let steps = symbol.index() as f64 + 1.618_033_988_749_895 * f64::from(seed);
     let size = 0.3 + (steps * 0.618_033_988_749_894_9).fract();

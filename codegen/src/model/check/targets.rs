@@ -17,7 +17,7 @@ pub(super) enum Section {
 }
 
 impl Resolver<'_> {
-    /// Indices of the coordinates that a name with an index denotes, each with the scope in which its value is
+    /// The coordinates that a declared name denotes: their indices, each with the scope in which the assigned value is
     /// resolved.
     pub(super) fn targets(
         &mut self,

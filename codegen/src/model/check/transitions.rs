@@ -10,7 +10,7 @@ use crate::diagnostics::{Location, listed, nearest};
 use crate::spec::{self, Assignment, AssignmentTarget, Declared, Index, RESET};
 
 impl Resolver<'_> {
-    /// Transition of a surface, if it has one; the outer `None` if it was refused.
+    /// The transition of a surface, `Some(None)` for a surface without one, `None` if the transition was refused.
     pub(super) fn transition(
         &mut self,
         surface: &spec::Surface,
@@ -37,7 +37,7 @@ impl Resolver<'_> {
             Some(law) if law.name.text != "elastic" || !law.arguments.is_empty() => {
                 let text = format!("`{}` is no law of a transition", law.name.text);
                 let help = "a transition is `elastic`, which need not be written, or a `reset { .. }`; \
-                            what holds the motion after it is a constraint of the mode that is entered";
+                            a constraint that holds after it belongs to the mode that is entered";
                 return self.refuse(law.name.at, text, help);
             }
             _ => {
@@ -54,7 +54,7 @@ impl Resolver<'_> {
         }))
     }
 
-    /// Refuses other coordinates in a mode that is entered without a reset, because the state is kept.
+    /// Refuses a transition without a reset into a mode with other coordinates. Such a transition keeps the state.
     fn check_same_coordinates(&mut self, peer: &Peer, at: Location) -> Option<()> {
         let names = self
             .symbols
@@ -66,7 +66,7 @@ impl Resolver<'_> {
             return Some(());
         }
         let text = format!("`{}` has other coordinates", peer.name);
-        let help = "say what they are when it is entered: `=> reset { x = ..; dot(x) = ..; }`";
+        let help = "give their values when it is entered: `=> reset { x = ..; dot(x) = ..; }`";
         self.refuse(at, text, help)
     }
 
@@ -147,7 +147,10 @@ impl Resolver<'_> {
             return Some(values);
         }
         let names = listed(missing.iter().map(String::as_str));
-        let text = format!("nothing is said of {names} when `{}` is entered", peer.name);
+        let text = format!(
+            "no value is given for {names} when `{}` is entered",
+            peer.name
+        );
         let help = format!("write `{} = ..;` in the reset", missing[0]);
         self.refuse(at, text, &help)
     }
@@ -175,8 +178,8 @@ impl Resolver<'_> {
         Some(value)
     }
 
-    /// Indices of the coordinates of another mode that a name with an index denotes, each with the scope in which its
-    /// value is resolved.
+    /// The coordinates of another mode that a declared name denotes: their indices, each with the scope in which the
+    /// assigned value is resolved.
     fn entered_coordinates(
         &mut self,
         declared: &Declared,
@@ -230,7 +233,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Marks the transitions that count from both sides.
+/// Marks the transitions whose surface is crossed by another transition in the opposite direction.
 pub(super) fn mark_sides(resolver: &mut Resolver<'_>, surfaces: &mut [Surface]) {
     for index in 0..surfaces.len() {
         let is_transition = |surface: &Surface| surface.law == Law::Transition;

@@ -119,7 +119,7 @@ fn gaps_change_their_sign_where_they_are_zero() {
     refused(chart, "surface has no zero set: it is never zero");
 }
 
-/// Gaps that have no value near the origin are compared where they have one.
+/// Gaps that are undefined near the origin are compared at points where they are defined.
 #[test]
 fn surfaces_share_a_gap_that_is_defined_far_away_only() {
     for other in ["sqrt(x - 5) >= 1", "2*sqrt(x - 5) >= 2"] {

@@ -1,5 +1,5 @@
-//! One test case for each error of the check. A case has the message and a source text; `«..»` marks the location of
-//! the error.
+//! Test cases for the errors of the check. A case has a message and a source text, in which `«..»` marks the location
+//! of the error.
 
 #![allow(clippy::unwrap_used)] // tests may panic
 

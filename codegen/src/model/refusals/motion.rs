@@ -75,8 +75,8 @@ fn a_model_has_one_lagrangian_and_a_coordinate() {
     }));
 }
 
-/// Functions of half an angle that a full turn does not change, although they are not written in multiples of the
-/// angle.
+/// A full turn leaves these functions of half an angle unchanged, although they are not written in integer multiples of
+/// the angle.
 #[test]
 fn a_turn_may_leave_functions_of_half_an_angle_unchanged() {
     for term in [

@@ -3,7 +3,7 @@
 use super::{refused, refused_in, refused_term};
 
 #[test]
-fn unknown_names_come_with_what_was_meant() {
+fn unknown_names_come_with_a_suggestion() {
     refused_term(
         "«thta»",
         "unknown name `thta`\nhelp: did you mean the coordinate `theta`?",
@@ -111,7 +111,7 @@ fn names_are_declared_once() {
 }
 
 #[test]
-fn definitions_use_what_stands_above() {
+fn definitions_use_definitions_above_them() {
     refused_in(
         "let p = «q»; let q = p;",
         "defined in terms of itself: p -> q -> p",

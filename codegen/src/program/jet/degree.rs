@@ -2,7 +2,7 @@
 
 use super::super::{Function, Input, Op};
 
-/// Longest series that is distinguished from an endless one.
+/// Largest degree of a series that is distinguished from an endless one.
 const LONGEST: u32 = 4;
 
 /// The order after which all coefficients vanish, for all states and parameters.

@@ -1,6 +1,6 @@
 //! Takes constant factors out of products and multiplies them with each other first. `x (c y)` becomes `c (x y)` if the
-//! product `x y` is computed anyway: that saves a sum in every order. `a (b x)` becomes `(a b) x`: its coefficients are
-//! known earlier.
+//! product `x y` is computed anyway: that saves a sum in every order. `a (b x)` with constants `a` and `b` becomes
+//! `(a b) x`: its coefficients do not wait for those of `b x`.
 
 use std::collections::HashSet;
 
@@ -72,8 +72,8 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// A product as two groups, constant factors and the rest. The factors within a group are multiplied first. `None`
-    /// unless this saves operations.
+    /// The factors of a product in two groups, the constant ones and the others. The factors within a group are
+    /// multiplied first. `None` unless this saves operations.
     fn split(&self, value: Value) -> Option<[Vec<Value>; 2]> {
         let Op::Mul(a, b) = self.function.ops[value.index()] else {
             return None;

@@ -22,8 +22,8 @@ pub fn along(
     Ok(series.results(&jet.function))
 }
 
-/// Taylor coefficients `0..=order` in `s` of the components of the motion from `state`, with time `unit * s`, followed
-/// by those of the gaps. `input` returns the arguments at `state`.
+/// Taylor coefficients `0..=order` in `s` of the components of the motion from `state`, then of the gaps, with time
+/// `unit * s`. `input` returns the arguments at `state`.
 ///
 /// # Errors
 /// The guard that does not hold at `state`.

@@ -7,8 +7,8 @@
 //! sine. A further value that occurs in such an equation is called a companion, and is one more operation of the
 //! function. Examples are the sine for a cosine (and conversely), and `1 + a^2` for the arc tangent.
 //!
-//! Values whose series end by structure are determined beforehand ([`degree`]). A product with such a value has only as
-//! many terms as its series, and a constant has no recurrence.
+//! Values whose series end by structure are determined beforehand ([`degree`]). The Cauchy product with such a value
+//! has only as many terms as the series of that value, and a constant has no recurrence.
 //!
 //! References: R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank and A. Walther, *Evaluating
 //! Derivatives* (2008), section 13.2, tables 13.1 and 13.2.
@@ -166,7 +166,7 @@ impl Jet {
         }
     }
 
-    /// True if the results are analytic wherever they are defined. Then their series represent them up to the radius of
+    /// True if no result depends on an absolute value. The series then represent the results up to their radius of
     /// convergence.
     pub fn is_analytic(&self) -> bool {
         let absolute =

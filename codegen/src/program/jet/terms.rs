@@ -1,7 +1,7 @@
 //! Coefficient `k` of a value as an expression of the coefficients that it depends on.
 //!
-//! This file alone decides the range of each sum and the order of the factors of a product. All code that computes
-//! series uses these expressions.
+//! These expressions fix the range of each sum and the order of the factors of a product. All code that computes series
+//! uses them, except the reference in `interpret.rs`.
 
 use dalembert_expr::Rational;
 

@@ -3,8 +3,9 @@
 //!
 //! Let `z` be any multiple of `X^T dh`, and `d = G_D^{-1} z`. For laws with a constant share, the impulse of a wall at
 //! rest is `-share (z . u)/(z . d) d`. Without constraints, `z` is a multiple of `dh` and also the direction. If the
-//! metric is a multiple of the identity along `z`, the impulse does not depend on it. For other laws, without a frame,
-//! and with affine or instantaneous constraints, it is computed from all values of the [contact](super::impact).
+//! metric is a multiple of the identity along `z`, that multiple cancels. In all other cases (other laws, constraints
+//! without a frame, affine or instantaneous constraints, moving walls) the impulse is computed from all values of the
+//! [contact](super::impact).
 
 use dalembert_expr::{ExprId, Rational, Sign};
 
@@ -82,7 +83,7 @@ fn along_ray(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
         return None;
     }
     let share = constant_share(kernel, law)?;
-    // The ray repeats quotients of `dh`.
+    // `dh` is computed first: the ray contains the same quotients.
     kernel.values(&surface.form);
     let (rate, squared, direction) = match (form, kernel.constraints()) {
         (Form::Global, 0) => free(kernel, surface.ray.as_deref()?),
@@ -103,7 +104,7 @@ fn along_ray(kernel: &mut Kernel<'_>, form: Form, s: usize) -> Option<Blow> {
     })
 }
 
-/// `z . g^{-1} (p - A)`, `z . g^{-1} z` and `z`.
+/// `z . g^{-1} (p - A)`, `z . g^{-1} z` and `z`, the first two up to a common factor.
 fn free(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Value>) {
     let z = kernel.values(ray);
     let metric = &kernel.model.lagrangian.metric;
@@ -118,7 +119,7 @@ fn free(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Value>) {
     (kernel.dot(&z, &qdot), squared, z)
 }
 
-/// `z . u`, `z . G_D^{-1} z` and `G_D^{-1} z`.
+/// `z . u`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two up to a common factor.
 fn on_d(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Value>) {
     let u = kernel.quasi_inputs();
     let (z, squared, direction) = raised(kernel, ray);
@@ -141,7 +142,7 @@ fn on_momenta(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Value, Value, Vec<Val
     (rate, squared, direction)
 }
 
-/// `z`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two up to a common weight.
+/// `z`, `z . G_D^{-1} z` and `G_D^{-1} z`, the last two up to a common factor.
 fn raised(kernel: &mut Kernel<'_>, ray: &[ExprId]) -> (Vec<Value>, Value, Vec<Value>) {
     let known = kernel.known_metric();
     let entry = |i: usize, j: usize| known.and_then(|metric| metric[i.max(j)][i.min(j)]);

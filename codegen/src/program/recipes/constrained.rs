@@ -49,7 +49,8 @@ fn residuals(model: &Model, derivation: &Derivation) -> Function {
     kernel.finish(outputs)
 }
 
-/// `eta` row by row, then `eta_0`. For constraints that are not linear in the velocities, at the given velocities.
+/// `eta` row by row, then `eta_0`. Constraints that are not linear in the velocities have forms that depend on the
+/// given velocities.
 fn forms(model: &Model, derivation: &Derivation) -> Function {
     let arguments = match model.is_nonlinear() {
         true => Arguments::Velocities,
@@ -115,7 +116,7 @@ fn project(model: &Model, derivation: &Derivation, arguments: Arguments) -> Func
 /// velocities and a minor of the forms is regular everywhere; the nearest momenta otherwise.
 ///
 /// The independent velocities, which integration computes accurately, are unchanged. An orthogonal projection would
-/// spread the error of the dependent velocities over them, and over the energy.
+/// carry the errors of the dependent velocities into the independent ones, and into the energy.
 fn restore(model: &Model, derivation: &Derivation) -> Function {
     let mut kernel = Kernel::new(model, derivation, Arguments::Momenta);
     let pairs = kernel.regular_minor().filter(|_| !model.is_nonlinear());

@@ -335,7 +335,8 @@ impl DualFrame {
         theta
     }
 
-    /// `m_ab W^{a,i} W^{b,j}`; for `i != j` twice that, for both orders.
+    /// `m_ab W^{a,i} W^{b,j}`, doubled for `i != j`, because an entry of the metric stands for both orders of its
+    /// indices.
     fn cometric_part(
         &self,
         kernel: &mut Kernel<'_>,

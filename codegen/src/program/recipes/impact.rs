@@ -4,7 +4,7 @@
 //! `dh(grad h) = <y, y>`, `dh(pi_D grad h) = <y', y'>` and `pi_D^* dh = L y'`. These are sums of squares, without
 //! cancellation for surfaces that are almost tangent to the constraints. On D, with `z = L_D^{-1} X^T dh` in the
 //! factors of `G_D`, `dh(pi_D grad h) = <z, z>`, and an impulse changes the quasi-velocities along `G_D^{-1} X^T dh`.
-//! The gap rate of a contact is computed from `dh`, which the other results need as well.
+//! The gap rate of a contact is computed from `dh`, because the other results need `dh` as well.
 
 use dalembert_expr::ExprId;
 

@@ -1,9 +1,10 @@
-//! Functions of instantaneous constraints, which hold during an impact only.
+//! Functions of instantaneous constraints. An impact establishes them, and they hold while the surface holds the
+//! motion.
 //!
 //! Let `C_b` be `L^{-1} psi^b` without its components along the constraint columns, or `L_D^{-1} X^T psi^b` on D. The
 //! impulse `x = C nu` of least norm with `<C_b, x> = r_b` changes `psi^b(qdot)` by `r_b` and preserves every
-//! constraint. Such an impulse brings the state to `D' = ker(eta, psi)`, and such a force keeps it there. Within `D'` a
-//! law acts as within D: along `dh` without its components along `C`.
+//! constraint. Such an impulse brings the state to `D' = ker(eta, psi)`, and such a force keeps it in `D'`. Within `D'`
+//! a law acts as within D, along `dh` without its components along `C`.
 
 use dalembert_expr::ExprId;
 

@@ -1,7 +1,7 @@
 //! Powers that change the energy: of named forces, of constraints that do work, and of time.
 //!
 //! Along the motion `d/dt (1/2 g(qdot, qdot) + V) = sum_a F_a(qdot) + lambda_a eta^a(qdot) - d_t L`, where `d_t` is
-//! taken at fixed position and velocity. Constraints do work where they are affine or not linear in the velocities.
+//! taken at fixed position and velocity. Only constraints that are affine or nonlinear in the velocities may do work.
 
 use crate::mechanics::Derivation;
 use crate::model::Model;

@@ -1,7 +1,8 @@
 //! Functions of the invariant volume `exp(G) mu_C = exp(G) det g / |det A_dep| dq dv_ind`.
 //!
-//! Logarithms of determinants are sums of logarithms from a factorisation: `ln det g` of the pivots of `L D L^T`,
-//! `ln det m^{ab}` of the squared norms of the orthogonalised constraint columns.
+//! Logarithms of determinants are sums of logarithms over a factorisation. The terms of `ln det g` are the logarithms
+//! of the pivots of `L D L^T`. The terms of `ln det m^{ab}` are the logarithms of the squared norms of the
+//! orthogonalised constraint columns.
 
 use dalembert_expr::{ExprId, Function as Elementary, Rational};
 
@@ -40,7 +41,7 @@ pub fn invariant_volume(
     }
 }
 
-/// `G`
+/// `G`, without the part that is an integral.
 pub(super) fn log_density(kernel: &mut Kernel<'_>, volume: &Volume) -> Value {
     let mut total = kernel.builder.zero();
     for &(coefficient, term) in &volume.potential.terms {

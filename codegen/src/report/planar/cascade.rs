@@ -33,7 +33,8 @@ pub struct Step {
     pub gained: Interval,
     /// `K`: the fraction of the kinetic energy that the impact keeps.
     pub kept: Interval,
-    /// The kinetic energy after the impact, for a cycle that starts with the largest `R`.
+    /// The kinetic energy after the impact, for a motion that enters the first mode of the cycle with its `R`, the
+    /// largest one.
     pub reached: Interval,
     /// `R` of the next mode.
     pub next: Interval,
@@ -103,7 +104,7 @@ fn cycle(count: usize, edges: &[Edge]) -> Result<Vec<&Edge>, String> {
     for _ in 0..=count {
         let mut out = edges.iter().filter(|edge| edge.from == mode);
         let (Some(edge), None) = (out.next(), out.next()) else {
-            return Err("a mode has no way out, or several".to_owned());
+            return Err("a mode is left through no surface, or through several".to_owned());
         };
         if let Some(start) = seen.iter().position(|(known, _)| *known == mode) {
             return Ok(seen[start..].iter().map(|(_, edge)| *edge).collect());
@@ -197,7 +198,7 @@ fn stays(node: &Node, position: SymbolId, hull: Interval) -> Result<(), String> 
         let gap = node.range(surface.gap, &[(position, hull)]);
         if !gap.is_some_and(|gap| gap.lo > 0.0) {
             let name = &surface.name.display;
-            return Err(format!("`{name}` may end the motion on the way"));
+            return Err(format!("`{name}` may end the motion before the exit"));
         }
     }
     for coordinate in &model.coordinates {
@@ -211,7 +212,7 @@ fn stays(node: &Node, position: SymbolId, hull: Interval) -> Result<(), String> 
             };
             if low.hi >= hull.lo || hull.hi >= high.lo {
                 return Err(format!(
-                    "the way leaves the interval of `{}`",
+                    "the interval of `{}` does not contain the motion from entry to exit",
                     coordinate.name.display
                 ));
             }

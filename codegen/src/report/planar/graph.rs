@@ -252,8 +252,8 @@ fn slope(node: &mut Node, gap: ExprId, (q, qdot): &(Vec<ExprId>, Vec<ExprId>)) -
     }
 }
 
-/// The derivative for an impulsive law. In a mode with one coordinate, the law multiplies velocity and gap rate by the
-/// same factor.
+/// The absolute value of the derivative for an impulsive law. In a mode with one coordinate, the law multiplies
+/// velocity and gap rate by the same factor.
 fn of_law(node: &Node, law: Law, surface: &Surface) -> Slope {
     let within = |range: Option<Interval>| match range {
         Some(range) => Slope::Within(range),
@@ -289,7 +289,7 @@ pub(super) fn plane(nodes: &[Node]) -> Reasoned {
             .iter()
             .any(|constraint| constraint.level.is_some())
         {
-            let text = "integrable constraints leave a surface, whose topology is not decided";
+            let text = "integrable constraints reduce the states to a surface, whose topology is not decided";
             return (Decided::Open, text.to_owned());
         }
         if dimension != 2 {
@@ -338,7 +338,7 @@ pub(super) fn injective(edges: &[Edge]) -> Reasoned {
         match &edge.slope {
             Slope::Within(range) if range.excludes_zero() => {}
             Slope::Within(range) if range.lo == 0.0 && range.hi == 0.0 => {
-                let text = format!("`{}` maps all velocities to the same one", edge.name);
+                let text = format!("`{}` maps its surface to a single point", edge.name);
                 return (Decided::Fails, text);
             }
             Slope::Within(_) => {
@@ -356,11 +356,18 @@ pub(super) fn injective(edges: &[Edge]) -> Reasoned {
 pub(super) fn ways_out(nodes: &[Node], edges: &[Edge]) -> Reasoned {
     let out = |node: usize| edges.iter().filter(|edge| edge.from == node).count();
     match (0..nodes.len()).map(out).find(|&count| count != 1) {
-        None => (Decided::Holds, "every mode has one way out".to_owned()),
-        Some(0) => (Decided::Open, "a mode has no way out".to_owned()),
+        None => (
+            Decided::Holds,
+            "every mode is left through one surface".to_owned(),
+        ),
+        Some(0) => (
+            Decided::Open,
+            "a mode is left through no surface".to_owned(),
+        ),
         Some(count) => {
-            let text =
-                format!("a mode has {count} ways out, and no partition of its states is searched");
+            let text = format!(
+                "a mode is left through {count} surfaces, and no partition of its states is searched"
+            );
             (Decided::Open, text)
         }
     }

@@ -52,7 +52,7 @@ pub struct Hypothesis {
 pub struct Planar {
     /// The hypotheses, in order.
     pub hypotheses: Vec<Hypothesis>,
-    /// The energies of one round through the modes, if they are known.
+    /// The energies along the cycle of modes, if they are known.
     pub cascade: Option<Cascade>,
 }
 
@@ -66,14 +66,23 @@ impl Planar {
 
 /// The statements, in the order of the thesis.
 const STATEMENTS: [(&str, &str); 6] = [
-    ("Q.1", "the states of every mode are part of a plane"),
+    (
+        "Q.1",
+        "the state space of every mode is a subset of the plane",
+    ),
     ("Q.2", "every map at a surface is injective"),
     (
         "Q.3",
         "a compact set is forward invariant and free of equilibria",
     ),
-    ("Q.4", "the set of a mode has a part for each way out"),
-    ("Q.5", "a part meets its own surface alone, in an interval"),
+    (
+        "Q.4",
+        "the invariant set in each mode has a part for each surface through which the mode is left",
+    ),
+    (
+        "Q.5",
+        "each part meets only its own surface, and meets it in an interval",
+    ),
     (
         "Q.6",
         "the fields are transverse to surfaces and to their images",
@@ -128,7 +137,7 @@ pub fn planar(source: &str, parameters: &[(&str, f64)]) -> Result<Planar, Report
 /// A verdict with its reason.
 type Reasoned = (Decided, String);
 
-/// An interval in words: its middle with eight digits if its relative width is at most 1e-8, otherwise both ends.
+/// An interval as text: its middle with eight digits if its relative width is at most 1e-8, otherwise both ends.
 pub fn shown(interval: Interval) -> String {
     let middle = 0.5 * interval.lo + 0.5 * interval.hi;
     match interval.hi - interval.lo <= 1e-8 * middle.abs() {

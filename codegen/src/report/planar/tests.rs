@@ -171,7 +171,7 @@ fn ball(parts: &str) -> Planar {
 }
 
 #[test]
-fn what_is_missing_is_named() {
+fn hypotheses_that_are_not_shown_have_reasons() {
     let lagrangian = "lagrangian = dot(x)^2/2 - x;";
     let floor = "impacts { floor: x >= 0 => newton(1/2); }";
     let line = format!("coordinates {{ x; }} {lagrangian}");
@@ -201,13 +201,13 @@ fn what_is_missing_is_named() {
             format!("{line} impacts {{ floor: x >= 0 => impact_plastic; }}"),
             1,
             Decided::Fails,
-            "to the same one",
+            "to a single point",
         ),
         (
             format!("{line} impacts {{ floor: x >= 0 => reset {{ x = 1; dot(x) = 0; }}; }}"),
             1,
             Decided::Fails,
-            "to the same one",
+            "to a single point",
         ),
         (
             format!("{line} impacts {{ floor: x >= 0 => reset {{ x = 1; dot(x) = dot(x)^2; }}; }}"),
@@ -219,7 +219,7 @@ fn what_is_missing_is_named() {
             format!("{line} impacts {{ floor: x >= 0; top: x <= 1; }}"),
             3,
             Decided::Open,
-            "2 ways out",
+            "left through 2 surfaces",
         ),
         (
             format!(

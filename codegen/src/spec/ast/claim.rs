@@ -54,7 +54,7 @@ pub enum Statement {
     EnergyNotIncreasing(Declared),
 }
 
-/// Extent to which a density of the configuration alone exists.
+/// Configurations at which a density exists that depends only on the configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existence {
     /// On all of Q.

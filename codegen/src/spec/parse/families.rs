@@ -38,7 +38,7 @@ pub(super) struct Member {
 /// The modes, in the order of their first appearance.
 pub(super) struct Members {
     pub(super) list: Vec<Member>,
-    /// True if no mode is missing. Otherwise an unknown reference may be right.
+    /// True if no mode is missing because of an error. Otherwise an unknown reference may be right.
     is_complete: bool,
 }
 
@@ -285,7 +285,7 @@ impl Members {
         }
     }
 
-    /// A mode by its name alone. The check of the modes finds out if it exists.
+    /// A reference by name, without an index. The check of the modes finds out if the mode exists.
     fn alone(&self, name: Word, cursor: &mut Cursor<'_>) -> Read<Word> {
         let size = self.size(&name.text);
         if size > 0 {
@@ -336,7 +336,7 @@ impl Members {
     }
 }
 
-/// Advice on an unknown mode. `names`: the modes in the notation of declarations.
+/// Advice on an unknown mode. `names` are the modes in the notation of declarations.
 pub fn mode_help(name: &str, names: &[String]) -> String {
     let names = || names.iter().map(String::as_str);
     let bases = names().map(|name| name.split('[').next().unwrap_or(name));

@@ -34,8 +34,7 @@ pub(super) fn surface(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
 
 /// Reads `when a > 0 when b > 0` or `otherwise`, or nothing. True for `otherwise`.
 pub(super) fn conditions(cursor: &mut Cursor<'_>, form: &str) -> Read<(Vec<Comparison>, bool)> {
-    const ALONE: &str =
-        "`otherwise` is the only condition: the surface counts where no other of the same gap does";
+    const ALONE: &str = "`otherwise` is the only condition: the surface counts where no other surface with the same gap counts";
     let mut conditions = Vec::new();
     if cursor.eat_word(OTHERWISE) {
         if cursor.is_word("when") {
@@ -69,7 +68,7 @@ pub(super) enum Strictness {
     Either,
 }
 
-/// Reads `a >= b` or `a <= b`, or the strict forms if they are allowed. `form`: the form of the whole entry, for
+/// Reads `a >= b` or `a <= b`, or the strict forms if they are allowed. `form` is the form of the whole entry, for
 /// messages.
 pub(super) fn comparison(
     cursor: &mut Cursor<'_>,
@@ -161,7 +160,7 @@ fn oriented(left: Scalar, right: Scalar, sign: &str) -> Comparison {
     }
 }
 
-/// Reads `=> LAW`, or nothing. `form`: the form of the whole entry, for messages.
+/// Reads `=> LAW`, or nothing. `form` is the form of the whole entry, for messages.
 pub(super) fn law(cursor: &mut Cursor<'_>, spec: &mut Spec, form: &str) -> Read<Option<Law>> {
     if let Some(sign) = ["->", ",", ":"]
         .into_iter()

@@ -10,9 +10,9 @@ pub(super) fn input(cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<()> {
     let declared = declared(cursor, "the name of an input")?;
     if !cursor.is_at_end() {
         let help = match cursor.is_word("in") {
-            true => "bounds on inputs are not supported; an input has a name alone: `u;`",
+            true => "bounds on inputs are not supported; an input has only a name: `u;`",
             false => {
-                "an input has a name alone: `u;`, `thrust[2];`; its values come from the caller"
+                "an input has only a name: `u;`, `thrust[2];`; its values come from the caller"
             }
         };
         return Err(cursor.unexpected("expected `;`", help));

@@ -1,4 +1,5 @@
-//! `=> LAW, instantaneous { slip: dot(y) = 0; .. }`: constraints that hold in the moment of an impact only.
+//! `=> LAW, instantaneous { slip: dot(y) = 0; .. }`: constraints that hold at an impact and during the contact after
+//! it.
 
 use proc_macro2::Delimiter;
 

@@ -56,7 +56,7 @@ pub fn parse(tokens: TokenStream) -> Result<Spec, Diagnostics> {
     let tokens = tokens_of(body.stream());
     if modes::are_declared(&tokens) {
         let text = format!(
-            "`{}` has modes: it is no model in one piece",
+            "`{}` has modes: it cannot be read as a single model",
             spec.name.text
         );
         diagnostics.error(spec.name.at, text);
@@ -322,7 +322,7 @@ fn lagrangian(keyword: &Word, cursor: &mut Cursor<'_>, spec: &mut Spec) -> Read<
         let at = spec.location(first.item);
         cursor
             .diagnostics
-            .error(keyword.at, "second `lagrangian`")
+            .error(keyword.at, "`lagrangian` declared again")
             .help("keep one of the two")
             .also(at, "first declared here");
         return Ok(());

@@ -67,7 +67,7 @@ fn zero(cursor: &mut Cursor<'_>) -> Read<()> {
         cursor.bump();
         return Ok(());
     }
-    Err(cursor.unexpected("assumptions compare with 0", HELP))
+    Err(cursor.unexpected("`>`, `>=` and `!=` compare a parameter with 0 only", HELP))
 }
 
 fn default(cursor: &mut Cursor<'_>) -> Read<Option<ParameterDefault>> {

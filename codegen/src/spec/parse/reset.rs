@@ -9,7 +9,7 @@ use super::{entry_length, index};
 
 const FORM: &str = "reset { x = ..; dot(x) = ..; }";
 
-/// Reads the braces behind the word.
+/// Reads the braces after the word `reset`.
 pub(super) fn assignments(cursor: &mut Cursor<'_>) -> Read<Vec<Assignment>> {
     let Some(group) = cursor.eat_group(Delimiter::Brace) else {
         let help = format!("write `{FORM}`; `reset {{ }}` changes nothing");

@@ -150,7 +150,7 @@ fn transition(
     let (conditions, is_otherwise) = conditions(cursor, FORM)?;
     let law = law(cursor, spec, FORM)?;
     let item = spec.item(at);
-    // A transition happens when the comparison becomes true. The gap of a surface is positive before.
+    // A transition happens when the comparison becomes true. The gap of its surface is positive before that.
     let gap = Comparison {
         greater: less,
         less: greater,

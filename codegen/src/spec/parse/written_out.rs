@@ -17,7 +17,7 @@ pub(super) struct Bound<'a> {
     pub(super) member: usize,
 }
 
-/// Meaning of the index name at a place.
+/// Visibility of the index at a place. A binding of the same name hides it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sight {
     Seen,
@@ -141,8 +141,8 @@ impl<'a> Bound<'a> {
         regrouped(group.delimiter(), token, written)
     }
 
-    /// The first `length` tokens of `i in a..=b` bind another index of the same name. Only the ends `a` and `b` can
-    /// contain this one.
+    /// The first `length` tokens, `i in a..=b`, bind another index of the same name. This index can occur only in the
+    /// ends `a` and `b`.
     fn range(
         &self,
         tokens: &[TokenTree],

@@ -64,7 +64,7 @@ fn thinned(tokens: TokenStream, random: &mut Random) -> TokenStream {
     kept
 }
 
-/// The stream without the token at `position`, counted in depth.
+/// The stream without the token at `position`, counted depth-first.
 fn without(tokens: TokenStream, position: &mut u64) -> TokenStream {
     let mut kept = TokenStream::new();
     for token in tokens {
