@@ -21,8 +21,8 @@ const BOX: &str = "
         }
     }";
 
-/// A linear oscillator in two directions with the frequencies w and 2 w. Its motions from the origin all meet after
-/// half a period.
+/// A linear oscillator with the frequency w along x and 2 w along y. All motions from the origin are there again after
+/// half a period of x.
 const SPRING: &str = "
     Spring {
         coordinates { x; y; }
@@ -287,8 +287,8 @@ fn a_lossy_wall_multiplies_the_times_behind_it() {
 
 #[test]
 fn gravity_and_a_wall_are_two_independent_balls() {
-    // Along x the motion is free, with or without an impact on the wall x = 1; along z it is the ball. Two impacts are
-    // two on the floor, or one on the floor and one on the wall.
+    // Along x the motion is free, with or without an impact on the wall x = 1. Along z it is that of the bouncing ball.
+    // Two impacts are two on the floor, or one on the floor and one on the wall.
     let found = motions_on(
         SHELF,
         "- --from x=0,z=0 --to x=0.5,z=0.2 --time 5 --impacts 0..3",
@@ -314,7 +314,7 @@ fn motions_of_springs_meet_after_half_their_periods() {
     );
     let conjugate = motion["conjugate"].as_array().unwrap();
     let times: Vec<f64> = conjugate.iter().map(|it| number(&it["t"])).collect();
-    // sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches it at pi, where both factors vanish.
+    // The determinant sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches 0 at pi, where both factors vanish.
     assert_eq!(times.len(), 2, "{times:?}");
     assert_near(times[0], std::f64::consts::FRAC_PI_2, 1e-10);
     assert_near(times[1], std::f64::consts::PI, 1e-7);

@@ -44,8 +44,8 @@ pub struct Certification {
     pub rates: Vec<(usize, Interval)>,
 }
 
-/// Enclosures of positions and velocities, one range per coordinate. The range of a velocity that may not exist is the
-/// whole real line. The range of a coordinate that the mode does not have is NaN.
+/// Enclosures of positions and velocities, one range per coordinate. If the velocities may not exist for some state,
+/// their ranges are the whole real line. The range of a coordinate that the mode does not have is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranges {
     /// The name of the mode, for a model with modes.
@@ -74,7 +74,7 @@ pub struct Strike {
 pub struct Certified {
     /// The time up to which the motion is certified; the reported impacts are the only ones before it.
     pub t: f64,
-    /// All states at that time.
+    /// A range of all states at that time.
     pub last: Ranges,
     /// The number of impacts.
     pub impacts: u64,

@@ -12,9 +12,9 @@ use dalembert::{
 pub struct Window {
     /// The time at its end.
     pub t: f64,
-    /// The largest absolute deviation from the value at the start of the run, over the ends of the steps.
+    /// The largest absolute deviation from the value at the start of the run, at the ends of the steps in this window.
     pub largest: f64,
-    /// The mean deviation over the same states.
+    /// The mean deviation at the same states.
     pub mean: f64,
 }
 

@@ -137,12 +137,12 @@ impl Audited {
 
 /// The first difference between two runs.
 enum Difference {
-    /// An impact, counted from 1; `None` for the run without it.
+    /// The impact with this number, counted from 1, in both runs; `None` for a run that does not have it.
     Impact {
         number: usize,
         met: [Option<Met>; 2],
     },
-    /// The ways in which they end.
+    /// The outcomes or the numbers of impacts.
     End,
 }
 

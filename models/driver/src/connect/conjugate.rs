@@ -1,5 +1,5 @@
-//! Conjugate points: zeros of the determinant along a motion between impacts, of odd or even order. A change of its
-//! sign at an impact is not a zero.
+//! Conjugate points: zeros, of odd or even order, of the determinant of the derivative of the configuration with
+//! respect to the unknowns. They are sought along a motion between impacts. A change of sign at an impact is not a zero.
 
 /// Longest step between two evaluations of the determinant, as a fraction of the time of the motion.
 pub(super) const LONGEST: f64 = 1.0 / 128.0;

@@ -68,8 +68,8 @@ pub struct Boundary {
     /// Largest kinetic energy of a start. By default the scan continues until every start has too many impacts, or up
     /// to a large multiple of the energies that the problem suggests.
     pub kinetic: Option<f64>,
-    /// Number of starts whose conjugate points are computed, in each of the two directions of the one unknown. Must be
-    /// 0 for several unknowns. The points lie on the envelope of all motions from the first configuration.
+    /// Number of starts whose conjugate points are computed, in each of the two directions of the unknown. Must be 0
+    /// unless there is exactly one unknown. The points lie on the envelope of all motions from the first configuration.
     pub envelope: usize,
 }
 
@@ -118,8 +118,8 @@ pub struct Connection {
     /// False if the determinant at the end is 0 up to rounding: to first order, neighbouring starts reach the end as
     /// well.
     pub is_isolated: bool,
-    /// Number of motions in the family that this motion represents: they are not isolated, and have the same surfaces
-    /// and the same action. 1 for an isolated motion.
+    /// Number of motions that were found in the family that this motion represents. Motions of a family are not
+    /// isolated, and have the same surfaces and the same action. 1 for an isolated motion.
     pub family: usize,
 }
 
@@ -136,8 +136,8 @@ pub struct Connected {
     pub directions: usize,
     /// Largest kinetic energy of a scanned start.
     pub kinetic: f64,
-    /// True if, in every direction, no motion from the fastest scanned starts reaches the end with few enough impacts,
-    /// and none was given up.
+    /// True if, in every direction, no motion from the fastest scanned starts reaches the end time with few enough
+    /// impacts, and none was given up.
     pub is_bounded: bool,
     /// Number of motions that were computed.
     pub runs: u64,
@@ -208,7 +208,7 @@ pub enum Unjoined {
         /// Its gap.
         gap: f64,
     },
-    /// A constraint of positions keeps the motion away from the end.
+    /// The level of a constraint differs between the two configurations, and a motion keeps it.
     #[error("constraint {constraint} keeps a value that differs by {difference:e} there")]
     Level {
         /// The constraint.

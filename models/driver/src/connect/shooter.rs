@@ -189,7 +189,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Ok(())
     }
 
-    /// The effects with the laws and policies of the request. The first impact too many ends the run.
+    /// The effects with the laws and policies of the request. A limit ends runs with too many impacts.
     fn effects(&self) -> S::Effects {
         let mut effects = self.system.effects();
         for &(surface, law) in &self.boundary.laws {

@@ -163,8 +163,8 @@ impl Node {
         }
         let length = norm(&tangent);
         match kernel.first() {
-            // The direction is orthogonal to the heading, which is the direction of the parameter: the branch turns
-            // back here.
+            // The heading is the direction of the parameter, and the branch is orthogonal to it: the branch turns back
+            // here.
             Some(direction) if length < 1e-9 => tangent.clone_from(direction),
             _ => tangent.iter_mut().for_each(|entry| *entry /= length),
         }

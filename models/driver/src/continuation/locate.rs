@@ -215,8 +215,8 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// State and parameter on the cubic Hermite arc between two members. From a chord, the other branch of a crossing may
-/// be closer than this one.
+/// State and parameter on the cubic Hermite arc between two members. Near a crossing, a point of the chord may be closer
+/// to the other branch.
 pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f64>, f64) {
     let rest = 1.0 - fraction;
     let ends = [

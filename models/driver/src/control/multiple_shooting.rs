@@ -86,7 +86,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
                 }
                 let next = unknowns.iter().zip(&step);
                 let next: Vec<f64> = next.map(|(value, step)| value - share * step).collect();
-                // The next step with the same derivatives must be shorter.
+                // The simplified Newton step at `next`, with the derivatives at `unknowns`, must be shorter.
                 if let Some(there) = self.equations(&next)
                     && let Some(again) = solve(&equations.columns, &there.residuals)
                     && length(&again) <= (1.0 - 0.25 * share) * size

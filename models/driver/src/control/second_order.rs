@@ -9,7 +9,7 @@
 //! may contain impacts.
 //!
 //! The derivatives of every stretch are computed from its own start. Derivatives with respect to the start of the whole
-//! motion would lose digits: over a short time, an input hardly moves the states on which it acts through others.
+//! motion would lose digits: over a short time, an input hardly moves the states on which it acts through other states.
 
 use crate::least_squares::solve;
 use dalembert::math::larger;
