@@ -1,5 +1,5 @@
-//! Motions over a step from many states, with each of several inputs. The components of the first-order model are the
-//! state, the held inputs and the cost.
+//! Motions over a step from many states, with each of several values of the input. The components of the first-order
+//! model are the state, the held input and the cost.
 
 use std::ops::ControlFlow;
 
@@ -31,7 +31,7 @@ pub struct Leg<'a> {
     pub span: [f64; 2],
     /// The tolerance of the integrator, `Taylor`.
     pub tolerance: Tolerance,
-    /// The inputs.
+    /// The values of the input.
     pub inputs: &'a [f64],
 }
 
