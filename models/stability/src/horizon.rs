@@ -25,7 +25,7 @@ const BOUNCES: u64 = 220;
 /// Number of starts whose horizons are averaged.
 const STARTS: u32 = 24;
 
-/// Position error of a bounce from which no digit counts as correct.
+/// Position error above which a bounce has no correct digit.
 const GONE: f64 = 1e-2;
 
 /// A start beside the disk: position and velocity. Number 0 is the start of F05.
