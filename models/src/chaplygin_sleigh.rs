@@ -1,4 +1,4 @@
-//! The Chaplygin sleigh on an elliptical table, a billiard with both tips of the blade.
+//! The Chaplygin sleigh on an elliptical table: a billiard in which both tips of the blade meet the edge of the table.
 //!
 //! Facts: the free sleigh with the energy `E` has the forward speed `v = V tanh(s t + c)` and the turning rate
 //! `omega = sqrt(2 E/K) sech(s t + c)`, where `K = I + m a^2`, `V = sqrt(2 E/m)` and `s = a m V/K`. In the end its centre

@@ -1,4 +1,4 @@
-//! A Hamiltonian system between two walls whose motion escapes in finite time. Energy and volume are conserved, and yet
+//! A Hamiltonian system between two walls. Its motion escapes in finite time. Energy and volume are conserved, and yet
 //! impacts accumulate.
 //!
 //! `H = p_x (1 + x^2) + p_y^2 x/2` is degenerate and has no Lagrangian, so that its field is declared.

@@ -92,8 +92,8 @@ fn assert_near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found} and {expected}");
 }
 
-/// Velocities and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, after `k` impacts.
-/// The times between impacts are `2 v`, and `x = v s - s^2/2` at the time `s = t - 2 k v` after the last impact.
+/// Velocities `v` at the start and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, with
+/// `k` impacts. Every flight takes `2 v`, and `x = v s - s^2/2` with the time `s = t - 2 k v` since the last impact.
 fn closed(x: f64, t: f64, k: f64) -> Vec<[f64; 2]> {
     let root = (t * t - 8.0 * k * (k + 1.0) * x).sqrt();
     let velocities = match k {
@@ -198,7 +198,8 @@ fn conjugate_points_of_the_ball_lie_on_the_envelope() {
 
 #[test]
 fn a_ball_that_loses_speed() {
-    // From x = 1 after one impact: v1^2 = v^2 + 2, t1 = v + v1, and x = e v1 s - s^2/2 with s = 5 - t1.
+    // From x = 1 with velocity v the ball hits the floor at t1 = v + v1 with the speed v1, v1^2 = v^2 + 2. Then
+    // x = e v1 s - s^2/2 with s = 5 - t1.
     let found =
         motions("bouncing_ball --from x=1 --to x=0.2 --time 5 --impacts 1 --law newton:0.8");
     let height = |v: f64| {

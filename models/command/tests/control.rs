@@ -281,8 +281,8 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     assert!(lossy.iter().all(|it| count(it) == 1));
 }
 
-/// Without an input the ball has two impacts, and small costates do not change that: the search must go on to large
-/// ones. The cost of holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
+/// Without an input the ball has two impacts. Small costates do not change this number, so the search must go on to large
+/// costates. The cost of holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
 #[test]
 fn motions_with_fewer_impacts_than_without_an_input_are_found() {
     let mut last = 3.466699139518846;

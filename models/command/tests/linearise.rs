@@ -290,7 +290,8 @@ fn samples_go_across_impacts() {
     let sample = &found["samples"][0];
     assert_eq!(sample["impacts"], 1);
     let (x, e, t) = (2.0_f64, 0.8, 2.5_f64);
-    // x(t) = s (t - T) - (t - T)^2/2 with s = e sqrt(v^2 + 2 x), T = v + sqrt(v^2 + 2 x), at v = 0.
+    // After the impact at T = v + sqrt(v^2 + 2 x) the speed is s = e sqrt(v^2 + 2 x), and the height is
+    // s (t - T) - (t - T)^2/2. Here v = 0.
     let root = (2.0 * x).sqrt();
     let (time, speed) = (root, e * root);
     let (by_x, by_v) = ([1.0 / root, e / root], [1.0, 0.0]);

@@ -221,7 +221,7 @@ fn gaits_repeat_a_hundred_times() {
 #[test]
 fn the_slipping_walker_has_the_multipliers_of_its_reduction() {
     let reduced = document("", &["orbit", "dimensionless_walker", "--surface", "step"]);
-    // `mu = m lf^2/I`, `eps = m^2 g/(b^2 lf)`; the unit of time is `m/b`, that of velocity `m g/b`.
+    // The reduction has `mu = m lf^2/I` and `eps = m^2 g/(b^2 lf)`. Its unit of time is `m/b`, its unit of velocity `m g/b`.
     let set = [
         "--set",
         "I=0.1",

@@ -90,8 +90,8 @@ impl Series {
         largest.fold(0.0, larger)
     }
 
-    /// The drift: increase over the run of the straight line fitted to the means of the windows, in which oscillations
-    /// cancel.
+    /// The drift. A straight line is fitted to the means of the windows, in which oscillations cancel; the drift is its
+    /// increase over the run.
     pub fn drift(&self) -> f64 {
         let points: Vec<_> = self.windows.iter().map(|it| (it.t, it.mean)).collect();
         let span = self.windows.last().map_or(0.0, |last| last.t);

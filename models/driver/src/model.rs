@@ -129,7 +129,7 @@ pub trait AnyModel: Runs {
     /// The name of the mode in which states are made; `None` if [`mode_alone`](Self::mode_alone) returns `None`.
     fn present_mode(&self) -> Option<&'static str>;
     /// The mode in which states are made, as a model of its own with the same values of parameters; its runs end at transitions.
-    /// `None` for a model without modes, and for one that is known by its type alone.
+    /// `None` for a model without modes, and for a model without a form.
     fn mode_alone(&self) -> Option<Box<dyn AnyModel>>;
     /// Checks the parameters against their declaration.
     ///

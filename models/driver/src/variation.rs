@@ -207,7 +207,7 @@ struct Differentiator<'a> {
     is_over: &'a mut dyn FnMut() -> bool,
 }
 
-/// Result of a differentiator: the inner error if there are no derivatives, the outer one if no run starts.
+/// Result of a differentiator. The inner error says why there are no derivatives, the outer one why no run starts.
 type Varied = Result<Result<Derivatives, VariationError>, Refusal>;
 
 impl VariationalVisitor for Differentiator<'_> {

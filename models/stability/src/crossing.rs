@@ -20,7 +20,7 @@ static FLAT_CROSSING: Text = Text::new(
     }",
 );
 
-/// A free rotor with surfaces where cos(theta) = 0, whose events are counted.
+/// A free rotor. Its surfaces lie where cos(theta) = 0, and their events are counted.
 static ROTOR: Text = Text::new(
     "Rotor {
         coordinates { theta: angle; }

@@ -279,7 +279,7 @@ pub fn notes(source: &str) -> String {
     words.collect::<Vec<_>>().join("\n")
 }
 
-/// All adaptive integrators: cases bound errors by tolerances, which do not apply to fixed-step integrators.
+/// All adaptive integrators. The bounds of cases belong to tolerances, which fixed-step integrators do not keep.
 pub fn every_integrator() -> &'static [Integrator] {
     &[Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor]
 }

@@ -50,7 +50,8 @@ pub(crate) use verdict::verify;
 /// Number of equal intervals between the times at which positions are compared.
 pub const TIMES: u64 = 64;
 
-/// The tolerances of the two reference runs. Both are below rounding, so that the runs differ in their steps only.
+/// The tolerances of the two reference runs. Both are below the unit of rounding, so that the runs differ in their steps
+/// only.
 pub const FINEST: [f64; 2] = [1e-16, 1e-18];
 
 /// Plan of the measurements.

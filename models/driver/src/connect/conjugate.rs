@@ -104,7 +104,7 @@ fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     vec![t]
 }
 
-/// The least absolute value of the parabola through three values of one sign; 0 where it passes through 0.
+/// The least absolute value of the parabola through three values of one sign; 0 if it passes through 0.
 fn lowest([(a, first), (b, middle), (c, last)]: [(f64, f64); 3]) -> f64 {
     let [first, middle, last] = [first, middle, last].map(f64::abs);
     let slopes = [(middle - first) / (b - a), (last - middle) / (c - b)];

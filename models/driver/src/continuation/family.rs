@@ -11,7 +11,7 @@ pub(crate) trait Family {
     /// The map at the point of the section near a state.
     fn local(&mut self, state: &[f64], parameter: f64) -> Result<Local, Failure>;
 
-    /// Prepares for members near this one, which may be far from the last one.
+    /// Prepares for members near this one. It may be far from the last member.
     fn begin(&mut self, member: &Member);
 }
 

@@ -166,7 +166,7 @@ impl Tracer<'_, '_> {
     }
 
     /// The crossing with another branch, interpolated from members on both sides. Closer to the crossing, members of
-    /// both branches differ by rounding only, and a test function has half of the digits.
+    /// both branches differ by rounding only, and a test function has half of its digits.
     fn crossing(
         &mut self,
         near: f64,
@@ -188,7 +188,7 @@ impl Tracer<'_, '_> {
         Ok(self.family.local(&state, parameter)?.member)
     }
 
-    /// The zero of the determinant, interpolated from members on both sides, in units of their distance.
+    /// The place of the zero of the determinant, in the units of [`SIDES`], interpolated from members on both sides.
     fn root(&self, sides: &[Node]) -> f64 {
         let values = sides
             .iter()
@@ -242,7 +242,7 @@ pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f
     (state.collect(), parameter)
 }
 
-/// Places of members on both sides of a crossing.
+/// Places of members on both sides of a crossing, in units of the distance of the inner members.
 const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 
 /// The polynomial through the values at these places.

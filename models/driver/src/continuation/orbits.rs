@@ -29,7 +29,7 @@ pub(crate) struct Orbits<'a, S: Variational> {
 }
 
 impl<'a, S: Instance + Scene + Variational> Orbits<'a, S> {
-    /// The orbits near one of them, over the parameter of this index.
+    /// The family that contains this orbit, over the parameter of this index.
     pub fn new(
         system: &S,
         search: &'a Search,

@@ -103,7 +103,7 @@ impl Linearisation {
             .as_ref()
             .filter(|_| self.unsteady.is_empty())?;
         let margin = NEUTRAL * largest(self.a.iter().flatten());
-        // The smallest number of such eigenvalues among the states that may be the equilibrium.
+        // The least number of eigenvalues whose real parts are counted, over the states that may be the equilibrium.
         let least = |is_counted: &dyn Fn(f64) -> bool| {
             let count = |spectrum: &Vec<[f64; 2]>| {
                 let real = spectrum.iter().map(|[re, _]| *re);
