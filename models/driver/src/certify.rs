@@ -34,8 +34,8 @@ pub struct Certification {
     pub impacts: Option<u64>,
     /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges that replace the values of parameters, by index. A model with modes accepts no other ranges, and starts
-    /// in the same state for all values of its parameters.
+    /// Ranges that replace the values of parameters, by index. A model with modes starts in the same state for all
+    /// values of its parameters, and the ranges below are ignored.
     pub parameters: Vec<(usize, Interval)>,
     /// Ranges that replace the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,

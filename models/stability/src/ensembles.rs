@@ -30,7 +30,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "F14",
-        title: "1e8 impacts shown to an observer that keeps a sum",
+        title: "1e8 impacts with an observer that sums their times",
         right: "memory does not grow",
         bound: "resident size constant to 1 MiB",
         run: Run::Once(flat_memory),

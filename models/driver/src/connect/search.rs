@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Chooses the starts of an envelope: evenly up to the fastest start that meets a surface.
+    /// Chooses the starts of an envelope, at equally spaced speeds up to the fastest start that meets a surface.
     fn spread(&mut self, ray: &Ray, unit: f64) {
         let meets = |it: &&Sample| match &it.shot.course {
             Course::Reached(surfaces) => !surfaces.is_empty(),

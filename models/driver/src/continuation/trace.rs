@@ -227,7 +227,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
         (kept.map(|(_, (member, _))| member).collect(), end)
     }
 
-    /// Follows the branch from a member until it ends. Calls `take` with the bifurcations of each step and its end.
+    /// Follows the branch from a member until it ends. Calls `take` after each step, with the bifurcations in the step and
+    /// the member at the end of the step.
     fn followed(
         &mut self,
         start: &Node,
