@@ -90,8 +90,9 @@ pub(crate) struct Subject<'a> {
     pub form: Option<&'a erased::Form>,
     /// The values of all parameters, inputs included.
     pub values: &'a [f64],
-    /// The origin, and its state in the requested form.
+    /// The origin.
     pub origin: &'a Origin,
+    /// The state of the origin in the requested form.
     pub state: &'a [f64],
 }
 

@@ -162,7 +162,7 @@ impl Plan {
 /// Progress of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
-    /// Number of finished tasks: directions first, then starts.
+    /// Number of finished tasks: guesses, if the problem has any, then directions, then starts.
     pub done: usize,
     /// Number of all tasks.
     pub all: usize,
@@ -174,7 +174,7 @@ pub struct Stage {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unjoined {
-    /// The model has no free velocities at the start.
+    /// The model is of first order and has no free velocities at the start.
     #[error("a first-order system has no free velocities: its motion follows from its start")]
     FirstOrder,
     /// The model has constraints and no reduced form.
@@ -192,7 +192,7 @@ pub enum Unjoined {
         /// Number of free velocities of the start.
         unknowns: usize,
     },
-    /// An envelope was requested for several unknowns.
+    /// An envelope was requested for a number of unknowns other than 1.
     #[error("envelopes are known for one free velocity, and the start has {unknowns}")]
     Envelope {
         /// Number of free velocities of the start.
@@ -273,7 +273,7 @@ impl VariationalVisitor for Joiner<'_, '_> {
     }
 }
 
-/// Replaces each family of motions that are not isolated by one of them.
+/// Keeps one motion of each family of motions that are not isolated.
 fn families(connections: Vec<Connection>) -> Vec<Connection> {
     let mut kept: Vec<Connection> = Vec::new();
     for connection in connections {

@@ -148,7 +148,7 @@ fn is_captured(y: &[f64], step: &[f64], root: &[f64]) -> bool {
     away <= 0.05 * norm(root) && norm(&difference(root, &moved(y, step, 1.0))) <= 0.05 * away
 }
 
-/// The factor of the deflated miss, which keeps it away from 0 at known roots.
+/// The factor by which deflation multiplies the miss. It is infinite at known roots.
 fn factor(y: &[f64], known: &[Vec<f64>]) -> f64 {
     let near =
         |root: &Vec<f64>| (norm(&difference(y, root)) / norm(root).max(f64::MIN_POSITIVE)).powi(-2);

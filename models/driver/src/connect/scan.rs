@@ -120,8 +120,8 @@ fn reaches(sample: &Sample) -> bool {
 /// Number of successive quiet doublings after which faster starts are assumed to lead away from the end.
 const QUIET: u32 = 5;
 
-/// Number of doublings after which a ray without any motion to the end is given up. It is above 1, because slow starts
-/// may have too many impacts where fast ones have few.
+/// Number of doublings after which a ray without any motion to the end is given up. Slow starts may have too many
+/// impacts although fast starts have few, so one doubling is not enough.
 const VAIN: u32 = 5;
 
 /// Record of the doublings of the speed along a ray.

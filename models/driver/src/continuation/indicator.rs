@@ -22,7 +22,7 @@ pub(crate) struct Precision {
 }
 
 impl Precision {
-    /// The value of a test function of slope 1 that counts as 0.
+    /// Largest value that counts as 0, for a test function of slope 1.
     pub const fn zero(&self) -> f64 {
         1e-3 * self.on_circle
     }

@@ -6,7 +6,7 @@ use super::trace::{REACH, Tracer};
 use super::{Bifurcation, Member};
 use crate::linear::norm;
 
-/// Length of a step below which unexplained changes of the stability are no longer resolved by shorter steps.
+/// Length of a step below which an unexplained change of the stability does not shorten the step further.
 const REFINED: f64 = 1e-4;
 
 /// Maximum number of steps to a bifurcation.

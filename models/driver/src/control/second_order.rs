@@ -47,7 +47,7 @@ const ROUNDING: f64 = 1e-12;
 /// Largest accepted relative error of the inverse of `B`.
 const RESOLVED: f64 = 1e-2;
 
-/// Rows of a matrix.
+/// A matrix, row by row.
 type Matrix = Vec<Vec<f64>>;
 
 /// Tests an extremal by the flows of its stretches, in order of time. `terminal` is the second derivative of the

@@ -24,7 +24,7 @@ const STEPS: u64 = 4096;
 /// Number of components of the state.
 const STATE: usize = 2;
 
-/// A step in time, with the inputs of its motions.
+/// A step in time, with the values of the input for its motions.
 #[derive(Debug, Clone, Copy)]
 pub struct Leg<'a> {
     /// The times at its start and at its end.
