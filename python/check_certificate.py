@@ -14,7 +14,7 @@ of the generator. It sets up the equations of motion from the Lagrangian and the
   locally_exact      the same values do not contradict each other
   symmetry           the flow keeps the Lagrangian (up to a total derivative) and the constraints, or commutes with the rates
   volume_kept        the density satisfies Liouville's equation, and the motion through each surface keeps its volume
-  factor             it is the determinant of the derivative of the motion through the surface, times the ratio of the densities
+  factor             the factor is the determinant of the derivative of the motion through the surface, times the ratio of densities
   symplectic         forces are closed, and the motion through each surface keeps dp dq - dH dt; with constraints, the motion keeps
                      dp dq on all states, or on the leaves if the constraints are integrable
   invariant_form     the form is the same on vectors that the motion carries along, between surfaces and through each of them
@@ -95,7 +95,7 @@ def sine_and_cosine(x, digits):
     with localcontext(Context(prec=digits + 15)):
         turn = 2 * pi_of(digits + 10 + max(0, x.adjusted()))
         x = x - turn * (x / turn).to_integral_value()
-        # Eight halvings, then the series of both.
+        # Eight halvings of the angle, the series of sine and cosine, then eight doublings.
         x /= 256
         square, sine, cosine = x * x, x, Decimal(1)
         term_s, term_c, k = x, Decimal(1), 1
@@ -795,7 +795,7 @@ def is_exponential(tree):
 
 
 def excludes_zero(tree, box, depth):
-    """True if an expression is proved to be nowhere 0 in a box, whose longest side is halved as often as `depth`."""
+    """True if an expression is proved to be nowhere 0 in a box. The longest side of a box is halved, at most `depth` times."""
     if is_exponential(tree):
         return True
     low, high = enclosure(tree, box)
@@ -942,7 +942,8 @@ def nearest(model, state):
 
 
 def refracted(model, entered, state, slope, rate):
-    """The velocity behind the surface for the momentum `p + c pi_D^* dh` at which the energies differ by `-c dh/dt`, or None."""
+    """The velocity behind the surface for the momentum `p + c pi_D^* dh` at which the energies differ by `-c d_t h`; None if no
+    such `c` exists."""
     momentum, normal = model.momentum_at(state), projected_normal(model, slope, state)
     push = [dot(row, normal) for row in model.metric_at(state)]
     after = entered.state_of(model, state, model.positions(state), model.velocities(state))
@@ -1125,7 +1126,8 @@ def check_factor(model, claim, source):
 
 
 def constrained_to_less(model, surface, stated, source):
-    """True if the stated factor is 0 and the other constraints do not imply the instantaneous ones, which map volumes to 0."""
+    """True if the stated factor is 0, and the constraints of the motion do not imply the instantaneous ones. These then map volumes
+    to 0."""
     def ranks(state):
         forms, m = model.forms_at(state), len(model.constraints)
         extra = [[model.names.compile(item)(state) for item in entry["form"]] for entry in surface["instantaneous"]]
@@ -1220,7 +1222,7 @@ def symplectic_terms(model):
 
 
 def are_integrable(model, source):
-    """True if the derivatives of `eta + eta_0 dt` vanish on all pairs of fields that these forms annihilate (Frobenius)."""
+    """True if the exterior derivatives of the forms `eta + eta_0 dt` vanish on all pairs of fields in their kernel (Frobenius)."""
     if model.is_nonlinear:
         return False
 
@@ -1439,8 +1441,8 @@ def is_single_valued(model, density, source):
 
 
 def check_hull(model, source, exists, at=None):
-    """True if the ranks of the brackets of the fields of D, without and with the derivative of ln(density) that each prescribes,
-    show that a density exists locally or, for `exists=False`, that none does."""
+    """Compares the rank of the brackets of the fields of D with their rank together with the derivatives of ln(density) that they
+    prescribe. Equal ranks show that a density exists locally. True if this agrees with `exists`."""
     if model.rates is not None or model.is_nonlinear:
         raise NotChecked("densities belong to mechanical systems with linear constraints")
     bends = states(model, source, lambda state: bend(model, state), 1, at)[0]
@@ -1454,7 +1456,7 @@ def check_hull(model, source, exists, at=None):
 
 
 def bend(model, state):
-    """The second difference of the divergence along a line of independent velocities: 0 if it is linear in them."""
+    """The second difference of the divergence along a line of independent velocities: 0 if the divergence is affine in them."""
     dependent = model.dependent(state)
     u = [item for i, item in enumerate(model.velocities(state)) if i not in dependent]
     step = [Decimal(i + 1) * (-1) ** i for i in range(len(u))]

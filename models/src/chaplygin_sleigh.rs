@@ -1,7 +1,8 @@
-//! The Chaplygin sleigh on an elliptical table, a billiard with both tips of the blade.
+//! The Chaplygin sleigh on an elliptical table: a billiard in which both tips of the blade meet the edge of the table.
 //!
-//! Facts: with `K = I + m a^2` the free sleigh has `v = V tanh(s t + c)`, `omega = sqrt(2E/K) sech(s t + c)`,
-//! `V = sqrt(2E/m)`, `s = a m V/K`. It always ends with its centre of mass ahead.
+//! Facts: the free sleigh with the energy `E` has the forward speed `v = V tanh(s t + c)` and the turning rate
+//! `omega = sqrt(2 E/K) sech(s t + c)`, where `K = I + m a^2`, `V = sqrt(2 E/m)` and `s = a m V/K`. In the end its centre
+//! of mass is ahead.
 //! Source: W. Clark, thesis, section 7.5; W. Clark and A. Bloch, section 8.1.
 
 dalembert::model_file!("src/chaplygin_sleigh.dal");

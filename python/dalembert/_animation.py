@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: Points per side of the grid on which a moving border is computed.
 COARSE = 90
 
-#: About the number of points of a path on an HTML page.
+#: A path on an HTML page has less than twice this number of points.
 POINTS = 4000
 
 

@@ -38,16 +38,17 @@ class Normal:
 
 @dataclass(frozen=True)
 class Statistics:
-    """Statistics of the finite numbers in a column over all members, correctly rounded from exact sums.
+    """Statistics of the finite numbers in a column over all members, from exact sums.
 
     Attributes
     ----------
     count : int
         Number of finite numbers.
     mean : float
-        Their mean; NaN if there are none.
+        Their mean, correctly rounded; NaN if there are none.
     std : float
-        Their standard deviation, with the divisor ``count - 1``; NaN if there are fewer than two.
+        Their standard deviation (divisor ``count - 1``), the square root of the correctly rounded variance; NaN if there are fewer
+        than two.
     least, greatest : float
         The extremes; NaN if there are none.
     """
@@ -74,8 +75,8 @@ class Density:
     outside : int
         Number of states outside of the cells.
     convergence : tuple of mapping of str to float
-        For 1/16, 1/8, .. 1 of the states: the total variation distance between the densities of two halves, divided by time and
-        by members, and the distance expected for as many independent states.
+        For 1/16, 1/8, .. 1 of the states: the total variation distances between the densities of two halves, split by time and
+        split by members, and the distance expected for as many independent states.
     """
 
     names: tuple[str, str]

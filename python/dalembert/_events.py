@@ -88,7 +88,7 @@ class Occurrence:
 
 
 def taken(events: Sequence[Any]) -> tuple[Event, ...]:
-    """The events of a request. Each is an expression, a function, a tuple of one of both and a direction, or an :class:`Event`."""
+    """The events of a request. Each is an expression, a function, a tuple of one of these and a direction, or an :class:`Event`."""
     found = []
     for event in events:
         if isinstance(event, (str, tuple)) or (callable(event) and not isinstance(event, Event)):

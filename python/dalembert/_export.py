@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from ._model import Model
 
-#: Operations that are not functions of a module under their name in C.
+#: Operations that modules do not offer as functions with the names in C.
 SIGNS = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "neg": operator.neg, "pow": operator.pow,
 }

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class Final:
     """Positions and velocities at the end of a run, as a function of initial values and parameters.
 
-    Initial values that are not varied have the declared numbers, which do not change with a varied parameter.
+    Initial values that are not varied are fixed numbers, given or declared. They do not change with a varied parameter.
     """
 
     def __init__(self, model: Model, names: Sequence[str], arguments: dict[str, Any]) -> None:

@@ -263,7 +263,7 @@ class Model(Swept):
 
     @property
     def view(self) -> tuple[list[str], list[int] | None, bool] | None:
-        """The declared view, or None: labels, indices of its two coordinates (None for other quantities), true with a region."""
+        """The declared view, or None: labels, indices of its coordinates (None for other quantities), true if it has a region."""
         return self._description["view"]
 
     @property
@@ -424,7 +424,7 @@ class Model(Swept):
             The initial mode of a model with modes.
         events : sequence, optional
             Functions of the state whose changes of sign are recorded in :attr:`Run.crossings`: an expression such as
-            ``"x - 2*dot(theta)"``, a function of ``t``, ``q`` and ``qdot``, one of both with a direction, ``("x", 1)``, or an
+            ``"x - 2*dot(theta)"``, a function of ``t``, ``q`` and ``qdot``, either of them with a direction, ``("x", 1)``, or an
             :class:`Event`. The motion is the same as without them, to the bit.
         on_step : callable, optional
             Called with ``t``, ``q`` and ``qdot`` after each step. If it returns True or ``"stop"``, the run ends there with the

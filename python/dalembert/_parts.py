@@ -24,7 +24,7 @@ class Directory:
     Parameters
     ----------
     path
-        The directory; it is made where it does not exist.
+        The directory. It is created if it does not exist.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -38,7 +38,7 @@ class Directory:
         Raises
         ------
         RequestError
-            A directory of another ensemble, of other files, or that another run is writing.
+            A directory that holds another ensemble or other files, or that another run is writing.
         EnsembleError
             A part that was altered.
         """
@@ -65,7 +65,7 @@ class Directory:
                 )
 
     def _claim(self, manifest: Path) -> None:
-        """Locks the manifest until this process ends or :meth:`close`, where the system has locks."""
+        """Locks the manifest, until :meth:`close` or the end of this process, on systems that have locks."""
         try:
             import fcntl
         except ImportError:

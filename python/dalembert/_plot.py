@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from ._run import Run
 
-#: Points of the grid on which the border of a region is looked for, along each axis.
+#: Number of points along each axis of the grid on which the border of a region is computed.
 GRID = 300
 
 

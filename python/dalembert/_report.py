@@ -145,7 +145,7 @@ class Derivation:
 
     @cached_property
     def sections(self) -> tuple[Section, ...]:
-        """The parts."""
+        """The sections, in order."""
         return tuple(
             Section(title, *equation, tuple(items)) for title, equation, items in self._native["sections"]
         )

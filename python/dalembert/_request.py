@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def inputs(
     names: Sequence[str], given: Mapping[str, float | StateFunction],
 ) -> tuple[list[tuple[str, float]], Callable[..., list[float]] | None]:
-    """The inputs that are numbers. If an input is a function, also all inputs as one function of time and state, else None."""
+    """The inputs that are numbers, and all inputs as one function of time and state; None if no input is a function."""
     numbers = {name: value for name, value in given.items() if not callable(value)}
     functions = {name: value for name, value in given.items() if callable(value)}
     if not functions:

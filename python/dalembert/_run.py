@@ -35,7 +35,8 @@ class Outcome:
     reached : bool
         True if the requested time, number of impacts or event was reached.
     details : mapping of str to object
-        Details of this kind of outcome, in the names of the model: ``surface``, ``accumulates_at``.
+        Details of this kind of outcome, such as ``surface`` and ``accumulates_at``. Surfaces and coordinates have their declared
+        names.
     words : str
         The outcome in a sentence.
     """
@@ -144,7 +145,7 @@ class Run:
             raise ValueError(f"side: `{side}` is not accepted; expected \"left\" or \"right\"")
         times = np.asarray(t, dtype=np.float64)
         if times.size and not (0 <= times.min() and times.max() <= self.outcome.t):
-            raise ValueError(f"the run knows the times from 0 to {self.outcome.t}")
+            raise ValueError(f"t: times must be from 0 to {self.outcome.t}, the end of the run")
         order = np.argsort(times, axis=None, kind="stable")
         table = self._native.at(np.ascontiguousarray(times.ravel()[order]), side == "left")
         back = np.argsort(order, kind="stable")
@@ -180,8 +181,8 @@ class Run:
         """Changes of sign of the functions of the given events, as a structured array.
 
         Fields are ``t``, ``event`` (its name), ``rising``, and ``at``, the state. Values within rounding of 0 have no sign: a
-        function that begins at 0 or only touches 0 does not change its sign. A jump at an impact does not count either. Within a
-        step, every change is found that a polynomial of degree 8 resolves on some part of the step.
+        function that begins at 0 or only touches 0 does not change its sign. A jump at an impact does not count either. A step is
+        halved into parts until a polynomial of degree 8 shows at most one change on each part, so that close ones are found, too.
         """
         item, names = self._native.crossings, [event.label for event in self._events]
         return self._table(item.events, {"rising": item.rising}, {"at": item.at}, "event", names)
@@ -349,8 +350,8 @@ class Run:
         Parameters
         ----------
         *quantities : str
-            One quantity is drawn over time; of several, the others over the first. Default: the declared view, in which both axes
-            have the same scale, or all coordinates over time if there is no view.
+            A single quantity is drawn over time. If there are several, all others are drawn over the first. Default: the declared
+            view, in which both axes have the same scale, or all coordinates over time if there is no view.
         ax : matplotlib axes, optional
             The axes to draw on. Default: the current ones.
 

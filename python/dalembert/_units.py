@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator, Protocol
 
 from ._errors import EnsembleError
 
-#: Members of the first units, whose pace is not known.
+#: Number of members of the first units, whose pace is not known yet.
 FIRST = 64
 #: Largest number of members of a unit: its rows are in the memory of the driver until they are written.
 MOST = 50_000
@@ -19,9 +19,9 @@ MOST = 50_000
 LONGEST = 6.0
 #: Towards the end units become shorter, down to the planned time divided by this.
 SHORTEST = 50
-#: Units in flight for each worker, so that none waits.
+#: Number of units in flight for each worker, so that no worker waits.
 AHEAD = 2
-#: Units over which the pace is measured, for each worker.
+#: Number of units for each worker over which the pace is measured.
 RECENT = 4
 #: Names of the errors by which executors report a lost worker, in addition to errors of the standard library.
 LOST = frozenset({"KilledWorker", "TerminatedWorkerError", "UncompletedJobError", "WorkerCrashedError"})
@@ -178,7 +178,7 @@ class Units:
             self._replace(executor, error)
 
     def _replace(self, broken: Any, error: BrokenExecutor) -> None:
-        """Another executor in place of one that broke, unless an earlier unit has replaced it."""
+        """Replaces an executor that broke, unless an earlier unit has replaced it."""
         if broken is not self._executor:
             return
         replacement = self._make() if self._make else renewed(self._executor)

@@ -9,9 +9,9 @@ const DEGREE: usize = 8;
 /// Samples of a cell.
 const NODES: usize = DEGREE + 1;
 
-/// Halvings of a step beyond which the signs at the ends of a cell decide.
+/// Number of halvings of a step beyond which the signs at the ends of a cell decide.
 const DEEPEST: u32 = 40;
-/// Cells of a step beyond which the signs at the ends of a cell decide.
+/// Number of cells of a step beyond which the signs at the ends of a cell decide.
 const CELLS: u32 = 400;
 
 /// Fraction of the largest value so far below which a value counts as 0, because a state on a surface has rounding

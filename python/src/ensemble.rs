@@ -25,7 +25,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// Number of members that the runner takes at once, for integrators that run them side by side.
 const BLOCK: u64 = 64;
 
-/// Members of an ensemble: quantities with the values of each, or with rows of values of all of them.
+/// Members of an ensemble: the varied quantities, each with its values, or rows with a value of every quantity.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Varied<'py> {

@@ -193,13 +193,13 @@ impl Calls {
         self.event(kind, crossing.event, crossing.t, point, point)
     }
 
-    /// Same at an impact.
+    /// Calls the function of events at an impact; true if it ends the run.
     pub(crate) fn impact(&self, impact: &Impact) -> PyResult<bool> {
         let Impact { before, after, .. } = impact;
         self.event("impact", impact.surface, impact.t, before, after)
     }
 
-    /// Same where a contact begins or ends.
+    /// Calls the function of events where a contact begins or ends; true if it ends the run.
     pub(crate) fn contact(&self, contact: &Contact) -> PyResult<bool> {
         let kind = if contact.begins { "contact" } else { "release" };
         self.event(kind, contact.surface, contact.t, &contact.at, &contact.at)

@@ -206,7 +206,7 @@ impl NativeModel {
         self.values.clone()
     }
 
-    /// Names, shapes and documentation of what is declared.
+    /// Names, shapes and documentation of the declared quantities.
     fn description<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let description = self.describe();
         let dict = PyDict::new(py);

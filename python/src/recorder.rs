@@ -49,7 +49,7 @@ pub(crate) struct Impacts {
     pub grazing: Vec<bool>,
 }
 
-/// Moments where a surface begins or ceases to hold the motion.
+/// Events at which a surface begins or ceases to hold the motion.
 #[derive(Debug, Default)]
 pub(crate) struct Contacts {
     pub at: Columns,
@@ -169,7 +169,7 @@ impl Signals {
         true
     }
 
-    /// Keeps the first error. Returns the value, or the default in its place.
+    /// Returns the value of a result. For an error, keeps the first one and returns the default.
     fn take<T: Default>(&mut self, result: PyResult<T>) -> T {
         result.unwrap_or_else(|error| {
             self.interrupt.get_or_insert(error);
@@ -199,8 +199,8 @@ impl Recorder<'_> {
         self.record
     }
 
-    /// Takes the samples of a stretch up to a time. Its last instant is left to the next stretch, unless states before
-    /// impacts are requested.
+    /// Takes the samples of a stretch up to a time. The sample at that time is left to the next stretch, unless states
+    /// before impacts are requested.
     fn take_samples(&mut self, piece: &dyn Piece, end: f64) {
         while let Some(time) = self.next_time() {
             if time > end || (time == end && self.side == Side::After) {

@@ -241,7 +241,7 @@ impl Request<'_> {
         ];
         let split = [("first", Split::First), ("stop", Split::Stop)];
         Ok(Policies {
-            // Repeated impacts that end in a contact go on along the surface.
+            // After repeated impacts that end in a contact, the motion continues along the surface.
             rest: match self.penetration == CONTACT {
                 true => Rest::Contact,
                 false => rest,

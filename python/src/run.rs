@@ -38,7 +38,7 @@ pub struct ImpactTable {
     grazing: Py<PyArray1<bool>>,
 }
 
-/// Moments where a surface begins or ceases to hold the motion, one per row.
+/// Events at which a surface begins or ceases to hold the motion, one per row.
 #[pyclass(frozen, get_all, module = "dalembert._native")]
 pub struct ContactTable {
     at: Py<Table>,

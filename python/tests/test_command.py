@@ -53,7 +53,7 @@ def test_samples_and_impacts_have_the_same_bits(command, name):
 
 
 def canonical(values):
-    """The values with the same bits for every NaN: a table does not keep them."""
+    """The values with the same bits for every NaN: a table does not keep the bits of a NaN."""
     return np.where(np.isnan(values), np.nan, values)
 
 

@@ -42,7 +42,7 @@ def sections(text):
 
 
 def documented(section):
-    """Names that a section describes, several of a line included."""
+    """Names that a section describes; a line may have several."""
     lines = [line for line in section.splitlines() if line and not line.startswith(" ")]
     return [name.strip().lstrip("*") for line in lines for name in line.split(" : ")[0].split(",")]
 

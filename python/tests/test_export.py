@@ -25,7 +25,7 @@ def compiler():
 
 
 def compiled(compiler, header, folder, name):
-    """The compiled functions of a header: numbers of results and of arrays by name, and a function that calls one by its name."""
+    """The compiled functions of a header: numbers of results and of arrays by name, and a function that calls each by its name."""
     folder.joinpath("model.h").write_text(header, encoding="utf-8")
     source = '#include "model.h"\n'
     sizes = {}
@@ -57,7 +57,7 @@ def parameters(model):
 
 
 def close(found, expected):
-    """Asserts equality up to rounding errors of numbers of the size of the largest."""
+    """Asserts equality up to rounding errors, relative to each number or to the largest one."""
     expected = np.asarray(expected, dtype=float)
     np.testing.assert_allclose(found, expected, rtol=1e-13, atol=4e-15 * max(1.0, np.abs(expected).max(initial=0.0)))
 

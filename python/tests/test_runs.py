@@ -107,7 +107,7 @@ def test_a_run_knows_all_its_times():
     np.testing.assert_array_equal(at["theta"][0, ::-1], run["theta"])
     np.testing.assert_array_equal(at.energy[0, ::-1], run.energy)
     assert run(0.25)["x"].shape == ()
-    with pytest.raises(ValueError, match="the run knows the times from 0 to 20"):
+    with pytest.raises(ValueError, match="t: times must be from 0 to 20"):
         run(21)
 
 

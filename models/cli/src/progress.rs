@@ -161,7 +161,7 @@ impl Points {
         Self { made: 0, bar }
     }
 
-    /// Notes a point at this value of a parameter, and its place in the range as a fraction.
+    /// Notes a point of the branch: the value of the parameter, and the fraction of the range that lies before it.
     pub fn at(&mut self, name: &str, value: f64, fraction: f64) {
         self.made += 1;
         let Some(bar) = &self.bar else { return };

@@ -73,7 +73,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Takes the samples of the grid that are left at the end of the run.
+    /// Takes the samples that are left up to the end `t` of the run, where the state is `last`. Returns the records.
     ///
     /// # Errors
     /// The first error of a receiver.

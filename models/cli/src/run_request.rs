@@ -55,8 +55,8 @@ pub fn course(
     course_to(model, run, course, course.impacts)
 }
 
-/// Like [`course`], for a run that may end after `counted` impacts, or after `counted` returns to one surface, in place
-/// of a time.
+/// Like [`course`]. With `counted`, the run ends after this number of impacts or of returns to a surface, and needs no
+/// end time.
 pub fn course_to(
     model: &dyn AnyModel,
     run: &RunArgs,

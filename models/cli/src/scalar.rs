@@ -1,4 +1,4 @@
-//! Numbers on the command line: decimals and multiples of pi, and numbers of summaries.
+//! Parses numbers of the command line: decimals and multiples of pi. Formats numbers for summaries.
 //!
 //! `scalar = ["+" | "-"] factor {("*" | "/") factor}`, `factor = decimal ["pi"] | "pi"`. Factors are evaluated from left
 //! to right in `f64`. A single decimal gives the nearest `f64`.
@@ -56,7 +56,7 @@ fn decimal(text: &str) -> Option<f64> {
     starts_as_number.then(|| text.parse().ok()).flatten()
 }
 
-/// A number with all its digits, and with an exponent below 1e-4 and from 1e16 on.
+/// The shortest decimal that parses to this number. It has an exponent if its size is below 1e-4 or at least 1e16.
 pub fn full(number: f64) -> String {
     match number.abs() {
         0.0 => "0".to_owned(),
@@ -65,7 +65,7 @@ pub fn full(number: f64) -> String {
     }
 }
 
-/// A number with nine significant digits, and with an exponent below 1e-4 and from 1e9 on.
+/// A number rounded to nine significant digits. It has an exponent if its size is below 1e-4 or at least 1e9.
 pub fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.8e}").parse().unwrap_or(number);
     match rounded.abs() {

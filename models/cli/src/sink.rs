@@ -44,7 +44,7 @@ pub fn claim(flag: &'static str, path: &Path, options: &mut OpenOptions) -> Resu
     }
 }
 
-/// A file whose old content is removed at the first write, not before.
+/// A file whose old content is kept until the first write or flush.
 struct Replaced {
     file: File,
     is_emptied: bool,
@@ -109,7 +109,7 @@ impl Sink {
     /// Opens the file of a flag, if the flag was given.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The errors of [`Sink::open`].
     pub fn open_given(flag: &'static str, path: Option<&Path>) -> Result<Option<Self>, CliError> {
         path.map(|path| Self::open(flag, path)).transpose()
     }
@@ -169,7 +169,8 @@ impl Sink {
     }
 }
 
-/// Writes the document of `--json`, if it was requested. True if it went to the standard output, in place of the text.
+/// Writes the document of `--json`, if it was requested. Returns true if it went to the standard output, where it
+/// replaces the text.
 ///
 /// # Errors
 /// An I/O error of the file or stream.

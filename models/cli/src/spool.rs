@@ -72,7 +72,7 @@ impl Spool {
     }
 }
 
-/// A temporary file. Its name is removed at once, or at the end on systems where open files keep their names.
+/// A temporary file. Its name is removed at once, or in `drop` on systems that do not remove the name of an open file.
 struct Temporary {
     file: File,
     path: Option<PathBuf>,

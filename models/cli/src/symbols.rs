@@ -1,5 +1,5 @@
-//! Symbols for the names of quantities, as pictures and pages show them: `theta_dot` is θ with a dot, `x1` has an
-//! index.
+//! Symbols for the names of quantities, as pictures and pages show them: `theta_dot` is θ with a dot, `x1` is x with
+//! the subscript 1.
 
 use dalembert_codegen::model::greek_letter;
 
@@ -12,11 +12,11 @@ const INDICES: [char; 10] = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '�
 /// Parts of a name of a quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
-    /// A letter, Greek or Latin, or a word.
+    /// One letter.
     pub letter: String,
     /// True for a rate.
     pub is_rate: bool,
-    /// Digits of an index; empty without one.
+    /// The index: digits, or two numbers with a comma between them. Empty if there is none.
     pub index: String,
 }
 
@@ -52,7 +52,8 @@ impl Symbol {
     }
 }
 
-/// A name as plain text: `ẋ₁` for `x1_dot`. Words keep their letters.
+/// A name as plain text: `ẋ₁` for `x1_dot`. A name that is no symbol keeps its letters, with spaces for underscores;
+/// its rate is written `d(name)/dt`.
 pub fn text(name: &str) -> String {
     if let Some(momentum) = name.strip_prefix("p_") {
         return format!("p_{}", text(momentum));

@@ -35,7 +35,7 @@ fn divergence(document: &Value) -> Option<[f64; 2]> {
     Some([printed, number(document, "/0/divergence_mu_C")?])
 }
 
-/// Rate of `ln f` plus the divergence, for the powers -3 and -1 of the angular momentum of the sleigh.
+/// Rate of `ln f` plus the divergence, where the density `f` is the power -3 or -1 of the angular momentum of the sleigh.
 fn density_of_the_sleigh(document: &Value) -> Option<[f64; 2]> {
     let rate = number(document, "/0/pdot/2")? / number(document, "/0/p/2")?;
     let divergence = number(document, "/0/divergence_mu_C")?;
@@ -62,7 +62,7 @@ const DISK_STATE: &str = r#"[{"q": [0.5, 0.25, 0, 0], "qdot": [0.375, 0, 1, 0.75
 const PLACE: [f64; 2] = [0.5, 0.25];
 const HALF_AXES: [f64; 2] = [2.0, 1.0];
 
-/// `h_x`, `h_y` at the leading end of the disk, which points along x.
+/// Partial derivatives `h_x`, `h_y` of the gap at the leading end of the disk. The disk points along x.
 fn slopes() -> [f64; 2] {
     let [x, y] = [PLACE[0] + DISK.radius, PLACE[1]];
     [
@@ -109,7 +109,7 @@ fn sideways_component(document: &Value) -> Option<[f64; 2]> {
     ])
 }
 
-/// Second momentum of the disk on D: `p_theta`, and `R p.e(phi) + p_theta` with phi = 0.
+/// Second momentum of the disk on D: as printed, `p_theta`, and as derived, `R p.e(phi) + p_theta` with phi = 0.
 fn momentum_of_the_disk(document: &Value) -> Option<[f64; 2]> {
     let p = vector(document, "/0/p")?;
     Some([*p.get(2)?, DISK.radius * p.first()? + p.get(2)?])

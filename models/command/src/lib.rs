@@ -1,8 +1,8 @@
 //! The shipped models as texts for the `dalembert` command, with the [`figures`] and [`errata`] of the papers in which
 //! they appear.
 //!
-//! No model is compiled: a command loads the text of its model. With the feature `inlined` the models are compiled, and
-//! their functions are inlined into the code that runs them.
+//! By default no model is compiled: a command loads the text of its model. With the feature `inlined` all models are
+//! compiled, and their functions are inlined into the code that runs them.
 
 pub mod errata;
 pub mod figures;

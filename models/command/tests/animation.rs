@@ -85,7 +85,7 @@ fn walls_are_drawn_where_they_are() {
             assert!((radius - 1.0).abs() < 1e-2, "{x} {y}");
         }
     }
-    // The wall is at x = sin(t). A puck meets it, and its path covers the wall during most frames.
+    // The wall is at x = sin(t), and a puck meets it. In most frames the picture contains the wall.
     let wall = "
         Puck {
             coordinates { x; y; }
@@ -115,7 +115,7 @@ fn walls_are_drawn_where_they_are() {
     assert!(seen > 20, "{seen}");
 }
 
-/// A reset moves the state: the path is interrupted there, and the head is behind it.
+/// At a reset that moves the state the path is interrupted, and the head continues from the new state.
 #[test]
 fn jumps_interrupt_the_path() {
     let folder = Folder::new("jumps");

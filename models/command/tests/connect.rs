@@ -21,8 +21,8 @@ const BOX: &str = "
         }
     }";
 
-/// A linear oscillator in two directions with the frequencies w and 2 w. Its motions from the origin all meet after
-/// half a period.
+/// A linear oscillator with the frequency w along x and 2 w along y. All motions from the origin are there again after
+/// half a period of x.
 const SPRING: &str = "
     Spring {
         coordinates { x; y; }
@@ -92,8 +92,8 @@ fn assert_near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found} and {expected}");
 }
 
-/// Velocities and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, after `k` impacts.
-/// The times between impacts are `2 v`, and `x = v s - s^2/2` at the time `s = t - 2 k v` after the last impact.
+/// Velocities `v` at the start and actions of the motions of a ball with `m = g = 1` from 0 at `t = 0` to `x` at `t`, with
+/// `k` impacts. Every flight takes `2 v`, and `x = v s - s^2/2` with the time `s = t - 2 k v` since the last impact.
 fn closed(x: f64, t: f64, k: f64) -> Vec<[f64; 2]> {
     let root = (t * t - 8.0 * k * (k + 1.0) * x).sqrt();
     let velocities = match k {
@@ -198,7 +198,8 @@ fn conjugate_points_of_the_ball_lie_on_the_envelope() {
 
 #[test]
 fn a_ball_that_loses_speed() {
-    // From x = 1 after one impact: v1^2 = v^2 + 2, t1 = v + v1, and x = e v1 s - s^2/2 with s = 5 - t1.
+    // From x = 1 with velocity v the ball hits the floor at t1 = v + v1 with the speed v1, v1^2 = v^2 + 2. Then
+    // x = e v1 s - s^2/2 with s = 5 - t1.
     let found =
         motions("bouncing_ball --from x=1 --to x=0.2 --time 5 --impacts 1 --law newton:0.8");
     let height = |v: f64| {
@@ -287,8 +288,8 @@ fn a_lossy_wall_multiplies_the_times_behind_it() {
 
 #[test]
 fn gravity_and_a_wall_are_two_independent_balls() {
-    // Along x the motion is free, with or without an impact on the wall x = 1; along z it is the ball. Two impacts are
-    // two on the floor, or one on the floor and one on the wall.
+    // Along x the motion is free, with or without an impact on the wall x = 1. Along z it is that of the bouncing ball.
+    // Two impacts are two on the floor, or one on the floor and one on the wall.
     let found = motions_on(
         SHELF,
         "- --from x=0,z=0 --to x=0.5,z=0.2 --time 5 --impacts 0..3",
@@ -314,7 +315,7 @@ fn motions_of_springs_meet_after_half_their_periods() {
     );
     let conjugate = motion["conjugate"].as_array().unwrap();
     let times: Vec<f64> = conjugate.iter().map(|it| number(&it["t"])).collect();
-    // sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches it at pi, where both factors vanish.
+    // The determinant sin(t) sin(2 t)/2 passes through 0 at pi/2, and touches 0 at pi, where both factors vanish.
     assert_eq!(times.len(), 2, "{times:?}");
     assert_near(times[0], std::f64::consts::FRAC_PI_2, 1e-10);
     assert_near(times[1], std::f64::consts::PI, 1e-7);

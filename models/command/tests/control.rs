@@ -22,8 +22,8 @@ const BALL: &str = "
         initial { x = 1/2; until = 5; }
     }";
 
-/// Two coupled masses on which only the inputs act, with the metric `M = (2, 1; 1, 3)`. From rest to rest over `d` the
-/// input is `M d (6 - 12 s)/T^2` with `s = t/T`, and the cost is `6 |M d|^2/T^3`.
+/// Two coupled masses on which only the inputs act, with the metric `M = (2, 1; 1, 3)`. From rest to rest over the
+/// displacement `d` the input is `M d (6 - 12 s)/T^2` with `s = t/T`, and the cost is `6 |M d|^2/T^3`.
 const MASSES: &str = "
     Masses {
         coordinates { x; y; }
@@ -34,8 +34,9 @@ const MASSES: &str = "
         initial { until = 2; }
     }";
 
-/// A free particle above a wall that may move. Without an impact the cost from rest to rest over `(a, b)` is
-/// `6 (a^2 + b^2)/T^3`. With an impact on the wall at rest, it is the cost of the motion to the mirror image of the end.
+/// A free particle above a wall that may move. Without an impact the cost from rest to rest over the displacement
+/// `(a, b)` is `6 (a^2 + b^2)/T^3`. With an impact on the wall at rest, the cost is that of the motion to the mirror
+/// image of the end.
 const MIRROR: &str = "
     Mirror {
         coordinates { x; y; }
@@ -82,7 +83,8 @@ fn extremals_on(input: &str, line: &str) -> Vec<Value> {
     extremals
 }
 
-/// The minimised Hamiltonian `H*` is the same at both ends and on both sides of every impact: nothing depends on time.
+/// The minimised Hamiltonian `H*` is the same at both ends and on both sides of every impact, because the model does
+/// not depend on time.
 fn check_energy(extremal: &Value) {
     let first = number(&extremal["start"]["hamiltonian"]);
     let impacts = extremal["impacts"].as_array().unwrap().iter();
@@ -279,8 +281,8 @@ fn the_extremals_of_a_ball_with_a_fixed_end_are_the_references() {
     assert!(lossy.iter().all(|it| count(it) == 1));
 }
 
-/// Without an input the ball has two impacts, and small costates do not change that: the search must go on to large
-/// ones. The cost of holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
+/// Without an input the ball has two impacts. Small costates do not change this number, so the search must go on to large
+/// costates. The cost of holding the ball is `T (m g)^2/2`. The cost with one impact grows as the restitution decreases.
 #[test]
 fn motions_with_fewer_impacts_than_without_an_input_are_found() {
     let mut last = 3.466699139518846;

@@ -9,8 +9,8 @@ use dalembert_cli::Exit;
 use serde_json::Value;
 use support::run_on;
 
-/// A free particle above a wall. From rest to rest over `(a, b)` the cost is `6 (a^2 + b^2)/T^3`. With an impact on the
-/// wall, the cost is that of the motion to the mirror image of the end.
+/// A free particle above a wall. From rest to rest over the displacement `(a, b)` the cost is `6 k (a^2 + b^2)/T^3`.
+/// With an impact on the wall, the cost is that of the motion to the mirror image of the end.
 const MIRROR: &str = "
     Mirror {
         coordinates { x; y; }

@@ -62,7 +62,7 @@ fn a_cart_has_the_cost_of_its_closed_form_to_second_order() {
     let least = 2.0 / (1.0 + 4.0 / 3.0);
     let errors = [4, 8].map(|fineness| cart(&input, fineness, "").map(|cost| cost - least));
     for [of_path, by_grid] in errors {
-        // A path is a motion, so it costs at least the least cost.
+        // A path is a motion, so its cost is not below the least cost.
         assert!(of_path > 0.0, "{errors:?}");
         assert!((of_path - by_grid).abs() < 1e-4, "{errors:?}");
     }
@@ -92,7 +92,7 @@ const SLIDER: &str = "
     }";
 
 /// A motion stays on the grid if it can stop in time: `x + v^2/16 <= 2` if it rises, `x - v^2/16 >= -1` if it falls.
-/// Without edges the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
+/// On the whole plane the least cost is `5 (x + v - 1)^2/(1 + 10/3)`.
 #[test]
 fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
     let lowest = [41, 81].map(|count| {
@@ -122,7 +122,8 @@ fn nodes_have_a_cost_where_a_motion_can_stay_and_none_is_too_low() {
     );
 }
 
-/// The references are those of `control`: 0.2105697850 with two impacts, 0.0363202330 with one.
+/// The references are the costs that `control` finds: 0.2105697850 from x = 0.5 with two impacts, and 0.0363202330 from
+/// x = 2 with one impact.
 #[test]
 fn a_ball_takes_the_impacts_that_are_cheapest() {
     let line = format!("controlled_ball {GRID} --path x=0.5 --path x=2 --impacts 0..2");

@@ -69,7 +69,7 @@ fn a_killed_ensemble_goes_on_to_the_same_density() {
     kill_and_go_on("density", "--density x,y:20");
 }
 
-/// The rows, and the files beside them, in this folder under this name.
+/// Contents of the table of rows, of its metadata and of its sums.
 fn files(rows: &Path) -> [Vec<u8>; 3] {
     ["", ".meta.json", ".sums"]
         .map(|ending| fs::read(format!("{}{ending}", rows.display())).unwrap())
@@ -97,7 +97,7 @@ fn a_killed_ensemble_keeps_the_rows_that_it_was_to_replace() {
     process.kill().unwrap();
     process.wait().unwrap();
     assert_eq!(files(&rows), old);
-    // The old rows are found by their flags, the new ones by theirs.
+    // The flags of the old run find the old rows, and those of the new run find the new rows.
     succeed("--shard 1/100", &rows, &["--resume"]);
     assert_eq!(files(&rows), old);
     succeed("--shard 1/6", &rows, &["--resume"]);

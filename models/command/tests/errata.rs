@@ -18,7 +18,7 @@ fn run(words: &[&str]) -> (Exit, String) {
 fn by_hand() -> Vec<[f64; 2]> {
     // d(ln p_theta)/dt = -m a v/(I + m a^2) of the sleigh; its divergence is the same.
     let sleigh = -1.5 * 0.5 * 1.5 / (0.4 + 1.5 * 0.25);
-    // The density of the bead is m^11 = x^2/4 + 4 y^2 up to a factor.
+    // The invariant density of the bead is |d(x^2/4 + y^2)|^2 = x^2/4 + 4 y^2, up to a factor.
     let (x, y, vx, vy) = (1.0, 0.5, 1.0, -0.5);
     let bead = -(x * vx / 2.0 + 8.0 * y * vy) / (x * x / 4.0 + 4.0 * y * y);
     // h_x, h_y at the leading end (0.875, 0.25), and I + m R^2, of the disk.

@@ -147,7 +147,7 @@ fn families_of_inputs_have_laws() {
     assert!(errors.contains("thrust"), "{errors}");
 }
 
-/// One law acts in every mode: `x = cos(t)` until `x = 1/2`, and from there on a quarter of the acceleration.
+/// One law acts in every mode: the motion is `x = cos(t)` until `x = 1/2`, and from there on `x'' = -x/4`.
 #[test]
 fn modes_share_a_law() {
     let document = ran(TABLE, "simulate - --feedback u=-x --tol 1e-13 --json -");

@@ -120,7 +120,8 @@ fn a_pole_on_a_cart_has_its_textbook_matrices() {
     );
 }
 
-/// The spring is at rest at `x = 3`, where the gap of the gate is -2: a motion passes the surface of a reset.
+/// The spring is at rest at `x = 3`, where the gap of the gate is -2. The state is allowed, because the law of the gate
+/// is a reset, and motions go on behind it.
 #[test]
 fn an_equilibrium_may_lie_behind_the_surface_of_a_reset() {
     const GATE: &str = "
@@ -289,7 +290,8 @@ fn samples_go_across_impacts() {
     let sample = &found["samples"][0];
     assert_eq!(sample["impacts"], 1);
     let (x, e, t) = (2.0_f64, 0.8, 2.5_f64);
-    // x(t) = s (t - T) - (t - T)^2/2 with s = e sqrt(v^2 + 2 x), T = v + sqrt(v^2 + 2 x), at v = 0.
+    // After the impact at T = v + sqrt(v^2 + 2 x) the speed is s = e sqrt(v^2 + 2 x), and the height is
+    // s (t - T) - (t - T)^2/2. Here v = 0.
     let root = (2.0 * x).sqrt();
     let (time, speed) = (root, e * root);
     let (by_x, by_v) = ([1.0 / root, e / root], [1.0, 0.0]);
@@ -371,8 +373,8 @@ const SWITCHED: &str = "
         initial { dot(x) = 1; }
     }";
 
-/// The equilibrium -1 of a mass on a spring is refused outside of its interval or behind a floor. The angle at which a
-/// torque holds a pendulum is found.
+/// The equilibrium -1 of a mass on a spring is refused if it lies outside of the interval of the coordinate or behind a
+/// floor. The angle at which a torque holds a pendulum is found.
 #[test]
 fn an_equilibrium_is_a_state_that_the_model_allows() {
     for (coordinate, surface) in [("x in (0.5, 3)", ""), ("x", "impacts { floor: x >= 0; }")] {
@@ -444,8 +446,8 @@ fn a_sampled_motion_ends_where_it_leaves_the_mode() {
     );
 }
 
-/// A pendulum whose torque just holds it level. Two equilibria meet there: one eigenvalue is 0, and only half of the
-/// digits of the state are known.
+/// The least torque that holds a pendulum horizontal. Two equilibria meet there: one eigenvalue is 0, and only half of
+/// the digits of the state are determined.
 #[test]
 fn the_stability_of_a_fold_is_open() {
     let text = "

@@ -56,9 +56,9 @@ fn elliptic(m: f64) -> [f64; 2] {
     [k, k * (1.0 - sum)]
 }
 
-/// A rod is clamped at both ends along its chord, which is half as long as the rod. It consists of four quarter waves
-/// of an elastica: `2 E/K - 1 = 1/2`, with the cost `32 K^2 (E/K - 1 + m)`. It bends to either side; further forms cost
-/// more.
+/// A rod is clamped at both ends along its chord, which is half as long as the rod. It is one wave of an inflectional
+/// elastica of parameter `m`. The length of the chord, `2 E(m)/K(m) - 1 = 1/2`, determines `m`, and the cost is
+/// `32 K^2 (E/K - 1 + m)`. The rod bends to either side. All other forms cost more.
 #[test]
 fn a_clamped_rod_bends_to_the_first_of_eulers_elastica() {
     let (mut low, mut high) = (0.0, 0.9);

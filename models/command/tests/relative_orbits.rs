@@ -13,7 +13,8 @@ use serde_json::Value;
 use support::{Done, run_on};
 
 /// An oscillator in the plane with a repulsion from its centre, as a first-order system. The section consists of the
-/// states of largest radius. `r^2` oscillates with the period `pi/w`, in which the angle grows by `pi L/sqrt(L^2 + b)`.
+/// states of largest radius. `r^2` oscillates with the period `pi/w`, in which the angle grows by `pi L/sqrt(L^2 + b)`
+/// with the angular momentum `L`.
 const CENTRAL: &str = "
     Central {
         coordinates { x; y; u; v; }
@@ -220,7 +221,7 @@ fn gaits_repeat_a_hundred_times() {
 #[test]
 fn the_slipping_walker_has_the_multipliers_of_its_reduction() {
     let reduced = document("", &["orbit", "dimensionless_walker", "--surface", "step"]);
-    // `mu = m lf^2/I`, `eps = m^2 g/(b^2 lf)`; the unit of time is `m/b`, that of velocity `m g/b`.
+    // The reduction has `mu = m lf^2/I` and `eps = m^2 g/(b^2 lf)`. Its unit of time is `m/b`, its unit of velocity `m g/b`.
     let set = [
         "--set",
         "I=0.1",
@@ -280,7 +281,7 @@ fn the_spring_mass_walker_keeps_its_energy_alone() {
     let found = multipliers(&gait);
     assert_eq!(found.len(), 3);
     assert_near(found[0][0], 1.0, 1e-10);
-    // The other two are a pair inside the circle: the gait is stable.
+    // The other two multipliers are a conjugate pair inside the unit circle: the gait is stable.
     assert_near(found[1][1], -found[2][1], 1e-12);
     assert!(f64::hypot(found[1][0], found[1][1]) < 0.99);
     assert_eq!(gait["modulo"][0]["conserves_momentum"], false);
@@ -316,7 +317,7 @@ fn a_central_force_turns_by_its_apsidal_angle() {
         assert_near(number(&orbit["period"]), PI / parameter("w"), 1e-12);
         let angle = PI * momentum / momentum.hypot(parameter("b").sqrt());
         assert_near(advance(&orbit, 0), angle, 1e-12);
-        // Energy and momentum do not change the period, and the group removes the angle, so both multipliers are 1.
+        // Energy and angular momentum are conserved and do not change the period, so both multipliers are 1.
         let found = multipliers(&orbit);
         assert_eq!(found.len(), 2);
         assert!(
@@ -358,7 +359,8 @@ fn chords_of_a_round_table_turn_by_their_angle() {
 }
 
 /// A point in a round table with a round lens in its middle. Outside the lens its speed is v, inside it is v'
-/// with v'^2 = v^2 + 2. The refraction keeps the angular momentum: p v = p' v'.
+/// with v'^2 = v^2 + 2. The refraction keeps the angular momentum: p v = p' v' with the distances p, p' of the
+/// straight paths from the centre.
 #[test]
 fn rays_through_a_lens_turn_by_their_angle() {
     let words = [
@@ -432,7 +434,8 @@ fn a_cart_closes_up_to_motions_of_the_plane() {
     let words = |fields| ["orbit", "-", "--surface", "tick", "--modulo", fields];
     let all = "partial(h) + x*partial(y) - y*partial(x), partial(x), partial(y)";
     let orbit = document(CART, &words(all));
-    // No direction is left across the group. In a period of the clock the heading turns by `2 pi w`.
+    // The group acts along all directions of the section, so no multiplier is left. In a period of the clock the
+    // heading turns by `2 pi w`.
     assert_eq!(multipliers(&orbit).len(), 0);
     assert_near(advance(&orbit, 0), 2.0 * PI * 0.3, 1e-12);
     // `exp(a_0 (turn) + a_1 partial(x) + a_2 partial(y))` turns the plane about `(-a_2, a_1)/a_0`. A run of two periods

@@ -114,8 +114,8 @@ impl Beginning {
                 let q = Self::placed(model, start, policy)?;
                 let completed = model.complete_velocity(&q, &start.qdot, &start.named);
                 let (qdot, policy) = match completed {
-                    // Completed velocities satisfy the constraints. A residual of the state is rounding error from the
-                    // conversion through the momenta, which can dominate a constraint whose terms vanish here.
+                    // Completed velocities satisfy the constraints. The conversion through the momenta leaves a
+                    // residual of rounding errors, which is kept: it may be larger than the terms of a constraint.
                     Ok(qdot) => (qdot, OffConstraint::Keep),
                     Err(error) if policy == OffConstraint::Error => return Err(error),
                     // The named velocities contradict the constraints; the policy decides.
@@ -128,7 +128,8 @@ impl Beginning {
         model.state(0.0, &origin).map(|_| origin)
     }
 
-    /// The positions of a start. Those that are not given are solved from the constraints.
+    /// The positions of a start. Those that are not given are solved from the constraints. If given positions violate
+    /// the constraints, `Keep` leaves them and `Project` solves for all positions.
     fn placed(
         model: &dyn AnyModel,
         start: &Start,

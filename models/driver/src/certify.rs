@@ -34,8 +34,8 @@ pub struct Certification {
     pub impacts: Option<u64>,
     /// Laws that replace the declared ones, by index of the surface. The last entry for a surface counts.
     pub laws: Vec<(usize, Law)>,
-    /// Ranges that replace the values of parameters, by index. A model with modes accepts no other ranges, and starts
-    /// in the same state for all values of its parameters.
+    /// Ranges that replace the values of parameters, by index. A model with modes starts in the same state for all
+    /// values of its parameters, and the ranges below are ignored.
     pub parameters: Vec<(usize, Interval)>,
     /// Ranges that replace the origin's positions, by index of the coordinate.
     pub positions: Vec<(usize, Interval)>,
@@ -44,8 +44,8 @@ pub struct Certification {
     pub rates: Vec<(usize, Interval)>,
 }
 
-/// Enclosures of positions and velocities, one range per coordinate. The range of a velocity that may not exist is the
-/// whole real line. The range of a coordinate that the mode does not have is NaN.
+/// Enclosures of positions and velocities, one range per coordinate. If the velocities may not exist for some state,
+/// their ranges are the whole real line. The range of a coordinate that the mode does not have is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranges {
     /// The name of the mode, for a model with modes.
@@ -74,7 +74,7 @@ pub struct Strike {
 pub struct Certified {
     /// The time up to which the motion is certified; the reported impacts are the only ones before it.
     pub t: f64,
-    /// All states at that time.
+    /// A range of all states at that time.
     pub last: Ranges,
     /// The number of impacts.
     pub impacts: u64,
@@ -90,8 +90,9 @@ pub(crate) struct Subject<'a> {
     pub form: Option<&'a erased::Form>,
     /// The values of all parameters, inputs included.
     pub values: &'a [f64],
-    /// The origin, and its state in the requested form.
+    /// The origin.
     pub origin: &'a Origin,
+    /// The state of the origin in the requested form.
     pub state: &'a [f64],
 }
 

@@ -43,7 +43,8 @@ pub enum LawError {
 }
 
 impl Form {
-    /// The wanted form. Without one, the reduced form if the model has it and nothing `needs_global`.
+    /// The wanted form. If it is `None`: the reduced form if the model has it and nothing `needs_global`, else the global
+    /// form.
     ///
     /// # Errors
     /// [`FormError`] if the wanted form does not exist or does not suit the request.
@@ -65,8 +66,8 @@ impl Form {
     }
 }
 
-/// The end time of a run: the requested one, else the declared one, which a requested number of impacts extends to at
-/// least 3600. `None` if neither is given.
+/// The end time of a run: the requested one, else the declared one. For a run to a number of impacts without a
+/// requested end time, it is at least 3600. `None` if the request has neither, and the model declares no end time.
 pub fn horizon(model: &dyn AnyModel, until: Option<f64>, impacts: Option<u64>) -> Option<f64> {
     let declared = model.initial().until;
     let declared = declared.filter(|until| until.is_finite() && *until > 0.0);

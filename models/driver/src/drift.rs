@@ -12,9 +12,9 @@ use dalembert::{
 pub struct Window {
     /// The time at its end.
     pub t: f64,
-    /// The largest absolute deviation from the value at the start of the run, over the ends of the steps.
+    /// The largest absolute deviation from the value at the start of the run, at the ends of the steps in this window.
     pub largest: f64,
-    /// The mean deviation over the same states.
+    /// The mean deviation at the same states.
     pub mean: f64,
 }
 
@@ -90,8 +90,8 @@ impl Series {
         largest.fold(0.0, larger)
     }
 
-    /// The drift: increase over the run of the straight line fitted to the means of the windows, in which oscillations
-    /// cancel.
+    /// The drift. A straight line is fitted to the means of the windows, in which oscillations cancel; the drift is its
+    /// increase over the run.
     pub fn drift(&self) -> f64 {
         let points: Vec<_> = self.windows.iter().map(|it| (it.t, it.mean)).collect();
         let span = self.windows.last().map_or(0.0, |last| last.t);

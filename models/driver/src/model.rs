@@ -69,7 +69,7 @@ pub struct Start {
     pub q: Vec<f64>,
     /// Velocities, one per coordinate.
     pub qdot: Vec<f64>,
-    /// True for each position that is given; constraints that are equations of positions may determine the others.
+    /// True for each position that is given; holonomic constraints may determine the others.
     pub placed: Vec<bool>,
     /// True for each velocity that is given; the constraints may determine the others.
     pub named: Vec<bool>,
@@ -129,7 +129,7 @@ pub trait AnyModel: Runs {
     /// The name of the mode in which states are made; `None` if [`mode_alone`](Self::mode_alone) returns `None`.
     fn present_mode(&self) -> Option<&'static str>;
     /// The mode in which states are made, as a model of its own with the same values of parameters; its runs end at transitions.
-    /// `None` for a model without modes, and for one that is known by its type alone.
+    /// `None` for a model without modes, and for a model without a form.
     fn mode_alone(&self) -> Option<Box<dyn AnyModel>>;
     /// Checks the parameters against their declaration.
     ///
@@ -138,7 +138,7 @@ pub trait AnyModel: Runs {
     fn check_parameters(&self) -> Result<(), ParameterError>;
     /// The declared initial condition.
     fn initial(&self) -> Start;
-    /// Completes positions: constraints on positions determine the positions that are not `placed`.
+    /// Completes positions: holonomic constraints determine the positions that are not `placed`.
     fn complete_position(&self, q: &[f64], placed: &[bool]) -> Result<Vec<f64>, StateError>;
     /// Completes velocities: the constraints determine the velocities that are not `named`.
     fn complete_velocity(
@@ -230,9 +230,9 @@ pub trait Runs {
         search: &Search,
     ) -> Result<Option<Result<Found, OrbitError>>, Refusal>;
     /// Continues the periodic orbit near the first arrival from this state in a parameter, and reports the points of
-    /// the branch as they are found; `None` for a scene without variations. If the model's value is outside the range,
-    /// the orbit is first continued to the nearest end of the range. If it does not reach the range, the branch has no
-    /// points.
+    /// the branch as they are found; `None` for a scene without variations. If the model's value of the parameter is
+    /// outside the range, the orbit is first continued to the nearest end of the range. If it does not reach the range,
+    /// the branch has no points.
     fn branch(
         &self,
         origin: &Origin,

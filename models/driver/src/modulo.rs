@@ -11,7 +11,7 @@ use dalembert::variations::group::{GENERATORS, Group};
 
 use crate::linear::{add, dot, norm};
 
-/// A field counts as dependent on others if its orthogonal part is at most this fraction of it.
+/// A field counts as dependent on others if its part orthogonal to them is at most this fraction of its length.
 const DEPENDENT: f64 = 1e-10;
 
 /// Maximum number of terms of a power series whose argument is at most 1.

@@ -26,7 +26,7 @@ use crate::refusal::Refusal;
 pub struct Search {
     /// The index of the surface that is the section.
     pub surface: usize,
-    /// Number of returns in a period, or number over which the growth of deviations is measured.
+    /// Number of returns in a period, or number of returns over which the growth of deviations is measured.
     pub returns: u32,
     /// Longest time of one return.
     pub horizon: f64,

@@ -207,7 +207,7 @@ struct Differentiator<'a> {
     is_over: &'a mut dyn FnMut() -> bool,
 }
 
-/// Result of a differentiator: the inner error if there are no derivatives, the outer one if no run starts.
+/// Result of a differentiator. The inner error says why there are no derivatives, the outer one why no run starts.
 type Varied = Result<Result<Derivatives, VariationError>, Refusal>;
 
 impl VariationalVisitor for Differentiator<'_> {
@@ -287,7 +287,7 @@ impl Differentiator<'_> {
         }
     }
 
-    /// The same for a state that is computed from positions and velocities.
+    /// The tangent vector of a variable, for a state that is computed from positions and velocities.
     fn composed<S: Instance + Variational>(
         &self,
         system: &S,
@@ -317,7 +317,7 @@ impl Differentiator<'_> {
         }
         if let Variable::Velocity(coordinate) = variable {
             let reached = system.velocities(&parameters, Dual::of(0.0), &state)?;
-            // A velocity that the constraints determine does not change by the full amount.
+            // If the constraints determine the velocity, its derivative with respect to the given value is not 1.
             if (reached.as_slice()[coordinate].slopes()[0] - 1.0).abs() > 1e-9 {
                 return Err(VariationError::Dependent { coordinate });
             }

@@ -217,7 +217,7 @@ fn escape(setting: Setting, report: &mut Report) {
     }
 }
 
-/// Observer that counts impacts on the piston down to 0, stores the position of the last one, and then ends the run.
+/// Observer that counts impacts on the piston down to 0, and then ends the run. It stores the position at the last one.
 struct Strokes<'a> {
     system: &'a Model,
     left: u64,

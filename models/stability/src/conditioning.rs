@@ -138,8 +138,8 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "D18",
-        title: "a stiff spring of rate 1e6 that bounces next to a soft one",
-        right: "impacts every 2 t1 from t1 = (pi - acos(1 - d))/W; the soft one is cos(t)",
+        title: "a mass on a stiff spring, frequency 1e6, that bounces off a wall, and a mass on a soft spring",
+        right: "impacts every 2 t1 from t1 = (pi - acos(1 - d))/W; the second mass is at cos(t)",
         bound: "exact count; 1e-10",
         run: Run::Integrators(stiff_and_soft),
         ..Case::QUICK

@@ -138,7 +138,7 @@ impl<'a, M: Driven> Course<'a, M> {
         self
     }
 
-    /// Sets the step size; for an adaptive integrator, the largest step size.
+    /// Sets the step size. For an adaptive integrator it is the largest step size, unless the setting has one.
     pub fn step(mut self, length: f64) -> Self {
         self.step = Some(length);
         self

@@ -20,7 +20,7 @@ static FLAT_CROSSING: Text = Text::new(
     }",
 );
 
-/// A free rotor with surfaces where cos(theta) = 0, whose events are counted.
+/// A free rotor. Its surfaces lie where cos(theta) = 0, and their events are counted.
 static ROTOR: Text = Text::new(
     "Rotor {
         coordinates { theta: angle; }
@@ -307,8 +307,8 @@ fn oscillator(setting: Setting, report: &mut Report) {
         report.equal(format!("impacts, W = {rate:e}"), end.hits.len(), count);
         let late = |(k, hit): (usize, &Hit)| {
             let t = (2 * k + 1) as f64 * first;
-            // Each flight changes the amplitude by an error of 16 units. Each flight delays the next by the errors
-            // accumulated so far.
+            // Each flight adds 256 u to the error of the amplitude. The delays that earlier flights have accumulated
+            // add 8 u k^2.
             let k = k as f64;
             let amplitude = 16.0 * U * (16.0 + 16.0 * k + 0.5 * k * k);
             (hit.t - t).abs() / (2.0 * amplitude / (rate * turn) + 4.0 * U * t)

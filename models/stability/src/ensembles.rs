@@ -1,4 +1,4 @@
-//! Section F, second part: many runs, many points, many impacts.
+//! Section F, fourth part: many runs, many points, many impacts.
 
 use core::ops::ControlFlow;
 
@@ -22,7 +22,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "F13",
-        title: "F05 over 1e6 bounces: where the point is at equal times",
+        title: "F05 over 1e6 bounces: positions at equally spaced times",
         right: "uniform in area",
         bound: "chi-square of 8 x 8 cells within 5 sigma",
         run: Run::Once(uniform),
@@ -30,7 +30,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "F14",
-        title: "1e8 impacts shown to an observer that keeps a sum",
+        title: "1e8 impacts with an observer that sums their times",
         right: "memory does not grow",
         bound: "resident size constant to 1 MiB",
         run: Run::Once(flat_memory),

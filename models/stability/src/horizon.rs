@@ -13,7 +13,7 @@ use super::tables::Sinai;
 pub const CASES: &[Case] = &[Case {
     id: "F06",
     title: "F05 and 23 other starts with 53, 106 and 159 bits",
-    right: "the bounce after which digits are gone, against a run with 212 bits, grows like the number of bits",
+    right: "the number of correct bounces, compared with a run with 212 bits, is proportional to the number of bits",
     bound: "ratios 1:2:3 within 20%",
     run: Run::Once(horizons),
     ..Case::QUICK
@@ -25,7 +25,7 @@ const BOUNCES: u64 = 220;
 /// Number of starts whose horizons are averaged.
 const STARTS: u32 = 24;
 
-/// Position error of a bounce from which no digit counts as correct.
+/// Position error above which a bounce has no correct digit.
 const GONE: f64 = 1e-2;
 
 /// A start beside the disk: position and velocity. Number 0 is the start of F05.

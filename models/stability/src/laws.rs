@@ -52,7 +52,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "C04",
         title: "totally plastic impact",
-        right: "still approaching by (1 - rho)^n after n; the limit is impact plastic",
+        right: "gap rate times (1 - rho)^n after n impacts; the limit is impact plastic",
         bound: "`still_penetrating`, rho to 16 u; limit to 1e-12",
         run: Run::Steps(|setting, report| still_approaching(setting, report, Law::TotallyPlastic)),
         ..Case::QUICK

@@ -3,7 +3,8 @@
 //!
 //! The binary of this package is the `dalembert` command with these cases as the subcommand `stability`.
 //!
-//! No case needs a compiler: its model is a [`text`] that is loaded on first use.
+//! The models of cases are texts that are loaded on first use ([`text`]), except for one that runs in extended precision
+//! and for systems written by hand ([`by_hand`]).
 //!
 //! To add a case, copy a [`Case`] and its function in the file of its section. Case numbers are never reused. The
 //! correct result is a closed form, an exact count, a class of outcome, or a number that can be computed again with

@@ -53,7 +53,7 @@ pub const CASES: &[Case] = &[
         id: "A05",
         title: "near grazes: h'' = 2, h(0) = 1 - eps, h'(0) = -2, eps = 1e-2 .. 1e-12",
         right: "one impact at 1 - sqrt(eps); h(3) = 4 + 8 sqrt(eps) + 3 eps",
-        bound: "P-LOC; h(3) as the error of the impact's speed, eta/sqrt(eps), carries on",
+        bound: "P-LOC; h(3) to 4 eta/sqrt(eps) + 16 eta, the effect of the error of the impact's speed",
         run: Run::Steps(near_grazes),
         ..Case::QUICK
     },

@@ -65,7 +65,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         id: "F07",
-        title: "a circle and an ellipse billiard, turned round at t = 150",
+        title: "a circle and an ellipse billiard, reversed at t = 150",
         right: "back at the start with the opposite velocity",
         bound: "1e3 times the error of F01 at n = 100",
         run: Run::Integrators(turned_round),
@@ -74,7 +74,7 @@ pub const CASES: &[Case] = &[
     Case {
         id: "F08",
         title: "error after impacts in a smooth potential, for steps halved twice",
-        right: "it falls with the order of the integrator, not with order 1",
+        right: "the error falls with the order of the integrator, not with order 1",
         bound: "exponent at most 1/2 less than the order",
         run: Run::Integrators(order_across_impacts),
         ..Case::QUICK

@@ -50,7 +50,7 @@ impl Case {
         ..Self::QUICK
     };
 
-    /// True if one of these integrators measures it, or if it does not depend on the integrator.
+    /// False if the case chooses its integrators and none of them is in this list.
     pub fn is_measured_by(&self, integrators: &[Integrator]) -> bool {
         match self.run {
             Run::Chosen(chosen, _) => chosen.iter().any(|one| integrators.contains(one)),
@@ -162,7 +162,7 @@ pub enum Verdict {
     Pass,
     /// A measurement exceeds its bound.
     Fail,
-    /// It cannot hold yet, and does not hold.
+    /// It has a reason in [`Case::pending`], and does not hold.
     Pending,
 }
 
@@ -225,7 +225,8 @@ pub fn examine(case: &Case, integrators: &[Integrator]) -> Finding {
     }
 }
 
-/// True if all reports hold with the same classes of outcome; the worst measurement; and its setting.
+/// Judges the reports. The first value is true if every measurement keeps its bound and the classes of outcome agree.
+/// The others are the worst measurement, or the classes that differ, and the setting in which it was found.
 fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
     let worst = reports
         .iter()
@@ -236,7 +237,7 @@ fn judge(reports: &[(Setting, Report)]) -> (bool, String, Option<Setting>) {
         return (false, "nothing was measured".to_owned(), None);
     };
     let holds = check.passes();
-    // A setting may leave out the last values of a case, so that its list may be shorter.
+    // A setting may leave out the last values of a case. Its list is then shorter, and `zip` compares the common part.
     let first = &reports[0].1.classes;
     let changed = reports
         .iter()
@@ -278,7 +279,7 @@ pub fn notes(source: &str) -> String {
     words.collect::<Vec<_>>().join("\n")
 }
 
-/// All adaptive integrators: cases bound errors by tolerances, which do not apply to fixed-step integrators.
+/// All adaptive integrators. The bounds of cases belong to tolerances, which fixed-step integrators do not keep.
 pub fn every_integrator() -> &'static [Integrator] {
     &[Integrator::Dop853, Integrator::Dopri5, Integrator::Taylor]
 }

@@ -2,7 +2,7 @@
 
 /// Largest relative difference of two numbers that count as the same, because further digits depend on the machine.
 const RELATIVE: f64 = 1e-6;
-/// Two numbers below this are rounding errors, and count as the same.
+/// Two numbers whose absolute values are below this are rounding errors, and count as the same.
 const ROUNDING: f64 = 1e-8;
 
 /// Compares an output with the text of a page, in which a line `..` stands for any lines.
@@ -63,7 +63,7 @@ fn same_piece(a: &str, b: &str) -> bool {
     !(whole(a) && whole(b)) && (near || small)
 }
 
-/// Words, numbers and signs of a line; runs of spaces count once.
+/// Words, numbers and signs of a line, without the spaces between them.
 fn pieces(line: &str) -> impl Iterator<Item = &str> {
     let mut rest = line;
     std::iter::from_fn(move || {

@@ -22,8 +22,8 @@ pub fn text(page: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The pictures that the commands of a page draw, with their lines. Pictures in a folder `images` are not drawn by a
-/// command.
+/// The pictures that the commands of a page draw, each with the number of its line. Pictures in a folder `images` are
+/// not drawn by a command.
 pub fn pictures(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = text.lines().enumerate();
     lines.filter_map(|(index, line)| {

@@ -20,7 +20,7 @@ const ODD: [&str; 15] = [
     " tells of ",
     " one likes",
 ];
-/// Beginnings of a paragraph that hide its subject.
+/// Beginnings of a sentence that hide its subject.
 const OPENINGS: [&str; 4] = ["What ", "Whether ", "How ", "Of "];
 /// Largest number of words in a sentence.
 const LONGEST: usize = 36;
@@ -41,7 +41,7 @@ const BOOK: [&str; 12] = [
     "reference/messages",
 ];
 
-/// The sentences of a page. Code counts as a word; an item of a list and a cell of a table end a sentence.
+/// The sentences of a page, without blocks of code. An item of a list, a cell of a table and a colon end a sentence.
 fn sentences(page: &str) -> Vec<String> {
     let mut paragraphs = vec![String::new()];
     let page = format!("\n{page}");

@@ -12,7 +12,7 @@ The texts below are printed by `dalembert --help` and `dalembert COMMAND --help`
 A test compares this page with them; `ACCEPT=1 cargo test -p dalembert-command --test book` writes it anew.
 ";
 
-/// Help text of a command, or of the whole program without one.
+/// Help text of a command; that of the program for `None`.
 pub fn help(command: Option<&str>) -> String {
     let mut program = Command::new(PROGRAM);
     let done = program.args(command).arg("--help").output();

@@ -1,12 +1,12 @@
 //! The cost of accuracy: measured errors of integrators at several tolerances, with work and time, and the choice of
 //! the fastest integrator for a wanted error.
 //!
-//! Errors are measured, never estimated. The error of a run is the largest difference of a position from a reference
-//! run, compared at [`TIMES`] equally spaced times and at the end. It is relative to the largest absolute value that
-//! the coordinate takes there (for an angle, at least one radian). The reference is a run of Taylor series at
-//! [`FINEST`]; a second run with other steps bounds its accuracy ([`Study::floor`]). Both are audited
-//! ([`dalembert::audit`]): the audit proves, independently of event location, that they miss no impact. Without a
-//! confirmed reference nothing is measured.
+//! Errors are measured, never estimated. The error of a run is the largest relative difference of a position or of the
+//! end time from a reference run. Positions are compared at the ends of [`TIMES`] equal intervals and at the end of the
+//! run, relative to the largest absolute value of the coordinate at these times (for an angle, at least one radian).
+//! The reference is a run of Taylor series at [`FINEST`]; a second run with other steps bounds its accuracy
+//! ([`Study::floor`]). Both are audited ([`dalembert::audit`]): the audit proves, independently of event location, that
+//! they miss no impact. Without a confirmed reference nothing is measured.
 //!
 //! ```
 //! use dalembert::{System};
@@ -47,10 +47,11 @@ use probe::{Audited, Probe, Track};
 pub use verdict::Verified;
 pub(crate) use verdict::verify;
 
-/// Equally spaced times at which positions are compared.
+/// Number of equal intervals between the times at which positions are compared.
 pub const TIMES: u64 = 64;
 
-/// The tolerances of the two reference runs. Both are below rounding, so that the runs differ in their steps only.
+/// The tolerances of the two reference runs. Both are below the unit of rounding, so that the runs differ in their steps
+/// only.
 pub const FINEST: [f64; 2] = [1e-16, 1e-18];
 
 /// Plan of the measurements.
@@ -301,8 +302,8 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// Runs the cases up to the first that is accurate enough or takes too long. The error says why tighter tolerances
-    /// are left out.
+    /// Runs the cases up to the first that is accurate enough or takes too long. The error says why the remaining
+    /// tolerances are left out.
     fn climb<M: Model>(
         &mut self,
         model: &M,

@@ -137,12 +137,12 @@ impl Audited {
 
 /// The first difference between two runs.
 enum Difference {
-    /// An impact, counted from 1; `None` for the run without it.
+    /// The impact with this number, counted from 1, in both runs; `None` for a run that does not have it.
     Impact {
         number: usize,
         met: [Option<Met>; 2],
     },
-    /// The ways in which they end.
+    /// The outcomes or the numbers of impacts.
     End,
 }
 
@@ -167,12 +167,12 @@ pub struct Track {
 }
 
 impl Track {
-    /// True if both meet the same surfaces and end for the same reason.
+    /// True if both meet the same surfaces in the same order and end for the same reason.
     pub fn ends_as(&self, other: &Self) -> bool {
         self.difference(other).is_none()
     }
 
-    /// Describes the first difference between the events of both runs, under these names of the runs.
+    /// Describes the first difference between the events of both runs. `names` are the names of this run and of `other`.
     pub fn difference_from(&self, other: &Self, names: [&str; 2]) -> Option<String> {
         let [this, others] = names;
         match self.difference(other)? {

@@ -1,5 +1,5 @@
-//! Conjugate points: zeros of the determinant along a motion between impacts, of odd or even order. A change of its
-//! sign at an impact is not a zero.
+//! Conjugate points: zeros, of odd or even order, of the determinant of the derivative of the configuration with
+//! respect to the unknowns. They are sought along a motion between impacts. A change of sign at an impact is not a zero.
 
 /// Longest step between two evaluations of the determinant, as a fraction of the time of the motion.
 pub(super) const LONGEST: f64 = 1.0 / 128.0;
@@ -13,7 +13,7 @@ const SHALLOW: f64 = 0.2;
 
 /// Number of golden sections of an interval with a minimum.
 const SECTIONS: u32 = 60;
-/// Ratio of a golden section.
+/// Ratio of the shorter part of a golden section to the whole.
 const GOLDEN: f64 = 0.381_966_011_250_105;
 /// Largest minimum that counts as 0, as a fraction of the larger value at the ends of the interval.
 const TOUCHING: f64 = 1e-10;
@@ -26,7 +26,7 @@ const HALVINGS: u32 = 60;
 pub(super) struct Mark {
     pub t: f64,
     pub determinant: f64,
-    /// True if the determinant is the one just before an impact.
+    /// True if an impact follows at this time.
     pub is_cut: bool,
 }
 
@@ -104,7 +104,7 @@ fn touched(three: [(f64, f64); 3], at: &mut dyn FnMut(f64) -> f64) -> Vec<f64> {
     vec![t]
 }
 
-/// The least absolute value of the parabola through three values of one sign; 0 where it passes through 0.
+/// The least absolute value of the parabola through three values of one sign; 0 if it passes through 0.
 fn lowest([(a, first), (b, middle), (c, last)]: [(f64, f64); 3]) -> f64 {
     let [first, middle, last] = [first, middle, last].map(f64::abs);
     let slopes = [(middle - first) / (b - a), (last - middle) / (c - b)];
@@ -121,7 +121,7 @@ fn zero([mut from, mut to]: [f64; 2], before: f64, at: &mut dyn FnMut(f64) -> f6
     let mut before = before;
     let mut after = at(to);
     for round in 0..HALVINGS {
-        // Every third step is a bisection, the others are false positions.
+        // Every third step is a bisection; all other steps use false position.
         let share = before / (before - after);
         let share = match round % 3 == 2 || !(share > 0.0 && share < 1.0) {
             true => 0.5,
@@ -191,7 +191,7 @@ mod tests {
         for (found, expected) in found.iter().zip(expected) {
             assert!((found - expected).abs() < 1e-8, "{found}");
         }
-        // Two zeros between neighbouring marks, then none.
+        // First two zeros between neighbouring marks, then a minimum above 0.
         let close = |t: f64| (t - 3.02) * (t - 3.05);
         let found = zeros(&marks(close), 7.0, &mut { close });
         assert_eq!(found.len(), 2, "{found:?}");

@@ -15,7 +15,7 @@ pub(super) const fn default_count(unknowns: usize) -> usize {
     }
 }
 
-/// The angle of the first direction in the plane, which depends on the seed.
+/// The angle of the first direction in the plane or on the spiral. It depends on the seed.
 pub(super) fn turn(seed: u64) -> f64 {
     TAU * fraction(seed as f64 / GOLDEN + 0.137_035_999)
 }

@@ -4,7 +4,7 @@
 use super::aim::{Aim, Course};
 use super::scan::Sample;
 
-/// Least number of intervals of a stretch.
+/// Least number of intervals into which a stretch is divided.
 const INTERVALS: f64 = 16.0;
 
 /// Maximum number of steps in a bracket.
@@ -19,8 +19,8 @@ struct Place {
 }
 
 /// Finds the starts with miss 0 in one equation, on a stretch of starts with one sequence of impacts. `unit` is the
-/// value of the unknown at speed 1. An extremum of the miss is a root if its size is at most `near`. Also returns the
-/// number of intervals that were not resolved.
+/// value of the unknown at speed 1. An extremum of the miss counts as a root if its absolute value is at most `near`.
+/// Also returns the number of intervals that were not resolved.
 pub(super) fn roots(
     aim: &mut dyn Aim,
     window: &[Sample],

@@ -68,8 +68,8 @@ pub struct Boundary {
     /// Largest kinetic energy of a start. By default the scan continues until every start has too many impacts, or up
     /// to a large multiple of the energies that the problem suggests.
     pub kinetic: Option<f64>,
-    /// Number of starts whose conjugate points are computed, in each of the two directions of the one unknown. Must be
-    /// 0 for several unknowns. The points lie on the envelope of all motions from the first configuration.
+    /// Number of starts whose conjugate points are computed, in each of the two directions of the unknown. Must be 0
+    /// unless there is exactly one unknown. The points lie on the envelope of all motions from the first configuration.
     pub envelope: usize,
 }
 
@@ -118,8 +118,8 @@ pub struct Connection {
     /// False if the determinant at the end is 0 up to rounding: to first order, neighbouring starts reach the end as
     /// well.
     pub is_isolated: bool,
-    /// Number of motions in the family that this motion represents: they are not isolated, and have the same surfaces
-    /// and the same action. 1 for an isolated motion.
+    /// Number of motions that were found in the family that this motion represents. Motions of a family are not
+    /// isolated, and have the same surfaces and the same action. 1 for an isolated motion.
     pub family: usize,
 }
 
@@ -136,8 +136,8 @@ pub struct Connected {
     pub directions: usize,
     /// Largest kinetic energy of a scanned start.
     pub kinetic: f64,
-    /// True if, in every direction, no motion from the fastest scanned starts reaches the end with few enough impacts,
-    /// and none was given up.
+    /// True if, in every direction, no motion from the fastest scanned starts reaches the end time with few enough
+    /// impacts, and none was given up.
     pub is_bounded: bool,
     /// Number of motions that were computed.
     pub runs: u64,
@@ -162,7 +162,7 @@ impl Plan {
 /// Progress of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
-    /// Number of finished tasks: directions first, then starts.
+    /// Number of finished tasks: guesses, if the problem has any, then directions, then starts.
     pub done: usize,
     /// Number of all tasks.
     pub all: usize,
@@ -174,7 +174,7 @@ pub struct Stage {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unjoined {
-    /// The model has no free velocities at the start.
+    /// The model is of first order and has no free velocities at the start.
     #[error("a first-order system has no free velocities: its motion follows from its start")]
     FirstOrder,
     /// The model has constraints and no reduced form.
@@ -192,7 +192,7 @@ pub enum Unjoined {
         /// Number of free velocities of the start.
         unknowns: usize,
     },
-    /// An envelope was requested for several unknowns.
+    /// An envelope was requested for a number of unknowns other than 1.
     #[error("envelopes are known for one free velocity, and the start has {unknowns}")]
     Envelope {
         /// Number of free velocities of the start.
@@ -208,7 +208,7 @@ pub enum Unjoined {
         /// Its gap.
         gap: f64,
     },
-    /// A constraint of positions keeps the motion away from the end.
+    /// The level of a constraint differs between the two configurations, and a motion keeps it.
     #[error("constraint {constraint} keeps a value that differs by {difference:e} there")]
     Level {
         /// The constraint.
@@ -273,7 +273,7 @@ impl VariationalVisitor for Joiner<'_, '_> {
     }
 }
 
-/// Replaces each family of motions that are not isolated by one of them.
+/// Keeps one motion of each family of motions that are not isolated.
 fn families(connections: Vec<Connection>) -> Vec<Connection> {
     let mut kept: Vec<Connection> = Vec::new();
     for connection in connections {

@@ -1,7 +1,7 @@
 //! Newton's method for a root within one sequence of impacts: steps that change the sequence are shortened.
 //!
-//! Known roots are divided out (deflation): the miss is multiplied by `M = prod(1 + |y_i|^2/|y - y_i|^2)`, which
-//! multiplies the step by `1/(1 - dM(step)/M)`.
+//! Known roots `y_i` are divided out (deflation): the miss at `y` is multiplied by
+//! `M = prod(1 + |y_i|^2/|y - y_i|^2)`, which multiplies the step by `1/(1 - dM(step)/M)`.
 
 use super::aim::{Aim, Course, Shot};
 use crate::least_squares::solve;
@@ -19,7 +19,7 @@ const DECREASE: f64 = 1e-4;
 /// Result of Newton's method.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Arrival {
-    /// A new root, in units.
+    /// A new root: the unknowns, each divided by its unit.
     Root(Vec<f64>),
     /// A known root.
     Known,
@@ -37,12 +37,13 @@ pub(super) struct Newton<'a> {
     pub most: f64,
     /// Largest miss of a root.
     pub near: f64,
-    /// A small speed of the problem.
+    /// A typical speed of the problem.
     pub least: f64,
 }
 
 impl Newton<'_> {
-    /// Searches from a start in units. Roots of `known` are recognised, and divided out if `deflated`.
+    /// Searches from a start, given by the unknowns divided by their units. Roots of `known` are recognised, and divided
+    /// out if `deflated`.
     pub fn search(&mut self, start: &[f64], known: &[Vec<f64>], deflated: bool) -> Arrival {
         let mut y = start.to_vec();
         let mut shot = self.shoot(&y, true);
@@ -141,13 +142,13 @@ pub(super) fn is_same(left: &[f64], right: &[f64], speed: f64) -> bool {
     norm(&difference(left, right)) <= 1e-6 * size
 }
 
-/// True if a step from near a root leads to it.
+/// True if `y` is near a root and the step leads much closer to it.
 fn is_captured(y: &[f64], step: &[f64], root: &[f64]) -> bool {
     let away = norm(&difference(root, y));
     away <= 0.05 * norm(root) && norm(&difference(root, &moved(y, step, 1.0))) <= 0.05 * away
 }
 
-/// The factor of the deflated miss, which keeps it away from 0 at known roots.
+/// The factor by which deflation multiplies the miss. It is infinite at known roots.
 fn factor(y: &[f64], known: &[Vec<f64>]) -> f64 {
     let near =
         |root: &Vec<f64>| (norm(&difference(y, root)) / norm(root).max(f64::MIN_POSITIVE)).powi(-2);

@@ -27,7 +27,7 @@ pub(super) struct Density {
     pub doubling: usize,
     /// Maximum number of halvings of an interval at whose ends the sequences of impacts differ.
     pub halvings: u32,
-    /// Number of integrator steps after which the speed is no longer doubled.
+    /// Number of integrator steps after which an open scan no longer doubles the speed.
     pub steps: u64,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Speeds {
 pub(super) struct Ray {
     /// The starts in order of speed.
     pub samples: Vec<Sample>,
-    /// True if no motion of the fastest starts reaches the end with few enough impacts, and none was given up.
+    /// True if no motion of the fastest starts reaches the end time with few enough impacts, and none was given up.
     pub is_bounded: bool,
 }
 
@@ -112,7 +112,7 @@ pub(super) fn ray(
     ray
 }
 
-/// True for a motion that reaches the end with few enough impacts.
+/// True for a motion that reaches the end time with few enough impacts.
 fn reaches(sample: &Sample) -> bool {
     matches!(sample.shot.course, Course::Reached(_))
 }
@@ -120,14 +120,14 @@ fn reaches(sample: &Sample) -> bool {
 /// Number of successive quiet doublings after which faster starts are assumed to lead away from the end.
 const QUIET: u32 = 5;
 
-/// Number of doublings after which a ray without any motion to the end is given up. It is above 1, because slow starts
-/// may have too many impacts where fast ones have few.
+/// Number of doublings after which a ray without any motion to the end is given up. Slow starts may have too many
+/// impacts although fast starts have few, so one doubling is not enough.
 const VAIN: u32 = 5;
 
 /// Record of the doublings of the speed along a ray.
 #[derive(Debug, Default)]
 struct Doublings {
-    /// Number of successive last doublings along which the sequence of impacts did not change and the miss grew.
+    /// Number of the latest successive doublings along which the sequence of impacts did not change and the miss grew.
     quiet: u32,
     /// Number of all doublings.
     made: u32,
@@ -171,8 +171,8 @@ impl Scan<'_> {
         Sample { speed, shot }
     }
 
-    /// Adds the start at a speed, after the starts between it and the last one that resolve changes of the sequence of
-    /// impacts.
+    /// Adds the start at a speed. If its sequence of impacts differs from that of the last start, first adds starts
+    /// between them, by bisection, that locate the change.
     fn extend(&mut self, samples: &mut Vec<Sample>, speed: f64, halvings: u32) {
         let sample = self.sample(speed);
         if let Some(last) = samples.last() {

@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Chooses the starts of an envelope: evenly up to the fastest start that meets a surface.
+    /// Chooses the starts of an envelope, at equally spaced speeds up to the fastest start that meets a surface.
     fn spread(&mut self, ray: &Ray, unit: f64) {
         let meets = |it: &&Sample| match &it.shot.course {
             Course::Reached(surfaces) => !surfaces.is_empty(),
@@ -224,7 +224,7 @@ impl<'a> Search<'a> {
         self.found.fan.extend(fan);
     }
 
-    /// Keeps a root, given in units, unless it is known. Returns true if it is new.
+    /// Keeps a root, given by the unknowns divided by their units, unless it is known. Returns true if it is new.
     fn keep(&mut self, y: &[f64]) -> bool {
         let speed = self.units.speed;
         let is_known = |root: &Root| is_same(&root.y, y, speed);
@@ -302,7 +302,7 @@ impl<'a> Search<'a> {
         self.pursue(candidates);
     }
 
-    /// True if the limit [`SPENT`] holds and is exceeded since the number of steps was `begun`.
+    /// True if the limit [`SPENT`] applies and more steps than that were made since their number was `begun`.
     fn is_spent(&self, begun: u64) -> bool {
         let relies_on_guesses = self.aim.guesses() > 0 && !self.units.has_surfaces;
         relies_on_guesses && self.aim.steps() - begun > SPENT

@@ -170,7 +170,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Ok(())
     }
 
-    /// Refuses a configuration behind a surface that is not passable.
+    /// Refuses a configuration behind a surface that a motion cannot pass.
     fn check_gaps(&self, is_end: bool, t: f64, state: &S::State) -> Result<(), Unjoined> {
         let q = self.system.position(state);
         let size = q
@@ -189,7 +189,7 @@ impl<'a, S: Instance + Scene + Variational> Shooter<'a, S> {
         Ok(())
     }
 
-    /// The effects with the laws and policies of the request. The first impact too many ends the run.
+    /// The effects with the laws and policies of the request. A limit ends runs with too many impacts.
     fn effects(&self) -> S::Effects {
         let mut effects = self.system.effects();
         for &(surface, law) in &self.boundary.laws {
@@ -476,7 +476,7 @@ impl<S: Instance + Scene + Variational> Aim for Shooter<'_, S> {
     }
 }
 
-/// The surfaces that are not passable and count at a state, with their gaps.
+/// The surfaces that count at a state and that a motion cannot pass, with their gaps.
 fn gaps<S: Instance + Scene + Variational>(
     system: &S,
     effects: &S::Effects,
@@ -493,7 +493,7 @@ fn gaps<S: Instance + Scene + Variational>(
         .collect()
 }
 
-/// The position levels of the constraints.
+/// The levels of the constraints at a state.
 fn levels<S: Instance + Scene + Variational>(
     system: &S,
     t: f64,

@@ -70,12 +70,13 @@ struct Bifurcations<'f, 'a, S: Variational> {
     plane: Plane,
     bifurcation: Bifurcation,
     precision: Precision,
-    /// Factor of the test function, with which its gradient at the first bifurcation has length 1.
+    /// Factor of the test function. With it, the gradient at the first bifurcation has length 1.
     unit: f64,
 }
 
 impl<S: Instance + Scene + Variational> Bifurcations<'_, '_, S> {
-    /// The curve through a bifurcation, and for each of the others, true if the curve passes through it.
+    /// The curve through the bifurcation `member`. The second value has an entry for each of `others`: true if the curve
+    /// passes through it.
     fn curve(
         &mut self,
         member: &Member,

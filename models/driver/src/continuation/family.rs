@@ -11,7 +11,7 @@ pub(crate) trait Family {
     /// The map at the point of the section near a state.
     fn local(&mut self, state: &[f64], parameter: f64) -> Result<Local, Failure>;
 
-    /// Prepares for members near this one, which may be far from the last one.
+    /// Prepares for members near this one. It may be far from the last member.
     fn begin(&mut self, member: &Member);
 }
 
@@ -26,7 +26,7 @@ pub(crate) enum Failure {
     NotKnown,
     /// No complex pair of multipliers is left.
     Real,
-    /// Newton's method does not converge, or ends elsewhere.
+    /// Newton's method does not converge, or converges to a point that is too far away.
     Diverged,
     /// The orbit meets this surface more or less often than its predecessor.
     Itinerary(usize),
@@ -48,11 +48,11 @@ pub(crate) struct Local {
     pub shift: Vec<f64>,
     /// The value of the map.
     pub miss: Vec<f64>,
-    /// Its derivative along the directions, column by column.
+    /// The derivative of the map along the directions, column by column.
     pub derivative: Vec<Vec<f64>>,
-    /// Its derivative per unit of the parameter.
+    /// The derivative of the map per unit of the parameter.
     pub slope: Vec<f64>,
-    /// True if its value is 0 up to rounding.
+    /// True if the map is 0 up to rounding.
     pub is_closed: bool,
     /// Number of arrivals at each surface.
     pub arrivals: Vec<f64>,
@@ -153,7 +153,7 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// The member with the direction closest to a heading.
+    /// The member with the direction of its branch that is closest to a heading.
     pub fn new(local: Local, width: f64, heading: &[f64]) -> Self {
         let kernel = local.kernel(width);
         let wanted = local.step(heading);
@@ -163,8 +163,8 @@ impl Node {
         }
         let length = norm(&tangent);
         match kernel.first() {
-            // The direction is orthogonal to the heading, which is the direction of the parameter: the branch turns
-            // back here.
+            // The heading is the direction of the parameter, and the branch is orthogonal to it: the branch turns back
+            // here.
             Some(direction) if length < 1e-9 => tangent.clone_from(direction),
             _ => tangent.iter_mut().for_each(|entry| *entry /= length),
         }

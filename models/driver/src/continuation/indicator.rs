@@ -6,7 +6,8 @@ use crate::linear::determinant;
 use dalembert::math::larger;
 
 /// Distances below which numbers along a branch count as equal. They depend on the tolerance of the integrator: the
-/// error of a simple multiplier is about the tolerance, that of a double multiplier about its square root.
+/// error of a simple multiplier is about the tolerance, the error of a double multiplier about the square root of the
+/// tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Precision {
     /// Distance from the unit circle at which multipliers count as lying on it.
@@ -21,7 +22,7 @@ pub(crate) struct Precision {
 }
 
 impl Precision {
-    /// The value of a test function of slope 1 that counts as 0.
+    /// Largest value that counts as 0, for a test function of slope 1.
     pub const fn zero(&self) -> f64 {
         1e-3 * self.on_circle
     }
@@ -160,7 +161,7 @@ fn pairs(multipliers: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     })
 }
 
-/// The sign of a product of complex numbers, which are real or come in conjugate pairs, times their least modulus.
+/// The sign of the product of the factors, times their least modulus. The factors are real or come in conjugate pairs.
 /// Factors with a modulus below `least` are left out.
 fn signed(least: f64, factors: impl Iterator<Item = [f64; 2]>) -> f64 {
     factors.fold(f64::INFINITY, |value, [re, im]| {

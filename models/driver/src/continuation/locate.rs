@@ -6,7 +6,7 @@ use super::trace::{REACH, Tracer};
 use super::{Bifurcation, Member};
 use crate::linear::norm;
 
-/// Length of a step below which unexplained changes of the stability are no longer resolved by shorter steps.
+/// Length of a step below which an unexplained change of the stability does not shorten the step further.
 const REFINED: f64 = 1e-4;
 
 /// Maximum number of steps to a bifurcation.
@@ -166,7 +166,7 @@ impl Tracer<'_, '_> {
     }
 
     /// The crossing with another branch, interpolated from members on both sides. Closer to the crossing, members of
-    /// both branches differ by rounding only, and a test function has half of the digits.
+    /// both branches differ by rounding only, and a test function has half of its digits.
     fn crossing(
         &mut self,
         near: f64,
@@ -188,7 +188,7 @@ impl Tracer<'_, '_> {
         Ok(self.family.local(&state, parameter)?.member)
     }
 
-    /// The zero of the determinant, interpolated from members on both sides, in units of their distance.
+    /// The place of the zero of the determinant, in the units of [`SIDES`], interpolated from members on both sides.
     fn root(&self, sides: &[Node]) -> f64 {
         let values = sides
             .iter()
@@ -215,8 +215,8 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// State and parameter on the cubic Hermite arc between two members. From a chord, the other branch of a crossing may
-/// be closer than this one.
+/// State and parameter on the cubic Hermite arc between two members. Near a crossing, a point of the chord may be closer
+/// to the other branch.
 pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f64>, f64) {
     let rest = 1.0 - fraction;
     let ends = [
@@ -242,7 +242,7 @@ pub(super) fn arc([node, next]: [&Node; 2], fraction: f64, width: f64) -> (Vec<f
     (state.collect(), parameter)
 }
 
-/// Places of members on both sides of a crossing.
+/// Places of members on both sides of a crossing, in units of the distance of the inner members.
 const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 
 /// The polynomial through the values at these places.

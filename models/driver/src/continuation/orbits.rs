@@ -29,7 +29,7 @@ pub(crate) struct Orbits<'a, S: Variational> {
 }
 
 impl<'a, S: Instance + Scene + Variational> Orbits<'a, S> {
-    /// The orbits near one of them, over the parameter of this index.
+    /// The family that contains this orbit, over the parameter of this index.
     pub fn new(
         system: &S,
         search: &'a Search,
@@ -100,8 +100,8 @@ fn local<S: Instance + Variational>(
     precision: Precision,
 ) -> Result<Local, Failure> {
     if image.delay > DELAY * image.image.time {
-        // The motion from the point leaves the surface first, so that its image differs from that of neighbours on the
-        // other side.
+        // The motion from the point leaves the surface and arrives at it later. The map is not smooth here: motions from
+        // neighbouring points on the other side of the surface arrive at once.
         return Err(Failure::TooLong);
     }
     let multipliers = image.multipliers.as_ref();

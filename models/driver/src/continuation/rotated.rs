@@ -3,7 +3,7 @@
 
 use crate::linear::{add, dot};
 
-/// Singular values below this multiple of the largest one, or of 1 if that is larger, count as 0.
+/// Singular values below this multiple of the largest one (or of 1, if the largest one is below 1) count as 0.
 const RANK: f64 = 1e-7;
 
 /// Maximum number of sweeps over all pairs of columns.

@@ -28,7 +28,7 @@ const STRAIGHT: f64 = 0.998_6;
 /// Largest correction, as a fraction of the step.
 pub(super) const REACH: f64 = 0.1;
 
-/// Maximum number of steps from a member to another one that may be the same.
+/// Maximum number of steps with which a branch is followed from a member to a given one.
 const RETURNS: usize = 8;
 /// Distance below which two members are the same.
 const SAME: f64 = 1e-6;
@@ -227,7 +227,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
         (kept.map(|(_, (member, _))| member).collect(), end)
     }
 
-    /// Follows the branch from a member until it ends. Calls `take` with the bifurcations of each step and its end.
+    /// Follows the branch from a member until it ends. Calls `take` after each step, with the bifurcations in the step and
+    /// the member at the end of the step.
     fn followed(
         &mut self,
         start: &Node,
@@ -273,7 +274,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         }
     }
 
-    /// True if the branch leads from a member, within a step, to the first member in the same direction.
+    /// True if the branch leads from a member, within a step, to the first member, and has the same direction there.
     fn is_back(&mut self, node: &Node, start: &Node, length: f64) -> bool {
         dot(&node.heading, &start.heading) > TURN && self.leads(node, &start.local, length)
     }
@@ -465,7 +466,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 }
 
-/// The end of a branch from whose last member even the shortest step fails. `last`: its last two members.
+/// The end of a branch at whose last member even the shortest step fails. `last` are the last two members, `failures`
+/// the failures of all steps from the last one.
 fn diagnosed(last: [&Node; 2], failures: &[Failure]) -> BranchEnd {
     let grazed = failures.iter().rev().find_map(|failure| match failure {
         Failure::Itinerary(surface) => Some(*surface),

@@ -101,7 +101,8 @@ pub struct Controlled {
     pub directions: usize,
     /// Number of motions that were computed.
     pub runs: u64,
-    /// True if the scan of every direction ended where larger costates have too many impacts or no motion to the end.
+    /// True if the scan of every direction ended where larger costates lead to too many impacts or to motions that end
+    /// early.
     pub is_bounded: bool,
     /// Number of intervals of the scan that were not resolved.
     pub unresolved: usize,
@@ -113,7 +114,7 @@ pub struct Controlled {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Unsought {
-    /// The model is not the model of extremals of another one.
+    /// The model is not the model of extremals of another model.
     #[error("the model is not that of the extremals of a model with a cost")]
     Other,
     /// The second derivative of the running cost with respect to the inputs is not positive.

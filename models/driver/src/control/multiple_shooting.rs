@@ -28,7 +28,7 @@ pub(super) const GUESSES: usize = 24;
 /// Deviations of the guesses from a straight line, in multiples of the size of the state.
 const HEIGHTS: [f64; 3] = [0.25, 1.0, 2.0];
 
-/// Maximum number of steps.
+/// Maximum number of Newton steps.
 const STEPS: usize = 60;
 
 /// Length of a Newton step, in units of the unknowns, below which the equations count as solved.
@@ -86,7 +86,7 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
                 }
                 let next = unknowns.iter().zip(&step);
                 let next: Vec<f64> = next.map(|(value, step)| value - share * step).collect();
-                // The next step with the same derivatives must be shorter.
+                // The simplified Newton step at `next`, with the derivatives at `unknowns`, must be shorter.
                 if let Some(there) = self.equations(&next)
                     && let Some(again) = solve(&equations.columns, &there.residuals)
                     && length(&again) <= (1.0 - 0.25 * share) * size
@@ -100,8 +100,8 @@ impl<'s, 'a, S: Instance + Scene + Variational> Chain<'s, 'a, S> {
         None
     }
 
-    /// The units of the unknowns: the largest absolute values of states and costates at the nodes, at least the sizes
-    /// of the state and [`SMALL`].
+    /// The units of the unknowns: the largest absolute values of the components at the nodes, for a state at least the
+    /// size of the component, for a costate at least [`SMALL`].
     fn units(&self, unknowns: &[f64]) -> Vec<f64> {
         let n = self.n;
         let (_, _, sizes) = self.shooter.ends();

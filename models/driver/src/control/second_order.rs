@@ -9,7 +9,7 @@
 //! may contain impacts.
 //!
 //! The derivatives of every stretch are computed from its own start. Derivatives with respect to the start of the whole
-//! motion would lose digits: over a short time, an input hardly moves the states on which it acts through others.
+//! motion would lose digits: over a short time, an input hardly moves the states on which it acts through other states.
 
 use crate::least_squares::solve;
 use dalembert::math::larger;
@@ -47,7 +47,7 @@ const ROUNDING: f64 = 1e-12;
 /// Largest accepted relative error of the inverse of `B`.
 const RESOLVED: f64 = 1e-2;
 
-/// Rows of a matrix.
+/// A matrix, row by row.
 type Matrix = Vec<Vec<f64>>;
 
 /// Tests an extremal by the flows of its stretches, in order of time. `terminal` is the second derivative of the

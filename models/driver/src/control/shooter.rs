@@ -29,7 +29,7 @@ const AT_ENDS: f64 = 1e-9;
 /// Number of steps after which a motion is given up: a minimum, and a multiple of the steps with costate 0 at the
 /// start.
 const STEPS: [u64; 2] = [4000, 50];
-/// The same for three unknowns or more without surfaces, where many motions of a scan diverge.
+/// As [`STEPS`], for three unknowns or more without surfaces: many motions of such a scan diverge.
 const STEPS_IN_SPACE: [u64; 2] = [500, 10];
 
 /// Numbers of stretches of the second-order test, tried in order. Short stretches resolve conjugate points. Over long

@@ -2,7 +2,8 @@
 //!
 //! Values are interpolated by weighted parabolas (WENO of fourth order; Carlini, Ferretti, Russo 2005). Between two
 //! nodes, one parabola uses the node before, the other the node after. For smooth values, the weights combine them into
-//! a cubic. At a kink, they leave out the parabola across it. A least cost has kinks where two ways are equally good.
+//! a cubic. At a kink, they leave out the parabola across it. A least cost has kinks at states from which two different
+//! motions cost the same.
 
 /// Number added to the squares of second differences, as a fraction of their sum.
 const FLOOR: f64 = 1e-6;

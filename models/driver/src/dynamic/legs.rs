@@ -1,5 +1,5 @@
-//! Motions over a step from many states, with each of several inputs. The components of the first-order model are the
-//! state, the held inputs and the cost.
+//! Motions over a step from many states, with each of several values of the input. The components of the first-order
+//! model are the state, the held input and the cost.
 
 use std::ops::ControlFlow;
 
@@ -24,14 +24,14 @@ const STEPS: u64 = 4096;
 /// Number of components of the state.
 const STATE: usize = 2;
 
-/// A step in time, with the inputs of its motions.
+/// A step in time, with the values of the input for its motions.
 #[derive(Debug, Clone, Copy)]
 pub struct Leg<'a> {
     /// The times at its start and at its end.
     pub span: [f64; 2],
     /// The tolerance of the integrator, `Taylor`.
     pub tolerance: Tolerance,
-    /// The inputs.
+    /// The values of the input.
     pub inputs: &'a [f64],
 }
 

@@ -92,7 +92,8 @@ impl ExactSum {
         quotient(&sum, &(BigUint::from(self.count) << UNIT))
     }
 
-    /// The standard deviation, with `count - 1`: the root of the correctly rounded variance. NaN below two terms.
+    /// The sample standard deviation (divisor `count - 1`): the square root of the correctly rounded variance. NaN for
+    /// fewer than two terms.
     pub fn deviation(&self) -> f64 {
         let sum = BigInt::from_signed_bytes_le(&self.sum());
         let squares = BigInt::from_signed_bytes_le(&self.squares());
@@ -111,8 +112,8 @@ fn quotient(numerator: &BigInt, denominator: &BigUint) -> f64 {
     if sign == Sign::NoSign {
         return 0.0;
     }
-    // The whole part of the quotient in units of 2^exponent has 63 or 64 bits, or fewer if it is below 2^-1012. Two
-    // bits at least are rounded off.
+    // The whole part of the quotient in units of 2^exponent has 63 or 64 bits, or fewer if the quotient is below
+    // 2^-1012. At least two bits are rounded off.
     let lowest = -i64::from(UNIT);
     let exponent = (size.bits() as i64 - denominator.bits() as i64 - 63).max(lowest - 2);
     let shift = exponent.unsigned_abs();
@@ -129,7 +130,8 @@ fn quotient(numerator: &BigInt, denominator: &BigUint) -> f64 {
     let half = 1 << (dropped - 1);
     let is_up = rest > half || (rest == half && (!is_exact || kept % 2 == 1));
     let mantissa = kept + u64::from(is_up);
-    // The mantissa with its leading bit, added to the bits of the exponent, which it raises by one.
+    // The mantissa keeps its leading bit. Added to the exponent field, that bit raises the field by one; a subnormal
+    // number has none.
     let field = (exponent + dropped - lowest) as u64;
     let magnitude = match field + (mantissa >> 52) < 0x7ff {
         true => f64::from_bits((field << 52) + mantissa),
@@ -241,7 +243,7 @@ mod tests {
         assert_eq!(value(&squares, 2 * UNIT as i32), 25.0);
     }
 
-    /// Division of numbers without rounding errors is rounded once by the processor.
+    /// Both operands are exact in doubles, so the quotient of the processor is correctly rounded.
     #[test]
     fn quotients_are_rounded_as_the_processor_rounds() {
         let mut state = 1_u64;

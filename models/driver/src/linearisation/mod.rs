@@ -74,8 +74,8 @@ pub struct Linearisation {
     pub(crate) nearby: Vec<Vec<[f64; 2]>>,
     /// Indices of the components whose rates are not 0 up to rounding, except [`Trim::moving`].
     pub unsteady: Vec<usize>,
-    /// Number of position levels that the constraints conserve. The same number of eigenvalues is 0; these belong to
-    /// directions off the constraints.
+    /// Number of levels that the constraints conserve. Each level makes one eigenvalue 0, which belongs to a direction
+    /// off the constraints.
     pub levels: usize,
     /// Number of steps to the equilibrium; `None` without a search.
     pub steps: Option<u32>,
@@ -103,7 +103,7 @@ impl Linearisation {
             .as_ref()
             .filter(|_| self.unsteady.is_empty())?;
         let margin = NEUTRAL * largest(self.a.iter().flatten());
-        // The smallest number of such eigenvalues among the states that may be the equilibrium.
+        // The least number of eigenvalues whose real parts are counted, over the states that may be the equilibrium.
         let least = |is_counted: &dyn Fn(f64) -> bool| {
             let count = |spectrum: &Vec<[f64; 2]>| {
                 let real = spectrum.iter().map(|[re, _]| *re);
@@ -168,13 +168,13 @@ pub enum Unlinear {
     NoEquilibrium {
         /// The component with the largest rate.
         component: usize,
-        /// Its rate, at the best state.
+        /// Its rate in the best state that was found.
         rate: f64,
     },
     /// No equilibrium on the constraints was found.
     #[error("no equilibrium was found on the constraints: a level is off by {excess:.3e}")]
     OffLevel {
-        /// The difference of a level from its value, at the best state.
+        /// The difference of a level from its value at the start, in the best state that was found.
         excess: f64,
     },
 }

@@ -21,7 +21,8 @@ const SETTLED: f64 = 1e-12;
 /// Largest accepted residual of an equilibrium, in the same unit.
 const SOLVED: f64 = 1e-9;
 
-/// Largest damping of a step, as a multiple of the residual or of the largest derivative, whichever is smaller.
+/// Largest damping of a step, as a multiple of the smaller one of two numbers: the norm of the residuals and the largest
+/// derivative.
 const DAMPED: f64 = 1e8;
 
 /// Smallest damping, in the same unit.

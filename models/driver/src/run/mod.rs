@@ -321,7 +321,7 @@ struct Bridge<'a, M, R> {
 }
 
 impl<M: Model, R: Reading<M::State>> Bridge<'_, M, R> {
-    /// The values of the present state.
+    /// The values of a state, with the present values of the integrals.
     fn point(&self, t: f64, state: &M::State) -> Point {
         self.integrals.put(self.reading.point(t, state))
     }

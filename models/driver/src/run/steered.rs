@@ -41,7 +41,8 @@ pub type InputFunction<'c> = dyn Fn(f64, &[f64], &[f64]) -> Vec<f64> + 'c;
 
 /// Inputs as functions of time, positions and velocities.
 pub struct Control<'c> {
-    /// Values of all inputs, in order. Velocities of a first-order system are those without inputs.
+    /// Values of all inputs, in order. The velocities of a first-order system are its rates with the stored values of
+    /// the inputs.
     pub inputs: &'c InputFunction<'c>,
     /// The times at which the inputs change.
     pub changes: Changes<'c>,

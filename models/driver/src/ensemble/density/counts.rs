@@ -3,7 +3,7 @@
 //! A density has converged if it agrees with the densities of half of the states, of a quarter and so on. For this
 //! comparison, every state belongs to one class by its time and to another class by its member. Class 0 is the later
 //! half of all states, class 1 the later half of the rest, and so on; the last class is the remainder. Members are
-//! assigned alternately, so that the halves of a grid of members are spread over the whole grid.
+//! assigned to classes alternately, so that the halves of a grid of members are spread over the whole grid.
 
 use std::io::{self, Read, Write};
 
