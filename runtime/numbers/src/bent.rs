@@ -191,7 +191,7 @@ impl Numbers for Bent {
         }
     }
 
-    /// At a change of the sign the result has a kink: its derivatives are unbounded.
+    /// Where the sign may change, the result may have a kink or a jump, and its derivatives are not bounded.
     fn turned(self, sign: Self) -> Self {
         match (sign.value.lo < 0.0, sign.value.hi < 0.0) {
             (false, _) => self,

@@ -37,9 +37,9 @@ pub struct Everywhere {
     /// True if the number depends on the state.
     varies: bool,
     is_sharp: bool,
-    /// Largest number of varying factors of a product in it.
+    /// Largest number of varying factors that one product of the expression has.
     factors: u32,
-    /// Product of the ratios (largest to smallest absolute value) of divisors and bases of powers in such a product.
+    /// Largest product of the ratios (largest to smallest absolute value) of the divisors and bases in one product.
     ratio: f64,
 }
 

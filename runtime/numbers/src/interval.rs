@@ -144,7 +144,7 @@ impl Interval {
         widest(function(self.lo), function(self.hi), CALL)
     }
 
-    /// The intersection with `[lo, hi]`, which must not be empty.
+    /// The intersection with `[lo, hi]`. It must not be empty.
     #[must_use]
     #[inline(always)]
     pub fn within(self, lo: f64, hi: f64) -> Self {
@@ -419,7 +419,8 @@ impl Numbers for Interval {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
-    /// The whole line if `sign` may have either sign, because no series exists across a kink.
+    /// The absolute value if `sign` is the number itself. Any other number, such as a higher coefficient of a series,
+    /// becomes the whole line where `sign` may have either sign, because no series exists across a kink.
     #[inline(always)]
     fn turned(self, sign: Self) -> Self {
         match (sign.lo < 0.0, sign.hi < 0.0) {
@@ -605,7 +606,7 @@ pub(crate) mod tests {
     }
 
     impl Enclosed {
-        /// Paths in its domain in both directions, from single points to all of it.
+        /// Paths in its domain in both directions, from single points to the whole domain.
         pub(crate) fn stretches(&self) -> impl Iterator<Item = Sample> + '_ {
             let [lo, hi] = self.domain;
             (0..=24).flat_map(move |start| {

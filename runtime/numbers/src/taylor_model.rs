@@ -3,7 +3,7 @@
 //! With `s` from -1 at the start of the stretch to 1 at its end, a [`TaylorModel`] holds every function `p(s) + r(s)`
 //! whose cubic is `p` and whose remainder obeys `|r(s)| <= error` and `|r(s) - r(s')| <= slope |s - s'|`. For a
 //! function `f` over numbers and a path `x(s)`, `f(x)` holds `f(x(s))`. Halving the stretch divides the error by
-//! sixteen: one model locates the root of a gap during a flight, for which interval arithmetic needs a dozen stretches.
+//! sixteen. One model locates the root of a gap during a flight; interval arithmetic needs a dozen stretches for this.
 //!
 //! Reference: K. Makino, M. Berz, *Taylor models and other validated functional inclusion methods*, International
 //! Journal of Pure and Applied Mathematics 6 (2003).
@@ -703,7 +703,7 @@ impl Numbers for TaylorModel {
         self.function(
             |c, radius| {
                 let power = libm::exp(c);
-                // Sums of arguments are rounded by less than 1e-12.
+                // Rounding changes the sum `c + radius` by less than 1e-12.
                 let most = (1.0 + 1e-9) * libm::exp(c + radius) + f64::MIN_POSITIVE;
                 Expansion {
                     terms: [power, power, 0.5 * power, power / 6.0],
@@ -743,7 +743,7 @@ impl Numbers for TaylorModel {
         self.function(
             |c, radius| {
                 let inverse = 1.0 / (1.0 + c);
-                // The sum is rounded before the radius is subtracted.
+                // A lower bound of `1 + c`, which is a rounded sum.
                 let fourth = match least((1.0 + c) * (1.0 - ROUNDING), radius) {
                     Some(least) => 0.25 / (least * least * least * least),
                     None => f64::INFINITY,
@@ -806,7 +806,7 @@ impl Numbers for TaylorModel {
                         -tangent * first,
                         first * (3.0 * tangent * tangent - 1.0) / 3.0,
                     ],
-                    // `t (2 - 3 t^2) (1 - t^2) / 3` for `t` up to 1.
+                    // Bound of `|t (2 - 3 t^2) (1 - t^2)| / 3`, with `t = tanh x`.
                     fourth: 0.26,
                 }
             },

@@ -6,7 +6,7 @@
 //! code with event location except the functions of the model. A claim that it cannot prove within its budget is
 //! reported as a [`Finding`], in the same way as a surface that was passed.
 //!
-//! Limits: the conditions of a surface (`when`) of a system written by hand are sampled where its gap is negative,
+//! Limits: where the gap of a surface may be negative, the conditions (`when`) of a system written by hand are sampled,
 //! unless the system encloses them ([`Impacting::counts_along`]). A surface that holds the motion is not audited while
 //! it does.
 //!
@@ -171,7 +171,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         };
     }
 
-    /// Records the surface of a step that may be met first.
+    /// Records that a surface may be met, unless one that may be met earlier is recorded.
     fn note_met(&mut self, surface: usize, t: f64) {
         match self.finding {
             Some(Finding::MayBeMet { t: earlier, .. }) if earlier <= t => {}
@@ -179,7 +179,7 @@ impl<'a, Sys: Impacting> Audit<'a, Sys> {
         }
     }
 
-    /// Enclosure of the gap of a surface at a state, including the rounding of the motion so far.
+    /// Enclosure of the gap of a surface at a state, including rounding errors of the dense output.
     fn gap_near(&self, surface: usize, t: f64, state: &Sys::State) -> Interval {
         let component = |i: usize| {
             let value = state.as_slice()[i];
