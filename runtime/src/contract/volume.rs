@@ -3,7 +3,7 @@
 use super::System;
 use crate::error::Fault;
 
-/// A system whose divergence with respect to the invariant-volume candidate `mu_C` was derived.
+/// A system whose divergence with respect to the natural volume `mu_C` ([`InvariantVolume`]) was derived.
 ///
 /// # Examples
 ///
@@ -32,7 +32,8 @@ pub trait Divergence: System {
     /// A [`Fault`] where the metric or the constraints are singular.
     fn divergence(&self, t: f64, state: &Self::State) -> Result<f64, Fault>;
 
-    /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components.
+    /// The density form `theta = m_ab L_{W^a} eta^b` at a position: N components. Here `W^a = g^-1 eta^a`, and `m_ab`
+    /// is the inverse of `m^ab = eta^a(W^b)`.
     ///
     /// # Errors
     /// A [`Fault`] where the metric or the constraints are singular.
@@ -97,8 +98,8 @@ pub trait InvariantVolume: System {
     /// which is stored unwrapped.
     const IS_SINGLE_VALUED: bool;
 
-    /// True if `G` has no closed form. It is then the integral of `dG` along the line from a regular configuration,
-    /// computed to rounding, and [`Fault::SingularConstraint`] if a singularity lies on that line.
+    /// True if `G` has no closed form. It is then the integral of `dG` along the straight line from a regular
+    /// configuration, computed to rounding. A singularity on that line gives [`Fault::SingularConstraint`].
     const IS_INTEGRAL: bool;
 
     /// `G`, the logarithm of the density with respect to `mu_C`.
