@@ -82,7 +82,8 @@ pub enum Outcome {
         /// The surface.
         surface: usize,
     },
-    /// The gap of an active surface is negative beyond rounding, at the start or after an impact.
+    /// The gap of an active surface is negative beyond rounding: at the start, after an impact, or behind a pole of the
+    /// gap.
     StartsInside {
         /// The surface.
         surface: usize,
