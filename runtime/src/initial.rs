@@ -1,5 +1,5 @@
-//! Completion of initial states. Positions come first: they are completed to satisfy the holonomic constraints. Then the
-//! velocities are completed to satisfy all constraints.
+//! Completion of initial states. Positions come first: they are completed to satisfy the holonomic constraints. Then
+//! the velocities are completed to satisfy all constraints.
 
 use crate::contract::Constrained;
 use crate::error::StateError;
@@ -109,7 +109,8 @@ fn solved_from<Sys: Constrained>(
 
 /// Completes velocities. Velocities of `qdot` where `named` is not 0 are kept. The others are those of least Euclidean
 /// norm, in coordinates, that satisfy every constraint `eta(qdot) + eta_0 = 0`. For constraints that are nonlinear in
-/// the velocities, Newton's iteration starts with all free velocities at 1, so that it tends to find positive solutions.
+/// the velocities, Newton's iteration starts with all free velocities at 1, so that it tends to find positive
+/// solutions.
 ///
 /// # Errors
 /// [`StateError::OffConstraint`] if the free components cannot satisfy a constraint; [`StateError::NotFinite`] for a

@@ -12,8 +12,8 @@
 //! have the same image. The method fails if `DF` has the eigenvalue 1: for example if a quantity is conserved, or if
 //! the system does not depend on a coordinate.
 //!
-//! References: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4 (1969);
-//! R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
+//! References: R. Krawczyk, *Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken*, Computing 4
+//! (1969); R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis* (2009), chapter 8.
 
 use core::fmt;
 

@@ -88,7 +88,8 @@ impl Piece {
         [ahead[0].max(within[0]), ahead[1].min(within[1])]
     }
 
-    /// Signs of the gap from its enclosure, without values at the ends. `Unclear` if the enclosure contains 0 at an end.
+    /// Signs of the gap from its enclosure, without values at the ends. `Unclear` if the enclosure contains 0 at an
+    /// end.
     #[inline]
     pub(crate) fn signs(&self) -> Signs {
         let (hull, error) = (&self.hull, self.error);
